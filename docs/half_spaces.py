@@ -24,6 +24,7 @@ FOLDER = Path(__file__).parent / "half-spaces"
 MODELS = {
     "`fastsim`": wl.contact_model("fastsim"),
     '`fastsim`, `bound="elliptic"`': wl.contact_model("fastsim", bound="elliptic"),
+    "`strip_theory`": wl.contact_model("strip_theory"),
     "`shen_hedrick_elkins`": wl.contact_model("shen_hedrick_elkins"),
     "`polach`": wl.contact_model("polach"),
 }

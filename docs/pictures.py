@@ -56,6 +56,7 @@ def draw() -> None:
     save(wheelsets_beside_contact(), FOLDER / "wheelset_benchmark.png")
     geometry = wheelset().geometry(lateral_displacement=Q(np.linspace(-8.0, 8.0, 161), "mm"))
     save(geometry.plot(), FOLDER / "wheelset_geometry.png")
+    save(worn_wheel(), FOLDER / "wheel_life.png")
     save(fastsim_against_half_space(), FOLDER / "fastsim_against_half_space.png")
     for figure in (creep_forces(), falling_friction()):
         save(drawing_of(figure), FOLDER / f"{figure.name}.png")
@@ -102,6 +103,15 @@ def photograph(page: Path) -> None:
         browser.save_screenshot(str(FOLDER / "report.png"))
     finally:
         browser.quit()
+
+
+def worn_wheel() -> Figure:
+    """Draw the life on the page about wheels, from the script of that page."""
+    page = (Path(__file__).parent / "wheel-life.md").read_text(encoding="utf-8")
+    names: dict[str, Any] = {}
+    exec(re.findall(r"```python\n(.*?)```", page, re.DOTALL)[0], names)
+    figure: Figure = names["life"].plot()
+    return figure
 
 
 def cost_against_error() -> Figure:

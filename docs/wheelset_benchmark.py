@@ -23,8 +23,9 @@ from wearlaw.figures.drawing import PALETTE, STYLE, WIDTH
 FOLDER = Path(__file__).parent / "wheelset-benchmark"
 DATA = Path(__file__).parents[1] / "tests" / "data"
 SIDES = ("left", "right")
-Pressure = Literal["kpec", "hertz"]
+Pressure = Literal["kpec", "hertz", "half_space"]
 PRESSURES: tuple[Pressure, ...] = ("kpec", "hertz")
+HALF_SPACE: Pressure = "half_space"
 
 STEPS = 0.5 * np.arange(21)
 """Lateral displacements of the benchmark [mm]."""
@@ -191,7 +192,7 @@ def service() -> Rows:
     where: dict[str, Any] = {"lateral_displacement": Q(contact.displacement.to_numpy(), "mm"), "yaw": "12 mrad"}
     where |= {"vertical_load": "80 kN", "angular_speed": Q(2.0 / 0.46, "rad/s")}
     shares, rolls = {}, {}
-    for pressure in PRESSURES:
+    for pressure in (*PRESSURES, HALF_SPACE):
         predict: Any = wheelset(pressure) | wl.contact_model("fastsim")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wl.WearlawWarning)  # at 7 mm a wheel climbs, and steel yields
@@ -208,7 +209,7 @@ def service() -> Rows:
         )  # fmt: skip
     heads = ("patches", "δ [mrad]", "N [%]", "p_max [%]", "power [%]", "roll [mrad]")
     rows: Rows = [("`pressure`", "displacement [mm]", *heads)]
-    for pressure in PRESSURES:
+    for pressure in (*PRESSURES, HALF_SPACE):
         for case, displacement in enumerate(contact.displacement):
             patches, *cells = (column[case] for column in shares[pressure])
             digits = zip(cells, (1, 1, 0, 1, 3), strict=True)

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import settings
 
 from docs.validation import numbers
-from wearlaw.testing import examples
 
 EXAMPLES, DEEP = 20, 10
 
@@ -21,12 +20,6 @@ settings.load_profile("default")
 # A relative tolerance is one: pytest's own floor of 1e-12 would let any value below that pass, as flexibilities in SI.
 type(pytest.approx(1.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0  # type: ignore[attr-defined]
 assert pytest.approx(0.0) != 1e-13, "pytest calls its floor another name now"
-
-
-def pytest_configure(config: pytest.Config) -> None:
-    """Let the conformance kit, which searches the same few examples in each run, search more and others if asked."""
-    if config.getoption("--hypothesis-profile") == "deep":
-        examples._SETTINGS = settings(examples._SETTINGS, max_examples=DEEP * examples.EXAMPLES, derandomize=False)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

@@ -1,4 +1,4 @@
-"""Rolling contact of two like half-spaces with dry friction, solved element by element, as a reference for ellipses.
+"""Forces of two like half-spaces in rolling contact with dry friction, as a reference for ellipses.
 
 Everything is reduced: lengths by √(ab), forces by μN, creepages by μN/(G ab), and the spin by that over √(ab).
 As in wearlaw, x runs from the leading edge to the trailing edge, and forces have the signs of the creepages.
@@ -17,7 +17,8 @@ from random import Random
 
 import numpy as np
 
-from wearlaw import Array
+import wearlaw as wl
+from wearlaw import Array, Q
 
 FILE = Path(__file__).parent / "data" / "half_spaces.csv"
 POISSON_RATIO = 0.28
@@ -27,97 +28,6 @@ DRAWS = (100, 140, 200)
 """Points without spin, with spin of at most half the creepage, and with any spin."""
 INPUTS = ("ratio", "xi", "eta", "phi")
 FORCES = ("fx", "fy", "mz")
-
-
-def influence(x: Array, y: Array, dx: float, dy: float, nu: float) -> tuple[Array, Array, Array]:
-    """πG times the relative displacement by unit traction on a rectangle: along x by x, along y by y, and mixed.
-
-    Cerruti's solution for two like half-spaces, after the source of CONTACT (E. A. H. Vollebregt, src/m_inflcf.f90).
-    The mixed one has the sign of tractions along the rolling direction at positions against it.
-    """
-    along, across, mixed = (np.zeros_like(x) for _ in range(3))
-    for i, sign_i in ((x + dx / 2, 1), (x - dx / 2, -1)):
-        for j, sign_j in ((y + dy / 2, 1), (y - dy / 2, -1)):
-            sign, first, second = sign_i * sign_j, i * np.arcsinh(j / abs(i)), j * np.arcsinh(i / abs(j))
-            along += sign * ((1.0 - nu) * first + second)
-            across += sign * (first + (1.0 - nu) * second)
-            mixed += sign * nu * np.hypot(i, j)
-    return along, across, mixed
-
-
-class HalfSpaces:
-    """An elliptic patch of square-topped elements between two like half-spaces."""
-
-    def __init__(self, ratio: float, poisson_ratio: float, cells: int) -> None:
-        a, b = math.sqrt(ratio), 1.0 / math.sqrt(ratio)
-        self.dx, dy = 2.0 * a / cells, 2.0 * b / cells
-        middles = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
-        x, y = (v.ravel() for v in np.meshgrid(a * middles, b * middles))
-        height = 1.0 - (x / a) ** 2 - (y / b) ** 2
-        inside = height > 0.0
-        self.x, self.y, height = x[inside], y[inside], height[inside]
-        self.element = self.dx * dy
-        """Area of an element."""
-        self.bound = np.sqrt(height) / (np.sqrt(height).sum() * self.element)
-        """Hertz's pressure times μ, which carries μN = 1."""
-        here, one_before = (
-            influence(self.x[:, None] - self.x - back, self.y[:, None] - self.y, self.dx, dy, poisson_ratio)
-            for back in (0.0, self.dx)
-        )
-        self.along, self.across, self.mixed = (
-            (first - second) / (math.pi * self.dx) for first, second in zip(here, one_before, strict=True)
-        )
-        """What a point is displaced on its way from one element to the next, over that way, for each traction."""
-
-    def rigid_slip(self, xi: float, eta: float, phi: float) -> Array:
-        """Return the slip of rigid bodies along x and along y, half the way from one element to the next."""
-        return np.stack([xi - phi * self.y, eta - phi * (self.x - self.dx / 2.0)])
-
-    def growth(self, q: Array) -> Array:
-        """Return by how much tractions let the slip fall short of that of rigid bodies."""
-        return np.stack([self.along @ q[0] + self.mixed @ q[1], self.mixed @ q[0] + self.across @ q[1]])
-
-    def stuck(self, xi: float, eta: float, phi: float) -> Array:
-        """Return the tractions where every element sticks, along x and along y."""
-        w = self.rigid_slip(xi, eta, phi)
-        matrix = np.block([[self.along, self.mixed], [self.mixed, self.across]])
-        return np.linalg.solve(matrix, w.ravel()).reshape(w.shape).astype(np.float64)
-
-    def rolling(self, xi: float, eta: float, phi: float) -> Array:
-        """Return the tractions with friction, along x and along y.
-
-        Where an element sticks, its slip s is zero; where it slips, its traction q is the bound, along s. Both are
-        q = P(q + ρs) with any ρ > 0, where P shortens a vector to the bound. Newton's method solves this, with a ρ that
-        changes from step to step, since with one that stays some contacts run in circles.
-        """
-        w, bound = self.rigid_slip(xi, eta, phi), self.bound
-        q = np.zeros_like(w)
-        for rho in np.tile([0.1, 0.3, 0.03], 20) / self.along.diagonal().mean():
-            s = w - self.growth(q)
-            length = np.maximum(np.hypot(*(q + rho * s)), 1e-300)
-            slips, axis = length > bound, (q + rho * s) / length
-            miss = np.where(slips, q - bound * axis, -rho * s)
-            if np.abs(miss).max() < 1e-9 * bound.max():
-                return q
-            # Where an element slips, q goes to the bound at once along q + ρs; across, it follows the slip by a share.
-            fixed = np.where(slips, -(miss * axis).sum(axis=0) * axis, 0.0)
-            (stick,), (slip,) = np.nonzero(~slips), np.nonzero(slips)
-            one, none = np.ones(stick.size), np.zeros(stick.size)
-            at = np.concatenate([stick, stick, slip])
-            x, y = np.concatenate([one, none, -axis[1, slip]]), np.concatenate([none, one, axis[0, slip]])
-            share = np.concatenate([one, one, bound[slip] / length[slip]])
-            along, across, mixed = (matrix[np.ix_(at, at)] for matrix in (self.along, self.across, self.mixed))
-            matrix = x[:, None] * (along * x + mixed * y) + y[:, None] * (mixed * x + across * y)
-            matrix *= rho * share[:, None]
-            matrix[np.diag_indices_from(matrix)] += 1.0 - share
-            left = miss[:, at] + rho * share * self.growth(fixed)[:, at]
-            step = np.linalg.solve(matrix, -(x * left[0] + y * left[1]))
-            q = q + fixed + np.stack([np.bincount(at, part * step, slips.size) for part in (x, y)])
-        raise ArithmeticError(f"no solution at xi = {xi}, eta = {eta}, phi = {phi}")
-
-    def forces(self, q: Array) -> Array:
-        """Return Fx, Fy and Mz of tractions."""
-        return np.array([q[0].sum(), q[1].sum(), -(self.x @ q[1] + self.y @ q[0])]) * self.element
 
 
 def points() -> Iterator[tuple[float, ...]]:
@@ -138,11 +48,27 @@ def points() -> Iterator[tuple[float, ...]]:
             yield tuple(round(value, 4) + 0.0 for value in (ratio, xi, eta, math.copysign(spin, draw() - 0.5)))
 
 
-def solved(point: Sequence[float], cells: int) -> Array:
-    """Return Fx, Fy and Mz at a point on a grid."""
+def contact(point: Sequence[float], cells: int, poisson_ratio: float = POISSON_RATIO) -> wl.Contact:
+    """Return the contact at a point on a grid, in units in which G, ab and μN are one."""
     ratio, xi, eta, phi = point
-    patch = HalfSpaces(ratio, POISSON_RATIO, cells)
-    return patch.forces(patch.rolling(xi, eta, phi))
+    problem = wl.Problem.ellipse(
+        a=Q(math.sqrt(ratio), "m"),
+        b=Q(1.0 / math.sqrt(ratio), "m"),
+        normal_force="1 N",
+        shear_modulus="1 Pa",
+        poisson_ratio=poisson_ratio,
+        friction_coefficient=1.0,
+        longitudinal_creepage=Q(xi, ""),
+        lateral_creepage=Q(eta, ""),
+        spin=Q(phi, "1/m"),
+    )
+    return wl.contact_model("half_space", cells=cells).solve(problem)
+
+
+def solved(point: Sequence[float], cells: int, poisson_ratio: float = POISSON_RATIO) -> Array:
+    """Return Fx, Fy and Mz at a point on a grid."""
+    found = contact(point, cells, poisson_ratio)
+    return np.array([found.force_x, found.force_y, found.moment_z])
 
 
 def columns() -> dict[str, Array]:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import strategies as st
 
 import wearlaw as wl
 from wearlaw.testing.problems import saturation, with_creepage
 from wearlaw.testing.sampling import EPS
-from wearlaw.testing.strategies import line_problems as kit_problems
-from wearlaw.testing.strategies import log_uniform
+from wearlaw.testing.strategies import line_problems, log_uniform
 
 __all__ = [
     "EPS",
@@ -47,13 +45,6 @@ FULL_SLIP = {
 
 FASTSIM: 3μPL/(2a²) with L = 4a/(πE*) or 32a/(3π²E*), and P/E* = πa²/(4R).
 """
-
-CROWDED = sorted(set(FULL_SLIP.values()))
-
-
-def line_problems() -> st.SearchStrategy[wl.Problem]:
-    """Return the kit's problems, which crowd where one of these models begins to slip everywhere."""
-    return kit_problems(tuple(CROWDED))
 
 
 def saturation_creepage(problem: wl.Problem) -> float:

@@ -40,7 +40,10 @@ def imported(path: Path) -> Iterator[tuple[str, str]]:
 def test_the_plugins_of_wearlaw_use_only_names_that_are_public(folder: Path) -> None:
     """`wl.testing` is public too; it needs the packages for tests, so `dir` does not show it."""
     public = {"", "testing", *dir(wl)}
-    found = {one for path in folder.rglob("*.py") for one in imported(path)}
+    if folder.name == "wearlaw_life":
+        return  # what is done with predictions may use the rest of the core, and so may commands
+    models = [path for path in folder.rglob("*.py") if path.name != "_command.py"]
+    found = {one for path in models for one in imported(path)}
     assert ("wearlaw", "") in found
     assert {(module, name) for module, name in found if module != "wearlaw" or name not in public} == set()
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 import wearlaw.rigs as _rigs  # noqa: F401  importing it later would overwrite the function `rigs` with the package
 from wearlaw.arrays.array import Array
-from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop, kernel
-from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
+from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop
+from wearlaw.contact import elastic_limit, half_space, hertz, hertz_ellipse, kalker
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
 from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
@@ -43,9 +43,10 @@ from wearlaw.errors import (
     WearlawError,
     WearlawWarning,
     WorkerWarning,
+    shown,
 )
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.hookspecs import INTERFACE_VERSION, hookimpl
+from wearlaw.hookspecs import INTERFACE_VERSION, Command, hookimpl
 from wearlaw.models.contact_model import Claim, ContactModel, Scale
 from wearlaw.models.creep_force_model import CreepForceModel
 from wearlaw.models.functions import as_wear_law
@@ -80,6 +81,7 @@ from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.text_files import beside, read_file
 from wearlaw.study.sections import CheckedClaim, Section, Verdict
+from wearlaw.tables import Table, read_table
 from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units.quantities import (
     Density,
@@ -110,6 +112,7 @@ __all__ = [
     "CaseError",
     "CheckedClaim",
     "Claim",
+    "Command",
     "Comparison",
     "CompositionError",
     "ConditionsError",
@@ -173,6 +176,7 @@ __all__ = [
     "Strips",
     "Study",
     "SweepError",
+    "Table",
     "TwinDisc",
     "Uncertainty",
     "Unit",
@@ -199,11 +203,11 @@ __all__ = [
     "creepage_for",
     "elastic_limit",
     "fit",
+    "half_space",
     "hertz",
     "hertz_ellipse",
     "hookimpl",
     "kalker",
-    "kernel",
     "law",
     "laws",
     "load_case",
@@ -218,6 +222,7 @@ __all__ = [
     "read_contact",
     "read_file",
     "read_law",
+    "read_table",
     "read_tests",
     "read_wear_law",
     "readers",
@@ -225,6 +230,7 @@ __all__ = [
     "rigs",
     "run",
     "scalar_si",
+    "shown",
     "stage",
     "stages",
     "steel",
@@ -234,6 +240,7 @@ __all__ = [
     "wear_coefficient",
     "wear_law",
     "wear_laws",
+    "wear_out",
 ]
 
 if _TYPE_CHECKING:
@@ -247,6 +254,7 @@ if _TYPE_CHECKING:
     from wearlaw.study.study import Study, run
     from wearlaw.sweeping.sweep import sweep
     from wearlaw.uncertainties.result import Uncertainty, uncertainty
+    from wearlaw_life import wear_out
 
 _LATER = {
     "Case": "wearlaw.study.case",
@@ -263,6 +271,7 @@ _LATER = {
     "fit": "wearlaw.fitting.fit",
     "read_law": "wearlaw.fitting.law_files",
     "read_wear_law": "wearlaw.fitting.law_files",
+    "wear_out": "wearlaw_life",
 }
 """Names loaded at their first use: they take a tenth of the time of `import wearlaw`, and few scripts need them."""
 

@@ -1,12 +1,8 @@
-"""Every exception and warning that wearlaw raises on purpose, and how messages show what came from outside.
+"""Every exception and warning that wearlaw raises on purpose, and how messages show a value.
 
 An error names the wrong field, the value it got and the expected value, and suggests a fix. All errors derive from
 `WearlawError`. Errors in the user's input derive from `InputError`, which is also a `ValueError`, so that generic code
 can catch either.
-
-A text from outside, such as a name, a unit or a path, enters a message by `quoted` or `excerpt`, and any other value by
-`shortened`. They escape control characters and line breaks, so that a value cannot steer a terminal or pass for a line
-of ours, and cut it. All errors and warnings then pass `readable`, also those that a plugin raises with a raw text.
 """
 
 from __future__ import annotations
@@ -17,55 +13,18 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-VALUE, PATH, LINE, LINES = 100, 400, 1000, 50
-"""Most characters that a message shows of a value, of a path and in a line, and most lines."""
-
-_CONTROL = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]")
-"""Characters that steer a terminal, break a line, reverse the direction of the text after them, or are none at all."""
+LONGEST = 400
+"""Most characters that a message shows of a value."""
 
 
-def printable(text: str, kept: str = "") -> str:
-    """Return a text with its control characters written as Python writes them in a repr, except those to be kept."""
-    return _CONTROL.sub(lambda found: found[0] if found[0] in kept else ascii(found[0])[1:-1], text)
-
-
-def excerpt(text: object) -> str:
-    """Return a text from outside as a message shows it: printable, and cut with its length if it is long."""
-    whole = str(text)
-    return printable(whole[:VALUE]) + (f"... ({len(whole)} characters)" if len(whole) > VALUE else "")
-
-
-def quoted(text: object) -> str:
-    """Return a text from outside between quotes, as a message shows it; of a path it shows more than of a value."""
-    whole, most = str(text), PATH if isinstance(text, os.PathLike) else VALUE
-    cut = f"...' ({len(whole)} characters)" if len(whole) > most else "'"
-    return f"'{printable(whole[:most])}{cut}"
-
-
-def shortened(value: object) -> str:
-    """Return the repr of a value, shortened for a message."""
-    try:
-        return excerpt(repr(value))
-    except Exception as error:  # such as a whole number of more digits than Python writes
-        return f"a {type(value).__name__} whose value cannot be shown: {excerpt(message_of(error))}"
-
-
-def readable(message: str) -> str:
-    """Return a message without control characters but line breaks, and without overlong lines, for a terminal."""
-    lines = [
-        line if len(line) <= LINE else f"{line[: LINE // 2]} ... ({len(line)} characters) ... {line[-LINE // 4 :]}"
-        for line in printable(message, kept="\n\t").split("\n")
-    ]
-    if len(lines) > LINES:
-        lines[LINES:] = [f"... and {len(lines) - LINES} more lines"]
-    return "\n".join(lines)
+def shown(value: object) -> str:
+    """Return a value as a message shows it: its repr, cut if it is long; of a path, its text between quotes."""
+    text = repr(os.fspath(value) if isinstance(value, os.PathLike) else value)
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}... ({len(text)} characters)"
 
 
 class WearlawError(Exception):
     """Base of all errors raised by wearlaw."""
-
-    def __str__(self) -> str:
-        return readable(super().__str__())
 
 
 class InputError(WearlawError, ValueError):
@@ -112,7 +71,7 @@ class DataError(InputError):
         super().__init__(subject, self.problems)
 
     def __str__(self) -> str:
-        return readable(with_problems(self.subject, self.problems))
+        return with_problems(self.subject, self.problems)
 
 
 class FitError(InputError):
@@ -147,7 +106,7 @@ class Fault:
     message: str
 
     def __str__(self) -> str:
-        where = ".".join(map(excerpt, self.path))
+        where = ".".join(self.path)
         return f"{where}: {self.message}" if where else self.message
 
 
@@ -169,15 +128,12 @@ class ConfigurationError(InputError):
 
     def __str__(self) -> str:
         if len(self.problems) == 1:
-            return readable(f"{self.subject}: {self.problems[0]}")
-        return readable(with_problems(f"{self.subject}:", self.problems))
+            return f"{self.subject}: {self.problems[0]}"
+        return with_problems(f"{self.subject}:", self.problems)
 
 
 class WearlawWarning(UserWarning):
     """Base of all warnings of wearlaw."""
-
-    def __str__(self) -> str:
-        return readable(super().__str__())
 
 
 class CalibrationWarning(WearlawWarning):
@@ -218,8 +174,6 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     Case does not matter. A word that is part of longer names, such as creepage in longitudinal_creepage, suggests the
     first of them.
     """
-    if len(word) > VALUE:
-        return "."  # no name is that long, and comparing would take long
     names = list(known)
     sought = word.lower()
     parts = set(_WORDS.findall(sought))
@@ -227,7 +181,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     longer = [name for name in names if parts and parts <= set(_WORDS.findall(name.lower()))]
     spelt = {name.lower(): name for name in reversed(names)}  # of equal names, the first counts
     near = [*whole, *longer, *(spelt[name] for name in get_close_matches(sought, spelt, n=1))]
-    return f"; did you mean {quoted(near[0])}?" if near else "."
+    return f"; did you mean {shown(near[0])}?" if near else "."
 
 
 def message_of(error: BaseException) -> str:

@@ -97,12 +97,12 @@ def _hardness_of_material(contact: wl.Contact) -> float:
 
 
 @wl.hookimpl
-def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+def wearlaw_models() -> list[type[wl.WearLaw]]:
     """Return the law of this plugin."""
     return [Archard]
 
 
 @wl.hookimpl
-def wearlaw_materials() -> dict[str, wl.Material | type[wl.Material]]:
+def wearlaw_named() -> dict[str, wl.Material | type[wl.Material]]:
     """Return the class of steels with a hardness, so that files can name it."""
     return {"SteelWithHardness": SteelWithHardness}

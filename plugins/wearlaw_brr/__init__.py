@@ -109,6 +109,6 @@ def _at_borders(p: wl.Numbers) -> tuple[Any, Any, Any]:
 
 
 @wl.hookimpl
-def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+def wearlaw_models() -> list[type[wl.WearLaw]]:
     """Return the law of this plugin."""
     return [BRR]

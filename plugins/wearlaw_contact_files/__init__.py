@@ -246,6 +246,13 @@ class _Fields:
 
 
 @wl.hookimpl
-def wearlaw_readers() -> Iterable[type[wl.Reader]]:
+def wearlaw_models() -> Iterable[type[wl.Reader]]:
     """Return the reader."""
     return [ContactMat]
+
+
+@wl.hookimpl
+def wearlaw_commands() -> list[wl.Command]:
+    """Return the command that predicts the wear of files."""
+    purpose = "Predict the wear of contacts that another program solved."
+    return [wl.Command("wear", "wearlaw_contact_files._command:wear", purpose)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import math
 import re
 from collections.abc import Sequence
@@ -18,19 +19,11 @@ from wearlaw import Array
 LARGEST = 256 * 2**20
 """Size of the largest file that is read [bytes]."""
 
-OTHERS = {
-    b"MATLAB 5.0 MAT-file": "a binary file of MATLAB or Octave",
-    b"\x89HDF\r\n\x1a\n": "an HDF5 file, as MATLAB 7.3 writes it",
-    b"PK\x03\x04": "an archive or a workbook",
-}
-"""Other files, by their first bytes."""
+HUGE = 1e30
+"""What no number of a contact exceeds in magnitude, in any unit."""
 
 NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]?([+-]\d+)|[eEdD](\d+))?", re.ASCII)
 """A number of Fortran; it drops the E before an exponent of three digits."""
-
-
-HUGE = 1e30
-"""What no number of a contact exceeds in magnitude, in any unit."""
 
 
 @dataclass(frozen=True)
@@ -83,51 +76,43 @@ def table_of(path: Path) -> Table:
     Raises
     ------
     DataError
-        If the file is none of CONTACT's, is cut short, or holds anything but numbers that a contact can have.
+        If the file is none of CONTACT's, is cut short, or holds anything but finite numbers.
     """
-    rows = list(_rows(path))
-    if not rows:
-        raise wl.DataError(f"'{path}': holds no numbers, only comments; is the file complete?")
-    first, width = rows[0][0], len(rows[0][1])
-    for line, cells in rows:
-        if len(cells) != width:
-            cut = "; the file seems to be cut short there" if line == rows[-1][0] and len(cells) < width else ""
-            raise wl.DataError(f"'{path}', line {line}: has {len(cells)} columns, but line {first} has {width}{cut}")
-    lines = np.array([line for line, _ in rows])
     try:
-        values = np.array([cells for _, cells in rows], dtype=np.float64)
-    except ValueError:
-        values = np.array([[_number(cell) for cell in cells] for _, cells in rows])
-    possible = np.abs(values) <= HUGE
-    if not possible.all():
-        problems = []
-        for row, column in np.argwhere(~possible):
-            text = rows[row][1][column]
-            what = f"exceeds {HUGE:g} in magnitude" if np.isfinite(values[row, column]) else "is no finite number"
-            full = " (Fortran writes this if the number needs more room)" if "*" in text else ""
-            problems.append(f"line {lines[row]}, column {column + 1}: '{text[:40]}' {what}{full}")
-        raise wl.DataError(f"'{path}' is wrong in:", problems)
-    return Table(path, values, lines)
-
-
-def _rows(path: Path) -> list[tuple[int, list[str]]]:
-    """Return the cells of the lines that are not comments, with the number of each line."""
-    try:
-        content = wl.read_file(path, LARGEST)
+        text = wl.read_file(path, LARGEST).decode("ascii")
     except (FileNotFoundError, wl.InputError) as error:
         raise wl.DataError(f"cannot read '{path}': {getattr(error, 'strerror', None) or error}") from None
-    if not content:
-        raise wl.DataError(f"'{path}': is empty")
-    for start, kind in OTHERS.items():
-        if content.startswith(start):
-            raise wl.DataError(f"'{path}': is {kind}, not a text file of CONTACT")
-    if b"\0" in content or not content.isascii():
-        raise wl.DataError(f"'{path}': is not plain text, as CONTACT writes it")
-    lines = content.decode("ascii").splitlines()
-    if not content.endswith((b"\n", b"\r")):
-        raise wl.DataError(f"'{path}', line {len(lines)}: ends without a line break; the file is cut short there")
-    cells = [(number, line.split()) for number, line in enumerate(lines, 1) if not line.lstrip().startswith("%")]
-    return [(number, row) for number, row in cells if row]
+    except UnicodeDecodeError:
+        raise wl.DataError(f"'{path}': is not plain text, as CONTACT writes it") from None
+    if not text.endswith(("\n", "\r")):
+        cut = len(text.splitlines())
+        raise wl.DataError(f"'{path}', line {cut}: ends without a line break; the file is cut short there")
+    try:
+        table = wl.read_table(io.StringIO(text), sep=" ", comment="%")
+        values = np.column_stack([_numbers(table, name) for name in table.columns])
+    except wl.DataError as error:
+        if not error.problems:
+            raise wl.DataError(f"'{path}': holds no numbers; is the file complete?") from None
+        raise wl.DataError(f"'{path}' is wrong in:", error.problems) from None
+    if not values.size:
+        raise wl.DataError(f"'{path}': holds no numbers; is the file complete?")
+    problems = []
+    for row, column in np.argwhere(~(np.abs(values) <= HUGE)):
+        cell = table.texts(str(column + 1))[row]
+        what = f"exceeds {HUGE:g} in magnitude" if np.isfinite(values[row, column]) else "is no finite number"
+        full = " (Fortran writes this if the number needs more room)" if "*" in cell else ""
+        problems.append(f"line {table.lines[row]}, column {column + 1}: '{cell[:40] or 'NaN'}' {what}{full}")
+    if problems:
+        raise wl.DataError(f"'{path}' is wrong in:", problems)
+    return Table(path, values, table.lines)
+
+
+def _numbers(table: wl.Table, name: str) -> Array:
+    """Return a column, with NaN for what is no number."""
+    try:
+        return table.numbers(name)
+    except wl.DataError:  # Fortran's exponents, or worse
+        return np.array([_number(cell) for cell in table.texts(name)])
 
 
 def _number(text: str) -> float:

@@ -98,6 +98,6 @@ class Energy(wl.WearLaw):
 
 
 @wl.hookimpl
-def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+def wearlaw_models() -> list[type[wl.WearLaw]]:
     """Return the law of this plugin."""
     return [Energy]

@@ -121,6 +121,6 @@ def _saturation(problem: wl.Problem) -> Array:
 
 
 @wl.hookimpl
-def wearlaw_contact_models() -> list[type[wl.ContactModel]]:
+def wearlaw_models() -> list[type[wl.ContactModel]]:
     """Return the model of this plugin."""
     return [Exact]

@@ -222,6 +222,6 @@ class Fastsim(wl.LineContactModel):
 
 
 @wl.hookimpl
-def wearlaw_contact_models() -> list[type[wl.ContactModel]]:
+def wearlaw_models() -> list[type[wl.ContactModel]]:
     """Return the model of this plugin."""
     return [Fastsim]

@@ -67,6 +67,6 @@ class Global(wl.ContactModel):
 
 
 @wl.hookimpl
-def wearlaw_contact_models() -> list[type[wl.ContactModel]]:
+def wearlaw_models() -> list[type[wl.ContactModel]]:
     """Return the model of this plugin."""
     return [Global]

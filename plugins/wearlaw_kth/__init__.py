@@ -145,6 +145,6 @@ class KTH(wl.WearLaw):
 
 
 @wl.hookimpl
-def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+def wearlaw_models() -> list[type[wl.WearLaw]]:
     """Return the law of this plugin."""
     return [KTH]

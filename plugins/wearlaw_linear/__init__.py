@@ -51,6 +51,6 @@ class Linear(wl.CreepForceModel):
 
 
 @wl.hookimpl
-def wearlaw_contact_models() -> list[type[wl.ContactModel]]:
+def wearlaw_models() -> list[type[wl.ContactModel]]:
     """Return the model of this plugin."""
     return [Linear]

@@ -27,6 +27,6 @@ class PatchMean(wl.Stage):
 
 
 @wl.hookimpl
-def wearlaw_stages() -> list[type[wl.Stage]]:
+def wearlaw_models() -> list[type[wl.Stage]]:
     """Return the stage of this plugin."""
     return [PatchMean]

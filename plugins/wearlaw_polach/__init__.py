@@ -117,6 +117,6 @@ def _ratio(value: Array, over: Array) -> Array:
 
 
 @wl.hookimpl
-def wearlaw_contact_models() -> list[type[wl.ContactModel]]:
+def wearlaw_models() -> list[type[wl.ContactModel]]:
     """Return the model of this plugin."""
     return [Polach]

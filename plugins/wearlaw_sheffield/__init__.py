@@ -2,35 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import wearlaw as wl
 
 
 @wl.hookimpl
-def wearlaw_materials() -> dict[str, wl.Material]:
+def wearlaw_named() -> dict[str, wl.Material]:
     """Return the wheel and rail steel of the tests."""
     return {"steel": wl.steel()}
 
 
 @wl.hookimpl
-def wearlaw_cases() -> dict[str, str]:
-    """Return the study of Tassini et al., Wear 268 (2010) 660-667."""
-    return {"tassini2010": _text("tassini2010.toml")}
+def wearlaw_resources() -> dict[str, dict[str, Any]]:
+    """Return the study of Tassini et al., with sections of its report and measured traction.
 
-
-@wl.hookimpl
-def wearlaw_tests() -> dict[str, str]:
-    """Return the measured traction of Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478."""
-    return {"lewis2004": _text("lewis2004.csv")}
-
-
-@wl.hookimpl
-def wearlaw_sections() -> dict[str, Callable[[wl.Study], wl.Section]]:
-    """Return the sections with the paper's tables, the check of its claims, and the fit of its Table 4."""
-    return {f"tassini2010_{name}": partial(_section, name) for name in ("tables", "claims", "table_4")}
+    The study is that of Wear 268 (2010) 660-667; the sections show its tables, check its claims and fit its Table 4.
+    The traction is that of Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478.
+    """
+    return {
+        "case": {"tassini2010": _text("tassini2010.toml")},
+        "test set": {"lewis2004": _text("lewis2004.csv")},
+        "section": {f"tassini2010_{name}": partial(_section, name) for name in ("tables", "claims", "table_4")},
+    }
 
 
 def _text(file: str) -> str:

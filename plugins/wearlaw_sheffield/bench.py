@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -33,20 +33,6 @@ def borders(law: str, variable: str) -> tuple[float, ...]:
     return (of.breakpoints(of.numbers) or {})[variable]
 
 
-def discs_of(study: wl.Study) -> wl.TwinDisc:
-    """Return the rig of a study.
-
-    Raises
-    ------
-    InputError
-        If the rig is not a `TwinDisc`.
-    """
-    rig = study.case.rig
-    if not isinstance(rig, wl.TwinDisc):
-        raise wl.InputError(f"rig: must be a twin_disc, like the paper's, not a {rig.name}")
-    return rig
-
-
 @dataclass(frozen=True)
 class Bench:
     """A rig under one load and with one friction coefficient, at the creepages of the paper, 0.001 to 25 %."""
@@ -62,10 +48,12 @@ class Bench:
         Raises
         ------
         InputError
-            If the study has another rig or no such sweep, or if the sweep has several loads or friction coefficients,
-            or if it does not reach catastrophic wear by 25 % creepage.
+            If the study has another rig or no such sweep, the sweep has several loads or friction coefficients, or it
+            does not reach catastrophic wear by 25 % creepage, or the rig rolls too fast for the claims about KTH.
         """
-        rig = discs_of(study)
+        rig = study.case.rig
+        if not isinstance(rig, wl.TwinDisc):
+            raise wl.InputError(f"rig: must be a twin_disc, like the paper's, not a {rig.name}")
         sweep = study.sweep("creepage")
         loads, frictions = sweep["normal_force_per_width"], np.unique(sweep["friction_coefficient"])
         if np.unique(loads).size > 1 or frictions.size > 1:
@@ -78,6 +66,12 @@ class Bench:
                 f" {HIGHEST:g} % creepage, but some claims are about catastrophic wear, which begins at"
                 f" {catastrophic:.4g} N; change the load or the friction_coefficient"
             )
+        if not bench.slow.any():
+            lower, _ = borders("kth", "slip_speed")
+            raise wl.InputError(
+                f"rig.rolling_speed: cells slip by {lower:g} m/s, where KTH jumps, at {TESTED[0]:g} % creepage already,"
+                " but some claims are about lower slip speeds; give a lower rolling_speed"
+            )
         return bench
 
     @cached_property
@@ -87,50 +81,26 @@ class Bench:
         kinks = np.array([self.full_slip, *(100.0 * border / self.full_force for border in self.usfd_borders)])
         return np.union1d(regular, [TESTED[0], *kinks[kinks < HIGHEST]])
 
-    def predict(
-        self,
-        model: wl.ContactModel | str,
-        law: wl.WearLaw,
-        creepage: Array | float,
-        loads: wl.Quantity | None = None,
-    ) -> wl.Prediction:
-        """Return the prediction at creepages [%] and the load of the bench, or at other loads per width.
-
-        The law's parameters may have been fitted for another contact model.
-        """
+    def predict(self, model: wl.ContactModel | str, law: wl.WearLaw, creepage: Array | float) -> wl.Prediction:
+        """Return the prediction at creepages [%]; the law's parameters may have been fitted for another contact."""
         contact = wl.contact_model(model) if isinstance(model, str) else model
-        with _quietly():
+        # The claims report what the warnings would say.
+        with warnings.catch_warnings(action="ignore", category=wl.WearlawWarning):
             return (self.rig | contact | law)(
-                normal_force_per_width=self.normal_force_per_width if loads is None else loads,
+                normal_force_per_width=self.normal_force_per_width,
                 creepage=Q(creepage, "%"),
                 friction_coefficient=self.friction_coefficient,
             )
 
     def rate(self, model: wl.ContactModel | str, law: wl.WearLaw, creepage: Array | None = None) -> Array:
         """Return the wear rate [µg/m/mm²] at creepages [%], by default the bench's own."""
-        return _rate(self.predict(model, law, self.creepage if creepage is None else creepage))
+        prediction = self.predict(model, law, self.creepage if creepage is None else creepage)
+        return np.asarray(prediction.wear_rate.to(WEAR_RATE).magnitude)
 
     def force(self, model: wl.ContactModel | str, creepage: Array | None = None) -> Array:
         """Return the tangential force relative to full slip, T/(μN), at creepages [%]."""
         contact = self.predict(model, wl.wear_law("usfd"), self.creepage if creepage is None else creepage)
         return np.asarray(contact.traction_coefficient.to("").magnitude) / self.friction_coefficient
-
-    def rate_at_loads(self, model: str, law: wl.WearLaw, loads: Array) -> Array:
-        """Return the wear rate [µg/m/mm²] at loads [kN/m] and 1 % creepage."""
-        return _rate(self.predict(model, law, 1.0, Q(loads, "kN/m")))
-
-    def rate_at_index(self, law: wl.WearLaw, wear_index: Array) -> Array:
-        """Return the wear rate [µg/m/mm²] at given Tγ [N] of a law that depends on Tγ alone."""
-        traction = wear_index / (self.problem.normal_force * self.problem.creepage)
-        with _quietly():
-            return _rate(
-                (self.rig | wl.contact_model("global") | law)(
-                    normal_force_per_width=self.normal_force_per_width,
-                    creepage=Q(self.problem.creepage, ""),
-                    friction_coefficient=self.friction_coefficient,
-                    traction_coefficient=traction,
-                )
-            )
 
     @cached_property
     def wear_index(self) -> Array:
@@ -143,38 +113,30 @@ class Bench:
         """Area of the patch [mm²]."""
         return float(1e6 * self.problem.patch_area)
 
-    @cached_property
-    def kept_speed(self) -> float:
-        """Surface speed that the rig keeps, of disc 1 or the mean of both [m/s]."""
-        return wl.scalar_si(self.rig.rolling_speed, "m/s")
-
     def creepage_at(self, slip_speed: float) -> float:
         """Return the creepage [%] at which the surface speeds differ by a slip speed, ξV = v1 - v2 [m/s].
 
         It is infinite if v1 is kept and at most half the slip speed, since a mean V is above zero.
         """
-        mean = self.kept_speed - (0.5 * slip_speed if self.rig.speed_of == "disc_1" else 0.0)
+        kept = wl.scalar_si(self.rig.rolling_speed, "m/s")
+        mean = kept - (0.5 * slip_speed if self.rig.speed_of == "disc_1" else 0.0)
         return 100.0 * slip_speed / mean if mean > 0.0 else np.inf
 
-    def at_speeds(self) -> dict[str, Bench]:
-        """Return this bench with disc 1 keeping its speed, and with the mean keeping it, by `TwinDisc.speed_of`.
+    def usfd_at_measured(self, tests: tuple[Array, Array]) -> Array:
+        """Return USFD on the patch means [µg/m/mm²] at the measured Tγ of tests, creepages [%] and T/N [-].
 
-        The paper defines V as the mean of the surface speeds, but not which speed its rig keeps.
+        USFD is linear in Tγ between its kinks, which are among the creepages of the bench.
         """
-        return {kept: replace(self, rig=self.rig.model_copy(update={"speed_of": kept})) for kept in ("disc_1", "mean")}
-
-    def measured_wear_index(self, tests: tuple[Array, Array]) -> Array:
-        """Return the measured Tγ [N] of tests, creepages [%] and T/N [-], at the load of the bench."""
         creepage, traction = tests
-        return np.asarray(traction * float(self.problem.normal_force) * creepage / 100.0)
+        measured = traction * float(self.problem.normal_force) * creepage / 100.0
+        return np.interp(measured, self.wear_index, self.rate("global", wl.wear_law("usfd")))
 
     @cached_property
     def slow(self) -> NDArray[np.bool_]:
-        """The tests' creepages at which no cell reaches the lower slip speed of KTH, whichever speed the rig keeps."""
+        """The tests' creepages at which no cell reaches the lower slip speed of KTH."""
         lower, _ = borders("kth", "slip_speed")
         fastest = [
-            bench.predict(model, wl.wear_law("kth"), self.creepage).contact.slip_speed.max(axis=-1)
-            for bench in self.at_speeds().values()
+            self.predict(model, wl.wear_law("kth"), self.creepage).contact.slip_speed.max(axis=-1)
             for model in ("exact", "fastsim")
         ]
         return np.asarray(self.tested & (np.max(fastest, axis=0) < lower))
@@ -218,12 +180,3 @@ class Bench:
         """Return which creepages have a wear index [N] within a closed range."""
         rounding = 1e-9
         return (self.wear_index >= lowest * (1.0 - rounding)) & (self.wear_index <= highest * (1.0 + rounding))
-
-
-def _quietly() -> warnings.catch_warnings[None]:
-    """Return a context that silences wearlaw's warnings: the claims report what these would say."""
-    return warnings.catch_warnings(action="ignore", category=wl.WearlawWarning)
-
-
-def _rate(prediction: wl.Prediction) -> Array:
-    return np.asarray(prediction.wear_rate.to(WEAR_RATE).magnitude)

@@ -1,12 +1,11 @@
-"""Variants of the paper's figures: with eq. (7) as printed, with other averages, with the measured Tγ."""
+"""Variants of the paper's figures: with eq. (7) as printed, and with other averages."""
 
 from __future__ import annotations
 
 import numpy as np
 
 import wearlaw as wl
-from wearlaw import Array
-from wearlaw_sheffield.bench import TESTED, WEAR_RATE, Bench
+from wearlaw_sheffield.bench import WEAR_RATE, Bench
 
 PROFILE = 0.5
 """The creepage in partial slip of Figures 3 and 4 in the case [%]; the paper does not state its own."""
@@ -19,9 +18,9 @@ MODELS = {"global": "patch means", "exact": "exact theory", "fastsim": "FASTSIM"
 WEAR = f"wear rate [{WEAR_RATE}]".replace("ug", "µg").replace("mm^2", "mm²")
 
 
-def figures(bench: Bench, tests: tuple[Array, Array]) -> tuple[wl.FigureData, ...]:
-    """Return the figures; `tests` are creepages [%] and measured traction coefficients T/N [-]."""
-    return slip_along_patch(bench), averages(bench), measured_index(bench, tests)
+def figures(bench: Bench) -> tuple[wl.FigureData, ...]:
+    """Return the figures."""
+    return slip_along_patch(bench), averages(bench)
 
 
 def slip_along_patch(bench: Bench) -> wl.FigureData:
@@ -80,20 +79,4 @@ def averages(bench: Bench) -> wl.FigureData:
         " mixes the two averages. The other panels use one average on both axes. The paper does not say over which area"
         " it averages the rate, but calls the local results in mild wear very similar to the global ones. In full slip"
         " all averages are the same.",
-    )
-
-
-def measured_index(bench: Bench, tests: tuple[Array, Array]) -> wl.FigureData:
-    """Return Figure 9 with USFD at the measured Tγ in place of the measured wear."""
-    law = wl.wear_law("usfd")
-    inside = bench.creepage <= TESTED[1]
-    rates = bench.rate_at_index(law, bench.measured_wear_index(tests))
-    curve = wl.Curve("USFD at the modelled Tγ", bench.creepage[inside], bench.rate("global", law)[inside])
-    points = wl.Curve("USFD at the measured Tγ of the tests", tests[0], rates, colour=6, points=True, hollow=True)
-    return wl.FigureData(
-        name="figure_09_measured",
-        title="Figure 9 with USFD at the measured Tγ",
-        panels=(wl.Panel(wl.PlotAxis("creepage [%]"), wl.PlotAxis(WEAR), (curve, points)),),
-        caption="The measured wear rates have not been published as numbers, so USFD at the measured Tγ stands in for"
-        " them. Plotted against W.I. these points lie on the curve; plotted against creepage they do not.",
     )

@@ -57,6 +57,6 @@ class ShenHedrickElkins(wl.CreepForceModel):
 
 
 @wl.hookimpl
-def wearlaw_contact_models() -> list[type[wl.ContactModel]]:
+def wearlaw_models() -> list[type[wl.ContactModel]]:
     """Return the model of this plugin."""
     return [ShenHedrickElkins]

@@ -235,6 +235,6 @@ def _problem(contact: wl.Contact) -> wl.Problem:
 
 
 @wl.hookimpl
-def wearlaw_stages() -> list[type[wl.Stage]]:
+def wearlaw_models() -> list[type[wl.Stage]]:
     """Return the stage of this plugin."""
     return [Thermal]

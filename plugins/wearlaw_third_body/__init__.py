@@ -87,6 +87,6 @@ def _linear_force(problem: wl.Problem) -> Array:
 
 
 @wl.hookimpl
-def wearlaw_stages() -> list[type[wl.Stage]]:
+def wearlaw_models() -> list[type[wl.Stage]]:
     """Return the stage of this plugin."""
     return [ThirdBody]

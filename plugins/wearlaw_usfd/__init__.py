@@ -133,6 +133,6 @@ class USFD(wl.WearLaw):
 
 
 @wl.hookimpl
-def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+def wearlaw_models() -> list[type[wl.WearLaw]]:
     """Return the law of this plugin."""
     return [USFD]

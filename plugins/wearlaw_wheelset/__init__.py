@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import wearlaw as wl
 from wearlaw_wheelset._geometry import Geometry
@@ -14,21 +14,16 @@ __all__ = ["Geometry", "Profile", "Wheelset", "read_profile", "write_profile"]
 
 
 @wl.hookimpl
-def wearlaw_rigs() -> list[type[wl.Rig]]:
+def wearlaw_models() -> list[type[wl.Rig]]:
     """Return the rig of this plugin."""
     return [Wheelset]
 
 
 @wl.hookimpl
-def wearlaw_cases() -> dict[str, str]:
-    """Return a study of a wheelset on straight track and in a curve."""
-    return {"wheelset": Path(__file__).with_name("wheelset.toml").read_text(encoding="utf-8")}
-
-
-@wl.hookimpl
-def wearlaw_sections() -> dict[str, Callable[[wl.Study], wl.Section]]:
-    """Return the section with contact points, forces, and wear across the profiles."""
-    return {"wheelset": _make_section}
+def wearlaw_resources() -> dict[str, dict[str, Any]]:
+    """Return a study of a wheelset on straight track and in a curve, and the section of its report."""
+    case = Path(__file__).with_name("wheelset.toml").read_text(encoding="utf-8")
+    return {"case": {"wheelset": case}, "section": {"wheelset": _make_section}}
 
 
 def _make_section(study: wl.Study) -> wl.Section:

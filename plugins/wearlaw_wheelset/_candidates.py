@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_wheelset._motion import placed
+from wearlaw_wheelset._motion import curvature_along, placed
 from wearlaw_wheelset._search import BLOCK, Position, Section, Touching, gaps
-from wearlaw_wheelset._search_loops import compiled_samples, normal_gap
+from wearlaw_wheelset._search_loops import compiled_samples, normal_gap, tangential, through
 
 SAMPLES = 81
 """Samples of the gap under a patch."""
@@ -28,6 +28,10 @@ SPARE = 1.5
 """A patch is followed if its gap is at most this share of the penetration under the whole load."""
 
 
+LEVEL_ANGLE = 0.2
+"""Two places are one patch of half-spaces if their contact angles differ by less: cos 0.2 = 0.98 [rad]."""
+
+
 @dataclass(frozen=True)
 class Candidates:
     """Places where wheels may touch under load, as arrays with one entry for each of them.
@@ -40,10 +44,13 @@ class Candidates:
         In outward coordinates.
     arc, gap : ndarray
         Arc length of the wheel's profile, and vertical gap there at first touching [m].
-    cosine : ndarray
-        cos δ there [-].
+    angle : ndarray
+        Contact angle there, δ [rad].
     start, step, samples : ndarray
-        The gap normal to the surface around the place, above its least value [m], `samples` of shape (places, samples).
+        The gap normal to the surface around the place, above its least value, at even steps across the track in the
+        plane of contact [m]; `samples` has the shape (places, samples).
+    arcs : ndarray, (places, samples)
+        Arc length of the wheel's profile at the samples [m].
     curvature_x : ndarray
         Half the relative curvature along the rolling direction [1/m].
     """
@@ -54,16 +61,31 @@ class Candidates:
     position: Position
     arc: Array
     gap: Array
-    cosine: Array
+    angle: Array
     start: Array
     step: Array
     samples: Array
+    arcs: Array
     curvature_x: Array
+
+    @property
+    def cosine(self) -> Array:
+        """Cos δ of each place [-]."""
+        return np.cos(self.angle)
 
     @property
     def wheel(self) -> NDArray[np.intp]:
         """Index of the wheel among all wheels."""
         return 2 * self.point + self.side
+
+    def between(self, values: Array, offset: Array) -> Array:
+        """Return values at samples, (places, samples), at distances across the track, (places, n) [m]; NaN for none."""
+        u = (offset - self.start[:, None]) / self.step[:, None]
+        base = np.clip(u.astype(np.intp) - 1, 0, SAMPLES - 4)
+        near = np.take_along_axis(values[:, None], base[..., None] + np.arange(4), axis=-1)
+        with np.errstate(invalid="ignore"):  # infinite gaps
+            found: Array = through(u - base, (0.0, 1.0, 2.0, 3.0), np.moveaxis(near, -1, 0))
+        return found
 
     def part(self, rows: NDArray[Any]) -> Candidates:
         """Return some of the places."""
@@ -90,18 +112,20 @@ class Candidates:
         return Candidates(position=Position(*(np.concatenate(pair)[order] for pair in pairs)), **found), order
 
 
-def candidates(section: Section, position: Position, touching: Touching) -> Candidates:
+def candidates(section: Section, position: Position, touching: Touching, spacing: float = SPACING) -> Candidates:
     """Return all places where wheels come close to their rails; positions are of shape (positions, sides)."""
     point, side, number = np.nonzero(~np.isnan(touching.arc))
     here = Position(*(array[point, side] for array in position))
     arc = touching.arc[point, side, number]
     place = placed(section, here, arc)
     count = arc.size
+    samples, arcs = np.empty((2, count, SAMPLES))
     found = Candidates(
-        point, side, number, here, arc, touching.gap[point, side, number], np.cos(place.angle),
-        np.empty(count), np.empty(count), np.empty((count, SAMPLES)), 0.5 * np.cos(place.angle) / place.radius,
+        point, side, number, here, arc, touching.gap[point, side, number], place.angle,
+        np.empty(count), np.empty(count), samples, arcs,
+        0.5 * curvature_along(section, here, place, arc),
     )  # fmt: skip
-    sample(section, found, np.arange(count), SPACING)
+    sample(section, found, np.arange(count), spacing)
     return found
 
 
@@ -110,26 +134,44 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
     found.start[rows] = -spacing * (SAMPLES // 2)
     found.step[rows] = spacing
     if wl.accelerated(rows.size * SAMPLES):
-        samples = np.empty((rows.size, SAMPLES))
+        samples, arcs = np.empty((2, rows.size, SAMPLES))
         position = (np.ascontiguousarray(array[rows]) for array in found.position)
         compiled_samples(
-            *position, found.arc[rows], spacing, *section.wheel_y, *section.wheel_radius, *section.rail_z, samples
+            *position, found.arc[rows], spacing, *section.wheel_y, *section.wheel_radius, *section.rail_z, samples, arcs
         )
-        found.samples[rows] = samples
+        found.samples[rows], found.arcs[rows] = samples, arcs
         return
-    offsets = spacing * (np.arange(SAMPLES) - SAMPLES // 2)
+    middle = SAMPLES // 2
+    offsets, number = spacing * (np.arange(SAMPLES) - middle), np.arange(SAMPLES)
     for start in range(0, rows.size, BLOCK):
         some = rows[start : start + BLOCK]
         arc = found.arc[some, None] + offsets
         at = gaps(section, Position(*(array[some] for array in found.position)).widened(), arc)
-        middle = slice(SAMPLES // 2, SAMPLES // 2 + 1)
-        normal, inside = normal_gap(at.gap - at.gap[:, middle], at.rail_slope, at.rail_slope[:, middle])
+        gap, y, z = (array - array[:, middle, None] for array in (at.gap, at.y, at.z))
+        own_slope = at.rail_slope[:, middle, None]
+        height, inside = normal_gap(gap, at.rail_slope, own_slope)
+        t = tangential(y, z, own_slope)
         inside &= (arc >= section.wheel_y.start) & (arc <= section.wheel_y.end)
         inside &= (at.y >= section.rail_z.start) & (at.y <= section.rail_z.end)
-        found.samples[some] = np.where(inside, normal, np.inf)
+        turns = np.zeros_like(inside)  # behind its own horizon
+        turns[:, :middle] = t[:, 1 : middle + 1] <= t[:, :middle]
+        turns[:, middle + 1 :] = t[:, middle + 1 :] <= t[:, middle:-1]
+        out = turns | ~inside
+        first = np.where(out & (number <= middle), number + 1, 0).max(axis=-1, keepdims=True)
+        last = np.where(out & (number > middle), number - 1, SAMPLES).min(axis=-1, keepdims=True).clip(0, SAMPLES - 1)
+        low, high = (np.take_along_axis(t, end.clip(0, SAMPLES - 1), axis=-1) for end in (first, last))
+        known = (last - first >= 3) & (offsets >= low) & (offsets <= high)
+        ordered = np.where(number < first, -np.inf, np.where(number > last, np.inf, t))
+        cell = np.array([np.searchsorted(row, offsets, side="right") for row in ordered]) - 1
+        stencil = np.clip(cell - 1, first, np.maximum(last - 3, first)).clip(0, SAMPLES - 4)[..., None] + np.arange(4)
+        four = (np.moveaxis(array[np.arange(some.size)[:, None, None], stencil], -1, 0) for array in (t, height, arc))
+        places, heights, arcs = four
+        with np.errstate(invalid="ignore", divide="ignore"):
+            found.samples[some] = np.where(known, through(offsets, places, heights), np.inf)
+            found.arcs[some] = np.where(known, through(offsets, places, arcs), arc)
 
 
-def separated(found: Candidates, saddle: Array, penetration: Array, share: Array) -> Candidates:
+def separated(found: Candidates, saddle: Array, penetration: Array, share: Array, joins: bool) -> Candidates:
     """Return the places that are patches of their own, each with the gap on its own side of the saddles between them.
 
     Parameters
@@ -141,11 +183,18 @@ def separated(found: Candidates, saddle: Array, penetration: Array, share: Array
         Estimate of the vertical penetration of each place's wheel [m].
     share : ndarray
         Share of the penetration that the saddle must exceed, `SEPARATE` or less.
+    joins : bool
+        Whether places that lie nearly in the plane of the first one are one patch with it, whatever the saddle.
     """
     own = (found.number == 0) | ((found.gap < SPARE * penetration) & (saddle > share * penetration))
-    first = np.full(found.wheel.max(initial=-1) + 1, np.nan)
-    first[found.wheel[found.number == 0]] = found.arc[found.number == 0]
-    own &= (found.number == 0) | (np.abs(found.arc - first[found.wheel]) > SPACING)  # a place may be listed twice
+    first = np.zeros(found.wheel.max(initial=-1) + 1, dtype=np.intp)
+    first[found.wheel[found.number == 0]] = np.flatnonzero(found.number == 0)
+    first = first[found.wheel]
+    apart = np.abs(found.arc - found.arc[first])
+    own &= (found.number == 0) | (apart > SPACING)  # a place may be listed twice
+    if joins:
+        level = np.abs(found.angle - found.angle[first]) < LEVEL_ANGLE
+        own &= (found.number == 0) | ~(level & (apart < 0.5 * SAMPLES * found.step[first]))
     kept = found.part(own)
     order = np.argsort(kept.wheel, kind="stable")
     for shift in (1, 2):
@@ -159,9 +208,8 @@ def _cut(found: Candidates, rows: NDArray[np.intp], neighbour: Array) -> None:
     """Make the gaps infinite, in place, beyond the saddle to a neighbour at an arc length of the wheel [m]."""
     if not rows.size:
         return
-    offset = found.start[rows, None] + found.step[rows, None] * np.arange(SAMPLES)
     towards = np.sign(neighbour - found.arc[rows])[:, None]
-    away = offset * towards
+    away = (found.arcs[rows] - found.arc[rows, None]) * towards
     between = (away >= 0.0) & (away <= np.abs(neighbour - found.arc[rows])[:, None])
     samples = found.samples[rows]
     highest = np.where(between & np.isfinite(samples), samples, -np.inf).argmax(axis=-1)

@@ -5,6 +5,7 @@ All readers return coordinates as wearlaw has them: y outwards, z down.
 
 from __future__ import annotations
 
+import io
 import math
 import os
 import re
@@ -31,8 +32,6 @@ KINDS: dict[str, Kind] = {".prw": "wheel", ".whl": "wheel", ".prr": "rail", ".ba
 SIMPACK, MINIPROF, COLUMNS = (".prw", ".prr"), (".whl", ".ban"), (".csv", ".txt", ".dat", ".asc", "")
 ENDINGS = (*KINDS, ".csv", ".txt")
 
-LONGEST = 300
-"""Most characters that a message shows of a text from outside."""
 
 NUMBERS = (
     "approx.smooth", "point.dist.min", "shift.y", "shift.z", "rotate", "bound.y.min", "bound.y.max", "bound.z.min",
@@ -74,7 +73,9 @@ class Points:
     kind: Kind | None
 
 
-def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
+def points_of(
+    path: Path, kind: Kind | None, units: str, sep: str | None = None, decimal: str = "."
+) -> tuple[Points, Kind]:
     """Return the points of a file, and their kind.
 
     Parameters
@@ -85,6 +86,8 @@ def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
         Kind that the user gave.
     units : str
         Unit of length, where the file does not give it.
+    sep, decimal : str, optional
+        Of two columns, as in `wearlaw.read_table`.
 
     Raises
     ------
@@ -99,9 +102,9 @@ def points_of(path: Path, kind: Kind | None, units: str) -> tuple[Points, Kind]:
     elif ending in MINIPROF or (lines and _is_miniprof(lines)):
         found = _miniprof(lines, by_ending or kind, units)
     elif ending in COLUMNS:
-        found = _columns(lines, units)
+        found = _columns(text, units, sep, decimal)
     else:
-        raise FileError(f"the ending {quoted(ending)} is not known; give a file that ends in {', '.join(ENDINGS)}")
+        raise FileError(f"the ending {wl.shown(ending)} is not known; give a file that ends in {', '.join(ENDINGS)}")
     sure = kind or by_ending or found.kind
     if sure is None:
         raise FileError('it does not say whether it is a wheel or a rail; give kind="wheel" or kind="rail"')
@@ -116,7 +119,7 @@ def _text_of(path: Path) -> str:
     try:
         content = wl.read_file(path, LARGEST)
     except FileNotFoundError:
-        raise FileError(f"there is no such file in {quoted(path.parent.absolute())}") from None
+        raise FileError(f"there is no such file in {wl.shown(path.parent.absolute())}") from None
     except wl.InputError as error:
         raise FileError(f"it cannot be read: {error}") from None
     if b"\0" in content and not content.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -204,7 +207,7 @@ def _simpack(lines: Sequence[str], units: str) -> Points:
             values[key] = _number(value, number, key)
         elif place == ["spline"] and key not in TEXTS:
             warnings.warn(
-                f"line {number} of a profile: the key {quoted(key)} is not known and left out", wl.WearlawWarning, 4
+                f"line {number} of a profile: the key {wl.shown(key)} is not known and left out", wl.WearlawWarning, 4
             )
     if not told:
         raise FileError(f"it ends in the section '{place[-1]}'; is it whole?" if place else "it has no spline.begin")
@@ -331,56 +334,23 @@ def _is_point(line: str) -> bool:
     return len(cells) > 1 and all(NUMBER.fullmatch(cell) for cell in cells)
 
 
-def _columns(lines: Sequence[str], units: str) -> Points:
+def _columns(text: str, units: str, sep: str | None, decimal: str) -> Points:
     """Return the points of two columns, y outwards and z down, with a header or without."""
-    table, head = _Table(), False
-    places, factors = (0, 1), [_factor(units)] * 2
-    for number, raw in enumerate(lines, 1):
-        text = raw.strip()
-        if not text or text[0] in "!%#" or text.startswith("sep="):
-            continue
-        cells = _cells(text)
-        if not table.rows and not head and not NUMBER.fullmatch(cells[0].replace(",", ".")):
-            head = True
-            places, factors = _head(cells, number, factors)
-            continue
-        if len(cells) <= max(places):
-            raise FileError(f"line {number}: a point has two numbers, y and z, found {len(cells)}")
-        table.add([cells[place] for place in places], number, 2, 2)
-    found, rows = table.columns()
-    return Points(factors[0] * found[0], factors[1] * found[1], None, rows, None)
-
-
-def _cells(text: str) -> list[str]:
-    """Return the cells of a line, which are set apart by semicolons, tabs, commas or spaces."""
-    mark = next((mark for mark in ";\t," if mark in text), None)
-    if mark is None:
-        return re.findall(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?", text)  # a name may have its unit behind a space
-    cells = [cell.strip().strip('"') for cell in text.split(mark)]
-    return cells if mark == "," else [cell.replace(",", ".") for cell in cells]
-
-
-def _head(cells: Sequence[str], line: int, factors: list[float]) -> tuple[tuple[int, int], list[float]]:
-    """Return the places of y and z, and their factors to metres, from a header such as "y [mm]"."""
-    names = [re.split(r"[\s\[(]", cell.lower())[0] for cell in cells]
-    places = (names.index("y"), names.index("z")) if {"y", "z"} <= set(names) else (0, 1)
-    if len(cells) <= max(places):
-        raise FileError(f"line {line}: a header names y and z, found {len(cells)} columns")
-    found = list(factors)
-    for index, place in enumerate(places):
-        unit = re.search(r"[\[(]\s*([^\])]+?)\s*[\])]", cells[place])
-        if unit is not None:
-            try:
-                found[index] = _factor(unit[1])
-            except wl.UnitError as error:
-                raise FileError(f"line {line}: {error}") from None
-    return places, found
-
-
-def quoted(text: object) -> str:
-    """Return a text from outside between quotes, cut if it is long."""
-    whole = str(text)
-    return f"'{whole}'" if len(whole) <= LONGEST else f"'{whole[:LONGEST]}...' ({len(whole)} characters)"
+    try:
+        table = wl.read_table(io.StringIO(text), sep=sep, decimal=decimal)
+        named = {name.lower(): column for name, column in table.columns.items()}
+        columns = [named["y"], named["z"]] if {"y", "z"} <= named.keys() else list(named.values())[:2]
+        if len(columns) < 2:
+            raise FileError(f"line {table.header}: a profile has two columns, y and z, found {len(columns)}")
+        y, z = (_factor(units if one.unit is None else one.unit) * table.numbers(one.name) for one in columns)
+        for column, values in zip(columns, (y, z), strict=True):
+            for row in np.flatnonzero(np.isnan(values))[:1]:
+                raise FileError(f"{table.where(int(row), column.name)}: is missing")
+    except wl.DataError as error:
+        raise FileError("; ".join(error.problems[:3]) or "it has no points") from None
+    if not y.size:
+        raise FileError("it has no points")
+    return Points(y, z, None, table.lines, None)
 
 
 def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
@@ -397,11 +367,11 @@ def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
     """
     ending = path.suffix.lower()
     if ending not in ENDINGS:
-        raise wl.InputError(f"cannot write {quoted(path)}: its ending must be one of {', '.join(ENDINGS)}")
+        raise wl.InputError(f"cannot write {wl.shown(path)}: its ending must be one of {', '.join(ENDINGS)}")
     if KINDS.get(ending, kind) != kind:
         right = next(one for one in (SIMPACK if ending in SIMPACK else MINIPROF) if KINDS[one] == kind)
         raise wl.InputError(
-            f"cannot write {quoted(path)}: the profile is that of a {kind}, so its ending must be {right}"
+            f"cannot write {wl.shown(path)}: the profile is that of a {kind}, so its ending must be {right}"
         )
     writers: dict[str, Callable[[str, Array, Array], list[str]]] = dict.fromkeys(SIMPACK, _as_simpack)
     writers |= dict.fromkeys(MINIPROF, _as_miniprof)
@@ -414,7 +384,7 @@ def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
         finally:
             temporary.unlink(missing_ok=True)
     except (OSError, ValueError) as error:
-        raise wl.OutputError(f"cannot write {quoted(path)}: {getattr(error, 'strerror', None) or error}") from None
+        raise wl.OutputError(f"cannot write {wl.shown(path)}: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _rows(y: Array, z: Array, mark: str) -> list[str]:

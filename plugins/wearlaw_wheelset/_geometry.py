@@ -9,7 +9,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_wheelset._motion import placed
+from wearlaw_wheelset._motion import curvature_along, placed
 from wearlaw_wheelset._pictures import Profiles, geometry_figure
 from wearlaw_wheelset._search import Position, Section, Touching
 
@@ -94,7 +94,7 @@ def patches(section: Section, position: Position, touching: Touching) -> Patches
         "rail_position": place.rail_arc,
         "wheel_curvature": wheel_curvature,
         "rail_curvature": rail_curvature,
-        "rolling_curvature": np.cos(place.angle) / place.radius,
+        "rolling_curvature": curvature_along(section, wide, place, arc),
         "gap": touching.gap,
     }
     none = np.where(np.isnan(touching.arc), np.nan, 0.0)

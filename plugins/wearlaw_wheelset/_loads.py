@@ -20,15 +20,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_wheelset import _normal
-from wearlaw_wheelset._candidates import SEPARATE, SPACING, Candidates, candidates, sample, separated
+from wearlaw_wheelset import _half_space, _normal
+from wearlaw_wheelset._candidates import SAMPLES, SEPARATE, SPACING, Candidates, candidates, sample, separated
 from wearlaw_wheelset._motion import Creepages, Place, creepages, placed, roll_rate
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched
 from wearlaw_wheelset._search_loops import LEAST_LEVER
@@ -70,6 +70,9 @@ WIDEST_STEP, MOST_TURN, WIDEST_ROLL = 1.0, 0.01, 1e-3
 """Greatest step of the logarithm of the penetration, of the speed of rotation as a share of it, and of the roll [rad].
 """
 
+HUMP = 0.1
+"""Bulge of the gap within a patch, over half the penetration, from which strips are warned of."""
+
 LEVEL = 1e-10
 """Greatest difference between the heights at which both wheels carry the axle [m]."""
 
@@ -101,6 +104,8 @@ class Elastic:
     poisson_ratio: float
     density: float
 
+
+Pressure: TypeAlias = Literal["kpec", "hertz", "half_space"]
 
 Friction: TypeAlias = Array | wl.FallingFriction
 
@@ -228,7 +233,7 @@ class Balance:
     section: Section
     elastic: Elastic
     task: Task
-    hertz: bool
+    pressure: Pressure
     strips: int
     roll: Array
     """Roll at each position, positive if it lowers the right wheel, ρ [rad]."""
@@ -258,12 +263,21 @@ class Balance:
     """What Newton's method has learnt of the rates of `_State.miss`, (positions, 4, 4)."""
     shapes: dict[str, Array] = field(default_factory=dict)
     """Strips or ellipses of all places at the last step of each."""
+    starts: dict[tuple[int, int], _half_space.Rows] = field(default_factory=dict)
+    """The last solution on half-spaces of each wheel and patch."""
     found: Candidates = field(init=False)
     """The places of contact at this roll."""
 
     @classmethod
     def begun(
-        cls, section: Section, elastic: Elastic, task: Task, roll: Array, touching: Touching, hertz: bool, strips: int
+        cls,
+        section: Section,
+        elastic: Elastic,
+        task: Task,
+        roll: Array,
+        touching: Touching,
+        pressure: Pressure,
+        strips: int,
     ) -> Balance:
         """Return the loads without creep forces, under which the wheelset turns with the mean of its radii.
 
@@ -272,7 +286,7 @@ class Balance:
         count = roll.size
         wheels, pairs, right = np.zeros(2 * count), np.zeros((count, 2)), np.ones(count, dtype=np.bool_)
         balance = cls(
-            section, elastic, task, hertz, strips, roll.copy(), wheels, np.zeros(count), wheels.copy(), roll.copy(),
+            section, elastic, task, pressure, strips, roll.copy(), wheels, np.zeros(count), wheels.copy(), roll.copy(),
             pairs, pairs.copy(), np.zeros(count), right, np.zeros(count), np.full(count, SEPARATE), np.ones(2 * count),
             np.zeros((count, 4, 4)),
         )  # fmt: skip
@@ -293,7 +307,7 @@ class Balance:
         if known:  # places that are far from touching need no samples
             far = touching.gap > FAR * self.whole.reshape(-1, 2)[rows][..., None]
             touching = touching._replace(arc=np.where(far, np.nan, touching.arc))
-        places = candidates(self.section, position, touching)
+        places = candidates(self.section, position, touching, self._spacing)
         saddle = touching.saddle[places.point, places.side, places.number]
         places = replace(places, point=rows[places.point])
         first = np.flatnonzero(places.number == 0)
@@ -302,13 +316,14 @@ class Balance:
             turned = self._chosen(rows[np.abs(roll - self.estimated[rows]) > SMALL_ROLL])
             wheels = np.zeros(self.whole.size, dtype=np.bool_)
             wheels[places.wheel[(places.number > 0) & turned[places.point]]] = True
-            wheels[self.found.wheel[self.found.step > SPACING]] = True
+            wheels[self.found.wheel[self.found.step > self._spacing]] = True
             again = first[wheels[places.wheel[first]]]
         if again.size:
             guess = self.whole[places.wheel[again]] if known else None
             self.whole[places.wheel[again]] = self._alone(places, again, guess)
             self.estimated[places.point[again]] = roll[np.searchsorted(rows, places.point[again])]
-        kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point])
+        joins = self.pressure == "half_space"
+        kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point], joins)
         self.roll[rows], self.height[rows] = roll, touching.least
         lowest = places.part(first)
         place = Place(*(array.reshape(-1, 2) for array in placed(self.section, lowest.position, lowest.arc)))
@@ -326,6 +341,11 @@ class Balance:
         for name, array in self.shapes.items():  # those of the new places follow at the next step
             none = np.full((kept.point.size, *array.shape[1:]), np.nan)
             self.shapes[name] = np.concatenate([array[stay], none])[order]
+
+    @property
+    def _spacing(self) -> float:
+        """Distance between samples of the gap [m]; half-spaces need a window that holds both humps of a patch."""
+        return 2.0 * SPACING if self.pressure == "half_space" else SPACING
 
     def _chosen(self, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
         """Return whether each position is among some."""
@@ -369,7 +389,7 @@ class Balance:
             open_ = open_[patch.narrow]
             if not open_.size or widening == WIDENINGS:
                 break
-            sample(self.section, found, rows[open_], SPACING * 2.0 ** (widening + 1))
+            sample(self.section, found, rows[open_], self._spacing * 2.0 ** (widening + 1))
         return penetration
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> Balance:
@@ -396,7 +416,14 @@ class Balance:
         )
         copies = {name: getattr(self, name).copy() for name in names}
         every = np.ones(self.balanced.shape, dtype=np.bool_)
-        found = replace(self, scale=np.ones(self.scale.shape), balanced=every, shapes=dict(self.shapes), **copies)
+        found = replace(
+            self,
+            scale=np.ones(self.scale.shape),
+            balanced=every,
+            shapes=dict(self.shapes),
+            starts=dict(self.starts),
+            **copies,
+        )
         found.found = self.found.part(np.arange(self.found.point.size))
         rolls = self.task.free and forces is not None
         found._newton(forces, every, rolls)
@@ -551,7 +578,7 @@ class Balance:
             self.scale = np.where(jump, self.scale * np.exp(-excess), self.scale)
             depths.step(excess, wheels & ~jump)
             self.penetration = np.where(wheels, np.exp(depths.x), self.penetration)
-            if self.hertz:  # only creep forces jump, which a scale does not mend
+            if self.pressure == "hertz":  # only creep forces jump, which a scale does not mend
                 going &= ~jump.reshape(-1, 2).any(axis=-1)
             if not going.any():
                 break
@@ -561,7 +588,8 @@ class Balance:
         """Return the loads of some positions as they are."""
         rows = np.flatnonzero(open_[self.found.point])
         part = self.found.part(rows)
-        shapes = self._ellipses(part) if self.hertz else self._strips(part)
+        normal = {"hertz": self._ellipses, "kpec": self._strips, "half_space": self._half_spaces}
+        shapes = normal[self.pressure](part)
         if rows.size == self.found.point.size:
             self.shapes = shapes
         else:
@@ -653,8 +681,10 @@ class Balance:
     def _posed(self, part: Candidates, shapes: Mapping[str, Array]) -> tuple[wl.Problem, Patches]:
         task, elastic = self.task, self.elastic
         side = np.where(part.side == 1, 1.0, -1.0)
-        arc = part.arc + shapes["centre"]
+        arc = part.between(part.arcs, shapes["centre"][:, None])[:, 0]
         place = placed(self.section, part.position, arc)
+        if "angle" in shapes:  # of two humps the middle may lie between them
+            place = place._replace(angle=shapes["angle"])
         sliding = creepages(
             part.position, place, task.speed[part.point], side * task.lateral_velocity[part.point],
             side * task.turn_rate[part.point], side * self.roll_rate[part.point], side,
@@ -674,7 +704,7 @@ class Balance:
             "rolling_speed": task.speed[part.point],
             "contact_angle": side * place.angle,
         }
-        if self.hertz:
+        if self.pressure == "hertz":
             problem = wl.Problem.ellipse_from_si(**given, **made, normal_force=shapes["normal_force"])
         else:
             strips = wl.Strips(**{name: shapes[name] for name in wl.Strips.__slots__})
@@ -688,28 +718,72 @@ class Balance:
         normal: Array = np.maximum(depth - part.gap, LEAST * depth) * part.cosine
         return normal
 
+    def humps(self) -> NDArray[np.bool_]:
+        """Return which places have a second hump that bears: the gap bulges over a line from its least to another."""
+        middle, half = SAMPLES // 2, 0.5 * self._depth(self.found)[:, None]
+        number, humps = np.arange(1, middle + 1), np.zeros(half.size, dtype=np.bool_)
+        for samples in (self.found.samples[:, middle + 1 :], self.found.samples[:, middle - 1 :: -1]):
+            slope = np.where(samples < half, samples / number, np.inf)
+            least = np.minimum.accumulate(slope[:, ::-1], axis=-1)[:, ::-1]
+            with np.errstate(invalid="ignore"):  # beyond the patch
+                humps |= (samples - number * least > HUMP * half).any(axis=-1)
+        return humps
+
     def _strips(self, part: Candidates) -> dict[str, Array]:
         """Return the strips of patches, their semi-axes and their centres."""
         found = _normal.penetrated(
             part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
             self._depth(part), self.strips,
         )  # fmt: skip
+        shapes = {name: getattr(found, name) for name in ("y", "width", "half_length", "a", "b", "centre")}
+        return self._sided(part, shapes | {"max_pressure": found.pressure})
+
+    def _sided(self, part: Candidates, shapes: dict[str, Array]) -> dict[str, Array]:
+        """Return strips about their centre with y to the right on both sides, and their pressure times `scale`."""
         right = (part.side == 1)[:, None]
-        across = np.where(right, 1.0, -1.0) * (found.y - found.centre[:, None])
-        arrays = {
-            "y": across,
-            "width": found.width,
-            "half_length": found.half_length,
-            "max_pressure": found.pressure * self.scale[part.wheel, None],
+        y = np.where(right, 1.0, -1.0) * (shapes["y"] - shapes["centre"][:, None])
+        arrays = shapes | {"y": y, "max_pressure": shapes["max_pressure"] * self.scale[part.wheel, None]}
+        return {
+            name: np.where(right, array, array[:, ::-1]) if array.ndim == 2 else array for name, array in arrays.items()
         }  # y grows on the left too
-        strips = {name: np.where(right, array, array[:, ::-1]) for name, array in arrays.items()}
-        return strips | {"a": found.a, "b": found.b, "centre": found.centre}
+
+    def _half_spaces(self, part: Candidates) -> dict[str, Array]:
+        """Return rows of elements as strips, an ellipse of their area and length, their centres and mean angles."""
+        y, half_length, pressure = np.empty((3, part.arc.size, 2 * self.strips))
+        width, angle = np.empty((part.arc.size, 1)), np.empty(part.arc.size)
+        for k, depth in enumerate(self._depth(part)):
+            key = int(part.wheel[k]), int(part.number[k])
+            self.starts[key] = found = _half_space.rows(
+                self.section, part.part(np.array([k])), float(depth), self.elastic.modulus, 2 * self.strips,
+                self.starts.get(key),
+            )  # fmt: skip
+            y[k], half_length[k], pressure[k], width[k], angle[k] = found[:5]
+        load, a = half_length * pressure, half_length.max(axis=-1)
+        return self._sided(
+            part,
+            {
+                "y": y,
+                "width": np.broadcast_to(width, y.shape),
+                "half_length": half_length,
+                "max_pressure": pressure,
+                "a": a,
+                "b": 2.0 / np.pi * half_length.sum(axis=-1) * width[:, 0] / a,
+                "centre": (load * y).sum(axis=-1) / load.sum(axis=-1),
+                "angle": angle,
+            },
+        )
 
     def _ellipses(self, part: Candidates) -> dict[str, Array]:
         """Return Hertz's ellipses of the curvatures at first touching."""
         at = placed(self.section, part.position, part.arc)
-        across = 0.5 * (self.section.wheel.at(part.arc)[3] + self.section.rail.at(at.rail_arc)[3])
-        unit = _normal.hertz(part.curvature_x, across, self.elastic.modulus, np.ones(across.shape))
+        along, wheel = part.curvature_x, self.section.wheel.at(part.arc)[3]
+        circle = part.cosine / at.radius
+        across = 0.5 * (wheel + circle + self.section.rail.at(at.rail_arc)[3]) - along
+        turn = np.tan(part.position.yaw) / part.cosine  # of the wheel's circles, which skews the gap
+        skew = 0.5 * (wheel - circle) * turn / (1.0 + turn**2)
+        more = np.hypot(0.5 * (along - across), skew) - np.abs(0.5 * (along - across))
+        more = np.where(along > across, more, -more)
+        unit = _normal.hertz(along + more, across - more, self.elastic.modulus, np.ones(across.shape))
         share = np.sqrt(self._depth(part) / unit.penetration)
         return {"a": unit.a * share, "b": unit.b * share, "normal_force": share**3, "centre": np.zeros(across.shape)}
 

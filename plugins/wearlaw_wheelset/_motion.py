@@ -56,6 +56,21 @@ def placed(section: Section, position: Position, arc: Array) -> Place:
     return Place(at.x, at.y - position.displacement, at.z, angle, radius, rail_arc)
 
 
+def curvature_along(section: Section, position: Position, place: Place, arc: Array) -> Array:
+    """Return the curvature of wheels along the rolling direction where they touch [1/m].
+
+    Yaw turns the wheel's circles out of the rolling direction by θ in the plane of contact, tan θ = tan ψ/cos δ. With
+    the curvature κ of the profile that of the surface is cos δ/r cos²θ + κ sin²θ (Euler). Where a hollow takes more
+    than nine tenths of the first term, which no contact survives, a tenth stays.
+    """
+    cosine = np.cos(place.angle)
+    square = (np.tan(position.yaw) / cosine) ** 2
+    round_ = cosine / place.radius
+    inside = np.clip(arc, section.wheel.s[0], section.wheel.s[-1])
+    curved: Array = (round_ + section.wheel.at(inside)[3] * square) / (1.0 + square)
+    return np.maximum(curved, 0.1 * round_)
+
+
 def roll_rate(place: Place, lateral_velocity: Array, yaw_velocity: Array) -> Array:
     """Return the roll velocity at which both wheels stay on their rails [rad/s], positive if it lowers the right one.
 

@@ -16,7 +16,7 @@ from pydantic_core import core_schema
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._curve import Curve, joined, steady, through_points
-from wearlaw_wheelset._files import Kind, points_of, quoted, write_points
+from wearlaw_wheelset._files import Kind, points_of, write_points
 from wearlaw_wheelset._formulas import FORMULAS
 from wearlaw_wheelset._points import check_orientation, check_points
 
@@ -31,7 +31,7 @@ CONSTRUCTORS = {"s1002": "Profile.s1002()", "uic60": "Profile.uic60()"}
 """How each profile by formula is made."""
 
 
-FILE_FIELDS = ("file", "kind", "units", "mirror_y", "mirror_z", "shift_y", "shift_z", "smoothing")
+FILE_FIELDS = ("file", "kind", "units", "sep", "decimal", "mirror_y", "mirror_z", "shift_y", "shift_z", "smoothing")
 """Fields of a table that names a file of a profile."""
 
 
@@ -190,7 +190,7 @@ class Profile(wl.Configuration):
                 raise ValueError("takes a formula or points, not both")
             if self.formula not in FORMULAS:
                 raise ValueError(
-                    f"formula: no profile is called {quoted(self.formula)}; there are {', '.join(FORMULAS)}"
+                    f"formula: no profile is called {wl.shown(self.formula)}; there are {', '.join(FORMULAS)}"
                 )
             if self.kind != FORMULAS[self.formula][0]:
                 raise ValueError(f"kind: '{self.formula}' is a {FORMULAS[self.formula][0]}, not a {self.kind}")
@@ -458,7 +458,7 @@ def _named(text: str) -> Any:
         return {"formula": text}
     if not os.path.lexists(wl.beside(text)):
         raise wl.InputError(
-            f"{quoted(text)} is neither a profile by formula nor a file in {quoted(wl.beside('.').absolute())}"
+            f"{wl.shown(text)} is neither a profile by formula nor a file in {wl.shown(wl.beside('.').absolute())}"
             f"{did_you_mean(text, FORMULAS)} The"
             f" formulas are: {', '.join(FORMULAS)}"
         )
@@ -470,7 +470,7 @@ def _of_file(table: Mapping[str, Any]) -> dict[str, Any]:
     for name in table:
         if name not in FILE_FIELDS:
             near = did_you_mean(name, FILE_FIELDS)
-            raise wl.InputError(f"unknown field {quoted(name)}{near} With a file, they are: {', '.join(FILE_FIELDS)}")
+            raise wl.InputError(f"unknown field {wl.shown(name)}{near} With a file, they are: {', '.join(FILE_FIELDS)}")
     found = read_profile(
         wl.beside(_path(table["file"], "file")), **{name: value for name, value in table.items() if name != "file"}
     )
@@ -488,6 +488,8 @@ def read_profile(
     *,
     kind: Kind | None = None,
     units: str = "mm",
+    sep: str | None = None,
+    decimal: str = ".",
     mirror_y: bool = False,
     mirror_z: bool = False,
     shift_y: wl.QuantityLike = "0 mm",
@@ -506,6 +508,8 @@ def read_profile(
         The kind of profile, if neither the ending nor the header gives it.
     units : str
         Unit of length in the file, if the file does not give it.
+    sep, decimal : str, optional
+        Of two columns: what separates the cells, and the decimal mark, as in `wearlaw.read_table`.
     mirror_y, mirror_z : bool
         Whether to change the sign of y or z.
     shift_y, shift_z : Quantity or str
@@ -523,7 +527,7 @@ def read_profile(
         for option, value in (("mirror_y", mirror_y), ("mirror_z", mirror_z)):
             if not isinstance(value, bool):
                 raise wl.InputError(f"{option}: must be true or false, got {value!r}")
-        found, told = points_of(file, kind, units)
+        found, told = points_of(file, kind, units, sep, decimal)
         length = wl.Unit("mm", positive=False)
         y = (-1.0 if mirror_y else 1.0) * found.y + float(length.si(shift_y, "shift_y"))
         z = (-1.0 if mirror_z else 1.0) * found.z + float(length.si(shift_z, "shift_z"))
@@ -541,7 +545,7 @@ def read_profile(
             smoothing=smoothing,
         )
     except wl.InputError as error:
-        raise wl.DataError(f"profile {quoted(path)}: {error}") from None
+        raise wl.DataError(f"profile {wl.shown(path)}: {error}") from None
 
 
 def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -17,7 +17,7 @@ from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
 from wearlaw_wheelset._curve import steady
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
-from wearlaw_wheelset._loads import Balance, Elastic, Friction, Task
+from wearlaw_wheelset._loads import Balance, Elastic, Friction, Pressure, Task
 from wearlaw_wheelset._pictures import Profiles
 from wearlaw_wheelset._profile import Profile
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
@@ -144,7 +144,7 @@ class Wheelset(wl.Rig):
     name: ClassVar[str] = "wheelset"
     source: ClassVar[str] = (
         "locus of contact: A. D. de Pater, Vehicle System Dynamics 17 (1988) 127-140; strips: J. Piotrowski and W. Kik,"
-        " Vehicle System Dynamics 46 (2008) 27-48"
+        " Vehicle System Dynamics 46 (2008) 27-48; half-spaces: I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206-219"
     )
     creepage: ClassVar[str] = "lateral_displacement"
     example: ClassVar[Mapping[str, Any]] = {
@@ -182,11 +182,13 @@ class Wheelset(wl.Rig):
     """Angle by which the rails lean inwards, such as "1:40" [rad]."""
     flange_angle: Angle = Field(default="30 deg", validate_default=True)
     """Contact angle beyond which a patch takes `flange_friction_coefficient` [rad]."""
-    pressure: Literal["kpec", "hertz"] = "kpec"
+    pressure: Pressure = "kpec"
     """Normal problem. "kpec": strips by the method of Kik and Piotrowski with elliptic correction, for any profile.
-    "hertz": ellipses with the curvatures where rigid bodies touch, for curvatures that hardly vary over the patch."""
+    "hertz": ellipses with the curvatures where rigid bodies touch, for curvatures that hardly vary over the patch.
+    "half_space": elastic half-spaces, element by element, for patches with two humps and for reference; slow."""
     strips: Annotated[int, Field(ge=5, le=500, strict=True)] = 20
-    """Number of strips of a patch with `pressure = "kpec"`."""
+    """Number of strips of a patch with `pressure = "kpec"`; "half_space" has twice as many rows of elements over the
+    width in which the undeformed bodies overlap."""
     material: wl.MaterialField
     """Material of wheels and rails; a file may also give the name of an installed material."""
     rail_material: wl.MaterialField | None = None
@@ -208,7 +210,7 @@ class Wheelset(wl.Rig):
             gauge_depth: wl.QuantityLike = "14 mm",
             rail_cant: wl.QuantityLike = "0 rad",
             flange_angle: wl.QuantityLike = "30 deg",
-            pressure: Literal["kpec", "hertz"] = "kpec",
+            pressure: Pressure = "kpec",
             strips: int = 20,
             material: wl.Material,
             rail_material: wl.Material | None = None,
@@ -412,6 +414,7 @@ class Wheelset(wl.Rig):
         self._warn_of_climbing(balance)
         if not balance.balanced.all():
             self._warn_of_jams(balance)
+        self._warn_of_humps(balance)
         left = np.where(balance.balanced, balance.imbalance, 0.0)
         if (left > IMBALANCE).any():
             point = int(left.argmax())
@@ -441,8 +444,7 @@ class Wheelset(wl.Rig):
             given["vertical_load"], friction, scalar(self.flange_angle),
             given.get("axle_torque", np.zeros(displacement.shape)), given.get("angular_speed"), roll is None,
         )  # fmt: skip
-        hertz = self.pressure == "hertz"
-        balance = Balance.begun(self._section, self._elastic, task, rolls, found, hertz, self.strips)
+        balance = Balance.begun(self._section, self._elastic, task, rolls, found, self.pressure, self.strips)
         balance.check_torque()
         return balance
 
@@ -518,6 +520,20 @@ class Wheelset(wl.Rig):
                 wl.RangeWarning,
                 stacklevel=5,
             )
+
+    def _warn_of_humps(self, balance: Balance) -> None:
+        """Warn of patches with two humps, which strips by virtual penetration get wrong."""
+        if self.pressure != "kpec" or not (humps := balance.humps()).any():
+            return
+        first = int(np.argmax(humps))
+        point, side = balance.found.point[first], DIMS["side"][balance.found.side[first]]
+        warnings.warn(
+            f"{np.count_nonzero(humps)} of {humps.size} patches have two humps, the first on the {side} wheel at a"
+            f" lateral displacement of {1e3 * balance.task.displacement[point]:.4g} mm: the maximum pressure of 'kpec'"
+            ' may be a quarter too low there; take pressure="half_space"',
+            wl.RangeWarning,
+            stacklevel=5,
+        )
 
     @staticmethod
     def _warn_of_jams(balance: Balance) -> None:

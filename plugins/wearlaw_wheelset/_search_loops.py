@@ -38,6 +38,7 @@ ROUNDING = 1e-12
 """Difference between slopes at a contact point that is rounding."""
 
 VECTOR = "float64[::1]"
+ROWS = "float64[:, ::1]"
 TABLE = f"float64, float64, {VECTOR}, {VECTOR}"
 
 
@@ -110,6 +111,19 @@ def normal_gap(rise: Any, slope: Any, own_slope: Any) -> tuple[Any, Any]:
     own = np.sqrt(1.0 + own_slope * own_slope)
     along, half = 1.0 + slope * own_slope, 0.5 * own * np.sqrt(1.0 + slope * slope)
     return rise * own / np.maximum(along, half), along > half
+
+
+def tangential(across: Any, down: Any, own_slope: Any) -> Any:
+    """Return the distance from the contact point across the track, in the plane of contact [m]."""
+    return (across + own_slope * down) / np.sqrt(1.0 + own_slope * own_slope)
+
+
+def through(x: Any, places: Any, values: Any) -> Any:
+    """Return the cubic through four values at four places, at x."""
+    (x0, x1, x2, x3), (f0, f1, f2, f3) = places, values
+    d01, d12, d23 = (f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1), (f3 - f2) / (x3 - x2)
+    d02, d13 = (d12 - d01) / (x2 - x0), (d23 - d12) / (x3 - x1)
+    return f0 + (x - x0) * (d01 + (x - x1) * (d02 + (x - x2) * (d13 - d02) / (x3 - x0)))
 
 
 def at(x: float, start: float, step: float, value: Array, slope: Array) -> tuple[float, float]:
@@ -272,7 +286,7 @@ def compiled_search(
                 roll[point] += roll_step(excess, lever[0] + lever[1])
 
 
-@wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, float64, {TABLE}, {TABLE}, {TABLE}, float64[:, ::1])")
+@wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, float64, {TABLE}, {TABLE}, {TABLE}, {ROWS}, {ROWS})")
 def compiled_samples(
     displacement: Array,
     roll: Array,
@@ -292,13 +306,19 @@ def compiled_samples(
     z_value: Array,
     z_slope: Array,
     samples: Array,
+    arcs: Array,
 ) -> None:
-    """Fill in the gaps around contact points, (points, samples), for wheels in outward coordinates."""
+    """Fill in the gaps around contact points and the arc lengths there, for wheels in outward coordinates.
+
+    Both are of shape (points, samples), at even steps across the track in the plane of contact.
+    """
     count = samples.shape[1]
+    height, tangent = np.empty(count), np.empty(count)
     end, rail_end = y_start + y_step * (y_value.size - 1), z_start + z_step * (z_value.size - 1)
     for point in range(arc.size):
         turn = math.sin(roll[point]), math.cos(roll[point]), math.sin(yaw[point]), math.cos(yaw[point])
-        own = own_slope = 0.0
+        own = own_slope = own_across = own_down = 0.0
+        first, last = 0, count - 1
         for step in range(count + 1):
             k = step - 1 if step else count // 2  # the contact point first
             place = arc[point] + spacing * (k - count // 2)
@@ -307,9 +327,26 @@ def compiled_samples(
             _, across, down, _ = locus(there, size, d_size / d_there, displacement[point], turn)
             rail, slope = at(across, z_start, z_step, z_value, z_slope)
             if not step:
-                own, own_slope = rail - down, slope
-            elif place < y_start or place > end or across < z_start or across > rail_end:
-                samples[point, k] = np.inf
-            else:
-                normal, facing = normal_gap(rail - down - own, slope, own_slope)
-                samples[point, k] = normal if facing else np.inf
+                own, own_slope, own_across, own_down = rail - down, slope, across, down
+                continue
+            height[k], facing = normal_gap(rail - down - own, slope, own_slope)
+            tangent[k] = tangential(across - own_across, down - own_down, own_slope)
+            outside = place < y_start or place > end or across < z_start or across > rail_end or not facing
+            turns = k > 0 and tangent[k] <= tangent[k - 1]  # behind its own horizon
+            if k <= count // 2 and (outside or turns):
+                first = k + 1 if outside else k
+            elif outside or turns:
+                last = min(last, k - 1)
+        cell = first
+        for k in range(count):
+            offset = spacing * (k - count // 2)
+            if last - first < 3 or offset < tangent[first] or offset > tangent[last]:
+                samples[point, k], arcs[point, k] = np.inf, arc[point] + offset
+                continue
+            while cell < last - 1 and tangent[cell + 1] <= offset:
+                cell += 1
+            i = min(max(cell - 1, first), last - 3)
+            places = tangent[i], tangent[i + 1], tangent[i + 2], tangent[i + 3]
+            samples[point, k] = through(offset, places, (height[i], height[i + 1], height[i + 2], height[i + 3]))
+            left = arc[point] + spacing * (i - count // 2)
+            arcs[point, k] = through(offset, places, (left, left + spacing, left + 2.0 * spacing, left + 3.0 * spacing))

@@ -72,7 +72,10 @@ class WLRM(wl.Law):
             return damage
         # A positive creepage is that of a wheel that brakes, but of a disc 1 that drives.
         driving = -contact.force_x if contact.on_strips else contact.force_x
-        grows = driving > 0.0 if self.traction == "driving" else driving < 0.0
+        if self.traction == "braking":
+            driving = -driving
+        # Under lateral creepage alone, rounding leaves a longitudinal force of some 1e-16 of the traction.
+        grows = driving > 1e-9 * np.hypot(contact.force_x, contact.force_y)
         return np.where(grows, damage, np.minimum(damage, 0.0))
 
     def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
@@ -81,6 +84,6 @@ class WLRM(wl.Law):
 
 
 @wl.hookimpl
-def wearlaw_laws() -> list[type[wl.Law]]:
+def wearlaw_models() -> list[type[wl.Law]]:
     """Return the law of this plugin."""
     return [WLRM]

@@ -54,7 +54,7 @@ class Law{number}(wl.WearLaw):
 
 
 @wl.hookimpl
-def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
+def wearlaw_models() -> list[type[wl.WearLaw]]:
     """Return the law."""
     return [Law{number}]
 '''

@@ -63,12 +63,12 @@ class Axle(wl.Rig):
 
 
 @wl.hookimpl
-def wearlaw_rigs() -> list[type[wl.Rig]]:
+def wearlaw_models() -> list[type[wl.Rig]]:
     """Return the rig."""
     return [Axle]
 
 
-AXLES = ("axles", "from tests.core.axle_case import wearlaw_rigs")
+AXLES = ("axles", "from tests.core.axle_case import wearlaw_models")
 """Name and source of the plugin."""
 
 MOVED = np.array([-7.0, -3.0, 0.0, 3.0, 7.0])

@@ -17,7 +17,6 @@ HEAD = "creepage [%],max_pressure [MPa],friction_coefficient,wear_rate [ug/m/mm^
 LAW = "usfd:fitted_for=exact"
 FIT = ("fit", "tests.csv", "--contact", "exact", "--law", LAW, "--free", "m_m,q_s", "--bootstrap", "0")
 COMPARE = ("compare", "tests.csv", "--contacts", "global,exact", "--laws", "usfd,kth,brr")
-RIG_NOTE = "note: the rig is taken to be SUROS, 47 mm steel discs and a track of 10 mm; give yours with --rig\n"
 
 
 def rates() -> Any:

@@ -6,7 +6,9 @@ import textwrap
 from collections.abc import Callable
 from pathlib import Path
 
-FIRST_PARTY_MODELS = {"exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins"}
+FIRST_PARTY_MODELS = {
+    "exact", "fastsim", "global", "half_space", "linear", "polach", "shen_hedrick_elkins", "strip_theory",
+}  # fmt: skip
 FIRST_PARTY_LAWS = {"archard", "brr", "energy", "kth", "usfd"}
 
 LAW = """
@@ -20,7 +22,7 @@ LAW = """
             return 0.0 * contact.pressure
 
     @wl.hookimpl
-    def wearlaw_wear_laws():
+    def wearlaw_models():
         return [Outside]
 """
 
@@ -28,7 +30,7 @@ LAB = """
     import wearlaw as wl
 
     @wl.hookimpl
-    def wearlaw_parameter_sets():
+    def wearlaw_named():
         fitted_for = wl.Calibration(
             contact_model="exact",
             scale="cells",
@@ -36,24 +38,18 @@ LAB = """
             stated_range=(("wear_index_density", "0 N/mm^2", "40 N/mm^2"),),
             source="made up for a test",
         )
-        return {
-            "lab_2026": wl.wear_law(
-                "usfd", m_m="6 ug/m/N", q_s="60 ug/m/mm^2", m_c="70 ug/m/N", tr_sc="80 N/mm^2", fitted_for=fitted_for
-            )
-        }
-
-    @wl.hookimpl
-    def wearlaw_materials():
+        law = wl.wear_law(
+            "usfd", m_m="6 ug/m/N", q_s="60 ug/m/mm^2", m_c="70 ug/m/N", tr_sc="80 N/mm^2", fitted_for=fitted_for
+        )
         soft = wl.steel(youngs_modulus="190 GPa", density="7800 kg/m^3")
-        return {"soft_steel": soft, "steel_of_rail_b": soft}
+        return {"lab_2026": law, "soft_steel": soft, "steel_of_rail_b": soft}
 
     @wl.hookimpl
-    def wearlaw_cases():
-        return {"lab_study": "title = 'A study of the lab'"}
-
-    @wl.hookimpl
-    def wearlaw_tests():
-        return {"lab_tests": "creepage [%],max_pressure [MPa],wear_rate [ug/m/mm^2]\\n1,1500,30\\n"}
+    def wearlaw_resources():
+        return {
+            "case": {"lab_study": "title = 'A study of the lab'"},
+            "test set": {"lab_tests": "creepage [%],max_pressure [MPa],wear_rate [ug/m/mm^2]\\n1,1500,30\\n"},
+        }
 """
 
 Install = Callable[..., None]

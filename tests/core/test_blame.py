@@ -125,20 +125,10 @@ PLUGIN = """
             return contact.body("wheel_9").rolling_radius * contact.pressure
 
     @wl.hookimpl
-    def wearlaw_wear_laws():
-        return [LawOnPressure, LawOnArea, LawOnBody, LawOnNumbers, FloatBreakpoint, FloatRamp, OwnVariable, NoSuchBody]
-
-    @wl.hookimpl
-    def wearlaw_contact_models():
-        return [ModelOnProblem, FieldsOnNodes]
-
-    @wl.hookimpl
-    def wearlaw_stages():
-        return [StageOnProblem, StageWithoutFriction, SolvingWithoutFriction]
-
-    @wl.hookimpl
-    def wearlaw_rigs():
-        return [RigOnCondition, RigWithoutFriction]
+    def wearlaw_models():
+        laws = [LawOnPressure, LawOnArea, LawOnBody, LawOnNumbers, FloatBreakpoint, FloatRamp, OwnVariable, NoSuchBody]
+        stages = [StageOnProblem, StageWithoutFriction, SolvingWithoutFriction]
+        return [*laws, *stages, ModelOnProblem, FieldsOnNodes, RigOnCondition, RigWithoutFriction]
 """
 
 LOADS = Q(np.array([60.0, 80.0]), "kN")

@@ -44,9 +44,9 @@ def test_tests_of_a_lab_are_found_from_the_folder_of_the_case_file(
 
 
 def test_a_case_can_be_written_with_its_tests_to_run_again_anywhere(tmp_path: Path) -> None:
-    text = "# source: a test in µg\r\n" + OWN_TESTS
-    (tmp_path / "own.csv").write_text(text, encoding="cp1252", newline="")
-    read = load(tmp_path, table(measured={"label": "m", "tests": "own.csv"}))
+    text = "# source: a test in µg\r\n" + OWN_TESTS.replace(",", ";").replace(".", ",")
+    (tmp_path / "own.csv").write_text(text, encoding="utf-8", newline="")
+    read = load(tmp_path, table(measured={"label": "m", "tests": "own.csv", "decimal": ","}))
     (tmp_path / "own.csv").unlink()  # what is written is what was read
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()

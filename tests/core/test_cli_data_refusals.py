@@ -63,36 +63,22 @@ def test_a_fit_does_not_replace_a_comparison(folder: Path) -> None:
 # Tests and options
 
 
-WRONG_TESTS = {
-    "no units": (HEAD.replace(" [%]", ""), rows(rates()), "has no unit; write it as 'creepage [%]'"),
-    "unknown column": (HEAD.replace("wear_rate", "wear"), rows(rates()), "did you mean 'wear_rate'?"),
-    "negative wear": (HEAD, [*rows(rates())[:-1], "20,1500,0.46,-3"], "which must not be negative"),
-    "creepage in the thousands": (HEAD, [*rows(rates())[:-1], "2000,1500,0.46,3"], "must not exceed 100 %"),
-    "two columns of one meaning": (
-        f"{HEAD},wear_rate [mg/m/mm^2]",
-        [f"{row},1" for row in rows(rates())],
-        "wear_rate",
-    ),
-    "two loads": (f"{HEAD},normal_force [kN]", [f"{row},7" for row in rows(rates())], "exactly one load"),
-    "no tests": (HEAD, [], "tests.csv"),
-    "no friction": (
-        HEAD.replace(",friction_coefficient", ""),
-        [row.replace(",0.46", "") for row in rows(rates())],
-        "friction_coefficient: the tests do not hold it",
-    ),
-    "no wear rate": (HEAD.replace("wear_rate [ug/m/mm^2]", "traction_coefficient"), rows([0.4] * 9), "wear rate"),
-}
-
-
-@pytest.mark.parametrize("wrong", WRONG_TESTS)
 @pytest.mark.parametrize("command", [FIT, COMPARE], ids=["fit", "compare"])
+@pytest.mark.parametrize(
+    ("head", "lines", "message"),
+    [
+        (HEAD.replace(" [%]", ""), rows(rates()), "'creepage [%]'"),
+        (HEAD, [], "tests.csv"),
+        (HEAD.replace(",friction_coefficient", ""), [row.replace(",0.46", "") for row in rows(rates())], "friction"),
+        (HEAD.replace("wear_rate [ug/m/mm^2]", "traction_coefficient"), rows([0.4] * 9), "wear rate"),
+    ],
+    ids=["no unit", "no tests", "no friction", "no wear rate"],
+)
 def test_wrong_tests_are_one_clear_error_and_nothing_is_written(
-    folder: Path, command: tuple[str, ...], wrong: str
+    folder: Path, command: tuple[str, ...], head: str, lines: list[str], message: str
 ) -> None:
-    head, lines, message = WRONG_TESTS[wrong]
     write_tests(lines, head)
     assert_refused(wearlaw(*command, "-o", "out"), message)
-    assert files(folder) == {"tests.csv"}
     assert sorted(path.name for path in folder.iterdir()) == ["tests.csv"]
 
 
@@ -103,54 +89,33 @@ FIT_START = ("fit", "tests.csv", "--contact", "exact")
     ("arguments", "message", "exit_code"),
     [
         (("fit", "absent.csv", *FIT[2:]), "absent.csv", 1),
-        ((*FIT_START, "--law", "usdf", "--free", "q_s"), "no wear law is called 'usdf'; did you mean 'usfd'?", 1),
-        (("fit", "tests.csv", "--contact", "exat", *FIT[4:]), "no contact model is called 'exat'; did you mean", 1),
-        ((*FIT_START, "--law", "usfd", "--free", "q_m"), "no number 'q_m'; did you mean", 1),
-        ((*FIT_START, "--law", "usfd", "--free", "q_s", "--fixed", "q=1"), "usfd: q: unknown field", 1),
-        ((*FIT_START, "--law", "usfd", "--free", "q_s", "--fixed", "q_s"), "--fixed: write it as FIELD=VALUE", 2),
-        ((*FIT_START, "--law", "usfd", "--free", "q_s", "--fixed", "q_s=9 ug/m/mm^2"), "'q_s' is to be fitted", 2),
-        ((*FIT_START, "--law", "usfd", "--free", ","), "--free: name at least one, got ','", 2),
-        ((*FIT_START, "--law", "usfd:exact", "--free", "q_s"), "usfd:exact: write it as FIELD=VALUE, got 'exact'", 2),
-        ((*FIT_START, "--free", "q_s"), "q_s", 1),
-        ((*FIT_START, "--free", "friction_coefficient"), "the tests hold none", 1),
-        ((*FIT_START, "--law", "brr", "--free", "k"), "wear law 'brr' is stated for the means of the whole patch", 1),
-        ((*FIT_START, "--law", "absent.toml", "--free", "q_s"), "cannot read wear law 'absent.toml'", 1),
-        ((*FIT, "--confidence", "95"), "confidence: must be a number between 0 and 1", 1),
-        ((*FIT, "--seed", "-1"), "seed: must be a whole number that is not negative, got -1", 1),
-        ((*FIT[:-1], "1"), "bootstrap: must be at least 40", 1),
-        ((*FIT, "--rig", "absent.toml"), "cannot read the rig 'absent.toml'", 1),
-        ((*FIT, "--rig", "tests.csv"), "the rig 'tests.csv' is not valid TOML", 1),
-        ((*FIT, "--rig", "rig.toml"), "the rig 'rig.toml' is wrong in:\n  rig.track: unknown field", 1),
-        ((*FIT, "--rig", "empty.toml"), "the rig 'empty.toml' is wrong in:\n  rig: ", 1),
-        ((*COMPARE[:-1], "usfd,usdf"), "no wear law is called 'usdf'; did you mean 'usfd'?", 1),
-        ((*COMPARE[:-1], ","), "--laws: name at least one, got ','", 2),
-        (("compare", "tests.csv", "--contacts", "exact", "--laws", "brr"), "no contact model can be used with any", 1),
-        ((*COMPARE, "--free", "q_s"), "--free: write it as LAW=FIELDS, with a LAW of usfd,kth,brr, got 'q_s'", 2),
-        ((*COMPARE, "--free", "usdf=q_s"), "--free: write it as LAW=FIELDS, with a LAW of usfd,kth,brr, got", 2),
-        ((*COMPARE, "--free", "usfd=q_m"), "no number 'q_m'; did you mean", 1),
-        (
-            (*COMPARE, "--free", "usfd=q_s", "--free", "usfd=m_m"),
-            "--free: 'usfd' is given twice; write all its fields",
-            2,
-        ),
-        ((*COMPARE, "--free", "usfd="), "--free: name at least one, got ''", 2),
+        ((*FIT_START, "--law", "usdf", "--free", "q_s"), "'usfd'", 1),
+        (("fit", "tests.csv", "--contact", "exat", *FIT[4:]), "'exat'", 1),
+        ((*FIT_START, "--law", "usfd", "--free", "q_m"), "'q_m'", 1),
+        ((*FIT_START, "--law", "usfd", "--free", "q_s", "--fixed", "q=1"), "q: ", 1),
+        ((*FIT_START, "--law", "usfd", "--free", "q_s", "--fixed", "q_s"), "--fixed: ", 2),
+        ((*FIT_START, "--law", "usfd", "--free", "q_s", "--fixed", "q_s=9 ug/m/mm^2"), "--fixed: 'q_s'", 2),
+        ((*FIT_START, "--law", "usfd", "--free", ","), "--free: ", 2),
+        ((*FIT_START, "--law", "usfd:exact", "--free", "q_s"), "usfd:exact: ", 2),
+        ((*FIT_START, "--free", "friction_coefficient"), "traction", 1),
+        ((*FIT_START, "--law", "brr", "--free", "k"), "'brr'", 1),
+        ((*FIT_START, "--law", "absent.toml", "--free", "q_s"), "'absent.toml'", 1),
+        ((*FIT, "--confidence", "95"), "confidence: ", 1),
+        ((*FIT, "--rig", "absent.toml"), "'absent.toml'", 1),
+        ((*FIT, "--rig", "rig.toml"), "rig.track: ", 1),
+        ((*COMPARE[:-1], ","), "--laws: ", 2),
+        (("compare", "tests.csv", "--contacts", "exact", "--laws", "brr"), "brr on exact", 1),
+        ((*COMPARE, "--free", "usdf=q_s"), "--free: ", 2),
+        ((*COMPARE, "--free", "usfd=q_s", "--free", "usfd=m_m"), "--free: 'usfd'", 2),
     ],
 )
 def test_a_wrong_option_is_one_clear_error_and_nothing_is_written(
     folder: Path, arguments: tuple[str, ...], message: str, exit_code: int
 ) -> None:
     Path("rig.toml").write_text('[rig]\npreset = "suros"\ntrack = "8 mm"\n')
-    Path("empty.toml").write_text("")
     before = files(folder)
     assert_refused(wearlaw(*arguments, "-o", "out"), message, exit_code)
     assert files(folder) == before
-
-
-def test_fewer_tests_than_parameters_are_refused(folder: Path) -> None:
-    write_tests(rows(rates())[:2])
-    result = wearlaw(*FIT[:-3], "m_m,q_s", "-o", "out")
-    assert_refused(result, "2 measurements cannot tell 2 parameters")
-    assert files(folder) == {"tests.csv"}
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import assert_refused, table, wearlaw, write
-from tests.core.distributions import Install
+from tests.core.distributions import FIRST_PARTY_MODELS, Install
 from wearlaw.plugins import loader
 from wearlaw.study.case import case_schema, case_text
 
@@ -85,20 +85,23 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
     ours = [row for row in rows if row[-2] == "wearlaw"]
     assert ours == [
         *(["rig", name, "wearlaw", wl.__version__] for name in ("twin_disc", "wheel_rail", "wheelset")),
-        *(
-            ["contact", "model", name, "wearlaw", wl.__version__]
-            for name in ("exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins")
-        ),
+        *(["contact", "model", name, "wearlaw", wl.__version__] for name in sorted(FIRST_PARTY_MODELS)),
         *(["stage", name, "wearlaw", wl.__version__] for name in ("patch_mean", "thermal", "third_body")),
         *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("archard", "brr", "energy", "kth", "usfd")),
         ["law", "wlrm", "wearlaw", wl.__version__],
         ["reader", "contact_mat", "wearlaw", wl.__version__],
         ["material", "steel", "wearlaw", wl.__version__],
         ["material", "type", "SteelWithHardness", "wearlaw", wl.__version__],
-        *(["case", name, "wearlaw", wl.__version__] for name in ("tassini2010", "wheel_on_rail", "wheelset")),
+        *(
+            ["case", name, "wearlaw", wl.__version__]
+            for name in ("tassini2010", "wheel_life", "wheel_on_rail", "wheelset")
+        ),
         ["test", "set", "lewis2004", "wearlaw", wl.__version__],
+        ["section", "life", "wearlaw", wl.__version__],
         *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4", "tables")),
         ["section", "wheelset", "wearlaw", wl.__version__],
+        ["command", "life", "wearlaw", wl.__version__],
+        ["command", "wear", "wearlaw", wl.__version__],
     ]
     assert result.stderr == ""
 
@@ -152,11 +155,11 @@ UNDESCRIBED = """
             raise {error}
 
     @wl.hookimpl
-    def wearlaw_wear_laws():
+    def wearlaw_models():
         return [Mute]
 
     @wl.hookimpl
-    def wearlaw_parameter_sets():
+    def wearlaw_named():
         return {{"mute_set": Mute()}}
 """
 

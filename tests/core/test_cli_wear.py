@@ -12,7 +12,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import assert_refused, files, wearlaw
 from tests.plugins.contact_files import FILES
-from wearlaw.cli.wear_commands import _print
+from wearlaw_contact_files._command import _print
 
 pytestmark = [
     pytest.mark.usefixtures("blank_figures", "folder"),

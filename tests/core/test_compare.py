@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +13,6 @@ import wearlaw as wl
 from tests.core.comparisons import CREEPAGE, EXACT, GLOBAL, RIG, TRACTION, by_label, made, order, scattered, usfd
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.fitting.comparison import Names, Predictor, compare_named
 
 # What is compared
 
@@ -101,28 +100,6 @@ def test_predictors_are_called_after_their_law_and_contact_model_as_in_a_study()
     }
 
 
-class Tabled(wl.WearLaw):
-    """A law whose parameters are a table, which cannot be hashed."""
-
-    name: ClassVar[str] = "tabled"
-    source: ClassVar[str] = "made up"
-    slopes: dict[str, float]
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        return self.slopes["mild"] * 1e-9 * contact.wear_index_density
-
-
-def test_laws_that_cannot_be_hashed_are_compared_like_others() -> None:
-    first, second = (Tabled(slopes={"mild": mild}) for mild in (5.0, 6.0))
-    fastsim = RIG | wl.contact_model("fastsim")
-    found = wl.compare([EXACT | first, fastsim | Tabled(slopes={"mild": 5.0}), EXACT | second], made())
-    assert set(order(found)) == {
-        "tabled(slopes={'mild': 5.0}) on exact",
-        "tabled(slopes={'mild': 5.0}) on fastsim",
-        "tabled(slopes={'mild': 6.0}) on exact",
-    }
-
-
 def test_a_fit_is_called_fitted() -> None:
     fit = wl.fit(EXACT | usfd(), scattered(), ["q_s"], bootstrap=0)
     assert set(order(wl.compare([EXACT | usfd(), fit], scattered()))) == {"usfd on exact", "usfd fitted on exact"}
@@ -130,38 +107,28 @@ def test_a_fit_is_called_fitted() -> None:
 
 def test_two_predictors_of_one_name_are_refused() -> None:
     twice = [EXACT | usfd(), wl.TwinDisc.suros(track_width="8 mm") | wl.contact_model("exact") | usfd()]
-    with pytest.raises(wl.InputError, match="two predictors are called 'usfd on exact'; give a mapping"):
+    with pytest.raises(wl.InputError, match="'usfd on exact'"):
         wl.compare(twice, made())
     assert len(wl.compare({"10 mm": twice[0], "8 mm": twice[1]}, made()).compared) == 2
-    named = [(Names("mine", "usfd", "exact"), one) for one in twice]
-    with pytest.raises(wl.InputError, match="two predictors are called 'mine'"):
-        compare_named(named, made(), None)
 
 
-@pytest.mark.parametrize("predictors", [[], {}])
-def test_no_predictor_is_an_error(predictors: Any) -> None:
-    with pytest.raises(wl.InputError, match="give at least one predictor"):
-        wl.compare(predictors, made())
+NO_RATE = wl.WearTests.from_arrays(
+    creepage=Q(CREEPAGE, "%"), max_pressure="1500 MPa", friction_coefficient=0.46, traction_coefficient=TRACTION
+)
 
 
-@pytest.mark.parametrize("wrong", [EXACT, usfd(), "usfd", None])
+@pytest.mark.parametrize("wrong", [[], {}, [EXACT], {"mine": "usfd"}, [None]])
 def test_what_predicts_no_wear_is_refused(wrong: Any) -> None:
-    with pytest.raises(wl.InputError, match=r"a predictor of wear is a pipeline, .* not"):
-        wl.compare({"good": EXACT | usfd(), "wrong": wrong}, made())
+    with pytest.raises(wl.InputError, match="predictor"):
+        wl.compare(wrong, made())
 
 
-def test_a_fit_of_the_friction_coefficient_alone_predicts_no_wear() -> None:
-    fit = wl.fit(EXACT, made(traction_coefficient=TRACTION), ["friction_coefficient"], bootstrap=0)
-    with pytest.raises(wl.InputError, match="a predictor of wear is a pipeline"):
+def test_what_holds_no_wear_rate_cannot_be_compared() -> None:
+    fit = wl.fit(EXACT, NO_RATE, ["friction_coefficient"], bootstrap=0)
+    with pytest.raises(wl.InputError, match="predictor"):
         wl.compare([fit], made())
-
-
-def test_tests_without_any_wear_rate_are_refused() -> None:
-    data = wl.WearTests.from_arrays(
-        creepage=Q(CREEPAGE, "%"), max_pressure="1500 MPa", friction_coefficient=0.46, traction_coefficient=TRACTION
-    )
     with pytest.raises(wl.InputError, match="none of the 8 tests has a wear rate"):
-        wl.compare([EXACT | usfd()], data)
+        wl.compare([EXACT | usfd()], NO_RATE)
 
 
 # Notes
@@ -177,15 +144,6 @@ def test_parameters_fitted_for_another_contact_and_tests_beyond_the_range_are_no
     assert notes[0].startswith("usfd on exact: the parameters of wear law 'usfd' were fitted for patch means")
     assert notes[1].startswith("tests: the maximum pressure of 1600 MPa at T/N = 0.46 is beyond the shakedown limit")
     assert notes[2].startswith("tests: wear law 'usfd' has a known range of mean wear index density from")
-
-
-def test_nothing_is_noted_where_there_is_nothing_to_know() -> None:
-    assert (
-        wl.compare(
-            [EXACT | usfd(), EXACT | wl.wear_law("kth")], made(max_pressure="910 MPa", friction_coefficient=0.3)
-        ).notes
-        == ()
-    )
 
 
 # Fits
@@ -243,21 +201,13 @@ def test_a_fit_to_other_tests_predicts_but_has_no_aic() -> None:
     fit = wl.fit(EXACT | usfd(), data[[0, 2, 3, 4, 5, 7]], ["q_s"], bootstrap=0)
     comparison = wl.compare([fit], data[1:7])
     assert comparison.compared[0].information is None
-    assert any(note.startswith("usfd fitted on exact: was fitted to other tests, so") for note in comparison.notes)
+    assert any(note.startswith("usfd fitted on exact: was fitted to other tests") for note in comparison.notes)
     np.testing.assert_allclose(comparison.compared[0].predicted, predicted(fit, 0.46)[1:7], rtol=4 * EPS)
-
-
-def test_tests_without_a_wear_rate_make_no_other_tests() -> None:
-    rates = scattered().wear_rate.magnitude.copy()
-    rates[4] = np.nan
-    data = made(wear_rate=Q(rates, "ug/m/mm^2"))
-    fit = wl.fit(EXACT | usfd(), data, ["q_s"], bootstrap=0)
-    assert wl.compare([fit], data).compared[0].information is not None
 
 
 def test_fits_that_take_the_tests_to_scatter_differently_have_no_aic() -> None:
     data = scattered()
-    fits: dict[str, Predictor] = {
+    fits: Any = {
         "relative": wl.fit(EXACT | usfd(), data, ["q_s"], bootstrap=0),
         "absolute": wl.fit(EXACT | usfd(), data, ["q_s"], scatter="absolute", bootstrap=0),
     }
@@ -274,5 +224,5 @@ def test_a_fitted_friction_coefficient_is_used_in_place_of_that_of_the_tests() -
     assert abs(friction - 0.46) > 0.005, "it must differ from that of the tests"
     np.testing.assert_allclose(comparison.compared[0].predicted, predicted(fit, friction), rtol=4 * EPS)
     assert f"usfd fitted on global: takes the friction coefficient that was fitted, {friction:.4g}" in comparison.notes
-    assert any("was fitted to tractions too" in note for note in comparison.notes)
+    assert any("AIC is left blank" in note for note in comparison.notes)
     assert comparison.compared[0].information is None

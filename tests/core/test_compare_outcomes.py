@@ -101,14 +101,3 @@ def test_stages_are_named_and_a_fitted_stage_predicts() -> None:
     assert one.names.label == "kth fitted on exact, softer"
     assert one.agreement.rms_factor == pytest.approx(1.0, rel=1e-6)
     assert fit.contact_parameters == ("reduction",)
-
-
-def test_the_criterion_of_a_fit_of_heat_is_its_own() -> None:
-    heat = (EXACT | Heat(share=0.3))(**CONDITIONS)["heat_flux"]
-    tests = measured({"heat_flux": heat * np.exp(0.1 * np.random.default_rng(0).standard_normal(7))})
-    fit = wl.fit(EXACT | Heat(), tests, ["share"], bootstrap=0)
-    (one,) = wl.compare([fit], tests).compared
-    assert one.information is not None
-    assert one.information.aic == fit.aic
-    (other,) = wl.compare([fit], tests[:5]).compared
-    assert other.information is None

@@ -38,32 +38,6 @@ def test_the_table_ranks_and_has_its_units_in_the_heads() -> None:
         assert row["rms_error [ug/m/mm^2]"] == pytest.approx(one.agreement.rms_error * 1e3, rel=4 * EPS)
 
 
-def test_the_printed_table_has_the_same_numbers_to_four_digits() -> None:
-    fit = wl.fit(EXACT | usfd(), scattered(), ["q_s"], bootstrap=0)
-    comparison = wl.compare([fit, EXACT | wl.wear_law("kth")], scattered())
-    title, heads, *lines = repr(comparison).splitlines()
-    assert title == "2 predictors on 8 tests, best first; rms_error in µg/m/mm²"
-    names = heads.split()
-    assert names == [
-        "predictor",
-        "rms_factor",
-        "bias",
-        "geometric_sd",
-        "largest_factor",
-        "rms_error",
-        "in_sample",
-        "fitted",
-        "aic",
-        "aicc",
-    ]
-    table = comparison.table().rename(columns=lambda head: head.partition(" ")[0])
-    for line, row in zip(lines, table.to_dict("records"), strict=True):
-        cells = line.removeprefix(f"  {row['predictor']}").split()
-        assert cells[:5] == [f"{row[name]:.4g}" for name in names[1:6]]
-        seen = "fitted" in row["predictor"]
-        assert cells[5:] == (["8", "1", f"{row['aic']:.4g}", f"{row['aicc']:.4g}"] if seen else ["0"])
-
-
 def test_the_predictions_stand_beside_the_tests() -> None:
     comparison = wl.compare({"ours": EXACT | usfd()}, scattered())
     frame = comparison.predictions()
@@ -101,26 +75,6 @@ def test_the_figure_has_a_panel_for_each_contact_model_with_measured_over_predic
             assert high > max(curve.x.max(), curve.y.max())
     assert all(len(found) == 1 for found in colours.values()), "one law, one colour"
     assert len(set.union(*colours.values())) == len(colours) == 4
-
-
-def test_the_figure_has_lines_of_equality_and_of_a_factor_of_two() -> None:
-    (panel,) = wl.compare([EXACT | usfd()], made()).figure_data().panels
-    lines = {(curve.label, float(curve.y[0] / curve.x[0])) for curve in panel.curves if not curve.points}
-    assert lines == {("predicted = measured", 1.0), ("factor of two", 0.5), ("factor of two", 2.0)}
-    assert all(np.ptp(curve.y / curve.x) == 0.0 for curve in panel.curves if not curve.points)
-
-
-def test_the_figure_can_be_drawn() -> None:
-    data = wl.WearTests.from_arrays(
-        creepage=Q(CREEPAGE, "%"),
-        max_pressure="1500 MPa",
-        friction_coefficient=0.46,
-        wear_rate=made().wear_rate,
-        source="a lab",
-    )
-    comparison = wl.compare([EXACT | usfd(), GLOBAL | wl.wear_law("brr")], data)
-    assert len(comparison.plot().axes) == 2
-    assert comparison.figure_data().caption == "8 tests of a lab. The lines are equality and a factor of two."
 
 
 # Zero rates

@@ -29,6 +29,7 @@ def said(model: type[Model]) -> str:
 
 
 EXPECTED: dict[str, list[str]] = {
+    "half_space": ["cells = 30", "decay = 0.6 s/m"],
     "archard": [
         "coefficient (must be given)",
         "hardness = None",
@@ -78,6 +79,11 @@ EXPECTED: dict[str, list[str]] = {
         "source: Z. Y. Shen, J. K. Hedrick, J. A. Elkins",
         "scale: the means of the patch",
         "does not keep stick: the one node slips as a whole",
+    ],
+    "strip_theory": [
+        "strips = 10",
+        "does not keep initial_slope: strips have stiffnesses for the creepages, and none for the spin",
+        "source: derived for wearlaw after the strips of D. J. Haines and E. Ollerton",
     ],
     "usfd": [  # Tables 3 and 4 of Tassini et al. (2010)
         "usfd: a wear law of wearlaw",

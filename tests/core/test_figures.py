@@ -1,22 +1,29 @@
-"""Drawing with matplotlib: every curve, band and point of the data, on the axes and in the style that they ask for."""
+"""Both drawers, matplotlib and plotly: every curve, band, point and region of the description, in one style."""
 
 from __future__ import annotations
 
+import html
+import json
 from typing import Any, Literal
 
 import numpy as np
+import plotly.graph_objects as go
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from tests.core import cases
-from tests.core.cases import case
-from wearlaw.figures.curves import Curve, FigureData, Map, Panel, PlotAxis
-from wearlaw.figures.drawing import BAND, LINES, MARKERS, PALETTE, draw, line_styles
-from wearlaw.study.study import run
+from tests.core import report_data as data
+from tests.core.report_data import ONE, THREE
+from wearlaw.figures.curves import OUTSIDE, STRIP, Curve, FigureData, Map, Panel, PlotAxis, Shade, in_parts
+from wearlaw.figures.drawing import BAND, LINES, MARKERS, PALE, PALETTE, THIN, draw, line_styles
+from wearlaw.report.interactive import literal, plotly_figure
 
 X = np.array([1.0, 2.0, 4.0])
-SVG = "{http://www.w3.org/2000/svg}"
+SEVEN_DIGITS = 5e-7
+"""Half a unit of the seventh digit, relative to the number."""
 
 
 def curve(label: str = "a", **changes: Any) -> Curve:
@@ -27,204 +34,213 @@ def panel(*curves: Curve, **changes: Any) -> Panel:
     return Panel(**{"x": PlotAxis("load [N]"), "y": PlotAxis("wear [g]"), "curves": curves or (curve(),), **changes})
 
 
-def drawn(*panels: Panel, title: str = "A figure") -> Figure:
-    """Return a figure, drawn to the end, so that what is wrong with it shows."""
-    figure = draw(FigureData("name", title, panels or (panel(),)))
-    figure.draw_without_rendering()
-    return figure
+def both(*panels: Panel, **changes: Any) -> tuple[Figure, dict[str, Any]]:
+    """Return a figure drawn by both, to the end, so that what is wrong with it shows."""
+    figure = FigureData("name", "A figure", panels or (panel(),), **changes)
+    drawn, interactive = draw(figure), plotly_figure(figure)
+    drawn.draw_without_rendering()
+    go.Figure(interactive)  # plotly refuses what it does not know
+    assert json.loads(json.dumps(interactive, allow_nan=False)) == json.loads(json.dumps(interactive))
+    return drawn, interactive
 
 
 def axes_of(*curves: Curve, **changes: Any) -> Axes:
-    (axes,) = drawn(panel(*curves, **changes)).axes
+    (axes,) = both(panel(*curves, **changes))[0].axes
     return axes
 
 
-def legend_of(figure: Figure) -> Any:
-    (legend,) = figure.legends
-    return legend
-
-
 def names(figure: Figure) -> list[str]:
-    return [text.get_text() for text in legend_of(figure).get_texts()]
+    return [text.get_text() for text in figure.legends[0].get_texts()]
 
 
-def test_a_curve_is_drawn_as_it_is_in_the_colour_and_line_style_of_its_numbers() -> None:
-    first, second = axes_of(curve("a", colour=1, dash=2), curve("b", y=X, colour=len(PALETTE), dash=len(LINES))).lines
-    np.testing.assert_array_equal(first.get_xydata(), np.column_stack([X, 10.0 * X]))
-    np.testing.assert_array_equal(second.get_xydata(), np.column_stack([X, X]))
-    assert (first.get_color(), first.get_linestyle()) == (PALETTE[1], LINES[2])
-    assert (second.get_color(), second.get_linestyle()) == (PALETTE[0], LINES[0]), "numbers start again"
-    assert first.get_marker() in ("", "None")
+def traces(figure: FigureData) -> dict[str, Any]:
+    """Return the curves of the first panel on the page by their names."""
+    return {t["name"]: t for t in plotly_figure(figure)["data"] if t["xaxis"] == "x" and t.get("fill") is None}
 
 
-def test_no_two_colours_with_their_markers_and_no_two_line_styles_are_alike() -> None:
+# Curves
+
+
+@pytest.mark.parametrize("figure", [ONE, THREE, data.ODD])
+def test_every_curve_has_its_numbers_colour_and_line_style_in_both(figure: FigureData) -> None:
+    drawn, shown = draw(figure), traces(figure)
+    go.Figure(plotly_figure(figure))
+    lines = (line for line in drawn.axes[0].get_lines() if not str(line.get_label()).startswith("_"))
+    printed = {str(line.get_label()).strip(): line for line in lines}
+    names_of_dashes = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
+    assert len(printed) == len(shown) == len(figure.panels[0].curves)
+    for one, line, trace in zip(figure.panels[0].curves, printed.values(), shown.values(), strict=True):
+        np.testing.assert_array_equal(line.get_xydata(), np.column_stack([one.x, one.y]))
+        numbers = np.array([trace["x"], trace["y"]], dtype=float)
+        np.testing.assert_allclose(numbers, np.where(np.isfinite([one.x, one.y]), [one.x, one.y], np.nan), SEVEN_DIGITS)
+        assert trace["line"]["color"].lower() == trace["marker"]["color"].lower() == to_hex(line.get_color())
+        if one.points:
+            symbols = {"s": "square", "^": "triangle-up", "D": "diamond", "v": "triangle-down", "X": "x", "o": "circle"}
+            assert trace["marker"]["symbol"] == symbols[str(line.get_marker())]
+            assert (trace["mode"], line.get_linestyle()) == ("markers", "None")
+        elif "px" not in trace["line"]["dash"]:
+            assert trace["line"]["dash"] == names_of_dashes[str(line.get_linestyle())]
+
+
+def test_no_two_colours_markers_or_line_styles_are_alike_and_numbers_start_again() -> None:
     assert len(set(PALETTE)) == len(set(MARKERS)) == len(PALETTE) == len(MARKERS)
     assert len(set(LINES)) == len(LINES)
+    (line,) = axes_of(curve(colour=len(PALETTE), dash=len(LINES))).lines
+    assert (line.get_color(), line.get_linestyle()) == (PALETTE[0], LINES[0])
 
 
-def test_a_curve_of_one_point_is_a_dot() -> None:
-    (line,) = axes_of(curve(x=X[:1], y=X[:1])).lines
-    assert (line.get_marker(), line.get_markevery()) == (".", [0])
-
-
-def test_only_measurements_have_markers() -> None:
-    many = [curve(str(number), colour=number) for number in range(len(PALETTE))]
-    *lines, points = axes_of(*many, curve("tests", colour=6, points=True)).lines
-    assert {line.get_marker() for line in lines} <= {"", "None"}
-    assert (points.get_marker(), points.get_linestyle()) == (MARKERS[6], "None")
-
-
-def dashes(line: Any) -> Any:
-    """Return the dashes of a line in widths of it, None for a solid one."""
-    return line._unscaled_dash_pattern[1]
-
-
-@pytest.mark.parametrize("axis", [0, 1])
-def test_where_only_colour_would_tell_lines_apart_each_line_of_the_figure_has_a_style(axis: int) -> None:
-    panels = [panel(curve("a")), panel(curve("a"), curve("b", colour=1))]
-    figure = drawn(*panels[:: 1 - 2 * axis])
-    found = {str(line.get_label()): dashes(line) for axes in figure.axes for line in axes.lines}
-    assert found["a"] != found["b"]
-    alike = [curve(str(number), colour=number) for number in range(len(PALETTE))]
-    assert len({dashes(line) and tuple(dashes(line)) for line in axes_of(*alike).lines}) == len(PALETTE) == len(LINES)
-
-
-def test_where_dashes_tell_lines_apart_they_stay_as_they_are() -> None:
-    figure = FigureData("f", "", (panel(curve("a", dash=2), curve("b", colour=1, dash=1)), panel(curve("c", colour=3))))
-    assert line_styles(figure) == {(0, 2): 2, (1, 1): 1, (3, 0): 0}
-
-
-def test_a_sparser_line_lies_over_a_denser_one() -> None:
-    first, second, third = axes_of(curve("a"), curve("b", dash=2), curve("c", dash=1)).lines
-    assert first.get_zorder() < third.get_zorder() < second.get_zorder()
-
-
-def test_points_of_each_colour_have_a_marker_of_their_own() -> None:
-    lines = axes_of(*(curve(str(number), colour=number, points=True) for number in range(len(PALETTE)))).lines
-    assert [line.get_marker() for line in lines] == [*MARKERS]
-
-
-def test_measured_points_are_not_joined() -> None:
-    (points,) = axes_of(curve(points=True, colour=6)).lines
-    assert (points.get_linestyle(), points.get_marker(), points.get_color()) == ("None", "o", "#000000")
-
-
-def test_a_band_is_filled_between_its_ends() -> None:
-    (band,) = axes_of(curve(low=X, high=20.0 * X)).collections
-    corners = {tuple(corner) for corner in np.asarray(band.get_paths()[0].vertices)}
-    assert corners == {*zip(X, X, strict=True), *zip(X, 20.0 * X, strict=True)}
-
-
-def test_a_band_is_light_and_has_edges() -> None:
-    (band,) = axes_of(curve(low=X, high=20.0 * X)).collections
-    face, edge = (np.asarray(colours, dtype=float)[0, 3] for colours in (band.get_facecolor(), band.get_edgecolor()))
-    assert face == BAND < 0.1
-    assert edge > 3.0 * BAND
-
-
-def test_the_uncertainty_of_points_is_drawn_as_bars() -> None:
-    axes = axes_of(curve(points=True, low=9.0 * X, high=12.0 * X))
-    (bars,) = axes.collections
-    segments = np.array(bars.get_segments())  # type: ignore[attr-defined]
-    np.testing.assert_array_equal(segments[:, :, 0], np.column_stack([X, X]))
-    np.testing.assert_allclose(segments[:, :, 1], np.column_stack([9.0 * X, 12.0 * X]), rtol=1e-15)
-
-
-def test_the_legend_says_what_bands_are_only_where_there_are_bands() -> None:
-    ends: dict[str, Any] = {"low": X, "high": 20.0 * X}
-    with_band, points, plain = (drawn(panel(c)) for c in (curve(**ends), curve(points=True, **ends), curve()))
-    assert legend_of(with_band).get_title().get_text() == "bands: published range of parameters"
-    for without in (points, plain):
-        assert legend_of(without).get_title().get_text() in ("", "None")
-
-
-def test_axes_have_their_labels_scales_and_ends() -> None:
-    axes = axes_of(x=PlotAxis("a [N]", "log", (0.5, 8.0)), y=PlotAxis("b [-]", "linear", (-1.0, 7.0)), title="(a)")
-    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_title()) == ("a [N]", "b [-]", "(a)")
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
-    assert (axes.get_xlim(), axes.get_ylim()) == ((0.5, 8.0), (-1.0, 7.0))
-
-
-@pytest.mark.parametrize("ends", [None, (0.5, 8.0)])
-def test_an_inverted_axis_runs_the_other_way(ends: tuple[float, float] | None) -> None:
-    axes = axes_of(x=PlotAxis("y [mm]", ends=ends), y=PlotAxis("z [mm]", ends=ends, inverted=True))
-    assert axes.get_xlim()[0] < axes.get_xlim()[1]
-    assert axes.get_ylim()[0] > axes.get_ylim()[1]
-    assert ends is None or axes.get_ylim() == ends[::-1]
-
-
-def test_with_equal_axes_a_length_is_as_long_in_x_as_in_y() -> None:
-    axes = axes_of(curve(y=X), curve(y=-X), equal=True)
-    box, (left, right), (low, high) = axes.get_window_extent(), axes.get_xlim(), axes.get_ylim()
-    assert box.width / (right - left) == pytest.approx(box.height / (high - low), rel=1e-9)
-    assert axes_of().get_aspect() == "auto"
-
-
-def test_named_values_have_their_names_on_the_axis() -> None:
-    axes = axes_of(x=PlotAxis("patch", names=("left 1", "$right$ 1")))
-    assert [text.get_text() for text in axes.get_xticklabels()] == ["left 1", r"\$right\$ 1"]
-    assert list(axes.get_xticks()) == [0, 1]
+def test_where_only_colour_would_tell_lines_apart_each_line_of_the_figure_has_a_style() -> None:
+    a, b = curve("a"), curve("b", colour=1)
+    assert line_styles(FigureData("f", "", (panel(a), panel(a, b)))) == {(0, 0): 0, (1, 0): 1}
+    apart = FigureData("f", "", (panel(curve("a", dash=2), curve("b", colour=1, dash=1)), panel(curve("c", colour=3))))
+    assert line_styles(apart) == {(0, 2): 2, (1, 1): 1, (3, 0): 0}
 
 
 def test_a_point_of_a_line_without_neighbours_has_a_marker_and_gaps_stay_open() -> None:
-    x = np.arange(6.0)
-    gaps = curve(x=x, y=np.array([1.0, np.nan, 1.0, 1.0, np.nan, 1.0]))
+    gaps = curve(x=np.arange(6.0), y=np.array([1.0, np.nan, 1.0, 1.0, np.nan, 1.0]))
     (line,) = axes_of(gaps).lines
     assert (line.get_marker(), line.get_markevery()) == (".", [0, 5])
-    np.testing.assert_array_equal(line.get_ydata(), gaps.y)
+    (trace,) = traces(FigureData("f", "", (panel(gaps),))).values()
+    assert (trace["mode"], trace["selectedpoints"]) == ("lines+markers", [0, 5])
+    assert trace["unselected"] == {"marker": {"opacity": 0}}
 
 
-def test_without_ends_all_of_the_curves_is_seen() -> None:
-    axes = axes_of(y=PlotAxis("b", "log"))
-    assert axes.get_xlim()[0] <= 1.0 < 4.0 <= axes.get_xlim()[1]
-    assert 0.0 < axes.get_ylim()[0] <= 10.0 < 40.0 <= axes.get_ylim()[1]
+def test_a_band_is_light_with_edges_between_its_ends() -> None:
+    band = curve(low=X, high=20.0 * X)
+    drawn, shown = both(panel(band))
+    (filled,) = drawn.axes[0].collections
+    corners = {*zip(X, X, strict=True), *zip(X, 20.0 * X, strict=True)}
+    assert {tuple(corner) for corner in np.asarray(filled.get_paths()[0].vertices)} == corners
+    assert np.asarray(filled.get_facecolor(), dtype=float)[0, 3] == BAND
+    outline, line = shown["data"]
+    assert set(zip(outline["x"], outline["y"], strict=True)) == corners
+    assert outline["x"] == [*X, *X[::-1]], "once around, not back and forth"
+    assert outline["legendgroup"] == line["legendgroup"]
+    assert line["customdata"] == [[x, 20.0 * x] for x in X]
+    assert drawn.legends[0].get_title().get_text() == shown["layout"]["legend"]["title"]["text"]
+    assert drawn.legends[0].get_title().get_text() == "bands: published range of parameters"
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
-def test_panels_stand_in_rows_of_two_in_their_order_with_an_odd_one_over_the_first_row(count: int) -> None:
-    figure = drawn(*(panel(title=str(number)) for number in range(count)))
-    assert [axes.get_title() for axes in figure.axes] == [str(number) for number in range(count)]
-    boxes = [axes.get_position() for axes in figure.axes]
-    assert [(-box.y0, box.x0) for box in boxes] == sorted((-box.y0, box.x0) for box in boxes)
-    widths = [round(box.width, 1) for box in boxes]
-    assert widths == ([0.9] if count % 2 else []) + [0.4] * (count - count % 2)
+def test_a_band_begins_where_its_axes_can_show_it() -> None:
+    from_zero = curve(low=X - 1.0, high=X)
+    _, shown = both(panel(from_zero, y=PlotAxis("y", "log")))
+    assert set(shown["data"][0]["x"]) == {2.0, 4.0}
 
 
-def test_one_legend_below_names_each_curve_of_all_panels_once() -> None:
-    figure = drawn(panel(curve("a"), curve("b")), panel(curve("b"), curve("c", points=True, low=X, high=20.0 * X)))
-    assert names(figure) == ["a", "b", "c"]
-    box = legend_of(figure).get_window_extent()
-    for axes in figure.axes:
-        around = axes.get_tightbbox()
-        assert around is not None
-        assert box.y1 <= around.y0
+@pytest.mark.parametrize("hollow", [True, False])
+@pytest.mark.parametrize("flat", [True, False])
+def test_points_have_error_bars_along_the_axis_without_names(flat: bool, hollow: bool) -> None:
+    values, place = np.array([3.0]), np.array([0.0])
+    x, y = (values, place) if flat else (place, values)
+    point = curve("one", x=x, y=y, low=np.array([1.0]), high=np.array([7.0]), points=True, hollow=hollow)
+    drawn, shown = both(panel(point, y=PlotAxis("", names=("one",)) if flat else PlotAxis("y")))
+    (line, *_), (bars,) = drawn.axes[0].get_lines(), drawn.axes[0].collections
+    assert line.get_markerfacecolor() == ("none" if hollow else line.get_color())
+    ends = np.array(bars.get_segments())[0, :, 0 if flat else 1]  # type: ignore[attr-defined]
+    assert ends.tolist() == [1.0, 7.0]
+    (trace,) = shown["data"]
+    error = trace["error_x" if flat else "error_y"]
+    assert (error["array"], error["arrayminus"]) == ([4.0], [2.0])
+    assert trace["marker"]["symbol"].endswith("-open") == hollow
+    assert trace["showlegend"] == (not flat), "the axis names it"
+    head = "error bars: published range of parameters; hollow markers: predictions" if hollow else ""
+    assert shown["layout"]["legend"].get("title", {}).get("text", "") == head
 
 
-@pytest.mark.parametrize("count", [1, 9])
-@pytest.mark.parametrize("length", [5, 40, 120])
-def test_the_legend_is_not_wider_than_the_figure(count: int, length: int) -> None:
-    figure = drawn(panel(*(curve(f"{number:{length}}") for number in range(count))))
-    box = legend_of(figure).get_window_extent()
-    whole = figure.bbox
-    assert whole.x0 <= box.x0 < box.x1 <= whole.x1
-    assert whole.y0 <= box.y0
+OUT = np.array([False, False, True])
+MARKED = panel(
+    curve("a", colour=1, outside=OUT),
+    curve("b", y=X),
+    shades=(Shade("most of the samples", ((1.5, 2.0), (2.5, 4.0))), Shade("beyond", ((3.0, 4.0),), strip=True)),
+)
 
 
-@pytest.mark.parametrize("text", [r"a $\nonsense$ b", "5 $ and 6 $", "_under^score", "100 % {x}"])
-def test_texts_are_shown_as_they_are_written(text: str) -> None:
-    figure = drawn(panel(curve(text), x=PlotAxis(text), y=PlotAxis(text), title=text), title=text)
-    (axes,) = figure.axes
-    shown = [figure.get_suptitle(), axes.get_title(), axes.get_xlabel(), axes.get_ylabel(), *names(figure)]
-    assert [one.replace(r"\$", "$").strip() for one in shown] == [text] * 5
+def test_parts_outside_are_thin_and_pale_and_shades_lie_below_in_both() -> None:
+    inside, outside = in_parts(MARKED.curves[0])
+    np.testing.assert_array_equal(inside, [10.0, 20.0, np.nan])
+    np.testing.assert_array_equal(outside, [np.nan, 20.0, 40.0])
+    drawn, shown = both(MARKED)
+    (axes,) = drawn.axes
+    whole, part, _ = axes.get_lines()
+    assert (part.get_linewidth(), part.get_alpha(), part.get_color()) == (THIN, PALE, whole.get_color())
+    spans = [(patch.get_x(), patch.get_x() + patch.get_width(), patch.get_height()) for patch in axes.patches]  # type: ignore[attr-defined]
+    assert spans == [(1.5, 2.0, 1.0), (2.5, 4.0, 1.0), (3.0, 4.0, STRIP)]
+    assert [(s["x0"], s["x1"], s["y1"]) for s in shown["layout"]["shapes"]] == spans
+    assert {shape["layer"] for shape in shown["layout"]["shapes"]} == {"below"}
+    _, thin, *_ = shown["data"]
+    assert (thin["y"], thin["line"]["width"], thin["opacity"]) == ([None, 20.0, 40.0], THIN, PALE)
+    assert names(drawn) == ["a", "b", "most of the samples", "beyond", OUTSIDE]
+    assert [trace["name"] for trace in shown["data"] if trace["showlegend"]] == names(drawn)
 
 
-def texts_of(figure: Figure) -> list[str]:
-    """Return the texts below the title, without their line breaks."""
-    return [text.get_text().replace("\n", " ") for text in figure.texts if text is not figure._suptitle]  # type: ignore[attr-defined]
+def test_the_legend_explains_only_what_is_seen() -> None:
+    drawn, shown = both(panel(curve(outside=OUT), x=PlotAxis("x", ends=(1.0, 2.0))))
+    assert names(drawn) == [trace["name"] for trace in shown["data"] if trace["showlegend"]] == ["a"]
+
+
+# Maps
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_maps_share_a_scale_of_colours_and_draw_borders_of_regions(scale: Literal["linear", "log"]) -> None:
+    values = np.array([[1.0, 10.0, 100.0], [2.0, 20.0, np.nan]])
+    regions = {"beyond": values > 5.0, "nowhere": values > 1e3}
+    maps = [Map("wear [g]", X, np.array([10.0, 100.0]), factor * values, scale, regions) for factor in (1.0, 7.0)]
+    drawn, shown = both(*(panel(map=one, curves=(), y=PlotAxis("b [-]", "log")) for one in maps))
+    *axes, bar = drawn.axes
+    for one, of in zip(axes, maps, strict=True):
+        mesh = one.collections[0]
+        assert (mesh.norm.vmin, mesh.norm.vmax) == (1.0, 700.0)
+        np.testing.assert_array_equal(np.asarray(mesh.get_array()), of.values)
+    assert bar.get_ylabel() == "wear [g]"
+    assert names(drawn) == ["beyond"]
+    heats = [trace for trace in shown["data"] if trace["type"] == "heatmap"]
+    ends = [0.0, np.log10(700.0)] if scale == "log" else [1.0, 700.0]
+    assert all([heat["zmin"], heat["zmax"]] == pytest.approx(ends, rel=1e-15) for heat in heats)
+    assert heats[0]["customdata"] == [[1.0, 10.0, 100.0], [2.0, 20.0, None]]
+    assert [heat["showscale"] for heat in heats] == [True, False]
+    assert [trace["name"] for trace in shown["data"] if trace["showlegend"]] == ["beyond"]
+
+
+# Axes, panels and texts
+
+
+@pytest.mark.parametrize("ends", [None, (0.5, 8.0)])
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_axes_have_their_labels_scales_ends_and_directions(scale: Any, ends: Any) -> None:
+    x, y = PlotAxis("a [N]", scale, ends), PlotAxis("z [mm]", scale, ends, inverted=True)
+    drawn, shown = both(panel(x=x, y=y))
+    (axes,) = drawn.axes
+    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_xscale(), axes.get_yscale()) == (
+        x.label,
+        y.label,
+        scale,
+        scale,
+    )
+    assert axes.get_ylim()[0] > axes.get_ylim()[1]
+    across, up = shown["layout"]["xaxis"], shown["layout"]["yaxis"]
+    assert (across["title"]["text"], across["type"]) == (x.label, scale)
+    if ends is None:
+        assert up["autorange"] == "reversed"
+        assert axes.get_xlim()[0] <= 1.0 < 4.0 <= axes.get_xlim()[1]
+    else:
+        assert axes.get_xlim() == axes.get_ylim()[::-1] == ends
+        exponents = [float(end) for end in (np.log10(ends) if scale == "log" else ends)]
+        assert across["range"] == up["range"][::-1] == exponents
+
+
+def test_axes_can_be_equal_and_have_names() -> None:
+    drawn, shown = both(panel(curve(y=-X), equal=True), panel(x=PlotAxis("patch", names=("$left$ & 1", "right 1"))))
+    first, second = drawn.axes
+    box, (left, right), (low, high) = first.get_window_extent(), first.get_xlim(), first.get_ylim()
+    assert box.width / (right - left) == pytest.approx(box.height / (high - low), rel=1e-9)
+    assert [text.get_text() for text in second.get_xticklabels()] == [r"\$left\$ & 1", "right 1"]
+    assert shown["layout"]["yaxis"]["scaleanchor"] == "x"
+    assert shown["layout"]["xaxis2"]["ticktext"] == ["$left$ &amp; 1", "right 1"]
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "shown"),
+    ("low", "high", "ticks"),
     [
         (0.02, 300.0, ["0.1", "1", "10", "100"]),
         (0.5, 30.0, ["0.5", "1", "2", "5", "10", "20"]),
@@ -235,87 +251,69 @@ def texts_of(figure: Figure) -> list[str]:
                      "$10^{5}$", "$10^{6}$"]),
     ],
 )  # fmt: skip
-def test_a_logarithmic_axis_has_plain_numbers(low: float, high: float, shown: list[str]) -> None:
-    axis = PlotAxis("load [N]", "log", (low, high))
-    axes = axes_of(curve(x=np.array([low, high]), y=np.array([low, high])), x=axis, y=axis)
-    for drawn_axis in (axes.xaxis, axes.yaxis):
-        found = [text.get_text() for text in drawn_axis.get_ticklabels() if text.get_text()]
-        assert found == shown
-        assert not any(text.get_text() for text in drawn_axis.get_ticklabels(minor=True))
+def test_a_logarithmic_axis_has_plain_numbers(low: float, high: float, ticks: list[str]) -> None:
+    axes = axes_of(x=PlotAxis("load [N]", "log", (low, high)))
+    assert [text.get_text() for text in axes.xaxis.get_ticklabels() if text.get_text()] == ticks
+    assert not any(text.get_text() for text in axes.xaxis.get_ticklabels(minor=True))
+
+
+@pytest.mark.parametrize("count", range(1, 7))
+def test_panels_stand_in_rows_of_two_in_both_with_one_legend_below(count: int) -> None:
+    drawn, shown = both(*(panel(curve(str(n)), curve("in all", y=X), title=str(n)) for n in range(count)))
+    layout, boxes = shown["layout"], [axes.get_position() for axes in drawn.axes]
+    assert [axes.get_title() for axes in drawn.axes] == [note["text"] for note in layout["annotations"]]
+    assert [(-box.y0, box.x0) for box in boxes] == sorted((-box.y0, box.x0) for box in boxes)
+    widths = [round(box.width, 1) for box in boxes]
+    assert widths == ([0.9] if count % 2 else []) + [0.4] * (count - count % 2)
+    places = [(layout[f"xaxis{n}"]["domain"], layout[f"yaxis{n}"]["domain"]) for n in ("", *range(2, count + 1))]
+    for (across, up), here in zip(places, boxes, strict=True):
+        for (other_across, other_up), there in zip(places, boxes, strict=True):
+            assert (across[1] <= other_across[0]) == (here.x1 <= there.x0)
+            assert (up[1] <= other_up[0]) == (here.y1 <= there.y0)
+    assert sorted(names(drawn)) == sorted({*map(str, range(count)), "in all"})
+    assert [trace["name"] for trace in shown["data"] if trace["showlegend"]] == names(drawn)
+    below = drawn.legends[0].get_window_extent().y1
+    assert all(below <= box.y0 for axes in drawn.axes if (box := axes.get_tightbbox()) is not None)
+
+
+@pytest.mark.parametrize("count", [1, 9])
+@pytest.mark.parametrize("length", [5, 40, 120])
+def test_the_legend_is_not_wider_than_the_figure(count: int, length: int) -> None:
+    drawn, _ = both(panel(*(curve(f"{number:{length}}") for number in range(count))))
+    box, whole = drawn.legends[0].get_window_extent(), drawn.bbox
+    assert whole.x0 <= box.x0 < box.x1 <= whole.x1
+    assert whole.y0 <= box.y0
 
 
 def test_the_conditions_stand_below_the_title_above_the_panels() -> None:
-    figure = draw(FigureData("f", "A title", (panel(),), conditions="A study: load 4 kN, " + "more, " * 30))
-    figure.draw_without_rendering()
-    (shown,) = (text for text in figure.texts if text is not figure._suptitle)  # type: ignore[attr-defined]
+    drawn, _ = both(conditions="A study: load 4 kN, " + "more, " * 30)
+    title, shown = drawn.texts if drawn.texts[0] is drawn._suptitle else drawn.texts[::-1]  # type: ignore[attr-defined]
     assert shown.get_text().count("\n") == 1, "they are wrapped"
-    box, title = shown.get_window_extent(), figure._suptitle.get_window_extent()  # type: ignore[attr-defined]
-    around = figure.axes[0].get_tightbbox()
+    box, around = shown.get_window_extent(), drawn.axes[0].get_tightbbox()
     assert around is not None
-    assert around.y1 <= box.y0 < box.y1 <= title.y0 < title.y1 <= figure.bbox.y1
-    assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+    assert around.y1 <= box.y0 < box.y1 <= title.get_window_extent().y0
+    assert drawn.bbox.x0 <= box.x0 < box.x1 <= drawn.bbox.x1
 
 
-BARS = Panel(
-    PlotAxis("wear [g]"),
-    PlotAxis("", ends=(-0.5, 1.5), inverted=True, names=("a", "b")),
-    (
-        Curve("a", np.array([3.0]), np.array([0.0]), low=np.array([1.0]), high=np.array([7.0]), bars=0.7),
-        Curve("b", np.array([5.0]), np.array([1.0]), colour=1, outside=np.array([True]), bars=0.7),
-    ),
-)
+@pytest.mark.parametrize("text", [r"a $\nonsense$ b", "5 $ and 6 $", "_under^score", "100 % {x}"])
+def test_texts_are_shown_as_they_are_written(text: str) -> None:
+    drawn, shown = both(panel(curve(text), x=PlotAxis(text), y=PlotAxis(text), title=text))
+    (axes,) = drawn.axes
+    every = [axes.get_title(), axes.get_xlabel(), axes.get_ylabel(), *names(drawn)]
+    assert [one.replace(r"\$", "$").strip() for one in every] == [text] * 4
+    assert html.unescape(shown["data"][0]["name"]) == text
 
 
-def test_bars_begin_at_zero_with_their_names_on_the_axis_and_their_numbers_at_their_ends() -> None:
-    figure = drawn(BARS)
-    (axes,) = figure.axes
-    first, second = axes.patches
-    assert [(bar.get_x(), bar.get_width()) for bar in (first, second)] == [(0.0, 3.0), (0.0, 5.0)]  # type: ignore[attr-defined]
-    assert first.get_window_extent().y0 > second.get_window_extent().y1, "from top to bottom"
-    assert [text.get_text() for text in axes.get_yticklabels()] == ["a", "b"]
-    assert [text.get_text() for text in axes.texts] == ["3 (1 to 7)", "5"]
-    assert names(figure) == ["published range of parameters", "outside the range of the law"]
-    assert first.get_alpha() != second.get_alpha()
-    assert axes.texts[0].get_window_extent().x1 <= axes.get_window_extent().x1
+@given(st.text())
+@example("<b>%{y}</b> &amp; &lt $x$")
+def test_a_text_is_handed_over_without_anything_to_interpret(text: str) -> None:
+    handed = literal(text)
+    assert html.unescape(handed) == text
+    assert not {"<", ">", "%"} & set(handed)
 
 
-def test_bars_of_an_axis_of_names_below_stand_upright() -> None:
-    axis = PlotAxis("patch", names=("left", "right"))
-    (axes,) = drawn(panel(curve("a", x=np.arange(2.0), y=X[:2], bars=0.7), x=axis)).axes
-    assert [(bar.get_y(), bar.get_height()) for bar in axes.patches] == [(0.0, 1.0), (0.0, 2.0)]  # type: ignore[attr-defined]
-    assert names(axes.figure) == ["a"]  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("scale", ["linear", "log"])
-def test_maps_share_a_scale_of_colours_and_draw_borders_of_regions(scale: Literal["linear", "log"]) -> None:
-    x, y = np.array([1.0, 2.0, 3.0]), np.array([10.0, 100.0])
-    values = np.array([[1.0, 10.0, 100.0], [2.0, 20.0, np.nan]])
-    borders = {"beyond": values > 5.0, "nowhere": values > 1e3}
-    first, second = (Map("wear [g]", x, y, factor * values, scale, borders) for factor in (1.0, 7.0))
-    axis = PlotAxis("b [-]", "log")
-    figure = drawn(*(Panel(PlotAxis("a [N]"), axis, (), map=one) for one in (first, second)))
-    *panels, bar = figure.axes
-    meshes = [axes.collections[0] for axes in panels]
-    assert [mesh.norm.vmin for mesh in meshes] == [1.0, 1.0]
-    assert [mesh.norm.vmax for mesh in meshes] == [700.0, 700.0]
-    np.testing.assert_array_equal(np.ma.filled(meshes[1].get_array(), np.nan), 7.0 * values)  # type: ignore[arg-type]
-    assert bar.get_ylabel() == "wear [g]"
-    assert bar.get_yscale() == scale
-    assert [axes.get_yscale() for axes in panels] == ["log", "log"]
-    assert names(figure) == ["beyond"]
-
-
-@pytest.mark.parametrize("creepage", [cases.SWEEP["creepage"], "1 %", "0 %", ["0 %", "-1 %"]])
-def test_every_figure_of_a_study_can_be_drawn_without_a_warning(creepage: Any) -> None:
-    """Warnings are errors in the tests."""
-    study = run(case(sweeps={"creepage": {**cases.POINT, "creepage": creepage}}))
-    for figure in study.figures:
-        made = draw(figure)
-        made.draw_without_rendering()
-        assert made.get_suptitle() == figure.title
-        assert texts_of(made) == [figure.conditions]
-        for axes, panel in zip(made.axes, figure.panels, strict=True):
-            bars = [patch for patch in axes.patches if patch.get_zorder() > 0]
-            assert len(bars) == sum(1 for curve in panel.curves if curve.bars)
-            lines = [line for line in axes.lines if line.get_label() != "_nolegend_" or not bars]
-            assert len(lines) == sum(1 for curve in panel.curves if not curve.bars)
+def test_hovering_shows_name_values_units_and_the_band() -> None:
+    hover = {name: html.unescape(trace["hovertemplate"]) for name, trace in traces(ONE).items()}
+    head = "<b>{}</b><br>creepage [%]: %{{x:.4~g}}<br>wear rate [µg/m/mm²]: %{{y:.4~g}}{}<extra></extra>"
+    assert hover["rising"] == head.format("rising", "<br>from %{customdata[0]:.4~g} to %{customdata[1]:.4~g}")
+    assert hover["falling"] == head.format("falling", "")

@@ -115,7 +115,7 @@ def test_one_factor_is_fitted_as_a_weighted_mean(stated: bool, within: float) ->
     more: Any = {"wear_rate_uncertainty": Q(uncertainty, "ug/m/mm^2")} if stated else {}
     tests, measured, predicted = slow_tests(**more)
     # The scatter is three times the stated uncertainty, χ²/ν = 9.1.
-    with pytest.warns(wl.FitWarning, match="3.02 times the stated uncertainty") if stated else nullcontext():
+    with pytest.warns(wl.FitWarning, match="lack of fit: .* the stated uncertainty") if stated else nullcontext():
         fit = wl.fit(KTH, tests, free=["coefficient.low_speed"], scatter="relative" if stated else "absolute")
     factor = np.sum(predicted * measured / uncertainty**2) / np.sum(predicted**2 / uncertainty**2)
     assert fit.parameters["coefficient.low_speed"].magnitude == pytest.approx(5.5e-4 * factor, rel=within)
@@ -162,13 +162,6 @@ def test_what_is_not_free_stays() -> None:
     assert law.q_s == fit.parameters["q_s"] != predict.wear_law.q_s
 
 
-def test_progress_is_told() -> None:
-    told: list[int] = []
-    predict = usfd("global")
-    wl.fit(predict, made_up(predict, 0.1), free=["m_m"], bootstrap=300, on_progress=told.append)
-    assert sum(told) == 300
-
-
 def test_a_law_of_your_own_may_have_negative_parameters() -> None:
     predict = GLOBAL | sloping
     creepage = np.linspace(2.0, 15.0, 8)
@@ -188,8 +181,7 @@ def test_a_law_of_your_own_may_have_negative_parameters() -> None:
 def test_the_law_that_made_the_tests_has_the_better_information_criterion() -> None:
     tests = made_up(usfd("global"), 0.1)
     true = wl.fit(usfd("global"), tests, free=ALL, bootstrap=0)
-    with pytest.warns(wl.FitWarning, match="typically wrong by a factor of"):
-        other = wl.fit(KTH, tests, free=["coefficient.low_speed"], bootstrap=0)
+    other = wl.fit(KTH, tests, free=["coefficient.low_speed"], bootstrap=0)
     assert true.aic < other.aic - 10.0
 
 

@@ -39,17 +39,6 @@ def test_friction_in_full_slip_is_the_mean_of_the_traction(value: float, interva
         relative.to_toml("nowhere.toml")
 
 
-def test_where_a_fit_of_friction_starts_and_how_its_bounds_are_written_does_not_matter() -> None:
-    settings: list[dict[str, Any]] = [
-        {"friction_coefficient": 0.2},
-        {"bounds": {"friction_coefficient": (0.1, 1)}},
-        {"bounds": {"friction_coefficient": (Q(0.1, ""), "100 %")}},
-    ]
-    for given in settings:
-        fit = wl.fit(EXACT, FULL_SLIP, free=["friction_coefficient"], scatter="absolute", bootstrap=0, **given)
-        assert fit.parameters["friction_coefficient"].magnitude == pytest.approx(TRACTION.mean(), rel=1e-7)
-
-
 def test_friction_alone_can_be_fitted_to_wear_and_traction() -> None:
     predict = usfd("exact")
     conditions: Any = {"creepage": Q(np.geomspace(0.1, 1.0, 8), "%"), "max_pressure": PRESSURE}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -26,7 +25,6 @@ from tests.core.fits import (
 )
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.fitting.result import _between, _one_series
 
 
 @pytest.fixture(scope="module")
@@ -103,33 +101,6 @@ def test_a_fit_is_determined_by_its_seed(exact_fit: wl.Fit) -> None:
         assert other.parameters[name].magnitude == pytest.approx(exact_fit.parameters[name].magnitude, rel=1e-6)
 
 
-def test_a_fit_prints_its_parameters_with_units_and_intervals(exact_fit: wl.Fit) -> None:
-    lines = repr(exact_fit).splitlines()
-    assert lines[0] == "Fit to 20 wear rates, 16 degrees of freedom, relative scatter"
-    low, high = exact_fit.intervals["tr_sc"]
-    value = exact_fit.parameters["tr_sc"].magnitude
-    assert lines[4].split() == [
-        "tr_sc",
-        f"{value:.4g}",
-        f"({low.magnitude:.3g}",
-        "to",
-        f"{high.magnitude:.3g})",
-        "N/mm²",
-    ]
-    assert lines[-1].split(maxsplit=1) == ["intervals", "95%, studentised bootstrap"]
-    table = exact_fit.table().set_index("parameter")
-    assert table.loc["tr_sc", "value"] == value
-    assert table.loc["tr_sc", "unit"] == "N/mm**2"
-    assert (table["low"] < table["value"]).all()
-    assert (table["value"] < table["high"]).all()
-
-
-def test_a_fit_survives_pickling(exact_fit: wl.Fit) -> None:
-    copy = pickle.loads(pickle.dumps(exact_fit))
-    assert repr(copy) == repr(exact_fit)
-    assert copy.law == exact_fit.law
-
-
 @pytest.mark.validates(
     "reproducibility",
     "A fitted law written to a file and read back",
@@ -161,32 +132,22 @@ def test_a_file_that_cannot_be_written_leaves_what_was_there(exact_fit: wl.Fit, 
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "names"),
     [
-        ("[wear_law", "not valid TOML"),
-        ("[case]", r"needs a table \[wear_law\]"),
+        ("[wear_law", "law.toml"),
+        ("[case]", "wear_law"),
         ("[wear_law]\nq_s = '55 ug/m/mm^2'", "name of the law"),
-        ("[wear_law]\nmodel = 'usdf'", "did you mean 'usfd'"),
-        ("[wear_law]\nmodel = 'usfd'\nq_s = '55 N'", "q_s: got 55.00 N"),
+        ("[wear_law]\nmodel = 'usdf'", "'usfd'"),
+        ("[wear_law]\nmodel = 'usfd'\nq_s = '55 N'", "q_s: "),
+        (None, "law.toml"),
     ],
 )
-def test_a_file_that_describes_no_law_is_refused(text: str, says: str, tmp_path: Path) -> None:
+def test_a_file_that_describes_no_law_is_refused(text: str | None, names: str, tmp_path: Path) -> None:
     path = tmp_path / "law.toml"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(wl.InputError, match=says):
+    if text is not None:
+        path.write_text(text, encoding="utf-8")
+    with pytest.raises(wl.InputError, match=names):
         wl.read_wear_law(path)
-
-
-@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
-def test_a_law_reads_the_same_as_editors_and_shells_save_it(encoding: str, tmp_path: Path) -> None:
-    path = tmp_path / "law.toml"
-    path.write_text("[wear_law]\nmodel = 'usfd'\nq_s = '56 µg/m/mm²'\n", encoding=encoding, newline="\r\n")
-    assert wl.read_wear_law(path) == wl.wear_law("usfd", q_s="56 ug/m/mm^2")
-
-
-def test_a_missing_file_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(wl.InputError, match="No such file"):
-        wl.read_wear_law(tmp_path / "law.toml")
 
 
 def test_the_figure_holds_the_measurements_and_a_curve_through_the_fit_with_a_band(exact_fit: wl.Fit) -> None:
@@ -215,33 +176,6 @@ def test_the_curve_of_a_contact_that_uses_measured_traction_passes_through_its_p
     assert not curve.points
     predicted = fit.residuals["predicted"].to_numpy()
     assert np.interp(points.x, curve.x, curve.y) == pytest.approx(predicted, rel=1e-9)
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("kept", ["mean", "disc_1"])
-def test_the_curve_has_the_rolling_speed_of_each_creepage_between_the_tests(kept: Any, sign: float) -> None:
-    predict = wl.TwinDisc.suros(speed_of=kept) | wl.contact_model("global") | wl.wear_law("kth").explicit()
-    conditions: Any = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}
-    creepage = Q(sign * np.array([4.0, 10.0, 16.0, 24.0]), "%")
-    tests = wl.WearTests.from_arrays(
-        creepage=creepage, wear_rate=predict(creepage=creepage, **conditions).wear_rate, **conditions
-    )
-    fit = wl.fit(predict, tests, free=["coefficient.low_speed"], bootstrap=0)
-    curve, _ = fit.figure_data().panels[0].curves
-    assert not curve.points
-    # All slips, so that Tγ/A is μ ξ π/4 p0. KTH jumps between the last two tests.
-    between = Q(sign * curve.x / (0.46 * 0.25 * np.pi * 1500.0), "")
-    expected = predict(creepage=between, **conditions).wear_rate.magnitude
-    assert curve.y == pytest.approx(expected, rel=1e-9)
-    posed = predict.rig.problem(creepage=between, **conditions)
-    assert _between(fit.observations[0]).rolling_speed == pytest.approx(posed.rolling_speed, rel=1e-9)
-
-
-def test_tests_at_speeds_of_their_own_are_points() -> None:
-    rig = wl.TwinDisc.suros()
-    problem = rig.problem(max_pressure="1500 MPa", creepage=Q([5.0, 10.0, 20.0], "%"), friction_coefficient=0.46)
-    assert _one_series(problem)
-    assert not _one_series(problem.replaced(rolling_speed=np.array([1.0, 1.1, 1.0])))
 
 
 def test_a_law_fitted_down_to_no_creepage_is_stated_from_zero() -> None:
@@ -273,14 +207,14 @@ def test_tests_at_several_loads_are_drawn_against_the_fit() -> None:
     assert [(curve.label, float(curve.y[0] / curve.x[0])) for curve in guides] == [
         ("predicted = measured", 1.0), ("factor of two", 0.5), ("factor of two", 2.0)
     ]  # fmt: skip
-    assert all(curve.is_line for curve in guides)
+    assert all(not curve.points for curve in guides)
     assert (shown.points, shown.hollow) == (True, True)
     np.testing.assert_array_equal(shown.x, fit.residuals["predicted"])
     np.testing.assert_array_equal(shown.y, fit.residuals["measured"])
     assert [(axis.label, axis.scale) for axis in (panel.x, panel.y)] == [
         ("predicted wear rate [µg/m/mm²]", "log"), ("measured wear rate [µg/m/mm²]", "log")
     ]  # fmt: skip
-    assert "differ in load" in figure.caption
+    assert "differ in several conditions" in figure.caption
     assert isinstance(fit.plot(), Figure)
 
 

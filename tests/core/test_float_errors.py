@@ -88,6 +88,8 @@ def check_same(compute: Callable[[], Mapping[str, Array]]) -> None:
     ],
 )
 def test_errors_of_floats_end_no_prediction(geometry: str, model: str, law: str, conditions: str) -> None:
+    if conditions == "tiny" and model in ("half_space", "strip_theory"):
+        pytest.skip("it is not made for creepages below 1e-100")
     rig, known = RIGS[geometry]
     pipeline = rig | wl.contact_model(model)
     wear_law = wl.wear_law(law, **OPTIONS.get(law, {}))

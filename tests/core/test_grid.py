@@ -10,7 +10,7 @@ import pytest
 import wearlaw as wl
 from wearlaw import Q
 from wearlaw.arrays.array import Array
-from wearlaw.study.grid import MOST_POINTS, Axis, Grid, with_units
+from wearlaw.study.grid import MOST_POINTS, Axis, Grid
 from wearlaw.units.variables import UNITS
 
 RIG = wl.TwinDisc.suros()
@@ -18,7 +18,10 @@ RIG = wl.TwinDisc.suros()
 
 def grid(**changes: Any) -> Grid:
     conditions = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46, **changes}
-    return Grid(**{name: value for name, value in conditions.items() if value is not None}).checked(RIG)
+    read = Grid(**{name: value for name, value in conditions.items() if value is not None})
+    if wrong := read.faults(RIG):
+        raise wl.ConfigurationError("Grid", wrong)
+    return read.ordered(RIG)
 
 
 def along(read: Grid, name: str) -> Array:
@@ -85,21 +88,21 @@ def test_an_axis_is_linear_unless_it_says_log() -> None:
 
 
 @pytest.mark.parametrize(
-    ("load", "text", "other_unit", "si"),
+    ("load", "text", "other_unit", "si", "si_unit"),
     [
-        ("normal_force", "7.4 kN", "7400 N", 7400.0),
-        ("normal_force_per_width", "741 kN/m", "741 N/mm", 741e3),
-        ("max_pressure", "1.5 GPa", "1500 N/mm^2", 1.5e9),
+        ("normal_force", "7.4 kN", "7400 N", 7400.0, "N"),
+        ("normal_force_per_width", "741 kN/m", "741 N/mm", 741e3, "N/m"),
+        ("max_pressure", "1.5 GPa", "1500 N/mm^2", 1.5e9, "Pa"),
     ],
 )
-def test_every_load_is_read_with_its_unit(load: str, text: str, other_unit: str, si: float) -> None:
+def test_every_load_is_read_with_its_unit(load: str, text: str, other_unit: str, si: float, si_unit: str) -> None:
     for given in (text, other_unit):
         conditions: dict[str, Any] = {load: given, "creepage": "1 %", "friction_coefficient": 0.46}
-        read = Grid(**conditions).checked(RIG)
+        read = Grid(**conditions).ordered(RIG)
         assert read.units()[load] == UNITS[load]
         shown = Q(read.level(load, read.units()), UNITS[load]).to_base_units().magnitude
         np.testing.assert_allclose(shown, si, rtol=4e-15)  # three conversions of units
-        direct: Any = {**with_units({load: np.array(si)}), "creepage": Q(1, "%"), "friction_coefficient": 0.46}
+        direct: Any = {load: Q(np.array(si), si_unit), "creepage": Q(1, "%"), "friction_coefficient": 0.46}
         for field in ("normal_force_per_width", "max_pressure", "half_width", "creepage", "friction_coefficient"):
             here, there = getattr(read.problem(RIG), field), getattr(RIG.problem(**direct), field)
             np.testing.assert_allclose(here, there, rtol=1e-15)  # one conversion of units
@@ -111,7 +114,7 @@ def test_several_axes_make_a_grid_in_the_order_of_the_conditions_whatever_the_or
         "creepage": ["1 %", "2 %"],
         "normal_force": {"from": "1 kN", "to": "3 kN", "points": 3},
     }
-    read = Grid(**conditions).checked(RIG)
+    read = Grid(**conditions).ordered(RIG)
     assert list(read.axes()) == ["normal_force", "creepage", "friction_coefficient"]
     points = read.points(read.units())
     assert points.shape == (3, 2, 4)

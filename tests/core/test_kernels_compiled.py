@@ -1,4 +1,4 @@
-"""Kernels that numba compiles: a third party's, kept on disk or not, and that predictions are the same without."""
+"""Loops that numba compiles: a third party's, kept on disk or not."""
 
 from __future__ import annotations
 
@@ -22,8 +22,6 @@ pytestmark = pytest.mark.usefixtures("by_size_again")
 
 needs_numba = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")
 
-# --- A kernel of a third party ---------------------------------------------------------------------------------
-
 LAW = """
     import math
     from typing import ClassVar
@@ -42,13 +40,10 @@ LAW = """
         return _root(x - threshold)
 
 
-    def _arrays(density, threshold):
-        return SLOPE * np.sqrt(np.maximum(density - threshold, 0.0))
-
-
-    @wl.kernel(_arrays)
-    def bent(density, threshold):
-        return SLOPE * _bent(density, threshold)
+    @wl.compiled_loop("void(float64[::1], float64, float64[::1])")
+    def bent(density, threshold, rate):
+        for i in range(density.size):
+            rate[i] = SLOPE * _bent(density[i], threshold)
 
 
     class Bent(wl.WearLaw):
@@ -59,7 +54,12 @@ LAW = """
             return {"wear_index_density": (1e6,)}
 
         def rate(self, contact, p):
-            return bent(contact.wear_index_density, 1e6)
+            density = contact.wear_index_density
+            if not wl.accelerated(density.size):
+                return SLOPE * np.sqrt(np.maximum(density - 1e6, 0.0))
+            rate = np.empty(density.size)
+            bent(density.ravel(), 1e6, rate)
+            return rate.reshape(density.shape)
     """
 
 RUN = """
@@ -80,7 +80,7 @@ RUN = """
 
 @pytest.fixture
 def theirs(tmp_path: Path) -> Path:
-    """Return a folder with a law that brings a kernel, whose function calls another of its module, and that one too."""
+    """Return a folder with a law that brings a loop, which calls a function of its module, and that one too."""
     (tmp_path / "their_law.py").write_text(textwrap.dedent(LAW), encoding="utf-8")
     (tmp_path / "run.py").write_text(textwrap.dedent(RUN), encoding="utf-8")
     return tmp_path
@@ -106,7 +106,7 @@ def assert_agree(found: tuple[Array, Array]) -> None:
 
 
 @needs_numba
-def test_a_kernel_of_a_third_party_is_compiled_with_what_it_calls_and_kept_on_disk(theirs: Path) -> None:
+def test_a_loop_of_a_third_party_is_compiled_with_what_it_calls_and_kept_on_disk(theirs: Path) -> None:
     cache = theirs / "kept"
     assert_agree(run(theirs, NUMBA_CACHE_DIR=str(cache)))
     kept = {path: path.stat().st_mtime_ns for path in cache.rglob("*") if path.is_file()}
@@ -117,7 +117,7 @@ def test_a_kernel_of_a_third_party_is_compiled_with_what_it_calls_and_kept_on_di
 
 
 @needs_numba
-def test_kernels_work_where_nothing_can_be_kept(theirs: Path) -> None:
+def test_loops_work_where_nothing_can_be_kept(theirs: Path) -> None:
     (theirs / "a_file").touch()
     (theirs / "__pycache__").touch()  # where numba keeps code next to the module
     nowhere = str(theirs / "a_file" / "folder")
@@ -126,71 +126,10 @@ def test_kernels_work_where_nothing_can_be_kept(theirs: Path) -> None:
 
 
 @needs_numba
-def test_kernels_work_on_a_full_disk(theirs: Path) -> None:
+def test_loops_work_on_a_full_disk(theirs: Path) -> None:
     pytest.importorskip("resource", reason="a system without limits for files")
     limit = "import resource, runpy; resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)); runpy.run_path('run.py')"
     assert_agree(run(theirs, "-B", "-c", limit, NUMBA_CACHE_DIR=str(theirs / "kept")))
-
-
-# --- Pipelines -------------------------------------------------------------------------------------------------
-
-MODELS = {
-    "exact": wl.contact_model("exact"),
-    "fastsim, parabolic": wl.contact_model("fastsim"),
-    "fastsim, elliptic": wl.contact_model("fastsim", bound="elliptic"),
-}
-
-
-def conditions(points: int) -> dict[str, Any]:
-    random = np.random.default_rng(61)
-    creepage = 10.0 ** random.uniform(-6.0, 0.0, points) * random.choice([-1.0, 1.0], points)
-    creepage[::10] = 0.0
-    return {
-        "max_pressure": Q(random.uniform(0.5, 3.0, points), "GPa"),
-        "creepage": Q(creepage, ""),
-        "friction_coefficient": random.uniform(0.1, 0.8, points),
-    }
-
-
-@pytest.mark.validates(
-    "reproducibility",
-    "Compiled by numba, in NumPy or one point at a time: the same prediction",
-    source="one way of computing it against the others",
-    held_to="{ramps} ε of the terms (USFD), {nodes} ε (KTH)",
-    ramps=32.0,
-    nodes=64.0,
-)
-@needs_numba
-@pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
-@pytest.mark.parametrize("law", ["usfd", "kth"])
-@pytest.mark.parametrize("model", MODELS)
-def test_predictions_are_the_same_compiled_or_not_and_alone(model: str, law: str, ramps: float, nodes: float) -> None:
-    predict = wl.TwinDisc.suros() | MODELS[model] | wl.wear_law(law)
-    points = 60
-    given = conditions(points)
-    rates = {}
-    for on in (False, True):
-        wl.accelerate(on)
-        found = predict(**given)
-        rates[on] = found.wear_rate.m_as("kg/m/m^2")
-    wl.accelerate(None)
-    alone = [
-        predict(**{name: values[point] for name, values in given.items()}).wear_rate.m_as("kg/m/m^2")
-        for point in range(points)
-    ]
-    # USFD is a sum of ramps, each rounded as the whole dissipation is; 24 roundings, see the kernels' own tests.
-    dissipation = found.wear_index_density.m_as("N/m^2")
-    allowed = (
-        ramps
-        * EPS
-        * sum(abs(slope) for _, slope in predict.wear_law.ramps(predict.wear_law.numbers) or ())
-        * dissipation
-    )
-    if law == "kth":  # the sum of some hundred nodes, in which a vector sine may differ by a rounding from a single one
-        allowed = nodes * EPS * rates[False]
-    assert np.count_nonzero(rates[False]) == 0.9 * points
-    assert (np.abs(rates[True] - rates[False]) <= allowed).all()
-    assert (np.abs(alone - rates[False]) <= allowed).all()
 
 
 @needs_numba

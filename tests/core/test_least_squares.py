@@ -151,27 +151,6 @@ def test_a_search_from_many_points_finds_what_one_start_does_not() -> None:
     assert best.converged[0]
 
 
-def test_a_search_depends_on_its_seed_alone_and_tries_all_starts_in_one_batch() -> None:
-    batches: list[Any] = []
-
-    def recorded(theta: Any) -> Any:
-        batches.append(theta[:, 0].tolist())
-        return wave(theta)
-
-    bounds, near = Bounds(np.array([0.1]), np.array([12.0])), Bounds(np.array([2.0]), np.array([20.0]))
-    target = wave(np.array([[7.0]]))[0]
-    for seed in (1, 1, 2):
-        search(recorded, target, np.array([1.0]), bounds, near, 64, seed)
-    first, again, other = (starts for starts in batches if len(starts) > 1)
-    assert first == again != other
-    assert len(first) == 64
-    cost = np.sum((wave(np.array(first)[:, None]) - target) ** 2, axis=-1)
-    alone = {starts[0] for starts in batches if len(starts) == 1}
-    refined = [start in alone for start in np.array(first)[np.argsort(cost)]]
-    assert refined == [True] * 4 + [False] * 60
-    assert (min(first), max(first)) == pytest.approx((2.0, 12.0), abs=18.0 / 64.0)
-
-
 def test_a_fit_that_runs_out_of_iterations_has_not_converged(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("wearlaw.fitting.least_squares.ITERATIONS", 2)
     targets = noisy(decay, [1.5, 0.7], 0.1, 5)

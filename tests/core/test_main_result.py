@@ -51,16 +51,15 @@ def test_the_table_has_least_and_most_borders_and_what_lies_outside(three: Study
     usfd, kth = main_table(main_result(study)).to_dict("records")
     assert usfd == {
         "pair": "usfd on global",
-        "least wear rate [µg/m/mm²]": 1.25,
-        "least at": "creepage 2 %",
-        "most wear rate [µg/m/mm²]": 1234.0,
-        "most at": "creepage 4 %",
+        "least [µg/m/mm²]": 1.25,
+        "least at": "2 %",
+        "most [µg/m/mm²]": 1234.0,
+        "most at": "4 %",
         "regimes change at": "wear index over area Tγ/A 10.38, 77.26 N/mm²",
-        "outside the range": "1 of 3 points",
-        "beyond first yield": "nowhere",
+        "outside the range": "1 of 3",
         "beyond shakedown": "nowhere",
     }
-    assert [kth[f"{end} wear rate [µg/m/mm²]"] for end in ("least", "most")] == [2.0, 5.0]
+    assert [kth[f"{end} [µg/m/mm²]"] for end in ("least", "most")] == [2.0, 5.0]
     assert kth["regimes change at"].endswith("slip speed 0.2, 0.7 m/s")
 
 
@@ -69,15 +68,15 @@ def test_the_table_of_a_single_point_names_no_place() -> None:
     rate = (wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd"))(
         **{**POINT, "max_pressure": "3 GPa"}
     ).wear_rate
-    assert row["least wear rate [µg/m/mm²]"] == row["most wear rate [µg/m/mm²]"] == pytest.approx(rate.magnitude)
-    assert not any(str(head).endswith(" at") and head != "regimes change at" for head in row)
+    assert row["least [µg/m/mm²]"] == row["most [µg/m/mm²]"] == pytest.approx(rate.magnitude)
+    assert not {"least at", "most at"} & {*row}
     assert row["outside the range"] == row["beyond shakedown"] == "everywhere"
 
 
 def test_places_have_all_axes_in_the_units_of_the_case() -> None:
     grid = {**POINT, "max_pressure": ["900 MPa", "950 MPa"], "creepage": ["0.1 %", "0.3 %"]}
     (row,) = main_table(main_result(study_of(grid))).to_dict("records")
-    assert row["most at"] == "maximum pressure 950 MPa, creepage 0.3 %"
+    assert row["most at"] == "950 MPa, 0.3 %"
 
 
 def test_values_along_several_patches_are_summed_and_marked_if_any_patch_is(install: Install) -> None:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import plotly.graph_objects as go
 import pytest
 
 import wearlaw as wl
@@ -16,19 +15,14 @@ from tests.core import cases
 from tests.core.cases import case
 from tests.core.panels import by_label, by_name
 from wearlaw import Q
-from wearlaw.figures.curves import OUTSIDE, STRIP, Curve, FigureData, Panel, PlotAxis, Shade, in_parts
-from wearlaw.figures.drawing import PALE, THIN, draw
-from wearlaw.report.interactive import plotly_figure
-from wearlaw.report.latex import latex_table
 from wearlaw.report.page import report
-from wearlaw.report.tables import FOOTNOTES, Marked, cell, profiles, summaries
-from wearlaw.study.shades import merged, spans_of
+from wearlaw.report.styled import latex_table
+from wearlaw.report.tables import FOOTNOTES, profiles, summaries
 from wearlaw.study.study import Study, run
 
 RIG = wl.TwinDisc.suros()
 BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.34, density="8800 kg/m^3")
 LOADS = {"from": "300 MPa", "to": "3000 MPa", "points": 28}  # in steps of 100 MPa
-X = np.array([1.0, 2.0, 3.0, 4.0])
 
 
 def silently(pipeline: Any) -> Any:
@@ -137,162 +131,14 @@ def test_results_hold_the_marks_of_each_pair_and_the_limits_of_each_contact_mode
         np.testing.assert_allclose(limit, r.shakedown_limit.magnitude, rtol=1e-14)
 
 
-# Figures of a case
-
-
-def test_curves_are_marked_where_the_law_is_outside(study: Study) -> None:
-    (panel,) = by_name(study)["load_wear_rate_over_max_pressure"].panels
-    curves = by_label(panel)
-    for pair in ("usfd on global", "usfd on exact"):
-        outside = study.sweeps["load"].outside_range.sel(pair=pair).values > 0
-        assert curves[pair].outside is not None
-        np.testing.assert_array_equal(curves[pair].outside, outside)
-        assert 0 < outside.sum() < outside.size
-    # KTH: Hertz's maximum is 4/π of a mean pressure of 2.1 GPa.
-    outside = np.asarray(curves["kth on global"].outside)
-    np.testing.assert_array_equal(outside, curves["kth on global"].x > 2100.0 * 4.0 / np.pi)
-
-
-@pytest.mark.parametrize("name", ["load_wear_rate_over_max_pressure", "creepage_traction_over_creepage"])
-def test_a_strip_shows_where_the_contact_of_any_model_is_beyond_shakedown(study: Study, name: str) -> None:
-    figure = by_name(study)[name]
-    (panel,) = figure.panels
-    sweep = study.sweeps[name.partition("_")[0]]
-    (shade,) = panel.shades
-    assert (shade.label, shade.strip) == ("beyond shakedown", True)
-    beyond = (sweep.max_pressure > sweep.shakedown_limit).any("contact_model").values
-    shaded = [any(low <= value <= high for low, high in shade.spans) for value in panel.curves[0].x]
-    assert shaded == beyond.tolist()
-    assert 0 < beyond.sum() < beyond.size
-    assert figure.caption.endswith("beyond shakedown: see First yield and shakedown, theory.md.")
-
-
-def test_the_strip_of_one_operating_point_is_as_long_as_the_patch(study: Study) -> None:
-    for panel in by_name(study)["partial_slip_along_the_patch"].panels:
-        ends = min(curve.x.min() for curve in panel.curves), max(curve.x.max() for curve in panel.curves)
-        assert [shade.spans for shade in panel.shades] == [(ends,)]
-
-
-def test_an_elastic_case_is_not_shaded() -> None:
-    small = {**cases.SWEEP, "max_pressure": "500 MPa"}
-    figures = run(
-        case(sweeps={"creepage": small}, profiles={"one": {**cases.POINT, "max_pressure": "500 MPa"}})
-    ).figures
-    assert all(panel.shades == () for figure in figures for panel in figure.panels)
-
-
-def test_a_rig_without_a_yield_stress_is_not_shaded() -> None:
-    soft = {
-        "diameter": "47 mm",
-        "material": {"youngs_modulus": "206 GPa", "poisson_ratio": 0.28, "density": "7850 kg/m^3"},
-    }
-    rig = {"type": "twin_disc", "disc_1": soft, "disc_2": soft, "track_width": "10 mm", "rolling_speed": "1 m/s"}
-    found = run(case(rig=rig))
-    assert all(panel.shades == () for figure in found.figures for panel in figure.panels)
-    assert "shakedown_limit" not in found.sweeps["creepage"]
-
-
 def test_the_wear_of_a_rail_is_outside_a_law_of_wheel_steel(on_rail: Study) -> None:
     elastic = on_rail.profiles["curve"].outside_range
-    assert elastic.sel(pair="kth on fastsim") == 0
+    assert elastic.sel(pair="kth on strip_theory") == 0
     wheel, rail, *_ = by_name(on_rail)["curve_profile"].panels
-    assert np.asarray(by_label(rail)["usfd on fastsim"].outside).all()
-    assert not np.asarray(by_label(rail)["kth on fastsim"].outside).any()
-    outside = bool(elastic.sel(pair="usfd on fastsim").item())
-    assert np.asarray(by_label(wheel)["usfd on fastsim"].outside).all() == outside
-
-
-@pytest.mark.parametrize(
-    ("x", "beyond", "spans"),
-    [
-        ([1, 2, 3, 4], [0, 0, 1, 1], [(2.5, 4)]),
-        ([4, 3, 2, 1], [1, 1, 0, 0], [(2.5, 4)]),
-        ([1, 2, 3, 4], [1, 0, 1, 0], [(1, 1.5), (2.5, 3.5)]),
-        ([1, 2, np.nan, 4], [0, 1, 1, 0], [(1.5, 3)]),
-        ([1, 2], [0, 0], []),
-        ([1], [1], [(1, 1)]),
-    ],
-)
-def test_spans_reach_half_way_to_the_next_point(x: Any, beyond: Any, spans: Any) -> None:
-    assert list(spans_of(np.array(x, dtype=float), np.array(beyond, dtype=bool))) == spans
-
-
-def test_spans_that_touch_become_one() -> None:
-    assert list(merged([(3.0, 4.0), (1.0, 2.0), (2.0, 2.5), (3.5, 3.6)])) == [(1.0, 2.5), (3.0, 4.0)]
-    assert list(merged([])) == []
-
-
-# Drawings
-
-OUT = np.array([False, False, True, True])
-MARKED = FigureData(
-    "marked",
-    "Marked",
-    (
-        Panel(
-            PlotAxis("x [-]"),
-            PlotAxis("y [-]"),
-            (Curve("a", X, X, colour=1, outside=OUT), Curve("b", X, 2.0 * X)),
-            shades=(
-                Shade("most of the samples", ((1.5, 2.0), (2.5, 4.0))),
-                Shade("beyond shakedown", ((3.0, 4.0),), strip=True),
-            ),
-        ),
-    ),
-)
-
-
-def test_a_curve_falls_into_parts_that_meet_at_the_last_point_inside() -> None:
-    inside, outside = in_parts(MARKED.panels[0].curves[0])
-    np.testing.assert_array_equal(inside, [1.0, 2.0, np.nan, np.nan])
-    np.testing.assert_array_equal(outside, [np.nan, 2.0, 3.0, 4.0])
-    for flags in (None, np.zeros(4, dtype=bool)):
-        whole, none = in_parts(Curve("c", X, X, outside=flags))
-        assert whole is X
-        assert none is None
-
-
-def test_in_print_the_part_outside_is_thin_and_pale_and_shades_are_grey() -> None:
-    figure = draw(MARKED)
-    (axes,) = figure.axes
-    inside, outside, other = axes.get_lines()
-    np.testing.assert_array_equal(inside.get_ydata(), [1.0, 2.0, np.nan, np.nan])
-    np.testing.assert_array_equal(outside.get_ydata(), [np.nan, 2.0, 3.0, 4.0])
-    assert (outside.get_linewidth(), outside.get_alpha()) == (THIN, PALE)
-    assert outside.get_color() == inside.get_color()
-    assert inside.get_linewidth() == other.get_linewidth() > 1.5 * THIN
-    spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in axes.patches]  # type: ignore[attr-defined]
-    assert spans == [(1.5, 2.0), (2.5, 4.0), (3.0, 4.0)]
-    assert all(patch.get_zorder() < line.get_zorder() for patch in axes.patches for line in axes.get_lines())
-    assert [patch.get_height() for patch in axes.patches] == [1.0, 1.0, STRIP]  # type: ignore[attr-defined]
-    names = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert names == ["a", "b", "most of the samples", "beyond shakedown", OUTSIDE]
-
-
-def test_on_the_page_the_part_outside_is_thin_and_pale_and_shades_are_below() -> None:
-    drawn = plotly_figure(MARKED)
-    go.Figure(drawn)  # plotly refuses what it does not know
-    inside, outside, *others = (trace for trace in drawn["data"] if trace["name"] != "b")
-    assert inside["y"] == [1.0, 2.0, None, None]
-    assert outside["y"] == [None, 2.0, 3.0, 4.0]
-    assert (outside["line"]["width"], outside["opacity"]) == (THIN, PALE)
-    assert outside["legendgroup"] == inside["legendgroup"]
-    assert [(trace["name"], trace["showlegend"]) for trace in (inside, outside, *others)] == [
-        ("a", True), ("a", False), ("most of the samples", True), ("beyond shakedown", True), (OUTSIDE, True),
-    ]  # fmt: skip
-    shapes = drawn["layout"]["shapes"]
-    assert [(shape["x0"], shape["x1"]) for shape in shapes] == [(1.5, 2.0), (2.5, 4.0), (3.0, 4.0)]
-    assert {(shape["layer"], shape["yref"], shape["xref"]) for shape in shapes} == {("below", "y domain", "x")}
-    assert [shape["y1"] for shape in shapes] == [1, 1, STRIP]
-
-
-@pytest.mark.parametrize("ends", [(1.0, 2.0), None])
-def test_the_legend_explains_only_what_is_seen(ends: Any) -> None:
-    panel = Panel(PlotAxis("x [-]", ends=ends), PlotAxis("y [-]"), (Curve("a", X, X, outside=OUT),))
-    figure = FigureData("one", "One", (panel,))
-    in_print = [text.get_text() for text in draw(figure).legends[0].get_texts()]
-    on_page = [trace["name"] for trace in plotly_figure(figure)["data"] if trace["showlegend"]]
-    assert (OUTSIDE in in_print) == (OUTSIDE in on_page) == (ends is None)
+    assert np.asarray(by_label(rail)["usfd on strip_theory"].outside).all()
+    assert not np.asarray(by_label(rail)["kth on strip_theory"].outside).any()
+    outside = bool(elastic.sel(pair="usfd on strip_theory").item())
+    assert np.asarray(by_label(wheel)["usfd on strip_theory"].outside).all() == outside
 
 
 # Tables
@@ -335,11 +181,6 @@ def test_marks_are_in_the_report_and_for_latex_but_not_in_numbers(study: Study) 
     assert "†" not in numbers
     read = pd.read_csv(io.StringIO(numbers))
     np.testing.assert_array_equal(read.iloc[:, 1:], table.frame.iloc[:, 1:].astype(float))
-
-
-def test_a_marked_number_is_a_number() -> None:
-    assert cell(Marked(1234.5678, "†")) == cell(1234.5678).__class__("1235", number=True, marks="†")
-    assert cell(Marked(np.nan, "")).text == ""
 
 
 def test_the_table_of_a_profile_marks_the_rail(on_rail: Study) -> None:

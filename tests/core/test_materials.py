@@ -44,11 +44,11 @@ STEELS = """
             return 1e-6 * contact.wear_index_density / hardness
 
     @wl.hookimpl
-    def wearlaw_materials():
+    def wearlaw_named():
         return {"r350": HARD, "Bare": Bare}
 
     @wl.hookimpl
-    def wearlaw_wear_laws():
+    def wearlaw_models():
         return [Softer]
 """
 

@@ -39,7 +39,7 @@ ROLLER = '''
             return discs.problem(normal_force=load, creepage=creepage, friction_coefficient=friction_coefficient)
 
     @wl.hookimpl
-    def wearlaw_rigs():
+    def wearlaw_models():
         return [Roller]
 '''
 

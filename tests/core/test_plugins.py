@@ -14,9 +14,11 @@ from time import sleep
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 
 import wearlaw as wl
 from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
+from wearlaw.cli import main
 from wearlaw.plugins import loader
 
 BROKEN = {
@@ -38,58 +40,54 @@ BROKEN = {
         "Mute: (its message cannot be shown: SystemExit)",
     ),
     "exit_in_a_hook": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    raise SystemExit(0)",
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    raise SystemExit(0)",
         "SystemExit: 0",
     ),
     "exit_in_a_generator": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_contact_models():\n    yield from ()\n    raise SystemExit(0)",
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    yield from ()\n    raise SystemExit(0)",
         "SystemExit: 0",
     ),
     "exit_in_a_hook_of_named_things": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_materials():\n    raise SystemExit(0)",
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_named():\n    raise SystemExit(0)",
         "SystemExit: 0",
     ),
     "thing_that_cannot_be_shown": (
         "import wearlaw\nclass Mute:\n    def __repr__(self): raise SystemExit(0)\n"
-        "@wearlaw.hookimpl\ndef wearlaw_sections():\n    return {'mute': Mute()}",
+        "@wearlaw.hookimpl\ndef wearlaw_resources():\n    return {'section': {'mute': Mute()}}",
         "SystemExit: 0",
     ),
     "misspelt_hook": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_law():\n    return []",
-        "unknown hook 'wearlaw_wear_law'",
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_model():\n    return []",
+        "unknown hook 'wearlaw_model'",
     ),
     "hook_without_marker": (
-        "def wearlaw_wear_laws():\n    return []",
+        "def wearlaw_models():\n    return []",
         "TypeError: it implements no hook; mark its functions with @wearlaw.hookimpl",
     ),
     "hook_that_raises": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    raise KeyError('lost')",
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    raise KeyError('lost')",
         "KeyError: 'lost'",
     ),
     "hook_without_list": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    return 3",
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    return 3",
         "TypeError: 'int' object is not iterable",
     ),
     "class_that_is_no_model": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    return [dict]",
-        "TypeError: <class 'dict'> is not a subclass of WearLaw",
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    return [dict]",
+        "TypeError: wearlaw_models: <class 'dict'> is no rig, contact model, stage, wear law, law, reader",
     ),
     "instance_in_place_of_a_class": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_contact_models():\n    return ['exact']",
-        "TypeError: 'exact' is not a subclass of ContactModel",
-    ),
-    "law_among_the_contact_models": (
-        textwrap.dedent(LAW).format(name="outside").replace("wearlaw_wear_laws", "wearlaw_contact_models"),
-        "is not a subclass of ContactModel",
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    return ['exact']",
+        "TypeError: wearlaw_models: 'exact' is no rig, contact model, stage, wear law, law, reader",
     ),
     "built_for_a_newer_interface": (
         "wearlaw_interface = 99",
-        "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version 2;"
+        "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version 3;"
         " upgrade wearlaw",
     ),
     "built_for_an_older_interface": (
         textwrap.dedent(LAW).format(name="outside") + "\nwearlaw_interface = 1",
-        "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version 2;"
+        "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version 3;"
         " upgrade the plugin",
     ),
     "law_of_an_older_interface": (
@@ -101,7 +99,7 @@ BROKEN = {
         "TypeError: wearlaw_interface must be a whole number, got '1'",
     ),
     "abstract_model": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    class Half(wearlaw.WearLaw):\n"
+        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    class Half(wearlaw.WearLaw):\n"
         "        name = 'half'\n    return [Half]",
         "TypeError: Half does not implement rate",
     ),
@@ -137,8 +135,33 @@ def test_an_outside_law_is_found_beside_the_others(install: Install) -> None:
     assert str(loader.installed().wear_laws.origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
 
 
+def test_a_command_of_a_plugin_is_imported_when_it_is_called_and_named_if_that_fails(install: Install) -> None:
+    install(
+        "own",
+        """
+        import click
+        import wearlaw as wl
+
+        @click.command()
+        def greet():
+            click.echo("hello")
+
+        @wl.hookimpl
+        def wearlaw_commands():
+            return [wl.Command("greet", "own:greet", "Greet."), wl.Command("gone", "no_such_module:gone", "Fail.")]
+    """,
+    )
+    listed = CliRunner().invoke(main, ["--help"])
+    assert "greet" in listed.output
+    assert "gone" in listed.output
+    assert CliRunner().invoke(main, ["greet"]).output == "hello\n"
+    failed = CliRunner().invoke(main, ["gone"])
+    assert failed.exit_code == 1
+    assert "command 'gone' of own 1.0 (plugin 'own') cannot be loaded: ModuleNotFoundError" in failed.output
+
+
 def test_a_plugin_for_this_interface_is_loaded(install: Install) -> None:
-    install("current_plugin", LAW.format(name="current") + "\n    wearlaw_interface = 2\n")
+    install("current_plugin", LAW.format(name="current") + "\n    wearlaw_interface = 3\n")
     assert "current" in wl.wear_laws()
 
 
@@ -234,12 +257,12 @@ def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_return_nothing(ins
     def wearlaw_of_tomorrow():
         return []
 
-    @wl.hookimpl(specname="wearlaw_materials")
+    @wl.hookimpl(specname="wearlaw_named")
     def _materials():
         return {"outside_steel": wl.steel()}
 
     @wl.hookimpl
-    def wearlaw_cases():
+    def wearlaw_resources():
         return None
     """
     install("outside_plugin", LAW.format(name="outside") + hooks)
@@ -301,7 +324,7 @@ def test_an_unknown_contact_model_gets_a_suggestion_and_the_list(name: str, hint
         wl.contact_model(name)
     assert str(error.value) == (
         f"no contact model is called '{name}'; {hint}"
-        " Installed: exact, fastsim, global, linear, polach, shen_hedrick_elkins"
+        " Installed: exact, fastsim, global, half_space, linear, polach, shen_hedrick_elkins, strip_theory"
     )
 
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.core.units import TO_SI
 from wearlaw import Q
-from wearlaw.units.quantities import from_si, shown, text_of
+from wearlaw.units.quantities import from_si, full_text, text_of
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 
@@ -48,7 +48,7 @@ def test_repr_shows_four_significant_digits(value: Any, unit: str, text: str) ->
     ],
 )
 def test_what_is_shown_to_a_reader_has_all_digits(value: Any, text: str) -> None:
-    assert shown(value) == text
+    assert full_text(value) == text
 
 
 def test_magnitude_keeps_all_digits() -> None:
@@ -76,7 +76,7 @@ def test_q_refuses_masked_entries() -> None:
 def test_q_refuses_an_unknown_unit_by_its_text(unit: str) -> None:
     with pytest.raises(wl.UnitError) as caught:
         Q(1, unit)
-    assert f"'{unit}'" in str(caught.value)
+    assert repr(unit) in str(caught.value)
 
 
 @given(value=finite, unit=st.sampled_from(sorted(TO_SI)))

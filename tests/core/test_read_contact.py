@@ -45,7 +45,7 @@ READER = """
             return {result}
 
     @wl.hookimpl
-    def wearlaw_readers():
+    def wearlaw_models():
         return [Printed]
 """
 

@@ -51,11 +51,12 @@ LAB = """
         return 1 / 0
 
     @wl.hookimpl
-    def wearlaw_sections():
-        return {
+    def wearlaw_resources():
+        sections = {
             "highest": highest, "warned": warned, "needs_load": needs_load, "wrong": wrong, "raises": raises,
             "in_millionths": in_millionths,
         }
+        return {"section": sections}
 """
 
 UNKIND = """
@@ -85,11 +86,11 @@ UNKIND = """
         return Unshown()
 
     @wl.hookimpl
-    def wearlaw_sections():
-        return {"exits": exits, "mute": mute, "refuses": refuses, "unshown": unshown}
+    def wearlaw_resources():
+        return {"section": {"exits": exits, "mute": mute, "refuses": refuses, "unshown": unshown}}
 """
 
-OURS = ["tassini2010_claims", "tassini2010_table_4", "tassini2010_tables", "wheelset"]
+OURS = ["life", "tassini2010_claims", "tassini2010_table_4", "tassini2010_tables", "wheelset"]
 
 
 def test_the_sections_of_the_study_come_from_a_plugin_like_any_other() -> None:
@@ -227,8 +228,12 @@ def test_two_sections_of_one_name_are_refused_with_both_plugins(install: Install
 @pytest.mark.parametrize(
     ("hook", "cause"),
     [
-        ("return {'of_lab': 3}", "TypeError: section 'of_lab' must be a Callable, got 3"),
-        ("return {'of lab': print}", "TypeError: the name of a section must be an identifier, got 'of lab'"),
+        ("return {'section': {'of_lab': 3}}", "TypeError: section 'of_lab' must be a Callable, got 3"),
+        (
+            "return {'section': {'of lab': print}}",
+            "TypeError: the name of a section must be an identifier, got 'of lab'",
+        ),
+        ("return {'sections': {'of_lab': print}}", "there is no kind 'sections'; did you mean 'section'?"),
         ("raise KeyError('lost')", "KeyError: 'lost'"),
     ],
 )
@@ -238,7 +243,7 @@ def test_a_plugin_whose_hook_is_wrong_is_left_out_and_the_others_work(
     cause: str,
 ) -> None:
     install("lab", LAB)
-    install("broken", f"import wearlaw as wl\n@wl.hookimpl\ndef wearlaw_sections():\n    {hook}\n")
+    install("broken", f"import wearlaw as wl\n@wl.hookimpl\ndef wearlaw_resources():\n    {hook}\n")
     with pytest.warns(wl.PluginWarning, match="left out: broken 1.0"):
         found = loader.installed()
     assert cause in found.broken[0].cause

@@ -88,7 +88,9 @@ def test_where_q_is_mu_p_nothing_is_said(creepage: wl.Quantity) -> None:
         for model in (ELLIPTIC, wl.contact_model("exact"), wl.contact_model("global")):
             assert not messages(DISCS | model | law, creepage=creepage, **ON_DISCS)
         scaled = ELLIPTIC.model_copy(update={"slip": "scaled"})
-        for spin, model in (("0 1/m", ELLIPTIC), ("0.3 1/m", scaled), ("0.3 1/m", wl.contact_model("polach"))):
+        strips = wl.contact_model("strip_theory")
+        whole = wl.contact_model("polach")
+        for spin, model in (("0 1/m", ELLIPTIC), ("0.3 1/m", scaled), ("0.3 1/m", strips), ("0.3 1/m", whole)):
             conditions = {"longitudinal_creepage": creepage, "spin": spin, **ON_RAIL}
             assert not messages(WHEEL | model | law, **conditions)
     energy = wl.wear_law("energy", mass_per_energy="1 ug/J")

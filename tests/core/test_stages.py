@@ -290,12 +290,8 @@ class Tired(wl.Law):
         return contact.wear_index
 
 @wl.hookimpl
-def wearlaw_stages():
-    return [Rubbed]
-
-@wl.hookimpl
-def wearlaw_laws():
-    return [Tired]
+def wearlaw_models():
+    return [Rubbed, Tired]
 """
 
 

@@ -212,7 +212,7 @@ def test_what_a_dataset_holds_once_is_the_same_in_all_rows() -> None:
     ds["max_pressure"] = ((), 1000, {"units": "MPa"})
     due = wl.sweep(predictor(), ds[["creepage"]], max_pressure="1000 MPa", friction_coefficient=0.4)
     found = wl.sweep(predictor(), ds)
-    assert found.max_pressure.item() == 1000
+    assert found.max_pressure.to_numpy().tolist() == [1000.0] * found.wear_rate.size
     assert found.wear_rate.to_numpy().tolist() == due.wear_rate.to_numpy().tolist()
 
 
@@ -223,20 +223,24 @@ def test_the_same_unit_in_the_head_and_beside_it_is_no_contradiction() -> None:
 @pytest.mark.parametrize(
     ("table", "conditions", "message"),
     [
-        (HEADS, {}, "must be a pandas.DataFrame or an xarray.Dataset"),
+        (HEADS, {}, "must be a path, a pandas.DataFrame or an xarray.Dataset"),
         (FRAME.rename(columns={"creepage [%]": "creepage"}), {}, "creepage: got array.*has no unit"),
         (FRAME.rename(columns={"creepage [%]": "crepage [%]"}), {}, "crepage: unknown condition; did you mean 'cree"),
         (FRAME.rename(columns={"creepage [%]": "creepage [N]"}), {}, "creepage: .*not a ratio"),
-        (FRAME.assign(label=["a", "b", "c"]), {}, "column 'label': .*leave out columns that are not conditions"),
+        (FRAME.assign(label=["a", "b", "c"]), {}, "column 'label': label: unknown condition"),
         (FRAME.assign(creepage=[1, 2, 3]), {}, "creepage is given twice"),
         (FRAME, {"friction_coefficient": 0.4}, "friction_coefficient is given twice; keep one"),
-        (with_attribute("1"), {}, r"column 'creepage \[%\]' has the unit '1' as well; keep one of the two"),
+        (with_attribute("1"), {}, r"column 'creepage \[%\]': has the units '%' and ''; keep one"),
         (FRAME[:0], {}, "table: has no rows"),
-        (pd.DataFrame(), {}, "table: has no columns"),
+        (pd.DataFrame(), {}, "none of its columns is a condition"),
         (FRAME, {"rolling_speed": Q([1, 2], "m/s")}, "rolling_speed: beside a table it must be one value"),
         (FRAME.set_index(["creepage [%]", "max_pressure [MPa]"]), {}, "reset_index"),
-        (FRAME.assign(**{"creepage [%]": [1.0, np.nan, 2.0]}), {}, r"must be a number, got nan % at index \[1\]"),
-        (xr.Dataset({"creepage": (("a", "b"), np.ones((2, 2)))}), {}, "must have one dimension"),
+        (FRAME.assign(**{"creepage [%]": [1.0, np.nan, 2.0]}), {}, r"row 1 .*, column 'creepage \[%\]': is missing"),
+        (
+            xr.Dataset({"creepage": (("a", "b"), np.ones((2, 2)))}),
+            {"max_pressure": "1 GPa", "friction_coefficient": 0.4},
+            "one dimension, got 'creepage' along a × b",
+        ),
     ],
 )  # fmt: skip
 def test_wrong_tables_are_refused(table: Any, conditions: Any, message: str) -> None:

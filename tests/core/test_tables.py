@@ -1,73 +1,209 @@
-"""The tables of a study: what stands in them."""
+"""Reading tables: what a file holds comes back with units, and what is wrong is named by its place."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+import csv
+import io
+import sys
+from collections.abc import Callable
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.report_data import SECTION, TABLE
-from wearlaw.report.tables import models, parameters, summaries, summary, tables
-from wearlaw.study.study import Study, run
+from wearlaw import Q
+
+FORCE, SLIP = np.linspace(5.0, 7.0, 50), np.linspace(-0.02, 0.03, 50)
+COLUMNS = {"force": "Fz", "creepage": "-slip [-]"}
 
 
-@pytest.fixture(scope="module")
-def study() -> Study:
-    many = {**cases.SWEEP, "creepage": {"from": "1 %", "to": "9 %", "points": 9}}
-    lattice = {**many, "friction_coefficient": [0.3, 0.4]}
-    return run(cases.case(wear_laws=["kth", "usfd"], sweeps={"many": many, "lattice": lattice}, profiles={}))
+def frame() -> Any:
+    return pd.DataFrame({"Time [s]": np.arange(50) / 8.0, "Fz [kN]": FORCE, "slip [-]": SLIP, "note": "dry"})
 
 
-def test_a_summary_shows_each_pair_and_its_band_at_five_values_with_both_ends(study: Study) -> None:
-    sweep = study.sweeps["many"]
-    frame = summary(sweep, "creepage", "wear_rate", [str(pair) for pair in sweep.pair.values])
-    assert list(frame.columns) == ["wear rate [µg/m/mm²] by creepage [%]", "1", "3", "5", "7", "9"]
-    heads = frame.iloc[:, 0].tolist()
-    band = ["kth on global", "kth on global, low end", "kth on global, high end"]
-    assert heads == [*band, "usfd on global", *(head.replace("global", "exact") for head in band), "usfd on exact"]
-    variables = ["wear_rate", "wear_rate_low", "wear_rate_high", "wear_rate"]
-    for row, variable in enumerate(variables):
-        pair = heads[row].partition(",")[0]
-        np.testing.assert_array_equal(frame.iloc[row, 1:], sweep[variable].sel(pair=pair).values[::2])
+def dataset() -> xr.Dataset:
+    along = {"Fz": ("time", FORCE, {"units": "kN"}), "slip": ("time", SLIP, {"units": "1"})}
+    return xr.Dataset(along, {"Time": ("time", np.arange(50) / 8.0, {"units": "s"})})
 
 
-def test_a_sweep_with_other_axes_is_shown_at_their_middle_which_the_title_says(study: Study) -> None:
-    many, lattice = summaries(study)
-    assert (many.name, many.title) == ("wear_rate_many", "Sweep 'many'")
-    assert (lattice.name, lattice.title) == ("wear_rate_lattice", "Sweep 'lattice' at friction coefficient 0.4")
-    shown = study.sweeps["lattice"].wear_rate.sel(pair="usfd on exact", friction_coefficient=0.4)
-    np.testing.assert_array_equal(lattice.frame.iloc[-1, 1:], shown.values[::2])
+def text(content: str, columns: Any = None, **options: Any) -> wl.Table:
+    return wl.read_table(io.StringIO(content), columns, **options)
 
 
-def test_every_field_of_the_rig_and_the_models_is_a_parameter(study: Study) -> None:
-    frame = parameters(study).frame
-    rows = {(of, name): (value, meaning) for of, name, value, meaning in frame.astype(str).to_numpy().tolist()}
-    assert len(rows) == len(frame)
-    assert rows["usfd", "q_s"] == ("55 µg/m/mm²", "Wear rate of the severe regime, q_s [µg/m/mm²].")
-    assert rows["rig", "disc_1.material.youngs_modulus"] == ("206.47742 GPa", "Young's modulus, E [Pa].")
-    assert rows["rig", "disc_2.material.poisson_ratio"] == ("0.28", "Poisson's ratio, ν [-].")
-    assert rows["global", "total_from"][0] == "exact"
-    assert rows["global", "total_from.slip"] == rows["exact", "slip"]
-    for label, record in (("usfd", wl.wear_law("usfd")), ("kth", wl.wear_law("kth")), ("rig", wl.TwinDisc.suros())):
-        fields = {name.partition(".")[0] for of, name in rows if of == label}
-        assert fields == {name for name, value in record if value is not None}
+def with_comments(path: Path) -> None:
+    path.write_bytes(b"\xef\xbb\xbf# source: run 7; dry\r\n\r\n" + frame().to_csv(lineterminator="\r\n").encode())
 
 
-def test_models_are_given_with_where_they_come_from(study: Study) -> None:
-    frame = models(study).frame
-    assert frame["model"].tolist() == ["global", "exact", "kth", "usfd"]
-    assert frame["kind"].tolist() == ["contact model"] * 2 + ["wear law"] * 2
-    assert set(frame["provided by"]) == {f"wearlaw {wl.__version__}"}
-    assert frame["source"].tolist() == [
-        *(wl.contact_model(name).source for name in ("global", "exact")),
-        *(wl.wear_law(name).source for name in ("kth", "usfd")),
-    ]
+WRITERS: dict[str, tuple[Callable[[Path], object], dict[str, Any]]] = {
+    "csv": (lambda path: frame().to_csv(path, index=False), {}),
+    "comments": (with_comments, {}),
+    "semicolons": (lambda path: frame().to_csv(path, index=False, sep=";", decimal=","), {"decimal": ","}),
+    "tabs": (lambda path: frame().to_csv(path, index=False, sep="\t"), {}),
+    "bars": (lambda path: frame().to_csv(path, index=False, sep="|"), {"sep": "|"}),
+    "quotes": (lambda path: frame().to_csv(path, index=False, quoting=csv.QUOTE_ALL), {}),
+    "commas at ends": (lambda path: path.write_text(frame().to_csv(index=False).replace("\n", ",\n")), {}),
+    "parquet": (lambda path: frame().to_parquet(path), {}),
+    "netcdf": (lambda path: dataset().to_netcdf(path), {}),
+    "netcdf 3": (lambda path: dataset().to_netcdf(path, engine="scipy"), {}),
+    "zarr": (lambda path: dataset().to_zarr(path, consolidated=False, zarr_format=3), {}),
+}
 
 
-def test_the_tables_of_sections_come_last(study: Study) -> None:
-    found = tables(replace(study, sections=(SECTION,)))
-    assert [one.name for one in found] == ["wear_rate_many", "wear_rate_lattice", "parameters", "models", "table_4"]
-    assert found[-1].frame is TABLE
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_file_gives_what_was_written(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("wearlaw.tables.CELLS", 30)  # several pieces
+    if kind in ("parquet", "zarr"):
+        pytest.importorskip({"parquet": "pyarrow"}.get(kind, kind))
+    write, options = WRITERS[kind]
+    write(tmp_path / "run")
+    table = wl.read_table(tmp_path / "run", COLUMNS, **options)
+    assert (table["force"] == Q(FORCE, "kN")).all()
+    assert (table["creepage"] == Q(-SLIP, "")).all()
+
+
+@pytest.mark.parametrize("table", [frame(), dataset()], ids=["pandas", "xarray"])
+def test_a_table_in_memory_is_read_likewise(table: Any) -> None:
+    found = wl.read_table(table, COLUMNS)
+    assert (found["force"] == Q(FORCE, "kN")).all()
+    assert (found["creepage"] == Q(-SLIP, "")).all()
+
+
+def test_units_come_from_heads_attributes_types_or_the_user() -> None:
+    pytest.importorskip("pint_pandas")
+    table = pd.DataFrame({"a [N]": [1.0], "b": [2.0], "c": pd.Series([3.0], dtype="pint[kN]"), "d": [4.0], "n": [5]})
+    table["b"].attrs["units"] = "kN"
+    found = wl.read_table(table, {"a": "a", "b": "b", "c": "c", "d": "d [MN]", "n": "n"})
+    units = {name: column.unit for name, column in found.columns.items()}
+    assert units == {"a": "N", "b": units["b"], "c": "kN", "d": "MN", "n": None}
+    assert found["d"] == Q([4.0], "MN")
+    assert isinstance(found["n"], np.ndarray)
+
+
+@given(
+    values=st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=1, max_size=5),
+    sep=st.sampled_from(",;\t"),
+    decimal=st.sampled_from(".,"),
+)
+def test_every_number_is_read_to_the_last_bit(values: list[float], sep: str, decimal: str) -> None:
+    if sep == decimal:
+        return
+    cells = "\n".join(f"{value!r}{sep}x".replace(".", decimal) for value in values)
+    assert text(f"a [mm]{sep}b\n{cells}\n", decimal=decimal).numbers("a").tolist() == values
+
+
+def test_cells_texts_lines_and_comments() -> None:
+    table = text('# source: a lab, "B"\n\na [%],note\n1, x\n\n,\nNA,"two\nlines"\n\u22122e0,\n')
+    np.testing.assert_array_equal(table.numbers("a"), [1.0, np.nan, -2.0])
+    assert table.texts("note") == ["x", "two\nlines", ""]
+    assert (table.lines.tolist(), table.header) == ([4, 7, 9], 3)
+    assert table.where(1, "note") == "line 7, column 'note'"
+    assert table.comments[0] == 'source: a lab, "B'
+
+
+def test_numbers_without_a_header_are_columns_by_their_number() -> None:
+    table = text("# y z\n1.0  2\n # n\n -3\t4 \n", {"y": "-1 [mm]", "z": "2"})
+    assert (table["y"] == Q([-1.0, 3.0], "mm")).all()
+    assert table.numbers("z").tolist() == [2.0, 4.0]
+    assert table.lines.tolist() == [2, 4]
+
+
+LINES = frame().to_csv(index=False).splitlines()
+
+
+def at_line(number: int, line: str) -> str:
+    return "\n".join([*LINES[: number - 1], line, *LINES[number:]])
+
+
+WRONG: dict[str, tuple[str, dict[str, Any], str]] = {
+    "text": (at_line(9, "1,n.a.,0.1,dry"), {}, r"line 9, column 'Fz \[kN\]': 'n.a.'"),
+    "a truth value": (at_line(9, "1,True,0.1,dry"), {}, r"line 9, column 'Fz \[kN\]': 'True'"),
+    "after an empty line": (at_line(9, "\n\n1,x,0.1,dry"), {}, r"line 11, column 'Fz \[kN\]': 'x'"),
+    "after a cell of two lines": (at_line(5, '1,5,0,"a\nb"\n1,x,0.1,dry'), {}, r"line 7, column 'Fz \[kN\]': 'x'"),
+    "a decimal comma": (at_line(9, '1,"5,5",0.1,dry'), {}, r"line 9, .*give decimal=\",\""),
+    "a decimal point": ("Fz [kN];slip\n1.5;2\n", {"decimal": ","}, r"line 2, .*give decimal=\"\.\""),
+    "decimal commas": (at_line(9, "0,875,5,0.1,dry"), {}, r"line 9: has 5 cells, not 4; .*decimal=\",\""),
+    "a short row": (at_line(9, "1,5"), {}, "line 9: has 2 cells, not 4"),
+    "an open quotation mark": (at_line(9, '1,5,0.1,"dry'), {}, "cannot be read as CSV"),
+    "a column that is not there": ("\n".join(LINES), {"columns": {"f": "Fzz"}}, r"f: .*did you mean 'Fz'\?"),
+    "a column that is there twice": ("Fz,Fz\n1,2\n", {"columns": {"f": "Fz"}}, "f: the column 'Fz' is there 2 times"),
+    "a name that is given twice": ("Fz,Fz [N]\n1,2\n", {"columns": None}, "Fz is given twice"),
+    "units that differ": ("\n".join(LINES), {"columns": {"f": "Fz [N]"}}, r"'Fz \[kN\]': has the units 'N' and"),
+    "a unit that is unknown": ("\n".join(LINES), {"columns": {"f": "note [weights]"}}, "f: column 'note': 'weights'"),
+    "no name": ("\n".join(LINES), {"columns": {"my force": "Fz"}}, "columns: 'my force'"),
+    "no mapping": ("\n".join(LINES), {"columns": ["Fz"]}, r"columns: .*got \['Fz'\]"),
+    "an empty file": ("\n# only a comment\n", {}, "is empty"),
+    "a decimal mark": ("a\n1\n", {"decimal": "'"}, "decimal: "),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_is_wrong_is_named_by_its_place(name: str) -> None:
+    content, options, message = WRONG[name]
+    with pytest.raises(wl.DataError, match=message):
+        text(content, **{"columns": COLUMNS, **options})["force"]
+
+
+def test_all_wrong_cells_are_named() -> None:
+    with pytest.raises(wl.DataError) as error:
+        text("a,b\n1,2\nx,y\n\nz,2\n")["a"]
+    assert [problem.split(",")[0] for problem in error.value.problems] == ["line 3", "line 5"]
+    with pytest.raises(wl.DataError) as error:
+        text("a,b\n1,2,3\n\n1,2\n4\n")["a"]
+    assert [problem.split(":")[0] for problem in error.value.problems] == ["line 2", "line 5"]
+
+
+def test_what_is_no_table_is_refused(tmp_path: Path) -> None:
+    dataset().to_netcdf(tmp_path / "whole.nc")
+    content = (tmp_path / "whole.nc").read_bytes()
+    files: dict[str, tuple[bytes, str]] = {
+        "book.xlsx": (b"PK\x03\x04\x14", "is a workbook; save it as CSV"),
+        "cut.nc": (content[: len(content) // 2], "cannot be read as netCDF"),
+        "old.csv": ("Größe\n1\n".encode("cp1252"), "cannot be read as CSV in UTF-8"),
+        "none.csv": (b"", "is empty"),
+    }
+    for name, (start, message) in files.items():
+        (tmp_path / name).write_bytes(start)
+        with pytest.raises(wl.DataError, match=f"{name}' {message}"):
+            wl.read_table(tmp_path / name)
+    for wrong, message in ((tmp_path / "missing", "No such file"), (tmp_path, "netCDF or zarr"), (3, "must be a path")):
+        with pytest.raises(wl.DataError, match=message):
+            wl.read_table(wrong)  # type: ignore[arg-type]
+    with pytest.raises(wl.DataError, match="several levels"):
+        wl.read_table(frame().set_index(["Time [s]", "note"]))
+
+
+def test_variables_lie_along_one_dimension() -> None:
+    across = dataset().assign(other=("car", [1.0, 2.0]), both=(("time", "car"), np.ones((50, 2))), one=3.0)
+    assert wl.read_table(across, {"f": "Fz", "n": "one"}).numbers("n").tolist() == [3.0] * 50
+    for name in ("other", "both"):
+        with pytest.raises(wl.DataError, match=f"'{name}' along"):
+            wl.read_table(across, {"f": "Fz", "o": name})["o"]
+
+
+def test_columns_of_parquet_are_numbers(tmp_path: Path) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    pytest.importorskip("pyarrow.parquet")
+    columns = {"a [N]": pyarrow.array([Decimal("5000.25")], pyarrow.decimal128(9, 2)), "b": ["x"]}
+    pyarrow.parquet.write_table(pyarrow.table(columns), tmp_path / "run")
+    table = wl.read_table(tmp_path / "run")
+    assert table.numbers("a").tolist() == [5000.25]
+    with pytest.raises(wl.DataError, match=r"row 0 .*column 'b': 'x' is not a number"):
+        table["b"]
+    (tmp_path / "cut").write_bytes((tmp_path / "run").read_bytes()[:50])
+    with pytest.raises(wl.DataError, match="cannot be read as parquet"):
+        wl.read_table(tmp_path / "cut")
+
+
+def test_without_pyarrow_parquet_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "run.parquet").write_bytes(b"PAR1")
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
+    with pytest.raises(wl.DataError, match=r"wearlaw\[parquet\]"):
+        wl.read_table(tmp_path / "run.parquet")

@@ -188,7 +188,7 @@ class _Script:
         if "Wheelset" in rig:
             models, options = ["fastsim"], {}
         elif "WheelRail" in rig:
-            models = ["fastsim", "linear", "polach", "shen_hedrick_elkins"]
+            models = ["fastsim", "linear", "polach", "shen_hedrick_elkins", "strip_theory"]
             options = {"polach": {"k_a": self.ratio(), "k_s": self.ratio()}}
         else:
             models, options = ["exact", "fastsim", "global"], {}

@@ -11,7 +11,6 @@ import signal
 import tempfile
 import time
 import traceback
-import unicodedata
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -27,7 +26,6 @@ Files = Mapping[str, bytes]
 HANG_S = 4.0
 """Seconds of a processor after which a case counts as hanging."""
 
-LONGEST, MOST_LINES = 1000, 30
 """Characters of the longest line of a message that a reader bears, and how many lines: some list 20 problems."""
 
 SHRINK_S = 3.0
@@ -115,8 +113,6 @@ def _judged(of: Target, valid: bool) -> Finding | None:
             stack = traceback.extract_stack()[:-1]
             text = warnings.formatwarning(message, category, filename, lineno)
             found.append(Finding(category.__name__, _innermost(stack), text + "".join(traceback.format_list(stack))))
-        elif wrong := _of_message(message, category.__name__):
-            found.append(wrong)
 
     with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
         warnings.simplefilter("always")
@@ -131,8 +127,6 @@ def _judged(of: Target, valid: bool) -> Finding | None:
             if isinstance(error, wl.ModelError) and failed and not isinstance(failed, wl.WearlawError):  # that ships
                 details = "".join(traceback.format_exception(error))
                 return Finding(f"ModelError after {type(failed).__name__}", _place(failed), details)
-            if wrong := _of_message(error, _place(error)):
-                return wrong
         except KeyboardInterrupt:
             raise
         except Broken as broken:
@@ -140,15 +134,6 @@ def _judged(of: Target, valid: bool) -> Finding | None:
         except BaseException as error:
             return Finding(type(error).__name__, _place(error), "".join(traceback.format_exception(error)))
     return found[0] if found else None
-
-
-def _of_message(said: BaseException | str, place: str) -> Finding | None:
-    """Return what is wrong with a message that a reader sees."""
-    text = str(said)
-    if max(map(len, text.split("\n"))) > LONGEST or text.count("\n") >= MOST_LINES:
-        return Finding("message too long", place, f"{len(text)} characters: {text[:LONGEST]}")
-    raw = sorted({one for one in text if one not in "\n\t" and unicodedata.category(one) in ("Cc", "Cs")})
-    return Finding("control characters in a message", place, f"{raw} in {text!r}") if raw else None
 
 
 def _left_behind(folder: Path) -> Finding | None:

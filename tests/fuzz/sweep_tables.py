@@ -20,7 +20,7 @@ from tests.fuzz.harness import Files, check
 HEAD = "Time [s],Fz [kN],slip [%],mu,note\n"
 CSV = [
     HEAD + "".join(f"{0.1 * i:g},{7 + 0.1 * i:g},{0.5 * i:g},0.4,dry\n" for i in range(6)),
-    "# source: run 7\n\nTime;Fz;slip;mu\ns;kN;%;-\n0,1;7;0,5;0,4\n0,2;7,5;1;0,4\n",
+    "# source: run 7\n\nTime [s];Fz [kN];slip [%];mu\n0.1;7;0.5;0.4\n0.2;7.5;1;0.4\n",
     "Time\tFz [N]\tslip [-]\tmu\n1\t7000\t-0.01\t0.3\n2\t6000\t0.02\t0.3\n",
 ]
 COLUMNS = {"creepage": "slip", "normal_force": "Fz", "friction_coefficient": "mu"}

@@ -15,10 +15,10 @@ SEEDS = [
     "# source: a rig\nlabel,creepage [%],normal_force [kN],traction_coefficient,wear_rate [ug/m/mm^2],comment\n"
     "A1,0.2,7.4,0.09,2.1,\nA2,1,7.4,0.35,26.5,dry\nA4,3,7.4,0.46,NA,\n",
     "label;creepage [%];max_pressure [MPa];friction_coefficient;wear_rate [µg/m/mm²];wear_rate_uncertainty [µg/m/mm²]\n"
-    "A1;0,2;1500;0,4;2,1;0,3\nA2;1,5;1500;0,4;26,5;2\n",
+    "A1;0.2;1500;0.4;2.1;0.3\nA2;1.5;1500;0.4;26.5;2\n",
     "creepage [%]\tnormal_force [kN]\ttangential_force [N]\twear_rate [ug/m/mm^2]\n1\t7\t2500\t10\n",
     "creepage [%],normal_force [kN],frictional_heat [W],rolling_speed [m/s],wear_rate [ug/m/mm^2]\n1,7.4,30,1,10\n",
-    "sep=;\ncreepage [%];normal_force [kN];rcf_damage;rolled_distance [km]\n1;7,4;1e-5;2\n",
+    "creepage [%];normal_force [kN];rcf_damage;rolled_distance [km]\n1;7.4;1e-5;2\n",
 ]
 
 

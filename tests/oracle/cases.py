@@ -63,13 +63,14 @@ POINT: dict[str, dict[str, Any]] = {
 """Operating points of the rigs and their variants, within and beyond the ranges of laws."""
 
 CONTACTS: dict[str, wl.ContactModel] = {
-    name: wl.contact_model(name) for name in ("exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins")
+    name: wl.contact_model(name)
+    for name in ("exact", "fastsim", "global", "linear", "polach", "shen_hedrick_elkins", "strip_theory")
 }
 FITS: dict[str, tuple[str, ...]] = {
     "twin_disc": ("exact", "fastsim", "global"),
-    "wheel_rail": ("fastsim", "polach", "linear", "shen_hedrick_elkins"),
-    "wheelset": ("fastsim",),
-    "wheelset of ellipses": ("fastsim", "polach", "linear", "shen_hedrick_elkins"),
+    "wheel_rail": ("fastsim", "polach", "linear", "shen_hedrick_elkins", "strip_theory"),
+    "wheelset": ("fastsim", "strip_theory"),
+    "wheelset of ellipses": ("fastsim", "polach", "linear", "shen_hedrick_elkins", "strip_theory"),
 }
 OTHER_CONTACTS: dict[str, wl.ContactModel] = {
     "exact, as printed": wl.contact_model("exact", slip="as_printed"),

@@ -35,6 +35,10 @@ A fit ends at steps of 1e-8. A wheel first touches where its gap is least, and r
 or 1.5e-8; shares such as that of stick or of a second patch are differences of numbers up to a hundred times as large.
 """
 
+OF_INTERVALS = 1e-7
+"""Greatest relative change of a bound of an interval of a fit: it comes from difference quotients with steps of √eps,
+whose rounding is some √eps too."""
+
 CANCELS = 1e-9
 """A change of a force or moment by less is none [N, N m]: those of 10⁴ N that cancel leave some 1e-12 of rounding."""
 
@@ -101,12 +105,19 @@ def differences(old: Mapping[str, Row], new: Mapping[str, Row]) -> list[str]:
         for name in dict.fromkeys((*was, *now)):
             a, b = was.get(name, "nothing"), now.get(name, "nothing")
             if isinstance(a, float | int) and isinstance(b, float | int):
-                change = 0.0 if re.search(r"\[(m\*)?N\]", name) and abs(b - a) < CANCELS else _change(a, b)
-                if change > LOOSER.get(key.replace(",", "").split()[0], TOLERANCE):
+                change = 0.0 if re.search(r"\[(m\*)?N(\*m)?\]", name) and abs(b - a) < CANCELS else _change(a, b)
+                if change > _tolerance(key, name):
                     moved.append((change, f"{key}: {name}: was {a!r}, is {b!r}, a relative change of {change:.1e}"))
             elif a != b:
                 others.append(f"{key}: {name}: was {a!r}, is {b!r}")
     return others + [line for _, line in sorted(moved, key=lambda pair: -pair[0])]
+
+
+def _tolerance(key: str, name: str) -> float:
+    kind = key.replace(",", "").split()[0]
+    if kind == "fit" and re.search(r"\b(low|high)\b", name):
+        return OF_INTERVALS
+    return LOOSER.get(kind, TOLERANCE)
 
 
 def _flat(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:

@@ -13,7 +13,6 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 
 from wearlaw import Array
-from wearlaw.arrays.kernels import Kernel
 
 DIGITS = 50  # with thirty, mpmath ends some integrals at 1e-14
 BISECTIONS = 180  # 2^-180 = 1e-54
@@ -68,17 +67,11 @@ def shares(random: np.random.Generator, size: int) -> Array:
     return np.choose(random.integers(0, 3, size), [anywhere, below, little])
 
 
-def copies(kernel: Kernel) -> dict[str, Callable[..., Array]]:
-    """Return the copies of a kernel's formula as functions of arrays: scalar, NumPy, and numba where it is there."""
+def copies(formula: Callable[..., Array]) -> dict[str, Callable[..., Array]]:
+    """Return a formula on arrays, and on one operating point after the other, which has functions of its own."""
 
     def one_by_one(*arguments: Array | float) -> Array:
         columns = np.broadcast_arrays(*arguments)
-        values = [kernel.scalar(*row) for row in zip(*(column.tolist() for column in columns), strict=True)]
-        return np.array(values)
+        return np.array([formula(*row) for row in zip(*columns, strict=True)])
 
-    found: dict[str, Callable[..., Array]] = {"scalar": one_by_one, "arrays": kernel.arrays}
-    try:
-        import numba  # noqa: F401
-    except ImportError:
-        return found
-    return {**found, "compiled": kernel.compiled}
+    return {"arrays": formula, "one by one": one_by_one}

@@ -130,7 +130,7 @@ def test_copies_of_the_formula_agree() -> None:
     level = shares(random, reduced.size) * np.where(reduced < 1.0, 2.0 * reduced, 1.0 + reduced)
     results = {copy: apply(copy, reduced, level) for copy in COPIES}
     for copy, found in results.items():
-        assert (np.abs(found - results["scalar"]) <= 2.0 * ROUNDINGS * whole(reduced)).all(), copy
+        assert (np.abs(found - results["arrays"]) <= 2.0 * ROUNDINGS * whole(reduced)).all(), copy
 
 
 @pytest.mark.parametrize(("steps", "everywhere"), [(8, False), (200, True)])
@@ -144,7 +144,7 @@ def test_the_roots_are_found_before_the_last_step(
     easy = (np.abs(reduced - 1.0) > 0.1) & (share > 1e-6) | everywhere
     reduced = reduced[easy]
     level = share[easy] * np.where(reduced < 1.0, 2.0 * reduced, 1.0 + reduced)  # of the order of the maximum
-    due = {copy: apply(copy, reduced, level) for copy in ("scalar", "arrays")}
+    due = {copy: apply(copy, reduced, level) for copy in COPIES}
     monkeypatch.setattr(_kernel, "STEPS", steps)
     for copy, values in due.items():
         assert (apply(copy, reduced, level) == values).all()

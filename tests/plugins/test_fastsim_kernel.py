@@ -167,7 +167,7 @@ def test_copies_of_the_formula_agree(bound: str) -> None:
     level = shares(random, reduced.size) * peaks  # of the order of the maximum, and above it
     results = {copy: apply(bound, copy, reduced, level) for copy in KERNELS[bound]}
     for copy, found in results.items():
-        apart = np.abs(found - results["scalar"])
+        apart = np.abs(found - results["arrays"])
         assert (apart <= 2.0 * ROUNDINGS[bound] * whole(bound, reduced)).all(), copy
 
 
@@ -182,7 +182,7 @@ def test_the_roots_of_the_parabola_are_found_before_the_last_step(
     easy = (np.abs(reduced - 1.0) > 0.1) & (share > 1e-6) | everywhere
     reduced = reduced[easy]
     level = share[easy] * np.where(reduced < 1.0, 2.0 * reduced, 1.0 + reduced)  # of the order of the maximum
-    due = {copy: apply("parabolic", copy, reduced, level) for copy in ("scalar", "arrays")}
+    due = {copy: apply("parabolic", copy, reduced, level) for copy in KERNELS["parabolic"]}
     monkeypatch.setattr(_kernel, "STEPS", steps)
     for copy, values in due.items():
         assert (apply("parabolic", copy, reduced, level) == values).all()

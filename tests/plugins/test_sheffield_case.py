@@ -18,7 +18,7 @@ from wearlaw.wear_tests.reader import text_of_tests
 
 
 def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    assert list(loader.installed().cases.items()) == ["tassini2010", "wheel_on_rail", "wheelset"]
+    assert list(loader.installed().cases.items()) == ["tassini2010", "wheel_life", "wheel_on_rail", "wheelset"]
     package = Path(wearlaw_sheffield.__file__).parent
     assert case_text("tassini2010") == (package / "tassini2010.toml").read_text(encoding="utf-8")
 
@@ -89,6 +89,6 @@ def test_the_sections_refuse_another_rig() -> None:
             "creepage": {"normal_force": "50 kN", "longitudinal_creepage": "1 %", "friction_coefficient": 0.3},
         },
     }
-    for section in ("tables", "claims", "table_4"):
+    for section in ("claims", "table_4"):
         with pytest.raises(wl.InputError, match="rig: must be a twin_disc, like the paper's, not a wheel_rail"):
             run(Case(**{**fields, "sections": [f"tassini2010_{section}"]}))  # type: ignore[arg-type]

@@ -131,7 +131,7 @@ def test_a_shipped_case_runs_with_profiles_from_files(
     for field, profile in profiles.items():
         case["rig"][field] = f"{field}.{'prw' if profile.kind == 'wheel' else 'prr'}"
         ws.write_profile(case["rig"][field], profile)
-    case["profiles"] = dict([*case["profiles"].items()][:1])
+    case["profiles"] = dict([*case.get("profiles", {}).items()][:1])
     case["figures"] = {}
     for sweep in case["sweeps"].values():
         for values in sweep.values():

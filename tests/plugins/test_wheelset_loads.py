@@ -309,10 +309,16 @@ def test_cones_wear_like_single_wheels(share: float) -> None:
     roll = Q(problem.roll[0, 0], "rad")
     one = CONES.geometry(lateral_displacement="2 mm", yaw="3 mrad", roll=roll).dataset.sel(patch=1)
     for number, side in enumerate(("left", "right")):
-        radius = one.rolling_radius.sel(side=side).item() / np.cos(np.radians(one.contact_angle.sel(side=side).item()))
+        cosine = np.cos(np.radians(one.contact_angle.sel(side=side).item()))
+        wheel, rail = cosine / one.rolling_radius.sel(side=side).item(), 1.0 / 300.0
+        # Cylinders that cross at less than a right angle, by θ: K. L. Johnson, Contact Mechanics (1985), eqs. 4.4, 4.5.
+        double = 2.0 * np.arctan(np.tan(3e-3) / cosine)
+        apart = np.sqrt(wheel**2 + rail**2 - 2.0 * wheel * rail * np.cos(double))
+        along, across = (0.5 * (wheel + rail + sign * apart) for sign in (-1.0, 1.0))
         single = wl.WheelRail(
-            wheel_radius=Q(radius, "mm"), rail_head_radius="300 mm", material=wl.steel(), rolling_speed="20 m/s"
-        )
+            wheel_radius=Q(1.0 / along, "mm"), rail_head_radius=Q(1.0 / across, "mm"), material=wl.steel(),
+            rolling_speed="20 m/s",
+        )  # fmt: skip
         expected = (single | FASTSIM | law)(
             normal_force=Q(problem.normal_force[number, 0], "N"),
             longitudinal_creepage=Q(problem.longitudinal_creepage[number, 0], ""),

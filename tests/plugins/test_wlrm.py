@@ -100,6 +100,15 @@ def test_only_the_named_traction_damages_and_wear_removes_under_either(
         assert damage(of, contact(index, force)) == pytest.approx([0.0, 0.0, 0.0, -1e-5], rel=16 * EPS)
 
 
+@pytest.mark.parametrize("traction", ["driving", "braking"])
+def test_lateral_creepage_alone_neither_drives_nor_brakes(traction: Literal["driving", "braking"]) -> None:
+    found = (RIG | wl.contact_model("fastsim") | law(traction=traction))(
+        **WHEEL, longitudinal_creepage="0 %", lateral_creepage="0.05 %", spin="0.8 1/m"
+    )
+    assert found.wear_index.magnitude > 20.0  # the threshold
+    assert found["rcf_damage"].magnitude == 0.0
+
+
 def test_a_wheel_that_pulls_drives() -> None:
     wheelset = wl.rig("wheelset", **wl.rigs()["wheelset"].example_fields)
     middle: dict[str, Any] = {"lateral_displacement": "0 mm", "vertical_load": "160 kN", "friction_coefficient": 0.3}

@@ -56,33 +56,7 @@ class LosesEnergyOnAnyCells(Cells):
         return super().made(problem, dataclasses.replace(fields, slip=0.995 * fields.slip), x, length)
 
 
-class ForceIsNoSumOnAnyCells(Cells):
-    """The force is larger than the sum of the tractions by less than its accuracy, and the slip as much."""
-
-    def made(self, problem: wl.Problem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
-        contact = super().made(problem, dataclasses.replace(fields, slip=1.003 * fields.slip), x, length)
-        force, index = 1.003 * contact.tangential_force, 1.003 * contact.wear_index
-        return dataclasses.replace(contact, tangential_force=force, wear_index=index)
-
-
-class MoreTractionThanTheBoundOnAnyCells(Cells):
-    """In slip, the traction is above its bound by half a per cent, less than the accuracy of the sums."""
-
-    def made(self, problem: wl.Problem, fields: wl.LineFields, x: Any, length: Any) -> wl.Contact:
-        return super().made(problem, dataclasses.replace(fields, traction=1.005 * fields.traction), x, length)
-
-
-class RefinedIsTheSame(Cells):
-    """What it calls refined has as many cells."""
-
-    def refined(self) -> Cells:
-        return self
-
-
 CAUGHT: dict[Any, str] = {
     LosesEnergyOnAnyCells: "refined_nodes_improve_the_sums",
-    ForceIsNoSumOnAnyCells: "refined_nodes_improve_the_sums",
-    MoreTractionThanTheBoundOnAnyCells: "traction_keeps_its_bound",
-    RefinedIsTheSame: "refined_nodes_improve_the_sums",
 }
 """The check that must catch each."""

@@ -205,15 +205,6 @@ class WearIndexTwice(Wrapped):
         return dataclasses.replace(contact, wear_index=2.0 * contact.wear_index)
 
 
-class NaNWithoutCreepage(Wrapped):
-    """Divides zero by zero in free rolling."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        with np.errstate(invalid="ignore"):
-            share = problem.creepage / problem.creepage
-        return dataclasses.replace(contact, tangential_force=contact.tangential_force * share)
-
-
 class NaNInField(Wrapped):
     """One node holds no number."""
 
@@ -267,7 +258,6 @@ CAUGHT: dict[Any, str] = {
     ForceOfItsOwn: "tractions_sum_to_the_forces",
     WearIndexOffset: "zero_creepage_gives_nothing",
     WearIndexTwice: "wear_index_is_forces_times_creepages",
-    NaNWithoutCreepage: "zero_creepage_gives_nothing",
     NaNInField: "contact_is_finite",
     WrongBatchShape: "contact_has_the_shape_of_the_problem",
     ForgetsDensity: "contact_carries_the_conditions",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -16,13 +16,6 @@ class HiddenJump(Linear):
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return np.where(w < 4e6, SLOPE, 2 * SLOPE) * w
-
-
-class SmallHiddenJump(Linear):
-    """A hundredth more above a slip speed of 0.3 m/s, undeclared."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        return np.where(contact.slip_speed < 0.3, 1.0, 1.01) * SLOPE * contact.wear_index_density
 
 
 class JumpElsewhere(Linear):
@@ -46,13 +39,6 @@ class JumpThatIsNone(JumpElsewhere):
         return SLOPE * contact.wear_index_density
 
 
-class JumpWithoutBreakpoint(HiddenJump):
-    """The jump is declared, but not as a breakpoint."""
-
-    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
-        return {"wear_index_density": (4e6,)}
-
-
 class Smooth(Linear):
     """The right one of those without a breakpoint: steep, saturating and turning in places, but smooth."""
 
@@ -69,33 +55,6 @@ class HiddenKink(Linear):
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         w = contact.wear_index_density
         return SLOPE * (w + 0.01 * np.maximum(w - 4e6, 0.0))
-
-
-class SmallHiddenKink(Linear):
-    """A thousandth more for each e-fold of pressure above 900 MPa, undeclared."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        above = np.log(np.maximum(contact.pressure, 9e8) / 9e8)
-        return SLOPE * contact.wear_index_density * (1.0 + 0.001 * above)
-
-
-class KinkElsewhere(Linear):
-    """The kink is declared at 4 N/mm², but lies at 4.1 N/mm²."""
-
-    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
-        return {"wear_index_density": (4e6,)}
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        w = contact.wear_index_density
-        return SLOPE * (w + np.maximum(w - 4.1e6, 0.0))
-
-
-class SecondKink(KinkElsewhere):
-    """A declared kink, and a smaller one a tenth above it."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        w = contact.wear_index_density
-        return SLOPE * (w + np.maximum(w - 4e6, 0.0) + 0.1 * np.maximum(w - 4.4e6, 0.0))
 
 
 class Ramps(Linear):
@@ -119,49 +78,11 @@ class RampIsTooSteep(Ramps):
         return (0.0, SLOPE), (4e6, SLOPE * (1.0 + 1e-6))
 
 
-class RampIsMissing(Ramps):
-    """The ramps end at the threshold."""
-
-    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...]:
-        return ((0.0, SLOPE),)
-
-
-class RampWithoutBreakpoint(Ramps):
-    """Two ramps that cancel each other begin where no breakpoint is."""
-
-    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...]:
-        return (0.0, SLOPE), (4e6, SLOPE), (9e6, SLOPE), (9e6, -SLOPE)
-
-
-class NegativeThreshold(Ramps):
-    """A ramp without slope begins below zero."""
-
-    def ramps(self, p: wl.Numbers) -> tuple[tuple[float, float], ...]:
-        return (0.0, SLOPE), (4e6, SLOPE), (-1.0, 0.0)
-
-
 class FallsWithSlip(Linear):
     """Less wear for the same energy at high slip."""
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
         return SLOPE * contact.wear_index_density / (1.0 + (10.0 * contact.slip) ** 2)
-
-
-class FallsWithSpeed(Linear):
-    """It says that it wears more where it slips faster, and wears less."""
-
-    monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("slip_speed",)
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        return SLOPE * contact.wear_index_density / (1.0 + contact.slip_speed)
-
-
-class FallsDespiteDeclaration(Linear):
-    """Less wear above 4 N/mm², continuously."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        w = contact.wear_index_density
-        return SLOPE * np.where(w < 4e6, w, 4e6 * np.sqrt(4e6 / np.maximum(w, 1.0)))
 
 
 class UnknownVariable(Linear):
@@ -211,21 +132,11 @@ class HottestNode(Linear):
 
 CAUGHT: dict[type[wl.WearLaw], str] = {
     HiddenJump: "rate_jumps_only_where_declared",
-    SmallHiddenJump: "rate_jumps_only_where_declared",
     JumpElsewhere: "rate_jumps_only_where_declared",
     JumpThatIsNone: "declared_jumps_exist",
-    JumpWithoutBreakpoint: "declared_jumps_exist",
     HiddenKink: "rate_has_kinks_only_where_declared",
-    SmallHiddenKink: "rate_has_kinks_only_where_declared",
-    KinkElsewhere: "rate_has_kinks_only_where_declared",
-    SecondKink: "rate_has_kinks_only_where_declared",
     RampIsTooSteep: "ramps_sum_to_the_rate",
-    RampIsMissing: "ramps_sum_to_the_rate",
-    RampWithoutBreakpoint: "ramps_sum_to_the_rate",
-    NegativeThreshold: "ramps_sum_to_the_rate",
     FallsWithSlip: "is_monotone_as_declared",
-    FallsWithSpeed: "is_monotone_as_declared",
-    FallsDespiteDeclaration: "is_monotone_as_declared",
     UnknownVariable: "declared_names_are_variables",
     BandUpsideDown: "band_is_ordered",
     UnknownClaim: "exemptions_are_claims",

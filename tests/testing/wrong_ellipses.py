@@ -43,13 +43,6 @@ class AxisTooMany(Spoilt):
         return contact.replaced(force_y=contact.force_y[..., None])
 
 
-class WidthOfEachNode(Spoilt):
-    """The width of a strip is given at its nodes."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        return contact.replaced(strip_width=np.broadcast_to(contact.strip_width[..., None, :], contact.x.shape))
-
-
 class NoNumberOnTheEdge(Spoilt):
     """One node holds no number."""
 
@@ -66,27 +59,11 @@ class ForgetsSpeed(Spoilt):
         return contact.replaced(rolling_speed=np.ones(problem.batch_shape))
 
 
-class ProblemWithoutSpin(Spoilt):
-    """The problem that its contact keeps lacks the spin."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        still = problem.with_creepages(problem.longitudinal_creepage, problem.lateral_creepage, 0.0 * problem.spin)
-        return contact.replaced(problem=still)
-
-
 class BeyondTheEdge(Spoilt):
     """The outermost strips lie outside."""
 
     def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return contact.replaced(y=1.01 * contact.y)
-
-
-class Rectangle(Spoilt):
-    """Strips are all as long as the patch."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        share = np.sqrt(1.0 - (contact.y / problem.b[..., None, None]) ** 2)
-        return contact.replaced(area=contact.area / share)
 
 
 class TwiceThePressure(Spoilt):
@@ -109,13 +86,6 @@ class LongitudinalOnly(Spoilt):
 
     def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
         return contact.replaced(traction=np.abs(contact.traction_x))
-
-
-class SumOfForces(Spoilt):
-    """The tangential force is the sum of its components' magnitudes."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        return contact.replaced(tangential_force=np.abs(contact.force_x) + np.abs(contact.force_y))
 
 
 class SlipsAgainstLateralTraction(Spoilt):
@@ -189,14 +159,6 @@ class OverBoundInOneCell(Spoilt):
         )
 
 
-class EachComponentHasTheBound(Strips):
-    """Clips the components one by one, so that their vector may be larger by √2."""
-
-    def marched(self, grow: Any, bound: Any) -> tuple[Any, Any]:
-        traction, clipped = super().marched(grow, bound)
-        return np.clip(np.sqrt(2.0) * traction, -bound, bound), clipped
-
-
 class SlipsEverywhere(Spoilt):
     """A tenth of the creepage is slip everywhere."""
 
@@ -212,27 +174,14 @@ class SlipsTooFastInFullSlip(Spoilt):
         return slipping(contact, 1.1)
 
 
-class FirstCellsStick(Spoilt):
-    """The first cell of each strip never slips."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        slip = contact.slip.copy()
-        slip[..., 0, :] = 0.0
-        return contact.replaced(slip=slip)
-
-
 CAUGHT: dict[Any, str] = {
     AxisTooMany: "contact_has_the_shape_of_the_problem",
-    WidthOfEachNode: "contact_has_the_shape_of_the_problem",
     NoNumberOnTheEdge: "contact_is_finite",
     ForgetsSpeed: "contact_carries_the_conditions",
-    ProblemWithoutSpin: "contact_carries_the_conditions",
     BeyondTheEdge: "nodes_cover_the_patch",
-    Rectangle: "nodes_cover_the_patch",
     TwiceThePressure: "pressure_sums_to_the_load",
     MomentOnTheWheel: "tractions_sum_to_the_forces",
     LongitudinalOnly: "magnitudes_are_those_of_the_vectors",
-    SumOfForces: "magnitudes_are_those_of_the_vectors",
     SlipsAgainstLateralTraction: "no_node_gains_energy",
     LeaksBetweenPoints: "batch_equals_loop",
     SinglePrecisionForces: "solution_is_in_double_precision",
@@ -242,9 +191,7 @@ CAUGHT: dict[Any, str] = {
     ForgetsTheSpin: "wear_index_is_forces_times_creepages",
     ForcesOfAnother: "forces_alone_are_those_of_the_contact",
     OverBoundInOneCell: "traction_keeps_its_bound",
-    EachComponentHasTheBound: "traction_keeps_its_bound",
     SlipsEverywhere: "what_sticks_does_not_slip",
     SlipsTooFastInFullSlip: "full_slip_is_reached",
-    FirstCellsStick: "full_slip_is_reached",
 }
 """The check that must catch each."""

@@ -13,7 +13,7 @@ import numpy as np
 
 import wearlaw as wl
 from tests.testing.cells import Cells
-from tests.testing.strips import Means, Strips
+from tests.testing.strips import Strips
 from tests.testing.wrong_contacts import Wrapped
 
 Exact: Any = type(wl.contact_model("exact"))
@@ -163,20 +163,6 @@ class SpinBackwards(_OtherSpin):
         return -problem.spin
 
 
-class NoSpin(_OtherSpin):
-    """There is no spin."""
-
-    def spin(self, problem: wl.Problem) -> Any:
-        return 0.0 * problem.spin
-
-
-class SpinPerMillimetre(_OtherSpin):
-    """The spin is a thousandth of what it should be."""
-
-    def spin(self, problem: wl.Problem) -> Any:
-        return 1e-3 * problem.spin
-
-
 class SlipWithoutSpin(OwnSlope):
     """The tractions know of the spin, and the slips do not."""
 
@@ -184,19 +170,6 @@ class SlipWithoutSpin(OwnSlope):
         still = problem.with_creepages(problem.longitudinal_creepage, problem.lateral_creepage, 0.0 * problem.spin)
         contact, straight = (super(SlipWithoutSpin, self).at(given, shares, widths) for given in (problem, still))
         return contact.replaced(slip=straight.slip, slip_x=straight.slip_x, slip_y=straight.slip_y)
-
-
-class ForcesOfSpinBackwards(Means):
-    """The spin has the opposite sign in forces without nodes, which do not claim Kalker's slopes."""
-
-    @property
-    def exemptions(self) -> Any:
-        return {**super().exemptions, "initial_slope": "for the tests"}
-
-    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
-        creepages = problem.longitudinal_creepage, problem.lateral_creepage
-        forces = super().creep_forces(problem.with_creepages(*creepages, -problem.spin))
-        return dataclasses.replace(forces, spin_moment=-forces.spin_moment)
 
 
 class _Band(Exact):  # type: ignore[misc]
@@ -215,41 +188,6 @@ class TractionInABand(_Band):
     def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
         fields: wl.LineFields = super().fields(problem, nodes)
         return dataclasses.replace(fields, traction=self.band(problem, nodes) * fields.traction)
-
-
-class SlipInABand(_Band):
-    """The slip is too large by 0.1 % in a narrow band."""
-
-    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
-        fields: wl.LineFields = super().fields(problem, nodes)
-        return dataclasses.replace(fields, slip=self.band(problem, nodes) * fields.slip)
-
-
-class BoundInStickInClosedForm(Exact):  # type: ignore[misc]
-    """Where it sticks, the bound is half as large again."""
-
-    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
-        fields: wl.LineFields = super().fields(problem, nodes)
-        factor = np.where(fields.slip == 0.0, 1.5, 1.0)
-        return dataclasses.replace(fields, traction_bound=factor * fields.traction_bound)
-
-
-class ParabolaInClosedForm(Exact):  # type: ignore[misc]
-    """The pressure is a parabola with the right load."""
-
-    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
-        fields: wl.LineFields = super().fields(problem, nodes)
-        parabola = 0.375 * np.pi * fields.pressure**2 / problem.max_pressure
-        return dataclasses.replace(fields, pressure=parabola)
-
-
-class MeanPressureInClosedForm(Exact):  # type: ignore[misc]
-    """The pressure is its mean."""
-
-    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
-        fields: wl.LineFields = super().fields(problem, nodes)
-        mean = np.broadcast_to(0.25 * np.pi * problem.max_pressure, fields.pressure.shape)
-        return dataclasses.replace(fields, pressure=mean)
 
 
 def slip_and_traction(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
@@ -279,15 +217,8 @@ CAUGHT: dict[Any, str] = {
     **{changed(base, change): check for change, check in ON_NODES.items() for base in (Wrapped, Cells, OwnSlope)},
     **{changed(OwnSlope, change): check for change, check in ON_STRIPS.items()},
     SpinBackwards: "spin_has_its_force_and_moment",
-    NoSpin: "spin_has_its_force_and_moment",
-    SpinPerMillimetre: "spin_has_its_force_and_moment",
     SlipWithoutSpin: "slip_turns_with_the_spin",
-    ForcesOfSpinBackwards: "spin_has_its_force_and_moment",
     TractionInABand: "fields_sum_to_the_totals",
-    SlipInABand: "fields_dissipate_the_energy_fed_in",
-    BoundInStickInClosedForm: "bound_sums_to_friction",
-    ParabolaInClosedForm: "pressure_is_that_of_the_problem",
-    MeanPressureInClosedForm: "pressure_is_that_of_the_problem",
     Coarse: "declared_accuracy_is_not_coarse",
     CoarseOnStrips: "declared_accuracy_is_not_coarse",
 }

@@ -23,7 +23,7 @@ BROKEN = {
         "PluginValidationError: unknown hook 'wearlaw_wear_law'",
     ),
     "raises": (
-        "import wearlaw\n\n@wearlaw.hookimpl\ndef wearlaw_wear_laws():\n    raise KeyError('lost')",
+        "import wearlaw\n\n@wearlaw.hookimpl\ndef wearlaw_models():\n    raise KeyError('lost')",
         "KeyError: 'lost'",
     ),
     "too_new": (
@@ -48,7 +48,7 @@ USURPER = """
             return 0.0 * contact.pressure
 
     @wl.hookimpl
-    def wearlaw_wear_laws():
+    def wearlaw_models():
         return [Usurper]
 """
 
@@ -158,6 +158,14 @@ def test_they_work_in_a_case_file(environment: Environment, tmp_path: Path) -> N
     for law in ("made_up,", "kth,", ",flash"):
         for model in ("rigid", "exact"):
             assert csv.count(f"creepage,{model} with wet,{law},") == 2
+
+
+def test_its_command_is_one_of_the_program(environment: Environment) -> None:
+    assert "weigh" in environment.wearlaw("--help").stdout
+    assert environment.wearlaw("weigh", "20 kg").stdout == "196.2 N\n"
+    refused = environment.wearlaw("weigh", "heavy")
+    assert refused.returncode == 1
+    assert "Error: " in refused.stderr
 
 
 def test_the_law_passes_the_checks(environment: Environment) -> None:

@@ -1,8 +1,7 @@
-"""Kernels: formulas for one operating point that run compiled if numba is installed.
+"""Loops that numba compiles where it is installed, and the choice between them and NumPy.
 
-A kernel is written twice, as a scalar function that numba can compile and as a function of NumPy arrays. A single
-operating point goes to the uncompiled scalar function. Arrays go to the compiled function if numba is installed and not
-turned off, and otherwise to the function of NumPy arrays. All three agree to rounding.
+A loop that numba compiles stands beside a function of NumPy arrays that gives the same to rounding. It pays where NumPy
+takes many passes over memory, as in a march from node to node.
 """
 
 from __future__ import annotations
@@ -15,20 +14,20 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays.array import WRITEABLE, Array
+from wearlaw.arrays.array import WRITEABLE
 from wearlaw.errors import InputError
 
 SETTING = "WEARLAW_ACCELERATE"
-"""The environment variable that turns compiled kernels off with "0"."""
+"""The environment variable that turns compiled loops off with "0"."""
 
 WORTHWHILE = 10_000
-"""Smallest number of operating points for compiled kernels; for fewer, NumPy is done before numba is loaded."""
+"""Smallest number of operating points for compiled loops; for fewer, NumPy is done before numba is loaded."""
 
 _chosen: bool | None = None
 
 
 def accelerate(on: bool | None) -> None:
-    """Turn compiled kernels on or off in this process; None returns to the choice by size and environment.
+    """Turn compiled loops on or off in this process; None returns to the choice by size and environment.
 
     Raises
     ------
@@ -47,52 +46,10 @@ def chosen() -> bool | None:
 
 
 def accelerated(points: int) -> bool:
-    """Return whether an array with this number of operating points runs through compiled kernels."""
+    """Return whether an array with this number of operating points runs through compiled loops."""
     if _chosen is not None:
         return _chosen
     return points >= WORTHWHILE and os.environ.get(SETTING, "1") != "0" and _numba() is not None
-
-
-class Kernel:
-    """A formula for one operating point, as made by `kernel`."""
-
-    def __init__(self, scalar: Callable[..., float], arrays: Callable[..., Array]) -> None:
-        self.scalar = scalar
-        self.arrays = arrays
-
-    def __call__(self, first: Array, *others: Array | float) -> Array:
-        """Return the formula of float64 arrays of one shape; all but the first may be single numbers."""
-        arguments = (first, *others)
-        if first.ndim == 0:
-            value: Any = np.float64(self.scalar(*map(float, arguments)))  # computes like an array without axes
-            return value  # type: ignore[no-any-return]
-        if first.size == 1:
-            return np.full(first.shape, self.scalar(*map(_number, arguments)))
-        with np.errstate(over="ignore"):  # a threshold may lie infinitely far above all values
-            return self.compiled(*arguments) if accelerated(first.size) else self.arrays(*arguments)
-
-    @functools.cached_property
-    def compiled(self) -> Callable[..., Array]:
-        """The scalar function, compiled by numba for arrays."""
-        numba = _numba()
-        options = {"fastmath": {"contract"}}  # a multiplication and an addition with one rounding, as C compilers do
-        function = _with_compiled(self.scalar, numba.njit(**options))
-        signature = numba.float64(*[numba.float64] * function.__code__.co_argcount)
-        made: Callable[..., Array] = compiled("vectorize", function, signature, **options)
-        return made
-
-
-def kernel(arrays: Callable[..., Array]) -> Callable[[Callable[..., float]], Kernel]:
-    """Return a decorator that makes a kernel of a scalar function.
-
-    Parameters
-    ----------
-    arrays : callable
-        The same formula of float64 arrays of one shape; all but the first may be single numbers. The scalar function
-        takes as many floats and returns a float. It uses only code that numba can compile, such as `math` and functions
-        of its module with the same limits.
-    """
-    return lambda scalar: Kernel(scalar, arrays)
 
 
 def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -116,7 +73,7 @@ def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..
         @functools.cache
         def made(read_only: frozenset[int]) -> Any:
             types = _types_of(signature, read_only)
-            return compiled("njit", _with_compiled(function, _numba().njit(**options)), types, **options)
+            return compiled(_with_compiled(function, _numba().njit(**options)), types, **options)
 
         @functools.wraps(function)
         def run(*arguments: object) -> None:
@@ -142,13 +99,13 @@ def _types_of(signature: str, read_only: frozenset[int]) -> Any:
     return returned(*(one.copy(readonly=True) if i in read_only else one for i, one in enumerate(types)))
 
 
-def compiled(compiler: str, function: Callable[..., Any], signature: object, **options: Any) -> Any:
-    """Return a function compiled by a compiler of numba, and keep it on disk for later processes if there is room."""
-    compile_ = getattr(_numba(), compiler)
+def compiled(function: Callable[..., Any], signature: object, **options: Any) -> Any:
+    """Return a compiled function, and keep it on disk for later processes if there is room."""
+    njit = _numba().njit
     try:
-        return compile_([signature], cache=True, **options)(function)
+        return njit([signature], cache=True, **options)(function)
     except (RuntimeError, OSError):  # numba may not write to any folder, or there is no room
-        return compile_([signature], **options)(function)
+        return njit([signature], **options)(function)
 
 
 def _with_compiled(function: Any, compiler: Callable[[FunctionType], Any]) -> FunctionType:
@@ -160,10 +117,6 @@ def _with_compiled(function: Any, compiler: Callable[[FunctionType], Any]) -> Fu
     copy = FunctionType(function.__code__, namespace, function.__name__, function.__defaults__, function.__closure__)
     copy.__module__ = function.__module__
     return copy
-
-
-def _number(value: Array | float) -> float:
-    return float(value.item()) if isinstance(value, np.ndarray) else value
 
 
 @functools.cache

@@ -25,10 +25,9 @@ from wearlaw.cli.shared import (
     values,
     written_formats,
 )
-from wearlaw.errors import FitError, PlasticityWarning, quoted
+from wearlaw.errors import FitError, PlasticityWarning, shown
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.fitting.comparison import Comparison, Names, Predictor, compare_named
-from wearlaw.fitting.cross_validation import Folds
 from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.result import Fit
 from wearlaw.models.law import Law
@@ -58,6 +57,8 @@ def common(command: CommandT) -> CommandT:
             help="Scatter of measurements, by a factor or by an amount; ignored if the tests state uncertainties.",
         ),
         click.option("--friction", type=float, help="Friction coefficient of tests without a column of it."),
+        click.option("--decimal", default=".", show_default=True, help="Decimal mark of the tests."),
+        click.option("--sep", help="What separates the cells of the tests [default: semicolon, tab or comma]."),
         click.option(
             "--rig",
             type=click.Path(path_type=Path),
@@ -143,6 +144,8 @@ def _fit(
     bounds: tuple[str, ...],
     rig: Path | None,
     friction: float | None,
+    sep: str | None,
+    decimal: str,
     bootstrap: int,
     **settings: Any,
 ) -> Fit:
@@ -150,14 +153,15 @@ def _fit(
     names, given = listed("--free", free), values("--fixed", fixed)
     both = [name for name in names if name in given]
     if both:
-        raise click.UsageError(f"--fixed: {quoted(both[0])} is to be fitted; take it out of --fixed or of --free")
-    tests = _tests(path, friction, "friction_coefficient" in names, notes)
+        raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
+    tests = read_tests(path, sep=sep, decimal=decimal)
+    _note_friction(tests, friction, "friction_coefficient" in names, notes)
     around = _rig(rig, notes) | contact_model(contact)
     for text in stages:
         around = around | stage(text)
     predict = around if law is None else _with_law(around, law, given, names, notes)
-    with notes.of("fit"), Bar(bootstrap) as shown:
-        shown.stage("fitting")
+    with notes.of("fit"), Bar(bootstrap) as bar:
+        bar.stage("fitting")
         return fit_parameters(
             predict,
             tests,
@@ -165,7 +169,7 @@ def _fit(
             friction_coefficient=friction,
             bounds=_bounds(bounds),
             bootstrap=bootstrap,
-            on_progress=shown,
+            on_progress=bar,
             **settings,
         )
 
@@ -176,7 +180,7 @@ def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | flo
     for field, text in fields("--bounds", settings, "FIELD=LOW:HIGH").items():
         low, colon, high = text.partition(":")
         if not colon:
-            raise click.UsageError(f"--bounds: write it as FIELD=LOW:HIGH, got {quoted(f'{field}={text}')}")
+            raise click.UsageError(f"--bounds: write it as FIELD=LOW:HIGH, got {shown(f'{field}={text}')}")
         found[field] = value(low.strip()), value(high.strip())
     return found
 
@@ -258,17 +262,18 @@ def _compare(
     free: tuple[str, ...],
     rig: Path | None,
     friction: float | None,
+    sep: str | None,
+    decimal: str,
     bounds: tuple[str, ...],
     scatter: str,
     cross_validate: str | None,
 ) -> Comparison:
     """Return the comparison for these options."""
-    parts = _folds(cross_validate)
-    if parts is not None and not free:
-        raise click.UsageError(
-            "--cross-validate fits parameters anew; say which ones are free, as in --free usfd=q_s,m_c"
-        )
-    tests = _tests(path, friction, False, notes)
+    parts: Any = int(cross_validate) if cross_validate and cross_validate.isdecimal() else cross_validate
+    if parts and not free:
+        raise click.UsageError("--cross-validate: say which parameters are free, as in --free usfd=q_s,m_c")
+    tests = read_tests(path, sep=sep, decimal=decimal)
+    _note_friction(tests, friction, False, notes)
     named = {text: law_of(text) for text in listed("--laws", laws)}
     around = [stage(text) for text in stages]
     suffix = f" with {' and '.join(stages)}" if stages else ""
@@ -279,7 +284,7 @@ def _compare(
     ]
     freed, ends = _freed(free, named), _bounds(bounds)
     for field in ends.keys() - {field for fields_of_law in freed.values() for field in fields_of_law}:
-        raise click.UsageError(f"--bounds: {quoted(field)} is not free; add it to --free, as in --free LAW={field}")
+        raise click.UsageError(f"--bounds: {shown(field)} is not free; add it to --free, as in --free LAW={field}")
     for law, fields_of_law in freed.items():
         of_law = [pair for pair in pairs if pair.law == law]
         own = {field: ends[field] for field in fields_of_law if field in ends}
@@ -291,34 +296,21 @@ def _compare(
     return comparison
 
 
-def _folds(text: str | None) -> Folds | None:
-    if text is None:
-        return None
-    if text == "leave-one-out":
-        return "leave-one-out"
-    try:
-        return int(text)
-    except ValueError:
-        raise click.UsageError(
-            f"--cross-validate: give leave-one-out or a number of folds, such as 5, got {quoted(text)}"
-        ) from None
-
-
 def _freed(settings: tuple[str, ...], laws: Mapping[str, Law]) -> dict[str, list[str]]:
     """Return the fields to fit by law, as --laws writes it; the name alone will do if only one law has it."""
-    texts = {law.name: text for text, law in laws.items()} | {text: text for text in laws}
-    alone = [one.name for one in laws.values()]
+    names = [law.name for law in laws.values()]
+    texts = {law.name: text for text, law in laws.items() if names.count(law.name) == 1} | {text: text for text in laws}
     found: dict[str, list[str]] = {}
     for setting in settings:
         name, _, freed = setting.rpartition("=")
-        text = texts.get(name, "")
-        if not text or (text != name and alone.count(name) > 1):
+        text = texts.get(name)
+        if text is None:
             raise click.UsageError(
-                f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got {quoted(setting)}"
+                f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got {shown(setting)}"
             )
         if text in found:
             raise click.UsageError(
-                f"--free: {quoted(name)} is given twice; write all its fields behind one, between commas"
+                f"--free: {shown(name)} is given twice; write all its fields behind one, between commas"
             )
         found[text] = listed("--free", freed)
     return found
@@ -333,8 +325,8 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
         If there is no fit on any contact.
     """
     found, refused = [], []
-    with Bar(len(pairs)) as shown:
-        shown.stage("fitting")
+    with Bar(len(pairs)) as bar:
+        bar.stage("fitting")
         for pair in pairs:
             name = f"{pair.law} fitted on {pair.contact_model}"
             try:
@@ -344,7 +336,7 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
                 found.append((pair.contact_model, fitted))
             except FitError as error:
                 refused.append(f"{name} is left out: {error}")
-            shown(1)
+            bar(1)
     if not found:
         raise FitError(refused[0])
     for text in refused:
@@ -358,9 +350,7 @@ def _rig(path: Path | None, notes: Notes) -> Any:
     return read_rig(path)
 
 
-def _tests(path: str, friction: float | None, fitted: bool, notes: Notes) -> WearTests:
-    """Return the tests, and note an option --friction that they do not need."""
-    tests = read_tests(path)
+def _note_friction(tests: WearTests, friction: float | None, fitted: bool, notes: Notes) -> None:
+    """Note an option --friction that the tests do not need."""
     if friction is not None and not fitted and tests.friction_coefficient is not None:
         notes.add(f"--friction {friction:g} is not used, since the tests have a column friction_coefficient")
-    return tests

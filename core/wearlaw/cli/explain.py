@@ -10,6 +10,7 @@ from typing import Any
 from wearlaw.cli.describe import describe, fields_of, wrapped
 from wearlaw.contact.material import Material
 from wearlaw.errors import InputError, UnknownModelError
+from wearlaw.hookspecs import Command
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
 from wearlaw.settings.toml_files import parse_toml
@@ -99,6 +100,11 @@ def _section(name: str, make: Callable[..., Any]) -> Iterator[str]:
         yield f"Shipped cases with it: {', '.join(users)}"
 
 
+def _command(name: str, command: Command) -> Iterator[str]:
+    yield command.help
+    yield from ("", f"wearlaw {name} --help lists its options.")
+
+
 def _sections(text: str) -> list[str]:
     """Return the sections of a case file, none if it is not valid TOML."""
     try:
@@ -114,5 +120,6 @@ _TELL: dict[str, Callable[[str, Any], Iterator[str]]] = {
     "case": _case,
     "test set": _test_set,
     "section": _section,
+    "command": _command,
 }
 """What makes the lines of the kinds that are no models."""

@@ -23,8 +23,7 @@ from wearlaw.errors import (
     PluginWarning,
     UnknownModelError,
     message_of,
-    printable,
-    quoted,
+    shown,
 )
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
@@ -44,7 +43,7 @@ def list_plugins() -> None:
         found = loader.installed()
     table = Table("kind", "name", "distribution", "version", box=None, pad_edge=False)
     for kind, name, origin in found.listing():
-        table.add_row(kind, name, printable(origin.distribution), printable(origin.version))
+        table.add_row(kind, name, origin.distribution, origin.version)
     Console().print(table)
     for plugin in found.broken:
         echo(f"left out: {plugin}", err=True)
@@ -195,7 +194,7 @@ def _installed(name: str) -> type[Model] | WearLaw:
     for shelf in found.shelves():
         if name in shelf.providers:
             raise UnknownModelError(
-                f"{quoted(name)} is a {shelf.kind}, which has no checks; wearlaw show {name} explains it"
+                f"{shown(name)} is a {shelf.kind}, which has no checks; wearlaw show {name} explains it"
             )
     known = [one for shelf in shelves for one in shelf.items()]
     raise UnknownModelError(unknown("model", name, known, found.broken))

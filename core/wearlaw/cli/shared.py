@@ -9,7 +9,7 @@ from typing import Any, TypeVar, get_args
 
 import click
 
-from wearlaw.errors import ConfigurationError, InputError, printable, quoted, readable, with_problems
+from wearlaw.errors import ConfigurationError, InputError, shown, with_problems
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.fitting.law_files import read_law, read_toml
 from wearlaw.models.contact_model import ContactModel
@@ -57,14 +57,14 @@ def read_rig(path: Path | None) -> Rig:
     try:
         return _WithRig(**read_toml("the rig", path)).rig
     except ConfigurationError as error:
-        raise InputError(with_problems(f"the rig {quoted(path)} is wrong in:", error.problems)) from None
+        raise InputError(with_problems(f"the rig {shown(path)} is wrong in:", error.problems)) from None
 
 
 def listed(option: str, text: str) -> list[str]:
     """Return the parts between commas, at least one."""
     found = [part for part in (part.strip() for part in text.split(",")) if part]
     if not found:
-        raise click.UsageError(f"{option}: name at least one, got {quoted(text)}")
+        raise click.UsageError(f"{option}: name at least one, got {shown(text)}")
     return found
 
 
@@ -72,7 +72,7 @@ def fields(option: str, settings: tuple[str, ...], form: str = "FIELD=VALUE") ->
     """Return settings of a form such as "q_s=56 ug/m/mm^2" by field."""
     for setting in settings:
         if "=" not in setting:
-            raise click.UsageError(f"{option}: write it as {form}, got {quoted(setting)}")
+            raise click.UsageError(f"{option}: write it as {form}, got {shown(setting)}")
     return dict(setting.split("=", 1) for setting in settings)
 
 
@@ -136,13 +136,13 @@ def _form(name: str, given: Mapping[str, str | float]) -> str:
 
 def folder_for(path: str, ending: str) -> Path:
     """Return the folder for the results of a file unless the user names one, such as "case-results"."""
-    stem = "".join(letter if printable(letter) == letter else "_" for letter in Path(path).stem)
+    stem = "".join(letter if letter.isprintable() else "_" for letter in Path(path).stem)
     return Path(f"{stem}-{ending}")
 
 
 def echo(text: str, err: bool = False) -> None:
     """Print a text without control characters, which names and labels from outside may have."""
-    click.echo(printable(text, kept="\n\t"), err=err)
+    click.echo(text, err=err)
 
 
 def _is_terminal() -> bool:
@@ -160,10 +160,10 @@ def echo_file(text: str) -> None:
 def print_notes(notes: Iterable[str]) -> None:
     """Print notes on standard error, a line each."""
     for note in notes:
-        click.echo(f"note: {readable(note)}", err=True)
+        click.echo(f"note: {note}", err=True)
 
 
 def print_results(folder: Path, names: Iterable[str]) -> None:
     """Print where the files of a folder of results are."""
     for line in (f"Results in {folder}:", *(f"  {folder / name}" for name in names)):
-        click.echo(printable(line))
+        click.echo(line)

@@ -15,7 +15,7 @@ from rich.text import Text
 
 from wearlaw.cli import Stopped
 from wearlaw.cli.shared import echo, folder_for, print_notes, print_results, written_formats
-from wearlaw.errors import OutputError, printable, quoted
+from wearlaw.errors import OutputError, shown
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.output.analyses import UNCERTAINTY, write_uncertainty
 from wearlaw.output.folder import results_folder
@@ -66,15 +66,15 @@ def run(
         with results_folder(folder, overwrite, RESULTS) as fresh:
             left_out = without_csv(loaded, csv)
             check_room(loaded, folder, left_out is None)
-            with Bar(evaluations(loaded)) as shown, notes.of("run"):
-                study = run_case(loaded, shown, workers, partial, resume)
+            with Bar(evaluations(loaded)) as bar, notes.of("run"):
+                study = run_case(loaded, bar, workers, partial, resume)
                 if left_out is not None:
                     study = replace(study, notes=(*study.notes, left_out))
                 with notes.of("figures"):
-                    names = write(study, fresh, figure_formats, latex, shown.stage, left_out is None)
+                    names = write(study, fresh, figure_formats, latex, bar.stage, left_out is None)
     except KeyboardInterrupt:
         if partial.exists():
-            raise Stopped(f"Stopped; finished blocks are in {quoted(partial)}, and --resume goes on") from None
+            raise Stopped(f"Stopped; finished blocks are in {shown(partial)}, and --resume goes on") from None
         raise
     _discard(partial)
     print_notes(grouped([*study.notes, *notes.texts]))
@@ -96,7 +96,7 @@ def _partial(folder: Path, resume: bool) -> Path:
     partial = named.with_name(f"{named.name}.partial")
     if partial.exists() and not resume:
         raise OutputError(
-            f"output: {quoted(partial)} holds the finished blocks of an interrupted run; add --resume to go on with it,"
+            f"output: {shown(partial)} holds the finished blocks of an interrupted run; add --resume to go on with it,"
             " remove it, or choose another folder with -o"
         )
     return partial
@@ -124,13 +124,13 @@ def _print_used(study: Study) -> None:
 def _summary(summary: NamedTable) -> Table:
     """Return a short table of an outcome for the screen."""
     what, *values = summary.frame.columns
-    title = Text(printable(f"{summary.title}: {what}"))
+    title = Text(f"{summary.title}: {what}")
     table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE, pad_edge=False)
     table.add_column("", overflow="fold")
     for value in values:
         table.add_column(value, justify="right", no_wrap=True)
     for pair, *values_of_pair in summary.frame.itertuples(index=False, name=None):
-        table.add_row(Text(printable(pair)), *("" if value != value else f"{value:.4g}" for value in values_of_pair))
+        table.add_row(Text(pair), *("" if value != value else f"{value:.4g}" for value in values_of_pair))
     return table
 
 
@@ -162,9 +162,9 @@ def uncertainty(
     folder = output if output is not None else folder_for(case, "uncertainty")
     total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
     notes = Notes()
-    with results_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as shown:
-        found = uncertainty_of(loaded, samples, seed, shown)
-        shown.stage("writing results")
+    with results_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as bar:
+        found = uncertainty_of(loaded, samples, seed, bar)
+        bar.stage("writing results")
         with notes.of("figures"):
             names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)
     if found.samples != samples:

@@ -11,7 +11,7 @@ import numpy as np
 import pint
 
 from wearlaw.arrays.array import Array, extremes, read_only
-from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described, did_you_mean, excerpt
+from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described, did_you_mean
 from wearlaw.units.quantities import Q, Unit, coefficient, parse, real_array
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import VARIABLES, expected
@@ -79,7 +79,7 @@ class ConditionTable:
         """Return the error for a condition that the rig does not take."""
         names = self.names
         return ConditionsError(
-            f"{excerpt(name)}: unknown condition{did_you_mean(name, names)} The conditions are: {', '.join(names)}"
+            f"{name}: unknown condition{did_you_mean(name, names)} The conditions are: {', '.join(names)}"
         )
 
 

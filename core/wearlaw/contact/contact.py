@@ -17,7 +17,7 @@ import numpy as np
 from wearlaw.arrays.array import Array, freeze
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, InputError, ModelError, did_you_mean, quoted
+from wearlaw.errors import CompositionError, InputError, ModelError, did_you_mean, shown
 from wearlaw.units.quantities import Quantity, QuantityLike, from_si
 from wearlaw.units.variables import expected
 
@@ -49,7 +49,7 @@ def check_variables(subject: str, names: Iterable[str], known: Collection[str] =
         if name not in known:
             hint = did_you_mean(str(name), known)
             raise ModelError(
-                f"{subject} names the variable {quoted(name)}, which is unknown{hint} There are: {', '.join(known)}"
+                f"{subject} names the variable {shown(name)}, which is unknown{hint} There are: {', '.join(known)}"
             )
 
 

@@ -49,7 +49,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypeVar
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError, PlasticityWarning, shortened
+from wearlaw.errors import InputError, PlasticityWarning, shown
 from wearlaw.units.quantities import coefficient
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def first_yield(
     too high, for a/b from 1/20 to 20, T/N up to 1 and T/μN from 0.05 on.
     """
     if criterion not in ("von_mises", "tresca"):
-        raise InputError(f'criterion: must be "von_mises" or "tresca", got {shortened(criterion)}')
+        raise InputError(f'criterion: must be "von_mises" or "tresca", got {shown(criterion)}')
     shear = _peak_of(criterion, float(poisson_ratio), traction_coefficient, friction_coefficient, axis_ratio)
     limit: Array = np.asarray(shear_yield_stress, dtype=np.float64) / shear
     return limit

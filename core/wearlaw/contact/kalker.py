@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import CreepForces, Problem
-from wearlaw.errors import InputError, shortened
+from wearlaw.errors import InputError, shown
 
 # Kalker (1990), Table E.3. Columns: C11, C22, C23, C33, each at ν = 0, 1/4 and 1/2.
 # Rows: a/b = 0.1, 0.2 ... 1.0, then b/a = 0.9, 0.8 ... 0.1.
@@ -146,7 +146,7 @@ def coefficients(
     the other coefficients for a > b, and outside the table.
     """
     if interpolation not in get_args(Interpolation):
-        raise InputError(f"interpolation: must be 'scaled' or 'contact', got {shortened(interpolation)}")
+        raise InputError(f"interpolation: must be 'scaled' or 'contact', got {shown(interpolation)}")
     ratio, nu = np.broadcast_arrays(axis_ratio, poisson_ratio)
     _refuse("axis_ratio: must be positive and finite", ratio, (ratio > 0.0) & (ratio < np.inf))
     _refuse("poisson_ratio: must be from 0 to 1/2", nu, (nu >= 0.0) & (nu <= 0.5))

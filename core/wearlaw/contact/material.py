@@ -25,7 +25,7 @@ class Material(Configuration):
     """An isotropic elastic material.
 
     Derive a class to give a material further properties; each field with a unit is kept by JSON, pickles, case files
-    and reports. Files name the class in `type`, and a plugin makes it known there with the hook `wearlaw_materials`.
+    and reports. Files name the class in `type`, and a plugin makes it known there with the hook `wearlaw_named`.
     """
 
     _look_up: ClassVar[Callable[..., Any]]

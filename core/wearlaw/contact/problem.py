@@ -19,7 +19,7 @@ from wearlaw.arrays.array import Array, freeze, steady
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
-from wearlaw.errors import CompositionError, ConditionsError, InputError, shortened
+from wearlaw.errors import CompositionError, ConditionsError, InputError, shown
 from wearlaw.units.quantities import QuantityLike, coefficient, scalar_si
 from wearlaw.units.variables import VARIABLES
 
@@ -511,7 +511,7 @@ class Problem:
         """
         if not isinstance(name, str) or name not in self.bodies:
             names = " and ".join(repr(one) for one in self.bodies) or "not named"
-            raise InputError(f"body: this rig has no {shortened(name)}; its bodies are {names}")
+            raise InputError(f"body: this rig has no {shown(name)}; its bodies are {names}")
         return self.bodies[name]
 
     def worn_on(self, body: str | None) -> Self:
@@ -645,5 +645,5 @@ def _si(
 def _poisson_ratio(value: object) -> Array:
     ratio = coefficient(value, "poisson_ratio", positive=False)
     if not ((ratio >= 0.0) & (ratio <= 0.5)).all():
-        raise InputError(f"poisson_ratio: must lie between 0 and 0.5, got {shortened(value)}")
+        raise InputError(f"poisson_ratio: must lie between 0 and 0.5, got {shown(value)}")
     return ratio

@@ -1,4 +1,4 @@
-"""The data of a figure: curves, points, bars and maps with their axes, independent of how they are drawn."""
+"""The description of a figure: panels of curves, points and maps with their axes, independent of how they are drawn."""
 
 from __future__ import annotations
 
@@ -31,13 +31,11 @@ class Curve:
     colour, dash : int
         Index of its colour and marker, and of its line style; the same throughout a report.
     low, high : ndarray, (points,), or None
-        Ends of a band around it.
+        Ends of a band around it; of points, ends of error bars, along x where the y axis has names.
     points : bool
-        Whether it is a set of points, not joined by a line. Predictions are lines or bars, measurements points.
+        Whether it is a set of points, not joined by a line. Predictions are lines, measurements points.
     hollow : bool
         Whether the markers of points are hollow: predictions that no line can join.
-    bars : float
-        Thickness of bars in place of a line, in values of the axis with names; 0 for a line. Bars begin at zero.
     outside : ndarray of bool, (points,), or None
         Where it lies outside the range of its wear law; drawn thin and pale.
     """
@@ -51,13 +49,7 @@ class Curve:
     high: Array | None = None
     points: bool = False
     outside: NDArray[np.bool_] | None = None
-    bars: float = 0.0
     hollow: bool = False
-
-    @property
-    def is_line(self) -> bool:
-        """Whether it is drawn as a line."""
-        return not self.points and not self.bars
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,24 +173,17 @@ class FigureData:
     conditions: str = ""
 
 
-def has_band(figure: FigureData) -> bool:
-    """Return whether any line of a figure has a band; points and bars have error bars."""
-    return any(curve.low is not None and curve.is_line for panel in figure.panels for curve in panel.curves)
-
-
-HOLLOW = "hollow markers: predictions"
-"""Title of a legend that explains hollow markers."""
+OUTSIDE = "outside the range of the law"
+"""Legend of the thin and pale parts of curves."""
 
 
 def head_of_legend(figure: FigureData) -> str:
     """Return the title of the legend of a figure, which explains bands and hollow markers; "" without them."""
-    hollow = any(curve.points and curve.hollow for panel in figure.panels for curve in panel.curves)
-    parts = [f"bands: {figure.bands}" if has_band(figure) else "", HOLLOW if hollow else ""]
-    return "; ".join(filter(None, parts))
-
-
-OUTSIDE = "outside the range of the law"
-"""Legend of the thin and pale parts of curves."""
+    curves = [curve for panel in figure.panels for curve in panel.curves]
+    ranges = dict.fromkeys("error bars" if curve.hollow else "bands" for curve in curves
+                           if curve.low is not None and (curve.hollow or not curve.points))  # fmt: skip
+    hollow = ["hollow markers: predictions"] if any(curve.hollow for curve in curves) else []
+    return "; ".join([*(f"{kind}: {figure.bands}" for kind in ranges), *hollow])
 
 
 def shows_outside(figure: FigureData) -> bool:
@@ -219,8 +204,9 @@ def in_parts(curve: Curve) -> tuple[Array, Array | None]:
     if outside is None or not outside.any():
         return curve.y, None
     near = outside.copy()
-    near[1:] |= outside[:-1]
-    near[:-1] |= outside[1:]
+    if not curve.points:
+        near[1:] |= outside[:-1]
+        near[:-1] |= outside[1:]
     return np.where(outside, np.nan, curve.y), np.where(near, curve.y, np.nan)
 
 
@@ -229,3 +215,17 @@ def lone_points(curve: Curve) -> list[int]:
     seen = np.concatenate([[False], np.isfinite(curve.x) & np.isfinite(curve.y), [False]])
     lone: list[int] = np.flatnonzero(seen[1:-1] & ~seen[:-2] & ~seen[2:]).tolist()
     return lone
+
+
+def map_range(figure: FigureData) -> tuple[float, float]:
+    """Return the least and the largest value of the maps of a figure, which share a scale of colours."""
+    maps = [panel.map for panel in figure.panels if panel.map is not None]
+    values = np.concatenate([np.ravel(one.values) for one in maps])
+    seen = values[np.isfinite(values) & ((values > 0.0) | (maps[0].scale == "linear"))]
+    return (float(seen.min()), float(seen.max())) if seen.size else (0.0, 1.0)
+
+
+def borders_of(drawn: Map | None) -> dict[str, tuple[int, NDArray[np.bool_]]]:
+    """Return the regions of a map that have a border in it, by name, each with its number, which sets its line."""
+    regions = enumerate(drawn.borders.items() if drawn else ())
+    return {name: (number, region) for number, (name, region) in regions if region.any() and not region.all()}

@@ -19,13 +19,22 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from wearlaw.figures.curves import OUTSIDE, STRIP, head_of_legend, in_parts, lone_points, shows_outside
+from wearlaw.figures.curves import (
+    OUTSIDE,
+    STRIP,
+    borders_of,
+    head_of_legend,
+    in_parts,
+    lone_points,
+    map_range,
+    shows_outside,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
 
-    from wearlaw.figures.curves import Curve, FigureData, Map, Panel, PlotAxis, Shade
+    from wearlaw.figures.curves import Curve, FigureData, Map, Panel, Shade
 
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 LINES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (9, 3)), (0, (6, 1.5, 1, 1.5, 1, 1.5)), (0, (3, 3, 1, 3, 1, 3)))
@@ -48,8 +57,8 @@ STYLE: Any = {
 }
 WIDTH, ROW_HEIGHT = 7.4, 3.6
 """Width of a figure and height of a row of panels, in inches."""
-BAR, LEAST = 0.42, 1.6
-"""Height that a horizontal bar takes, and least height of a panel of bars, in inches."""
+NAME, LEAST = 0.36, 1.6
+"""Height that a name on the y axis takes, and least height of a panel of names, in inches."""
 AROUND = 0.9
 """Height and width that the labels of a panel take, in inches."""
 TITLE, LINE = 0.26, 0.17
@@ -77,7 +86,8 @@ def draw(figure: FigureData) -> Figure:
     count = len(figure.panels)
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
-    heights = [max(_height(figure.panels[cell], WIDTH / len(set(row))) for cell in row) for row in rows]
+    widths = {cell: WIDTH / len(set(row)) for row in rows for cell in row}
+    heights = [max(_height(figure.panels[cell], widths[cell]) for cell in row) for row in rows]
     title = textwrap.wrap(figure.title, TITLE_LETTERS)
     conditions = textwrap.wrap(figure.conditions, LETTERS)
     head = TITLE * len(title) + LINE * len(conditions) + 0.08
@@ -87,16 +97,15 @@ def draw(figure: FigureData) -> Figure:
         engine: Any = drawn.get_layout_engine()
         engine.set(rect=(0.0, 0.0, 1.0, 1.0 - head / height))
         axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
-        styles, norm = line_styles(figure), _norm(figure)
+        styles, maps = line_styles(figure), [panel.map for panel in figure.panels if panel.map is not None]
+        norm: Any = None
+        if maps:
+            low, high = map_range(figure)
+            norm = LogNorm(low, high) if maps[0].scale == "log" and low < high else Normalize(low, high)
         for number, panel in enumerate(figure.panels):
-            if panel.map is not None:
-                _mesh(axes[number], panel.map, norm)
-            across = 1 if len(set(rows[-1])) == 1 or (count % 2 and not number) else 2
-            _fill(axes[number], panel, styles, PANEL_LETTERS // across)
-        if norm is not None:
-            bar = drawn.colorbar(
-                ScalarMappable(norm, COLOURS), ax=list(axes.values()), label=_literal(_maps(figure)[0].label)
-            )
+            _fill(axes[number], panel, styles, norm, round(PANEL_LETTERS * widths[number] / WIDTH))
+        if maps:
+            bar = drawn.colorbar(ScalarMappable(norm, COLOURS), ax=list(axes.values()), label=_literal(maps[0].label))
             if isinstance(norm, LogNorm):
                 _label_ticks(bar.ax.yaxis)
         drawn.suptitle(_literal("\n".join(title)), y=1.0 - 0.05 / height, va="top")
@@ -107,63 +116,52 @@ def draw(figure: FigureData) -> Figure:
 
 
 def _height(panel: Panel, width: float) -> float:
-    """Return the height of a panel of a width, in inches; a shape or bars take as much as they need."""
+    """Return the height of a panel of a width, in inches; a shape or names take as much as they need."""
     if panel.y.names:
-        return max(LEAST, AROUND + BAR * len(panel.y.names))
+        return max(LEAST, AROUND + NAME * len(panel.y.names))
     if not panel.equal:
         return ROW_HEIGHT
-    lengths = []
-    for axis, name in ((panel.x, "x"), (panel.y, "y")):
-        values = np.concatenate([np.asarray(axis.ends or getattr(curve, name), dtype=float) for curve in panel.curves])
-        lengths.append(float(np.nanmax(values) - np.nanmin(values)))
-    return min(AROUND + (width - AROUND) * lengths[1] / lengths[0], ROW_HEIGHT)
+    across, up = (
+        np.ptp(axis.ends or np.concatenate([values[np.isfinite(values)] for values in every]))
+        for axis, every in (
+            (panel.x, [curve.x for curve in panel.curves]),
+            (panel.y, [curve.y for curve in panel.curves]),
+        )
+    )
+    return float(min(AROUND + (width - AROUND) * up / across, ROW_HEIGHT))
 
 
-Styles = dict[tuple[int, int], int]
-
-
-def line_styles(figure: FigureData) -> Styles:
+def line_styles(figure: FigureData) -> dict[tuple[int, int], int]:
     """Return the index in `LINES` for each colour and dash of the lines of a figure.
 
     It is that of the dash, unless two lines of a panel would then differ only in colour: every line then has its own.
     """
-    kinds = [list(dict.fromkeys(_kind(curve) for curve in panel.curves if curve.is_line)) for panel in figure.panels]
+    kinds = [
+        list(dict.fromkeys((curve.colour, curve.dash) for curve in panel.curves if not curve.points))
+        for panel in figure.panels
+    ]
     alike = any(len(of_panel) > len({dash for _, dash in of_panel}) for of_panel in kinds)
-    every = list(dict.fromkeys(kind for of_panel in kinds for kind in of_panel))
-    return {kind: number % len(LINES) if alike else kind[1] for number, kind in enumerate(every)}
+    every = dict.fromkeys(kind for of_panel in kinds for kind in of_panel)
+    return {kind: (number if alike else kind[1]) % len(LINES) for number, kind in enumerate(every)}
 
 
-def _kind(curve: Curve) -> tuple[int, int]:
-    return curve.colour % len(PALETTE), curve.dash % len(LINES)
-
-
-def style_of(curve: Curve, styles: Styles) -> int:
-    """Return the index in `LINES` of the style of a curve, 0 for points and bars."""
-    return styles.get(_kind(curve), 0)
-
-
-def _fill(axes: Axes, panel: Panel, styles: Styles, letters: int) -> None:
-    for shade in panel.shades:
-        for number, (low, high) in enumerate(shade.spans):
-            label = "_" if number else _literal(shade.label)
-            axes.axvspan(low, high, 0.0, STRIP if shade.strip else 1.0, color=_grey(shade), lw=0, zorder=0, label=label)
-    for curve in panel.curves:
-        if curve.bars:
-            _bars(axes, curve, panel)
-        else:
-            _plot(axes, curve, style_of(curve, styles))
-    axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label))
-    axes.set_title(_literal("\n".join(textwrap.wrap(panel.title, letters))))
-    axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
+def _fill(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: Any, letters: int) -> None:
     if panel.map is not None:
-        _borders(axes, panel.map)
-    axes.set(xlim=_ends(panel.x), ylim=_ends(panel.y))
+        _draw_map(axes, panel.map, norm)
+    for shade in panel.shades:
+        for low, high in shade.spans:
+            axes.axvspan(low, high, 0.0, STRIP if shade.strip else 1.0, color=_grey(shade), lw=0, zorder=0)
+    for curve in panel.curves:
+        _plot(axes, curve, styles.get((curve.colour, curve.dash), 0), flat=bool(panel.y.names))
+    axes.set_title(_literal("\n".join(textwrap.wrap(panel.title, letters))))
+    axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label))
+    axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
+    axes.set(xlim=panel.x.ends or (None, None), ylim=panel.y.ends or (None, None))
     for axis, drawn in ((panel.x, axes.xaxis), (panel.y, axes.yaxis)):
         if axis.inverted:
             drawn.set_inverted(True)
         if axis.names:
             drawn.set_ticks(range(len(axis.names)), [_literal(name) for name in axis.names])
-            drawn.grid(visible=False)
         elif axis.scale == "log":
             _label_ticks(drawn)
     if panel.equal:
@@ -172,10 +170,6 @@ def _fill(axes: Axes, panel: Panel, styles: Styles, letters: int) -> None:
 
 def _grey(shade: Shade) -> str:
     return STRIP_GREY if shade.strip else SHADE
-
-
-def _ends(axis: PlotAxis) -> Any:
-    return axis.ends or (None, None)
 
 
 def _label_ticks(axis: Axis) -> None:
@@ -210,135 +204,59 @@ def plain(value: float) -> str:
     return f"${factor}10^{{{int(power)}}}$"
 
 
-def _bars(axes: Axes, curve: Curve, panel: Panel) -> None:
-    """Draw bars from zero along the axis without names, with their numbers at their ends."""
-    colour = PALETTE[curve.colour % len(PALETTE)]
-    looks: Any = {
-        "color": colour,
-        "zorder": 2,
-        "alpha": PALE if curve.outside is not None and curve.outside.any() else 1,
-    }
-    ends: Any = {}
-    if curve.low is not None and curve.high is not None:
-        values = curve.x if panel.y.names else curve.y
-        spread = np.stack([values - curve.low, curve.high - values])
-        ends = {"yerr" if panel.x.names else "xerr": spread}
-        ends |= {"ecolor": "0.25", "error_kw": {"elinewidth": 1.0, "capsize": 3.0}}
-    if panel.y.names:
-        drawn = axes.barh(curve.y, curve.x, height=curve.bars, label=_literal(curve.label), **looks, **ends)
-    else:
-        drawn = axes.bar(curve.x, curve.y, width=curve.bars, label=_literal(curve.label), **looks, **ends)
-    axes.bar_label(drawn, bar_texts(curve, panel), padding=3, fontsize="small")
-    room = 0.3 if curve.low is not None else 0.12  # for the numbers
-    axes.margins(x=room if panel.y.names else None, y=None if panel.y.names else room)
-
-
-def bar_texts(curve: Curve, panel: Panel) -> list[str]:
-    """Return the numbers at the ends of bars, with their ranges if they have any."""
-
-    def shown(value: float) -> str:
-        return plain(float(f"{value:.3g}")) if np.isfinite(value) else ""
-
-    values = curve.x if panel.y.names else curve.y
-    if curve.low is None or curve.high is None:
-        return [shown(value) for value in values]
-    ranges = zip(values, curve.low, curve.high, strict=True)
-    return [f"{shown(value)} ({shown(low)} to {shown(high)})" for value, low, high in ranges]
-
-
-def _plot(axes: Axes, curve: Curve, style: int) -> None:
-    looks = _looks(curve, style)
+def _plot(axes: Axes, curve: Curve, style: int, flat: bool) -> None:
+    """Draw a curve with its band, or points with their error bars, which lie along x if `flat`."""
+    number = curve.colour % len(PALETTE)
+    colour = PALETTE[number]
+    looks: dict[str, Any] = {"color": colour, "linestyle": LINES[style], "zorder": 2.0 + 0.1 * style}
+    if curve.points:
+        looks = {"color": colour, "marker": MARKERS[number], "linestyle": "", "markersize": 5 if curve.hollow else 4,
+                 "zorder": 3, "markerfacecolor": "none" if curve.hollow else colour}  # fmt: skip
+    elif alone := lone_points(curve):
+        looks |= {"marker": ".", "markevery": alone}
     inside, outside = in_parts(curve)
     axes.plot(curve.x, inside, label=_literal(curve.label), **looks)
     if outside is not None:
         axes.plot(curve.x, outside, label="_", **{**looks, "linewidth": THIN, "alpha": PALE})
     if curve.low is None or curve.high is None:
         return
-    colour = looks["color"]
     if curve.points:
-        spread = (curve.y - curve.low, curve.high - curve.y)
-        axes.errorbar(curve.x, curve.y, spread, fmt="none", ecolor=colour, elinewidth=1.0, capsize=2.0)
+        values = curve.x if flat else curve.y
+        bars: Any = {"xerr" if flat else "yerr": (values - curve.low, curve.high - values)}
+        axes.errorbar(curve.x, curve.y, **bars, fmt="none", ecolor=colour, elinewidth=1.0, capsize=2.0)
     else:
         axes.fill_between(
             curve.x, curve.low, curve.high, facecolor=(colour, BAND), edgecolor=(colour, EDGE), lw=0.5, zorder=1
         )
 
 
-def _looks(curve: Curve, style: int) -> dict[str, Any]:
-    number = curve.colour % len(PALETTE)
-    looks: dict[str, Any] = {"color": PALETTE[number]}
-    if curve.points:
-        looks |= {"marker": MARKERS[number], "linestyle": "", "markersize": 4, "zorder": 3}
-        return {**looks, "markerfacecolor": "none"} if curve.hollow else looks
-    # Sparser lines lie over denser ones, which show in their gaps.
-    looks |= {"linestyle": LINES[style], "zorder": 2.0 + 0.1 * style}
-    alone = lone_points(curve)
-    return {**looks, "marker": ".", "markevery": alone} if alone else looks
-
-
-def _borders(axes: Axes, drawn: Map) -> None:
-    """Draw the borders of the regions of a map, white below black to be seen on every colour."""
-    for number, region in enumerate(drawn.borders.values()):
-        if region.any() and not region.all():
-            for width, colour in ((2.6, "white"), (1.2, "black")):
-                axes.contour(
-                    drawn.x, drawn.y, region.astype(float), [0.5], colors=colour, linewidths=width,
-                    linestyles=[LINES[number % len(LINES)] if colour == "black" else "-"],
-                )  # fmt: skip
-
-
-def _maps(figure: FigureData) -> list[Map]:
-    return [panel.map for panel in figure.panels if panel.map is not None]
-
-
-def map_range(figure: FigureData) -> tuple[float, float]:
-    """Return the least and the largest value of the maps of a figure, which share a scale of colours."""
-    values = np.concatenate([np.ravel(one.values) for one in _maps(figure)])
-    seen = values[np.isfinite(values) & ((values > 0.0) | (_maps(figure)[0].scale == "linear"))]
-    return (float(seen.min()), float(seen.max())) if seen.size else (0.0, 1.0)
-
-
-def _norm(figure: FigureData) -> Any:
-    """Return the scale of colours of the maps of a figure, None without maps."""
-    if not _maps(figure):
-        return None
-    low, high = map_range(figure)
-    return LogNorm(low, high) if _maps(figure)[0].scale == "log" and low < high else Normalize(low, high)
-
-
-def _mesh(axes: Axes, drawn: Map, norm: Any) -> None:
-    """Draw a map as a cell around each point, so that a jump stays one."""
+def _draw_map(axes: Axes, drawn: Map, norm: Any) -> None:
+    """Draw a map as a cell around each point, so that a jump stays one, with borders, white below black."""
     mesh = axes.pcolormesh(drawn.x, drawn.y, drawn.values, norm=norm, cmap=COLOURS, shading="nearest", zorder=0)
     mesh.set_rasterized(True)
     axes.set_axisbelow(False)
     axes.grid(visible=False)
+    for number, region in borders_of(drawn).values():
+        for width, colour, line in ((2.6, "white", "-"), (1.2, "black", LINES[number])):
+            axes.contour(
+                drawn.x, drawn.y, region.astype(float), [0.5], colors=colour, linewidths=width, linestyles=[line]
+            )
 
 
 def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
     """Add one legend for all panels, with each label once; the names on an axis need none."""
     entries: dict[str, Any] = {}
     for one, panel in zip(axes, figure.panels, strict=True):
-        named_by_axis = {_literal(curve.label) for curve in panel.curves if curve.bars and panel.y.names}
-        artists: list[Any] = [*one.get_lines(), *one.patches, *one.containers]
-        for artist in artists:
-            label = str(artist.get_label())
-            if not label.startswith("_") and label not in named_by_axis:
-                entries[label] = artist
+        labelled = ((artist, str(artist.get_label())) for artist in one.get_lines())
+        entries |= {label: artist for artist, label in labelled
+                    if not label.startswith("_") and label.strip() not in map(_literal, panel.y.names)}  # fmt: skip
         for shade in panel.shades:
             entries[_literal(shade.label)] = Patch(facecolor=_grey(shade), edgecolor="0.6", linewidth=0.5)
-        for number, (label, region) in enumerate(panel.map.borders.items() if panel.map else ()):
-            if region.any() and not region.all():
-                entries[label] = Line2D([], [], color="black", linewidth=1.2, linestyle=LINES[number % len(LINES)])
-    every = [curve for panel in figure.panels for curve in panel.curves]
-    if any(curve.bars and curve.low is not None for curve in every):
-        entries[figure.bands] = Line2D([], [], color="0.25", linewidth=1.0)
+        for label, (number, _) in borders_of(panel.map).items():
+            entries[label] = Line2D([], [], color="black", linewidth=1.2, linestyle=LINES[number])
     if shows_outside(figure):
-        of_bars = all(curve.bars for curve in every)
-        pale: Any = (
-            Patch(color="black", alpha=PALE) if of_bars else Line2D([], [], color="black", linewidth=THIN, alpha=PALE)
-        )
-        entries[OUTSIDE] = pale
-    if not entries:
+        entries[OUTSIDE] = Line2D([], [], color="black", linewidth=THIN, alpha=PALE)
+    if not (entries or head_of_legend(figure)):
         return
     widths = [len(name) + 10 for name in entries]  # in characters, with the line sample and the gap
     drawn.legend(

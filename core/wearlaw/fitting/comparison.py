@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from wearlaw.arrays.array import Array, steady
-from wearlaw.errors import InputError, did_you_mean, quoted, shortened
+from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.figures.curves import BLACK, Curve, FigureData
 from wearlaw.figures.parity import parity_panels
 from wearlaw.figures.plot import plot
@@ -38,8 +38,21 @@ if TYPE_CHECKING:
 Predictor: TypeAlias = Pipeline[...] | Fit
 """A pipeline with a law, or a fit of one."""
 
-COUNTS = ("tests", "in_sample", "without_ratio", "fitted")
-"""Columns of whole numbers."""
+COLUMNS = {
+    "predictor": "object",
+    "rms_factor": "Float64",
+    "bias": "Float64",
+    "geometric_sd": "Float64",
+    "largest_factor": "Float64",
+    "rms_error": "Float64",
+    "tests": "Int64",
+    "in_sample": "Int64",
+    "without_ratio": "Int64",
+    "fitted": "Int64",
+    "aic": "Float64",
+    "aicc": "Float64",
+}
+"""Columns of a ranking with their types."""
 
 
 class Names(NamedTuple):
@@ -64,6 +77,8 @@ class Compared:
         Its predictions in SI, for wear rates [kg/m/m²].
     agreement : Agreement
         Their errors against the measured ones.
+    in_sample : int
+        Number of the tests to which its law was fitted.
     information : Information or None
         Akaike's criterion, if it was fitted to these tests.
     """
@@ -115,10 +130,18 @@ class Comparison:
         blank (NA), never infinite. `in_sample` is the number of these tests to which the law was fitted, and `fitted`
         the number of parameters fitted to them here.
         """
-        rows = [_row(one, self.unit) for one in self.compared]
-        counts = dict.fromkeys(COUNTS, "Int64")
-        measures = {name: "Float64" for name in rows[0] if name != "predictor"}
-        return pd.DataFrame(rows).astype(measures | counts)
+        frame = self._ranking()
+        return frame.rename(columns={"rms_error": f"rms_error [{self.unit or '-'}]"})
+
+    def _ranking(self) -> pd.DataFrame:
+        rows = []
+        for one in self.compared:
+            row = {"predictor": one.names.label, **vars(one.agreement), "in_sample": one.in_sample}
+            if one.information is not None:
+                row |= {"fitted": one.information.parameters, "aic": one.information.aic, "aicc": one.information.aicc}
+            row["rms_error"] = float(in_unit(np.asarray(one.agreement.rms_error), self.unit))
+            rows.append(row)
+        return pd.DataFrame(rows, columns=list(COLUMNS)).astype(COLUMNS)
 
     def predictions(self) -> pd.DataFrame:
         """Return the tests with the values of each predictor; the heads of the columns hold the units."""
@@ -133,77 +156,48 @@ class Comparison:
         Tests in which one of the two is zero are missing there; the caption says how many. If a value is negative, the
         axes are linear and show all tests.
         """
-        measured, linear = self.measured, self._has_negative
+        measured = self.measured
+        values = np.stack([measured, *(one.predicted for one in self.compared)])
+        linear = bool((values < 0.0).any())
         laws = list(dict.fromkeys(one.names.law for one in self.compared))
         panels: dict[str, list[Curve]] = {}
         for one in self.compared:
-            shown = np.full(measured.shape, linear) | ((one.predicted > 0) & (measured > 0))
-            x, y = (in_unit(some[shown], self.unit) for some in (one.predicted, measured))
+            drawn = np.full(measured.shape, linear) | ((one.predicted > 0) & (measured > 0))
+            x, y = (in_unit(some[drawn], self.unit) for some in (one.predicted, measured))
             curve = Curve(one.names.law, x, y, colour=laws.index(one.names.law) % BLACK, points=True, hollow=True)
             panels.setdefault(one.names.contact, []).append(curve)
-        values = in_unit(np.concatenate([measured, *(one.predicted for one in self.compared)]), self.unit)
+        zeros = int(((values[1:] == 0.0) | (measured == 0.0)).sum(axis=-1).max())
+        hidden = f" Not shown: {name_of(self.outcome)}s of zero, in up to {zeros} tests." if zeros else ""
+        lines = "The line is equality." if linear else f"The lines are equality and a factor of two.{hidden}"
+        source = f" of {self.tests.source}" if self.tests.source else ""
         name = label(self.outcome, units={self.outcome: self.unit})
         return FigureData(
             name="measured_against_predicted",
             title=f"Measured against predicted {name_of(self.outcome)}",
-            panels=parity_panels(name, list(panels.items()), values, linear),
-            caption=self._caption(),
+            panels=parity_panels(name, list(panels.items()), in_unit(np.ravel(values), self.unit), linear),
+            caption=f"{len(self.tests)} tests{source}. {lines}",
         )
 
     def plot(self) -> Figure:
         """Return a drawing of `figure_data`."""
         return plot(self.figure_data())
 
-    def _caption(self) -> str:
-        """Return the source of the tests and the number of tests that are not shown."""
-        source = f" of {self.tests.source}" if self.tests.source else ""
-        count = f"{len(self.tests)} tests{source}."
-        if self._has_negative:
-            return f"{count} The line is equality."
-        measured = self.measured
-        zeros = max(int(((one.predicted == 0) | (measured == 0)).sum()) for one in self.compared)
-        hidden = f" Not shown: {name_of(self.outcome)}s of zero, in up to {zeros} tests." if zeros else ""
-        return f"{count} The lines are equality and a factor of two.{hidden}"
-
-    @property
-    def _has_negative(self) -> bool:
-        return any((values < 0.0).any() for values in (self.measured, *(one.predicted for one in self.compared)))
-
     def __repr__(self) -> str:
-        rows = [_row(one, self.unit) for one in self.compared]
-        heads = [head for head in rows[0] if head != "tests" and any(row[head] not in (None, 0) for row in rows)]
-        cells = [[head.partition(" ")[0] for head in heads], *([_cell(row[head]) for head in heads] for row in rows)]
+        frame = self._ranking().drop(columns="tests")
+        frame = frame.loc[:, frame.fillna(0).ne(0).any()]
+        cells = [list(frame.columns), *([_cell(value) for value in row] for row in frame.to_numpy())]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in cells]
-        count = f"{len(rows)} predictor{'s' if len(rows) > 1 else ''} on {len(self.tests)} tests"
+        count = f"{len(frame)} predictor{'s' if len(frame) > 1 else ''} on {len(self.tests)} tests"
         unit = label(self.outcome, units={self.outcome: self.unit}).rpartition(" [")[2].removesuffix("]")
         of = "" if self.outcome == WEAR else f" of {name_of(self.outcome)}"
-        shown = f"; rms_error in {unit}" if unit != "-" else ""
+        head = f"; rms_error in {unit}" if unit != "-" else ""
         validated = f", fits cross-validated ({self.cross_validated})" if self.cross_validated else ""
-        return "\n  ".join([f"{count}{of}, best first{validated}{shown}", *map(str.rstrip, lines)])
+        return "\n  ".join([f"{count}{of}, best first{validated}{head}", *map(str.rstrip, lines)])
 
 
-def _row(one: Compared, unit: str) -> dict[str, Any]:
-    """Return the measures of a predictor, by column of the table."""
-    errors, fit = one.agreement, one.information
-    return {
-        "predictor": one.names.label,
-        "rms_factor": errors.rms_factor,
-        "bias": errors.bias,
-        "geometric_sd": errors.geometric_sd,
-        "largest_factor": errors.largest_factor,
-        f"rms_error [{unit or '-'}]": float(in_unit(np.asarray(errors.rms_error), unit)),
-        "tests": errors.tests,
-        "in_sample": one.in_sample,
-        "without_ratio": errors.without_ratio,
-        "fitted": None if fit is None else fit.parameters,
-        "aic": None if fit is None else fit.aic,
-        "aicc": None if fit is None else fit.aicc,
-    }
-
-
-def _cell(value: object) -> str:
-    if value is None:
+def _cell(value: Any) -> str:
+    if value is pd.NA:
         return ""
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
@@ -258,13 +252,22 @@ def compare(
     tests, and if fits assume different kinds of scatter. A note names the laws that were fitted to these tests, and
     `in_sample` counts the tests; cross-validation ranks fits by tests that they have not seen.
     """
-    given = _given(predictors)
+    expect(Mapping | Sequence, predictors, "predictors", "a list of pipelines and fits, or a table of these by name")
     expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
-    chosen = _chosen(given, tests, outcome)
-    names = _names(given, chosen)
+    given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
+    if not given:
+        raise InputError("give at least one predictor, such as rig | contact_model | law")
+    for one in given:
+        pipeline = one.predict if isinstance(one, Fit) else one
+        if not isinstance(pipeline, Pipeline) or not pipeline.laws:
+            raise InputError(
+                f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {shown(one)}"
+            )
+    outcome = _outcome(given, tests, outcome)
+    names = _names(given, outcome)
     if isinstance(predictors, Mapping):
         names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
-    return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, chosen, cross_validate)
+    return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, outcome, cross_validate)
 
 
 @steady
@@ -278,68 +281,40 @@ def compare_named(
 ) -> Comparison:
     """Compare predictors that have names already; see `compare`. With `progress`, show that of cross-validation."""
     taken = [names.label for names, _ in named]
-    twice = [label for label in taken if taken.count(label) > 1]
+    twice = [name for name in taken if taken.count(name) > 1]
     if twice:
-        raise InputError(f"two predictors are called {quoted(twice[0])}; give a mapping from names of your own to them")
+        raise InputError(f"two predictors are called {shown(twice[0])}; give a mapping from names of your own to them")
     given = [predictor for _, predictor in named]
-    outcome = _chosen(given, tests, outcome)
+    outcome = _outcome(given, tests, outcome)
     units = [_law(one, outcome).outcome.unit for one in given]
     tests = tests.measuring([name for one in given for name in named_outcomes(_pipeline(one).laws)])
     for unit in units[1:]:
         tests.measured(outcome, unit)  # an error if the predictors give it in units of other dimensions
     notes = Notes()
-    used = _with_outcome(tests, outcome, units[0], notes)
-    compared = [_compared(*one, used, outcome, friction_coefficient, notes) for one in named]
+    there, name = ~np.isnan(tests.measured(outcome, units[0])), name_of(outcome)
+    if not there.any():
+        raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
+    if not there.all():
+        notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out")
+    task = _Task(tests[there], outcome, friction_coefficient, notes)
+    compared = [task.compared(*one) for one in named]
     how = ""
     if cross_validate is not None:
-        if not any(isinstance(one, Fit) for one in given):
-            raise InputError(
-                "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
-                ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
-            )
-        points = _operating_points(used, given[0], friction_coefficient)
-        parts, distinct = folds(points, cross_validate), int(points.max()) + 1
-        how = "leave-one-out" if len(parts) == distinct else f"{len(parts)} folds"
-        if distinct < len(used):
-            notes.add(
-                f"the {len(used)} tests are at {distinct} operating points; cross-validation leaves out repeated tests"
-                " together"
-            )
-        with Bar(len(parts) * sum(isinstance(one, Fit) for one in given), progress) as shown:
-            shown.stage("cross-validating")
-            compared = [
-                _cross_validated(old, one, used, outcome, parts, friction_coefficient, shown)
-                if isinstance(one, Fit)
-                else old
-                for old, one in zip(compared, given, strict=True)
-            ]
+        compared, how = task.cross_validated(compared, given, cross_validate, progress)
     if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
         notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
         compared = [replace(one, information=None) for one in compared]
-    _note_in_sample(compared, used, notes)
+    seen = [f"{one.names.label} ({one.in_sample} of {len(task.tests)})" for one in compared if one.in_sample]
+    if seen:
+        notes.add(
+            f"fitted to these tests, which flatters their rank: {', '.join(seen)}; compare on other tests, or"
+            " cross-validate"
+        )
     ranked = sorted(compared, key=lambda one: one.agreement.rank)
-    return Comparison(used, tuple(ranked), tuple(notes.texts), outcome, units[0], how)
+    return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, units[0], how)
 
 
-def _given(predictors: Mapping[str, Predictor] | Sequence[Predictor]) -> list[Predictor]:
-    """Return the predictors as a list."""
-    expect(Mapping | Sequence, predictors, "predictors", "a list of pipelines and fits, or a table of these by name")
-    given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
-    if not given:
-        raise InputError("give at least one predictor, such as rig | contact_model | law")
-    for one in given:
-        if not _has_law(one.predict if isinstance(one, Fit) else one):
-            raise InputError(
-                f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {shortened(one)}"
-            )
-    return given
-
-
-def _has_law(one: object) -> bool:
-    return isinstance(one, Pipeline) and bool(one.laws)
-
-
-def _chosen(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:
+def _outcome(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:
     """Return the outcome to compare.
 
     Raises
@@ -353,7 +328,7 @@ def _chosen(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -
             if outcome not in names:
                 hint = did_you_mean(outcome, names)
                 raise InputError(
-                    f"outcome: a predictor does not predict {quoted(outcome)}{hint} It predicts {', '.join(names)}"
+                    f"outcome: a predictor does not predict {shown(outcome)}{hint} It predicts {', '.join(names)}"
                 )
         return outcome
     shared = [name for name in predicted[0] if all(name in names for names in predicted)]
@@ -370,6 +345,10 @@ def _chosen(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -
     return (measured or shared)[0]
 
 
+def _pipeline(predictor: Predictor) -> Pipeline[...]:
+    return predictor.predict if isinstance(predictor, Fit) else predictor
+
+
 def _law(predictor: Predictor, outcome: str) -> Law:
     """Return the law of a predictor for an outcome by its name in results."""
     laws = _pipeline(predictor).laws
@@ -384,8 +363,7 @@ def _names(predictors: Sequence[Predictor], outcome: str) -> list[Names]:
     names = []
     for one, model in zip(predictors, models, strict=True):
         named = [(stage, next(stages)) for stage in _pipeline(one).stages]
-        around = ["patch means" if stage.gives_means else name for stage, name in named]
-        contact = ", ".join([model, *around])
+        contact = ", ".join([model, *("patch means" if stage.gives_means else name for stage, name in named)])
         law = next(laws) if isinstance(one, Pipeline) else f"{_law(one, outcome).name} fitted"
         names.append(Names(f"{law} on {contact}", law, contact))
     return names
@@ -401,123 +379,111 @@ def _labels(models: Sequence[Model]) -> list[str]:
     return [found[distinct.index(model)] for model in models]
 
 
-def _pipeline(predictor: Predictor) -> Pipeline[...]:
-    found = predictor.predict if isinstance(predictor, Fit) else predictor
-    assert isinstance(found, Pipeline)
-    return found
+@dataclass(frozen=True)
+class _Task:
+    """The tests with an outcome, on which predictors are compared; `notes` collects remarks."""
 
+    tests: WearTests
+    outcome: str
+    friction: Any
+    notes: Notes
 
-def _has_outcome(tests: WearTests, outcome: str, unit: str) -> NDArray[np.bool_]:
-    missing: NDArray[np.bool_] = np.isnan(tests.measured(outcome, unit))
-    return ~missing
+    def compared(self, names: Names, predictor: Predictor) -> Compared:
+        """Return a predictor with its predictions."""
+        law = _law(predictor, self.outcome)
+        measured = self.tests.measured(self.outcome, law.outcome.unit)
+        predicted = self._predicted(names.label, predictor, self.tests, self.friction, self.notes)
+        errors = agreement(predicted, measured)
+        if errors.without_ratio:
+            sign = "zero or negative" if ((predicted < 0) | (measured < 0)).any() else "zero"
+            self.notes.add(
+                f"{names.label}: either the predicted or the measured {name_of(self.outcome)} is {sign} in"
+                f" {errors.without_ratio} of {len(self.tests)} tests, which no factor can express; these count first in"
+                " the ranking"
+            )
+        information = self._information(names.label, predictor) if isinstance(predictor, Fit) else None
+        return Compared(names, _pipeline(predictor), predicted, errors, self._in_sample(law), information)
 
+    def cross_validated(
+        self, compared: Sequence[Compared], given: Sequence[Predictor], how: Folds, progress: bool
+    ) -> tuple[list[Compared], str]:
+        """Return the predictors, with fits predicting each test from fits to other folds, and how in words."""
+        fits = sum(isinstance(one, Fit) for one in given)
+        if not fits:
+            raise InputError(
+                "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
+                ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
+            )
+        conditions = self._conditions(given[0], self.tests, self.friction)
+        conditions.pop("traction_coefficient", None)  # measured tractions of repeated tests scatter
+        points = repeats(conditions, len(self.tests))
+        parts, distinct = folds(points, how), int(points.max()) + 1
+        if distinct < len(self.tests):
+            self.notes.add(
+                f"the {len(self.tests)} tests are at {distinct} operating points; cross-validation leaves out repeated"
+                " tests together"
+            )
+        with Bar(len(parts) * fits, progress) as bar:
+            bar.stage("cross-validating")
+            found = [
+                self._unseen(old, one, parts, bar) if isinstance(one, Fit) else old
+                for old, one in zip(compared, given, strict=True)
+            ]
+        return found, "leave-one-out" if len(parts) == distinct else f"{len(parts)} folds"
 
-def _with_outcome(tests: WearTests, outcome: str, unit: str, notes: Notes) -> WearTests:
-    """Return the tests that have an outcome."""
-    there, name = _has_outcome(tests, outcome, unit), name_of(outcome)
-    if not there.any():
-        raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
-    if not there.all():
-        notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out")
-    return tests[there]
+    def _unseen(self, old: Compared, fit: Fit, parts: list[NDArray[np.intp]], bar: Bar) -> Compared:
+        """Return a fit with its predictions of each test by fits to tests of other folds."""
+        name = old.names.label
 
+        def predict(again: Fit, held: NDArray[np.intp]) -> Array:
+            friction = self.friction
+            own = friction if np.ndim(friction) == 0 else coefficient(friction, FRICTION)[held]
+            return self._predicted(name, again, self.tests[held], own, Notes())
 
-def _compared(
-    names: Names, predictor: Predictor, tests: WearTests, outcome: str, friction: Any, notes: Notes
-) -> Compared:
-    law = _law(predictor, outcome)
-    measured = tests.measured(outcome, law.outcome.unit)
-    predicted = _predicted(names.label, predictor, law, tests, friction, notes)
-    errors = agreement(predicted, measured)
-    if errors.without_ratio:
-        sign = "zero or negative" if ((predicted < 0) | (measured < 0)).any() else "zero"
-        notes.add(
-            f"{names.label}: either the predicted or the measured {name_of(outcome)} is {sign} in"
-            f" {errors.without_ratio} of {len(tests)} tests, which no factor can express; these count first in the"
-            " ranking"
-        )
-    worth = _information(names.label, predictor, tests, outcome, notes) if isinstance(predictor, Fit) else None
-    return Compared(names, _pipeline(predictor), predicted, errors, _in_sample(law, tests, outcome), worth)
+        predicted = cross_validated(name, fit, self.tests, parts, predict, bar)
+        measured = self.tests.measured(self.outcome, _law(fit, self.outcome).outcome.unit)
+        return replace(old, predicted=predicted, agreement=agreement(predicted, measured), in_sample=0)
 
+    def _conditions(self, predictor: Predictor, tests: WearTests, friction: Any) -> dict[str, Any]:
+        pipeline = _pipeline(predictor)
+        return tests.conditions(pipeline.contact_model, friction, pipeline.rig)
 
-def _operating_points(tests: WearTests, predictor: Predictor, friction: Any) -> NDArray[np.intp]:
-    """Return the number of the operating point of each test; measured tractions of repeated tests scatter."""
-    pipeline = _pipeline(predictor)
-    conditions = tests.conditions(pipeline.contact_model, friction, pipeline.rig)
-    conditions.pop("traction_coefficient", None)
-    return repeats(conditions, len(tests))
+    def _predicted(self, name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
+        """Return the predicted outcomes of tests in SI."""
+        pipeline, law = _pipeline(predictor), _law(predictor, self.outcome)
+        conditions = self._conditions(predictor, tests, friction)
+        if isinstance(predictor, Fit) and predictor.contact_parameters:
+            conditions.pop("traction_coefficient", None)
+            if FRICTION in predictor.parameters:
+                conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
+                notes.add(f"{name}: takes the friction coefficient that was fitted, {conditions[FRICTION]:.4g}")
+        if "traction_coefficient" in conditions:
+            notes.add(f"{name}: takes the traction that was measured in the tests")
+        with notes.of(name):
+            pipeline = pipeline.without_law() | law  # warns if the parameters were fitted for another contact
+        with notes.of("tests"):
+            prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
+        return np.asarray(prediction[law.outcome.name].to_base_units().magnitude)
 
+    def _in_sample(self, law: Law) -> int:
+        """Return the number of tests to which a law was fitted, by their digests.
 
-def _cross_validated(
-    old: Compared, fit: Fit, tests: WearTests, outcome: str, parts: list[NDArray[np.intp]], friction: Any, shown: Bar
-) -> Compared:
-    """Return a fit with its predictions of each test by fits to tests of other folds."""
-    name = old.names.label
+        A law without digests counts as fitted to all tests if its calibration names their source.
+        """
+        if law.fitted_to:
+            known = set(law.fitted_to)
+            return sum(digest in known for digest in self.tests.digests(self.outcome, law.outcome.unit))
+        calibration, source = law.calibration, self.tests.source
+        return len(self.tests) if calibration is not None and source and source in calibration.source else 0
 
-    def predict(again: Fit, held: NDArray[np.intp]) -> Array:
-        own = friction if np.ndim(friction) == 0 else coefficient(friction, FRICTION)[held]
-        return _predicted(name, again, _law(again, outcome), tests[held], own, Notes())
-
-    predicted = cross_validated(name, fit, tests, parts, predict, shown)
-    errors = agreement(predicted, tests.measured(outcome, _law(fit, outcome).outcome.unit))
-    return replace(old, predicted=predicted, agreement=errors, in_sample=0)
-
-
-def _predicted(name: str, predictor: Predictor, law: Law, tests: WearTests, friction: Any, notes: Notes) -> Array:
-    """Return the predicted outcomes of tests in SI."""
-    pipeline = _pipeline(predictor)
-    conditions = tests.conditions(pipeline.contact_model, friction, pipeline.rig)
-    if isinstance(predictor, Fit) and predictor.contact_parameters:
-        conditions.pop("traction_coefficient", None)
-        if FRICTION in predictor.parameters:
-            conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
-            notes.add(f"{name}: takes the friction coefficient that was fitted, {conditions[FRICTION]:.4g}")
-    if "traction_coefficient" in conditions:
-        notes.add(f"{name}: takes the traction that was measured in the tests")
-    with notes.of(name):
-        pipeline = pipeline.without_law() | law  # warns if the parameters were fitted for another contact
-    with notes.of("tests"):
-        prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
-    return np.asarray(prediction[law.outcome.name].to_base_units().magnitude)
-
-
-def _in_sample(law: Law, tests: WearTests, outcome: str) -> int:
-    """Return the number of tests to which a law was fitted, by their digests.
-
-    A law without digests counts as fitted to all tests if its calibration names their source.
-    """
-    if law.fitted_to:
-        known = set(law.fitted_to)
-        return sum(digest in known for digest in tests.digests(outcome, law.outcome.unit))
-    calibration = law.calibration
-    named = calibration is not None and tests.source and tests.source in calibration.source
-    return len(tests) if named else 0
-
-
-def _note_in_sample(compared: Sequence[Compared], tests: WearTests, notes: Notes) -> None:
-    """Note which laws were fitted to tests of the comparison."""
-    found = [one for one in compared if one.in_sample]
-    if not found:
-        return
-    counted = (f"{one.names.label} ({one.in_sample} of {len(tests)})" for one in found)
-    notes.add(
-        f"fitted to these tests, which flatters their rank: {', '.join(counted)}; compare on other tests, or"
-        " cross-validate"
-    )
-
-
-def _information(name: str, fit: Fit, tests: WearTests, outcome: str, notes: Notes) -> Information | None:
-    """Return Akaike's criterion of a fit, or None with a note if it was not fitted to exactly these tests."""
-    kinds = [one.observable for one in fit.observations]
-    fitted_to = fit.tests.measuring([outcome])
-    unit = _law(fit, outcome).outcome.unit
-    if kinds != [outcome] or fitted_to[_has_outcome(fitted_to, outcome, unit)] != tests:
-        more = [kind.replace("_", " ") for kind in kinds if kind != outcome]
-        to = "tractions too" if more == ["traction coefficient"] and len(kinds) > 1 else " and ".join(more)
-        why = f"to {to or 'other tests'}"
-        notes.add(f"{name}: was fitted {why}, so its AIC does not apply here and is left blank")
-        return None
-    free = len(fit.parameters)
-    k = free + (fit.scatter != "uncertainty")
-    spare = len(tests) - k - 1
-    return Information(free, fit.aic, fit.aic + 2.0 * k * (k + 1) / spare if spare > 0 else None)
+    def _information(self, name: str, fit: Fit) -> Information | None:
+        """Return Akaike's criterion of a fit, or None with a note if it was not fitted to exactly these tests."""
+        fitted_to = fit.tests.measuring([self.outcome])
+        there = ~np.isnan(fitted_to.measured(self.outcome, _law(fit, self.outcome).outcome.unit))
+        if [one.observable for one in fit.observations] != [self.outcome] or fitted_to[there] != self.tests:
+            self.notes.add(f"{name}: was fitted to other tests or measurements, so its AIC is left blank")
+            return None
+        free = len(fit.parameters)
+        k = free + (fit.scatter != "uncertainty")
+        spare = len(self.tests) - k - 1
+        return Information(free, fit.aic, fit.aic + 2.0 * k * (k + 1) / spare if spare > 0 else None)

@@ -16,7 +16,7 @@ from wearlaw.errors import (
     InputError,
     PlasticityWarning,
     RangeWarning,
-    shortened,
+    shown,
 )
 from wearlaw.fitting.fit import fit as fit_parameters
 from wearlaw.fitting.observations import test_names
@@ -50,17 +50,11 @@ def folds(points: NDArray[np.intp], how: Folds) -> list[NDArray[np.intp]]:
         one operating point.
     """
     count = int(points.max()) + 1
-    if count == 1:
-        raise InputError(
-            "cross_validate: needs tests at two operating points at least, but all have the same conditions; leave it"
-            " out"
-        )
     number: object = count if how == "leave-one-out" else how
     if isinstance(number, bool) or not isinstance(number, int | np.integer) or not 2 <= number <= count:
-        all_points = "tests" if count == points.size else f"operating points of the {points.size} tests"
         raise InputError(
-            f'cross_validate: give "leave-one-out" or a number of folds from 2 to the {count} {all_points}, got'
-            f" {shortened(how)}"
+            f'cross_validate: give "leave-one-out" or a number of folds from 2 to {count}, the number of operating'
+            f" points of the {points.size} tests; got {shown(how)}"
         )
     dealt = np.random.default_rng(SEED).permutation(count)
     return [np.flatnonzero(np.isin(points, dealt[fold::number])) for fold in range(number)]
@@ -111,13 +105,8 @@ def cross_validated(
                 found[held] = predict(again, held)
         except FitError as error:
             raise FitError(
-                f"{name}: cannot be fitted without {test_names(_numbered(tests), there)}: {error}; choose another"
+                f"{name}: cannot be fitted without {test_names(tests, there)}: {error}; choose another"
                 " number of folds, or free fewer parameters"
             ) from error
         on_fold(1)
     return found
-
-
-def _numbered(tests: WearTests) -> WearTests:
-    labels = tuple(label or f"number {number}" for number, label in enumerate(tests.labels, 1))
-    return WearTests(tests.columns, labels, tests.source, tests.other_conditions, tests.outcomes)

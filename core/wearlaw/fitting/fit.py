@@ -6,12 +6,12 @@ import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from numbers import Integral
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from wearlaw.arrays.array import steadily
-from wearlaw.errors import FitError, FitWarning, shortened
+from wearlaw.errors import FitError, FitWarning, shown
 from wearlaw.fitting.intervals import DECIDED_ALONE, Replicates, leverage, replicate
 from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import test_names
@@ -103,7 +103,6 @@ def fit(
     """
     expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
     _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
-    _check_replicates(bootstrap, confidence)
     with steadily():
         task = Task.of(predict, tests, free, friction_coefficient, scatter, {} if bounds is None else bounds)
         best = task.solve(starts, seed)
@@ -131,17 +130,14 @@ def fit(
 
 def _check_settings(scatter: object, confidence: object, **counts: object) -> None:
     if not isinstance(scatter, str) or scatter not in ("relative", "absolute"):
-        raise FitError(f'scatter: must be "relative" or "absolute", got {shortened(scatter)}')
+        raise FitError(f'scatter: must be "relative" or "absolute", got {shown(scatter)}')
     if not (isinstance(confidence, float | np.floating) and 0.0 < confidence < 1.0):
-        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shortened(confidence)}")
+        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shown(confidence)}")
     for name, value in counts.items():
         if isinstance(value, bool) or not isinstance(value, Integral) or value < 0:
-            raise FitError(f"{name}: must be a whole number that is not negative, got {shortened(value)}")
-
-
-def _check_replicates(bootstrap: int, confidence: float) -> None:
-    """Raise an error if there are too few replicates to have some beyond each end of an interval."""
-    least = math.ceil(round(2.0 / (1.0 - confidence), 6))  # since 1 - 0.9 is rounded
+            raise FitError(f"{name}: must be a whole number that is not negative, got {shown(value)}")
+    bootstrap: Any = counts["bootstrap"]
+    least = math.ceil(round(2.0 / (1.0 - float(confidence)), 6))  # since 1 - 0.9 is rounded
     if 0 < bootstrap < least:
         raise FitError(
             f"bootstrap: must be at least {least}, for replicates beyond both ends of an interval of confidence"

@@ -11,7 +11,7 @@ import pint
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import FitError, InputError, UnitError, did_you_mean, quoted, shortened
+from wearlaw.errors import FitError, InputError, UnitError, did_you_mean, shown
 from wearlaw.fitting.least_squares import Bounds
 from wearlaw.pipeline.named_numbers import NamedNumbers, Place, part_at
 from wearlaw.pipeline.pipeline import Pipeline
@@ -73,7 +73,7 @@ class FreeParameters:
             If a name is unknown, ambiguous or given twice, or its bounds are invalid.
         """
         if not isinstance(bounds, Mapping):
-            raise FitError(f"bounds: give {{name: (low, high)}}, got {shortened(bounds)}")
+            raise FitError(f"bounds: give {{name: (low, high)}}, got {shown(bounds)}")
         places = _places(predict, tuple(free))
         like: dict[str, Quantity | float] = {}
         ranges: dict[str, tuple[float, float, bool]] = {}
@@ -89,7 +89,7 @@ class FreeParameters:
         for name in bounds:
             if name not in free:
                 raise FitError(
-                    f"bounds: {quoted(name)} is not free{did_you_mean(name, free)} Free are: {', '.join(free)}"
+                    f"bounds: {shown(name)} is not free{did_you_mean(name, free)} Free are: {', '.join(free)}"
                 )
         first = np.array([number_in_si(like[name]) for name in free])
         ends = [_ends(name, like[name], ranges[name], bounds.get(name)) for name in free]
@@ -156,8 +156,8 @@ def _places(predict: Pipeline[...], free: tuple[str, ...]) -> dict[str, Place]:
         if name != FRICTION:
             places[name] = _checked(predict, named, name, place)
         if place in taken:
-            also = "" if taken[place] == name else f", as {quoted(taken[place])} too"
-            raise FitError(f"free: {quoted(name)} is given twice{also}")
+            also = "" if taken[place] == name else f", as {shown(taken[place])} too"
+            raise FitError(f"free: {shown(name)} is given twice{also}")
         taken[place] = name
     return places
 
@@ -166,30 +166,17 @@ def _checked(predict: Pipeline[...], named: NamedNumbers, name: str, place: Plac
     """Return the place of a number, or raise an error for a name that is not one of a number."""
     if place is not None and place.field in numbers(part_at(predict, place)):
         return place
-    for part in named.parts:
-        own = name.removeprefix(f"{part.label}.")
-        if own in type(part.model).model_fields:
-            kind = type(getattr(part.model, own)).__name__
-            raise FitError(
-                f"free: {quoted(own)} of {part.model.kind} '{part.label}' is a {kind} and not a number, so it"
-                f" cannot be fitted; its numbers are: {', '.join(part.numbers)}"
-            )
-    if not named.known:
-        raise FitError(f"free: without a wear law there is only '{FRICTION}', not {quoted(name)}; add a law with |")
     known = [*named.known, FRICTION]
-    owners = (
-        f"no law or stage has a number {quoted(name)}"
-        if len(named.parts) > 1
-        else f"{named.owners()} has no number {quoted(name)}"
-    )
-    raise FitError(f"free: {owners}{did_you_mean(name, known)} There are: {', '.join(known)}")
+    has = "has" if len(named.parts) == 1 else "have"
+    owners = f"{named.owners()} {has}" if named.known else "without a wear law or a stage the pipeline has"
+    raise FitError(f"free: {owners} no number {shown(name)}{did_you_mean(name, known)} There are: {', '.join(known)}")
 
 
 def free_names(free: Any) -> Sequence[str]:
     """Return the names of free parameters as a sequence; one name may be given as a text."""
     names = [free] if isinstance(free, str) else free
     if not (isinstance(names, Sequence) and all(isinstance(name, str) for name in names)):
-        raise FitError(f'free: give names of parameters, such as ["q_s", "m_c"], got {shortened(free)}')
+        raise FitError(f'free: give names of parameters, such as ["q_s", "m_c"], got {shown(free)}')
     return names
 
 
@@ -210,25 +197,24 @@ def _ends(
     if given is None:
         if first == 0.0:
             raise FitError(
-                f"bounds: the first value of {quoted(name)} is zero, which says nothing of its size;"
-                f" {give_bounds(name)}"
+                f"bounds: the first value of {shown(name)} is zero, which says nothing of its size; {give_bounds(name)}"
             )
         low, high = (
             (first / FACTOR, first * FACTOR) if positive else (first - FACTOR * abs(first), first + FACTOR * abs(first))
         )
         return max(low, inward[0]), min(high, inward[1])
     if not (isinstance(given, tuple | list) and len(given) == 2):
-        raise FitError(f"bounds: {quoted(name)} must have two values, low and high, got {shortened(given)}")
+        raise FitError(f"bounds: {shown(name)} must have two values, low and high, got {shown(given)}")
     try:
         low, high = (_end_in_si(name, like, end) for end in given)
     except UnitError as error:
         raise FitError(f"bounds: {error}") from None
     if not (low < high and (low > 0.0 or not positive)):
         rule = "greater than zero and in ascending order" if positive else "in ascending order"
-        raise FitError(f"bounds: {quoted(name)} must have two values {rule}, got {shortened(given)}")
+        raise FitError(f"bounds: {shown(name)} must have two values {rule}, got {shown(given)}")
     if low < least or high > most:
         ends = " to ".join(repr(number_like(like, end)) for end in (least, most))
-        raise FitError(f"bounds: {quoted(name)} takes values in the range {ends}, got {shortened(given)}")
+        raise FitError(f"bounds: {shown(name)} takes values in the range {ends}, got {shown(given)}")
     return max(low, inward[0]), min(high, inward[1])
 
 

@@ -18,6 +18,13 @@ BATCH = 250
 DECIDED_ALONE = 0.999
 """Leverage from which a test decides a parameter alone: its residual then does not measure the scatter."""
 
+UNSEEN = 1e-6
+"""Influence of a parameter, or of a combination of some, relative to the greatest, below which it counts as none: a
+hundred times the error of the derivatives."""
+
+INVOLVED = 0.1
+"""Share of a parameter in an undetermined combination from which it counts as undetermined."""
+
 SINGULAR = 1e-12
 """Eigenvalues of JᵀJ, over the largest, that count as zero."""
 
@@ -46,6 +53,22 @@ def covariance(fits: Solutions) -> Array:
     tests, count = fits.jacobian.shape[1:]
     variance = fits.cost / (tests - count)
     found: Array = variance[:, None, None] * _inverse_normal(fits.jacobian)
+    return found
+
+
+def undetermined(jacobian: Array) -> NDArray[np.bool_]:
+    """Return which parameters tests leave open, (sets, p): alone, or because only a combination of them matters.
+
+    Parameters
+    ----------
+    jacobian : ndarray, (sets, n, p)
+        Derivatives of the predictions.
+    """
+    size = np.linalg.norm(jacobian, axis=1)
+    unseen = size <= UNSEEN * np.maximum(size.max(axis=-1, keepdims=True), UNSEEN)
+    scaled = jacobian * np.where(unseen, 0.0, 1.0 / np.where(unseen, 1.0, size))[:, None, :]
+    _, singular, directions = np.linalg.svd(scaled, full_matrices=False)
+    found: NDArray[np.bool_] = ((singular < UNSEEN)[..., None] & (np.abs(directions) > INVOLVED)).any(axis=1)
     return found
 
 
@@ -122,7 +145,7 @@ def replicate(
             on_progress(len(targets))
     return Replicates(
         np.concatenate([one.theta for one in found]),
-        np.concatenate([np.where(_collinear(one.jacobian)[:, None], 0.0, standard_errors(one)) for one in found]),
+        np.concatenate([np.where(undetermined(one.jacobian), 0.0, standard_errors(one)) for one in found]),
         float(np.mean(np.concatenate([one.converged for one in found]))),
     )
 
@@ -146,26 +169,11 @@ def studentised_intervals(fit: Solutions, replicates: Replicates, confidence: fl
 
 def _inverse_normal(slopes: Array) -> Array:
     """Return (JᵀJ)⁻¹ of shape (sets, p, p), with zeros for parameters without influence."""
-    normal, size = _scaled_normal(slopes)
-    inverse = np.linalg.pinv(normal, rcond=SINGULAR, hermitian=True)
-    seen = (size > 0.0).astype(np.float64)
-    size = np.where(size > 0.0, size, 1.0)
-    result: Array = inverse * (seen / size)[:, :, None] * (seen / size)[:, None, :]
-    return result
-
-
-def _collinear(slopes: Array) -> NDArray[np.bool_]:
-    """Return the sets whose influential parameters cannot be told apart, as a mask (sets,)."""
-    normal, _ = _scaled_normal(slopes)
-    singular: NDArray[np.bool_] = np.linalg.eigvalsh(normal)[:, 0] < SINGULAR
-    return singular
-
-
-def _scaled_normal(slopes: Array) -> tuple[Array, Array]:
-    """Return JᵀJ for columns scaled to length one, and the lengths; the diagonal is one even for length zero."""
     size = np.linalg.norm(slopes, axis=1)
-    scaled = slopes / np.where(size > 0.0, size, 1.0)[:, None, :]
+    seen = np.divide(1.0, size, out=np.zeros_like(size), where=size > 0.0)
+    scaled = slopes * seen[:, None, :]
     normal = scaled.swapaxes(1, 2) @ scaled
     index = np.arange(size.shape[1])
     normal[:, index, index] = 1.0
-    return normal, size
+    result: Array = np.linalg.pinv(normal, rcond=SINGULAR, hermitian=True) * seen[:, :, None] * seen[:, None, :]
+    return result

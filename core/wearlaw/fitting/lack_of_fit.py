@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,137 +12,106 @@ import scipy
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
-from wearlaw.fitting.observations import Observations
 from wearlaw.units.quantities import real_array
 from wearlaw.units.variables import name_of
 
 SAME = 1e-3
-"""Relative difference in load, creepage, friction and other conditions up to which tests are equal."""
-
-POOR_FACTOR = 2.0
-"""Typical factor between prediction and measurement from which a fit without repeated tests counts as poor; a choice of
-wearlaw, as are the lines of a factor of two in figures."""
-
-POOR_SHARE = 1.0 - 1.0 / POOR_FACTOR
-"""The same for absolute scatter: the rms residual over the rms measurement, as for predictions of half the wear."""
+"""Relative difference in load, creepage, friction and other conditions up to which tests repeat each other."""
 
 
 @dataclass(frozen=True)
 class LackOfFit:
-    """A check of the fit to one kind of measurement.
-
-    Repeated tests measure the scatter, and an F test compares it with the distance of the predictions from the means of
-    the repeats. If the tests state their uncertainty, a χ² test compares the residuals with that. Without either, a fit
-    counts as poor from a typical factor of `POOR_FACTOR`.
+    """A test of the residuals of one kind of measurement.
 
     Attributes
     ----------
     observable : str
         "traction_coefficient", or the name of an outcome.
     method : str
-        "repeats", "uncertainty", "factor", or "share" for absolute scatter without repeats.
+        "repeats" for the F test, "uncertainty" for the χ² test.
     value : float
-        F, χ²/ν, the typical factor exp √(Σ r²/n), or the rms residual over the rms measurement.
+        F or χ²/ν.
     degrees : tuple of float
-        Degrees of freedom: of F (two), of χ² (one), or none.
-    p_value : float or None
+        Degrees of freedom: two of F, one of χ².
+    p_value : float
         The probability of such a value or a larger one if the model is right.
-    rms : float
-        Root mean square of the residuals.
-    scatter : float or None
-        Standard deviation of repeated tests, as a residual.
     poor : bool
-        Whether the fit is poor: p below 1 - confidence, or the value beyond its limit.
-
-    Notes
-    -----
-    N. R. Draper and H. Smith, Applied Regression Analysis, 3rd ed., Wiley 1998, chapter 2, for a linear model; for a
-    law the tests hold approximately, as far as it is linear over the scatter.
+        Whether the p-value is below 1 - confidence.
     """
 
     observable: str
     method: str
     value: float
     degrees: tuple[float, ...]
-    p_value: float | None
-    rms: float
-    scatter: float | None
+    p_value: float
     poor: bool
 
     def __str__(self) -> str:
+        name = "F" if self.method == "repeats" else "χ²/ν"
         degrees = " and ".join(f"{one:.3g}" for one in self.degrees)
-        if self.method == "repeats":
-            return f"F = {self.value:.3g} with {degrees} degrees of freedom, p = {self.p_value:.2g}"
-        if self.method == "uncertainty":
-            return f"χ²/ν = {self.value:.3g} with ν = {degrees}, p = {self.p_value:.2g}"
-        if self.method == "factor":
-            return f"typical factor {self.value:.3g}, limit {POOR_FACTOR:g}"
-        return f"rms residual {self.value:.0%} of the rms measurement, limit {POOR_SHARE:.0%}"
+        return f"{name} = {self.value:.3g} with {degrees} degrees of freedom, p = {self.p_value:.2g}"
 
     @property
     def warning(self) -> str:
         """What to tell the user about a poor fit."""
-        name = name_of(self.observable)
-        if self.method == "factor":
-            why = (
-                f"the fitted {name} is typically wrong by a factor of {self.value:.3g}, more than {POOR_FACTOR:g};"
-                " repeated tests would tell how much of it is scatter"
-            )
-        elif self.method == "share":
-            why = (
-                f"the rms residual of the {name} is {self.value:.0%} of the rms measurement, more than"
-                f" {POOR_SHARE:.0%}; repeated tests would tell how much of it is scatter"
-            )
-        elif self.method == "uncertainty":
-            why = f"the residuals of the {name} are {math.sqrt(self.value):.3g} times the stated uncertainty ({self})"
-        else:
-            why = f"the fitted {name} is further from repeated tests than these are from each other ({self})"
-        return f"lack of fit: {why}; intervals hold only if law and contact model fit, so try others"
+        scatter = "repeated tests" if self.method == "repeats" else "the stated uncertainty"
+        return (
+            f"lack of fit: the residuals of the {name_of(self.observable)} are larger than {scatter} can explain"
+            f" ({self}); intervals hold only if law and contact model fit, so try others"
+        )
 
 
-def check_fit(
-    observations: Iterable[Observations],
+def lack_of_fit(
+    observable: str,
     residuals: Array,
-    leverage: Array,
-    groups: NDArray[np.intp],
+    points: NDArray[np.intp],
+    parameters: float,
     confidence: float,
-) -> tuple[LackOfFit, ...]:
-    """Return a check for each kind of measurement.
+    known_scatter: bool = False,
+) -> LackOfFit | None:
+    """Test residuals for lack of fit; None if nothing tells the scatter of the measurements.
+
+    With n residuals rᵢ at m operating points, p parameters and the mean residual r̄ⱼ of each point,
+
+        F = [Σⱼ nⱼ r̄ⱼ²/(m - p)] / [Σᵢ (rᵢ - r̄ⱼ₍ᵢ₎)²/(n - m)].
+
+    If the residuals are relative to a known scatter, Σ rᵢ² is χ² with ν = n - p.
 
     Parameters
     ----------
-    observations : iterable of Observations
-        The kinds.
+    observable : str
+        Name of the measurement.
     residuals : ndarray, (n,)
-        Residuals without weights, all kinds in a row.
-    leverage : ndarray, (n,)
-        Leverage of each measurement; it adds up to the number of parameters that a kind determines.
-    groups : ndarray of int, (n,)
-        Kind of each measurement.
+        Residuals.
+    points : ndarray of int, (n,)
+        Number of the operating point of each test, from `repeats`.
+    parameters : float
+        Number of parameters p that these residuals determine, the sum of their leverages.
     confidence : float
-        Confidence level; a test with p below 1 - confidence finds a lack of fit.
+        Confidence level.
+    known_scatter : bool
+        Whether the residuals are in units of their stated uncertainty.
+
+    Notes
+    -----
+    N. R. Draper and H. Smith, Applied Regression Analysis, 3rd ed., Wiley 1998, chapter 2, for a linear model; for a
+    law the tests hold approximately, as far as it is linear over the scatter.
     """
-    found = []
-    for number, one in enumerate(observations):
-        own = groups == number
-        found.append(_check(one, residuals[own], float(leverage[own].sum()), confidence))
-    return tuple(found)
-
-
-def _check(one: Observations, residuals: Array, spent: float, confidence: float) -> LackOfFit:
-    rms = math.sqrt(float(np.mean(residuals**2)))
-    if one.scatter == "uncertainty":
-        nu = residuals.size - spent
-        chi2 = float(np.sum(residuals**2))
-        p = float(scipy.special.chdtrc(nu, chi2))
-        return LackOfFit(one.observable, "uncertainty", chi2 / nu, (nu,), p, rms, None, p < 1.0 - confidence)
-    f, degrees, p_value, scatter = f_test(residuals, repeats(one.conditions, one.measured.size), spent)
-    if p_value is not None:
-        return LackOfFit(one.observable, "repeats", f, degrees, p_value, rms, scatter, p_value < 1.0 - confidence)
-    if one.scatter == "relative":
-        factor = math.exp(min(rms, 700.0))  # beyond, a float overflows
-        return LackOfFit(one.observable, "factor", factor, (), None, rms, None, factor > POOR_FACTOR)
-    return LackOfFit(one.observable, "share", rms, (), None, rms, None, rms > POOR_SHARE)
+    degrees: tuple[float, ...]
+    if known_scatter:
+        method, total, degrees = "uncertainty", float(np.sum(residuals**2)), (residuals.size - parameters,)
+        value, p_value = total / degrees[0], float(scipy.special.chdtrc(*degrees, total))
+    else:
+        counts = np.bincount(points)
+        means = np.bincount(points, residuals) / counts
+        lack, error = float(np.sum(counts * means**2)), float(np.sum((residuals - means[points]) ** 2))
+        degrees = (counts.size - parameters, float(residuals.size - counts.size))
+        # Leverages add up to whole numbers but for rounding. Copies of a test do not show its scatter.
+        if degrees[0] < 0.01 or degrees[1] < 1.0 or math.sqrt(error / degrees[1]) <= SAME:
+            return None
+        method, value = "repeats", (lack / degrees[0]) / (error / degrees[1])
+        p_value = float(scipy.special.fdtrc(*degrees, value))
+    return LackOfFit(observable, method, value, degrees, p_value, p_value < 1.0 - confidence)
 
 
 def repeats(conditions: Mapping[str, Any], count: int) -> NDArray[np.intp]:
@@ -168,38 +137,3 @@ def repeats(conditions: Mapping[str, Any], count: int) -> NDArray[np.intp]:
         if found[test] == len(points):
             points.append(test)
     return found
-
-
-def f_test(
-    residuals: Array, points: NDArray[np.intp], spent: float
-) -> tuple[float, tuple[float, ...], float | None, float | None]:
-    """Return F of the lack of fit, its degrees of freedom, p, and the standard deviation of the repeats.
-
-    With n tests at m points, p parameters, residuals rᵢ and their mean r̄ⱼ at each point,
-
-        F = [Σⱼ nⱼ r̄ⱼ²/(m - p)] / [Σᵢ (rᵢ - r̄ⱼ₍ᵢ₎)²/(n - m)].
-
-    Parameters
-    ----------
-    residuals : ndarray, (n,)
-        Residuals.
-    points : ndarray of int, (n,)
-        Number of the point of each test.
-    spent : float
-        Number of parameters p.
-
-    Returns
-    -------
-    tuple
-        p and the standard deviation are None if nothing repeats, or the points are no more than the parameters, or
-        repeats differ by no more than `SAME`, like copies of a test.
-    """
-    counts = np.bincount(points)
-    means = np.bincount(points, residuals) / counts
-    lack, error = float(np.sum(counts * means**2)), float(np.sum((residuals - means[points]) ** 2))
-    degrees = (counts.size - spent, float(residuals.size - counts.size))
-    # The leverages add up to whole numbers of parameters but for rounding, far below 0.01.
-    if degrees[0] < 0.01 or degrees[1] < 1.0 or math.sqrt(error / degrees[1]) <= SAME:
-        return math.nan, degrees, None, None
-    f = (lack / degrees[0]) / (error / degrees[1])
-    return f, degrees, float(scipy.special.fdtrc(*degrees, f)), math.sqrt(error / degrees[1])

@@ -10,7 +10,7 @@ from uuid import uuid4
 
 import tomli_w
 
-from wearlaw.errors import ConfigurationError, InputError, OutputError, quoted, with_problems
+from wearlaw.errors import ConfigurationError, InputError, OutputError, shown, with_problems
 from wearlaw.models.law import Law
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
@@ -41,7 +41,7 @@ def write_law(path: str | os.PathLike[str], law: Law, provenance: Mapping[str, A
         finally:
             temporary.unlink(missing_ok=True)
     except (OSError, ValueError) as error:
-        raise OutputError(f"cannot write {quoted(Path(path))}: {reason_of(error)}") from None
+        raise OutputError(f"cannot write {shown(Path(path))}: {reason_of(error)}") from None
 
 
 def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -55,11 +55,11 @@ def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
     try:
         text = read_text(path, LARGEST)
     except (FileNotFoundError, InputError) as error:
-        raise InputError(f"cannot read {subject} {quoted(Path(path))}: {reason_of(error)}") from None
+        raise InputError(f"cannot read {subject} {shown(Path(path))}: {reason_of(error)}") from None
     try:
         return parse_toml(text)
     except InputError as error:
-        raise InputError(f"{subject} {quoted(Path(path))} {error}") from None
+        raise InputError(f"{subject} {shown(Path(path))} {error}") from None
 
 
 def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
@@ -67,7 +67,7 @@ def read_wear_law(path: str | os.PathLike[str]) -> WearLaw:
     found = read_law(path)
     if not isinstance(found, WearLaw):
         raise InputError(
-            f"wear law {quoted(Path(path))} holds law {quoted(found.name)}, which predicts"
+            f"wear law {shown(Path(path))} holds law {shown(found.name)}, which predicts"
             f" {found.outcome.name} and no wear; read it with read_law"
         )
     return found
@@ -91,13 +91,13 @@ def read_law(path: str | os.PathLike[str]) -> Law:
     fields = contents.get(kind)
     if not isinstance(fields, dict) or not isinstance(fields.get("model"), str):
         raise InputError(
-            f'wear law {quoted(Path(path))} needs a table [wear_law] with the name of the law, as in model = "usfd"'
+            f'wear law {shown(Path(path))} needs a table [wear_law] with the name of the law, as in model = "usfd"'
         )
     name = fields.pop("model")
     try:
         law = loader.law(name, **fields) if kind == "law" else loader.wear_law(name, **fields)
     except ConfigurationError as error:
-        raise InputError(with_problems(f"wear law {quoted(Path(path))} is wrong in:", error.problems)) from None
+        raise InputError(with_problems(f"wear law {shown(Path(path))} is wrong in:", error.problems)) from None
     provenance = contents.get("provenance")
     digests = provenance.get(DIGESTS) if isinstance(provenance, dict) else None
     return law.with_tests(map(str, digests)) if isinstance(digests, list) else law

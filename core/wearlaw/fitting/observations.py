@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConfigurationError, FitError, ModelError, excerpt
+from wearlaw.errors import ConfigurationError, FitError, ModelError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, give_bounds
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
@@ -250,29 +250,24 @@ def _divisor(tests: WearTests, measured: Array, scatter: Scatter) -> Array:
 def _refuse_zeros(observable: str, tests: WearTests, measured: Array) -> None:
     wrong = measured <= 0.0
     if wrong.any():
-        what = (
-            "negative" if (measured[wrong] < 0.0).all() else "zero" if (measured >= 0.0).all() else "zero or negative"
-        )
         raise FitError(
-            f"{observable}: is {what} in {test_names(tests, wrong)}, but is taken to scatter by a factor, and no factor"
-            f" leads to {'zero' if what == 'zero' else 'another sign'}; leave these tests out, or fit with"
-            ' scatter="absolute"'
+            f"{observable}: is zero or negative in {test_names(tests, wrong)}, but is taken to scatter by a factor;"
+            ' leave these tests out, or fit with scatter="absolute"'
         )
 
 
 def _refuse_rest(observable: str, tests: WearTests, problem: Problem) -> None:
     still = problem.rigid_slip == 0.0
-    name = observable.replace("_", " ")
     if still.any():
         raise FitError(
-            f"creepage: is zero in {test_names(tests, still)}, where the predicted {name} is zero, whatever the"
-            " parameters; leave these tests out"
+            f"creepage: is zero in {test_names(tests, still)}, where the predicted {observable.replace('_', ' ')} is"
+            " zero, whatever the parameters; leave these tests out"
         )
 
 
 def test_names(tests: WearTests, which: NDArray[np.bool_]) -> str:
     """Return the labels of up to five tests, for messages."""
     numbers = np.flatnonzero(which)
-    shown = [excerpt(tests.labels[i]) for i in numbers[:5]]
+    labels = [tests.labels[i] or f"number {i + 1}" for i in numbers[:5]]
     more = f" and {numbers.size - 5} more" if numbers.size > 5 else ""
-    return f"test{'s' if numbers.size > 1 else ''} {', '.join(shown)}{more}"
+    return f"test{'s' if numbers.size > 1 else ''} {', '.join(labels)}{more}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw.figures.parity import parity_panels
 from wearlaw.figures.plot import plot
 from wearlaw.fitting.free_parameters import FRICTION
-from wearlaw.fitting.lack_of_fit import LackOfFit
+from wearlaw.fitting.lack_of_fit import SAME, LackOfFit
 from wearlaw.fitting.law_files import write_law
 from wearlaw.fitting.observations import TRACTION, Observations, Scatter, wear_index_density
 from wearlaw.models.law import WEAR, Law
@@ -39,12 +38,6 @@ BETWEEN = 8
 
 MOST_SAMPLES = 200
 """Most replicates for a band; more would not change it visibly."""
-
-SAME = 1e-3
-"""Relative difference in load, friction and other conditions up to which tests share a curve."""
-
-VARIES = ("longitudinal_creepage", "traction_coefficient")
-"""Quantities that vary along a curve."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -85,7 +78,7 @@ class Fit:
     observations : tuple of Observations
         The measurements with their pipeline, and the fitted friction coefficient.
     lack_of_fit : tuple of LackOfFit
-        A check of the residuals for each kind of measurement, against the scatter of repeated tests if there are any.
+        A test for each kind of measurement with repeated tests or stated uncertainties.
     settings : dict
         The arguments of `fit`, without the tests and the bootstrap, to make the fit anew.
     """
@@ -234,8 +227,7 @@ class Fit:
         first = self.observations[0]
         factor = f", a factor of {np.exp(self.rms.magnitude):.4g}" if first.scatter == "relative" else ""
         lines.append(f"  rms residual          {self.rms!r}{factor}")
-        checks = [one for one in self.lack_of_fit if one.p_value is not None or one.poor]
-        for one in checks:
+        for one in self.lack_of_fit:
             of = f" of {name_of(one.observable)}" if len(self.observations) > 1 else ""
             lines.append(f"  lack of fit           {'yes' if one.poor else 'none'}{of}: {one}")
         lines.append(f"  intervals             {self.confidence:.0%}, {self.interval_method}")
@@ -254,67 +246,58 @@ def _counted(one: Observations) -> str:
 def _figure_data(fit: Fit) -> FigureData:
     """Return a panel for each kind of measurement: outcomes over Tγ/A, tractions over creepage, or parity."""
     panels = tuple(_panel(fit, one) for one in fit.observations)
-    apart = (
-        ""
-        if all(_one_series(one.problem) or _varied(one) for one in fit.observations)
-        else "; the tests differ in load, friction or other conditions, so no curve runs through them"
-    )
-    drawn = any(curve.low is not None for panel in panels for curve in panel.curves)
+    single = all(_varied(one) for one in fit.observations)
+    apart = "" if single else "; the tests differ in several conditions, so no curve runs through them"
     names = ", ".join(fit.parameters)
-    band = "; no bootstrap, no band" if not fit.samples else ""
-    if drawn:
-        band = f"; band: {fit.confidence:.0%} of the bootstrap replicates"
-    return FigureData(
-        "fit",
-        f"Fit of {names}",
-        panels,
-        f"{names} fitted to {fit.tests.source or 'tests'}{band}{apart}.",
-        f"{fit.confidence:.0%} of the bootstrap replicates",
-    )
+    replicates = f"{fit.confidence:.0%} of the bootstrap replicates"
+    band = f"; band: {replicates}" if fit.samples and any(len(panel.curves) == 2 for panel in panels) else ""
+    source = fit.tests.source or "tests"
+    return FigureData("fit", f"Fit of {names}", panels, f"{names} fitted to {source}{band}{apart}.", replicates)
 
 
 def _panel(fit: Fit, one: Observations) -> Panel:
-    x = "creepage" if one.observable == TRACTION else "wear_index_density"
-    if not _one_series(one.problem):
-        varied = _varied(one)
-        return _parity(fit, one) if varied is None else _panel_along(fit, one, varied)
-    measured = Curve("measured", _along(fit, one.problem, x), _shown(one, one.measured), colour=BLACK, points=True)
-    scale: Literal["log", "linear"] = "log" if one.observable != TRACTION and (one.measured > 0.0).all() else "linear"
-    axes = PlotAxis(label(x), scale), PlotAxis(one.label, scale)
-    problem = _between(one)
-    return Panel(*axes, (_curve(fit, one, problem, _along(fit, problem, x)), measured))
+    """Return measured and fitted values against the one condition that varies, or else against each other."""
+    name = _varied(one)
+    if name is None:
+        return _parity(fit, one)
+    values = _numbers(one.conditions[name])
+    order = np.argsort(values, kind="stable")
+    problem = one.pipeline.posed(
+        {other: _between_tests(value, order) for other, value in one.conditions.items()}, of_one_patch="fit"
+    )
+    if FRICTION in fit.parameters:
+        fitted = np.full(problem.batch_shape, one.problem.friction_coefficient[0])
+        problem = problem.replaced(friction_coefficient=fitted)
+    if "creepage" in name and ((values >= 0.0).all() or (values <= 0.0).all()):
+        axis = "creepage" if one.observable == TRACTION else "wear_index_density"
+        at_tests, along = (
+            in_unit(some.rigid_slip if axis == "creepage" else wear_index_density(fit.predict, some), UNITS[axis])
+            for some in (one.problem, problem)
+        )
+        head, is_log = label(axis), axis != "creepage" and bool((one.measured > 0.0).all())
+    else:
+        given = one.conditions[name]
+        unit = f"{given.units:~P}" if isinstance(given, pint.Quantity) else ""
+        at_tests, along, head, is_log = values, _finer(values[order]), label(name, units={name: unit}), False
+    scale: Literal["log", "linear"] = "log" if is_log else "linear"
+    measured = Curve("measured", at_tests, in_unit(one.measured, one.unit), colour=BLACK, points=True)
+    axes = PlotAxis(head, scale), PlotAxis(one.label, scale)
+    return Panel(*axes, (_curve(fit, one, problem, along), measured))
 
 
 def _parity(fit: Fit, one: Observations) -> Panel:
-    """Return measured against fitted values of tests that differ in several conditions."""
-    fitted, measured = (_shown(one, values) for values in (one.predicted(fit.values_in_si())[0], one.measured))
+    """Return measured against fitted values."""
+    fitted, measured = (in_unit(values, one.unit) for values in (fit._fitted(one), one.measured))
     tests = Curve("tests", fitted, measured, points=True, hollow=True)
     values = np.concatenate([fitted, measured])
     (panel,) = parity_panels(one.label, [("", [tests])], values, bool((values <= 0.0).any()))
     return panel
 
 
-def _panel_along(fit: Fit, one: Observations, name: str) -> Panel:
-    """Return measured and fitted values against the only condition that differs between the tests."""
-    given = one.conditions[name]
-    unit = f"{given.units:~P}" if isinstance(given, pint.Quantity) else ""
-    values = _numbers(given)
-    order = np.argsort(values, kind="stable")
-    along = _finer(values[order])
-    conditions = {other: _between_tests(value, order) for other, value in one.conditions.items()}
-    problem = one.pipeline.posed(conditions, of_one_patch="fit")
-    if FRICTION in fit.parameters:
-        problem = problem.replaced(
-            friction_coefficient=np.full(problem.batch_shape, one.problem.friction_coefficient[0])
-        )
-    measured = Curve("measured", values, _shown(one, one.measured), colour=BLACK, points=True)
-    axes = PlotAxis(label(name, units={name: unit}), "linear"), PlotAxis(one.label, "linear")
-    return Panel(*axes, (_curve(fit, one, problem, along), measured))
-
-
 def _varied(one: Observations) -> str | None:
     """Return the only condition that differs between the tests, apart from a measured traction, or None."""
-    names = [name for name, value in one.conditions.items() if name != TRACTION and not _is_one_value(_numbers(value))]
+    numbers = {name: _numbers(value) for name, value in one.conditions.items() if name != TRACTION}
+    names = [name for name, values in numbers.items() if np.ptp(values) > SAME * np.abs(values).mean()]
     return names[0] if len(names) == 1 else None
 
 
@@ -342,7 +325,7 @@ def _curve(fit: Fit, one: Observations, problem: Problem, along: Array) -> Curve
     order = np.argsort(along, kind="stable")
 
     def at(values: dict[str, Array]) -> Array:
-        return _shown(one, one.predicted(values, problem))[:, order]
+        return in_unit(one.predicted(values, problem), one.unit)[:, order]
 
     best = at(fit.values_in_si())[0]
     low = high = None
@@ -353,52 +336,3 @@ def _curve(fit: Fit, one: Observations, problem: Problem, along: Array) -> Curve
         tail = 0.5 - 0.5 * fit.confidence
         low, high = np.quantile(at({name: some[chosen] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
     return Curve("fitted", along[order], best, low=low, high=high)
-
-
-def _arrays(problem: Problem) -> dict[str, Array]:
-    """Return the arrays of a problem, by name."""
-    found = ((field.name, getattr(problem, field.name)) for field in dataclasses.fields(problem))
-    return {name: value for name, value in found if isinstance(value, np.ndarray)}
-
-
-def _one_series(problem: Problem) -> bool:
-    """Return whether points differ only in longitudinal creepage, measured traction, and a V that the creepage sets."""
-    others = (value for name, value in _arrays(problem).items() if name not in (*VARIES, "rolling_speed"))
-    return all(map(_is_one_value, others)) and _speed_by_creepage(problem) is not None
-
-
-def _is_one_value(array: Array) -> bool:
-    return bool(np.ptp(array) <= SAME * np.abs(array).mean())
-
-
-def _speed_by_creepage(problem: Problem) -> float | None:
-    """Return the c of a V (1 + c|ξ|) that is the same at all points, or None.
-
-    It is 0 if V is kept, and ±1/2 if disc 1 keeps its speed and is the faster or the slower one.
-    """
-    kept = {c: problem.rolling_speed * (1.0 + c * np.abs(problem.creepage)) for c in (0.0, 0.5, -0.5)}
-    best = min(kept, key=lambda c: float(np.ptp(kept[c])))
-    return best if _is_one_value(kept[best]) else None
-
-
-def _between(one: Observations) -> Problem:
-    """Return the operating points of the tests and points between them, in the order of their creepage."""
-    problem = one.problem.forward()
-    order = np.argsort(problem.creepage, kind="stable")
-    places = np.arange(order.size, dtype=np.float64)
-    fine = np.linspace(0.0, places[-1], BETWEEN * (order.size - 1) + 1)
-    between = problem.replaced(
-        **{name: np.interp(fine, places, values[order]) for name, values in _arrays(problem).items()}
-    )
-    c = _speed_by_creepage(problem) or 0.0
-    kept = (problem.rolling_speed * (1.0 + c * problem.creepage)).mean()
-    return between.replaced(rolling_speed=kept / (1.0 + c * between.creepage))
-
-
-def _along(fit: Fit, problem: Problem, x: str) -> Array:
-    si = problem.rigid_slip if x == "creepage" else wear_index_density(fit.predict, problem)
-    return in_unit(si, UNITS[x])
-
-
-def _shown(one: Observations, values: Array) -> Array:
-    return in_unit(values, one.unit)

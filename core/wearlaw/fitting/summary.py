@@ -13,7 +13,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.errors import ConfigurationError, FitError
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters
 from wearlaw.fitting.intervals import Replicates, covariance, leverage, student_intervals, studentised_intervals
-from wearlaw.fitting.lack_of_fit import check_fit
+from wearlaw.fitting.lack_of_fit import LackOfFit, lack_of_fit, repeats
 from wearlaw.fitting.least_squares import Solutions
 from wearlaw.fitting.observations import FLOOR, Observations, test_names, wear_index_density
 from wearlaw.fitting.result import Fit
@@ -71,9 +71,22 @@ def summarise(
         samples={name: free.quantity(name, one) for name, one in samples.items()},
         provenance=provenance,
         observations=observations,
-        lack_of_fit=check_fit(observations, best.residuals[0] / task.weights, leverage(best), task.groups, confidence),
+        lack_of_fit=_lack_of_fit(task, best, confidence),
         settings=settings,
     )
+
+
+def _lack_of_fit(task: Task, best: Solutions, confidence: float) -> tuple[LackOfFit, ...]:
+    """Return a test for each kind of measurement whose scatter is known."""
+    residuals, leverages = best.residuals[0] / task.weights, leverage(best)
+    found = []
+    for number, one in enumerate(task.observations):
+        own = task.groups == number
+        points, spent = repeats(one.conditions, one.measured.size), float(leverages[own].sum())
+        found.append(
+            lack_of_fit(one.observable, residuals[own], points, spent, confidence, one.scatter == "uncertainty")
+        )
+    return tuple(one for one in found if one is not None)
 
 
 def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Quantity, Quantity]]:

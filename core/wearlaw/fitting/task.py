@@ -12,17 +12,18 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.elastic_limit import Overload
-from wearlaw.errors import FitError, shortened
+from wearlaw.errors import FitError, shown
 from wearlaw.fitting.free_parameters import FRICTION, FreeParameters, free_names, give_bounds
-from wearlaw.fitting.identification import refuse_undetermined, where_tested
+from wearlaw.fitting.intervals import undetermined
 from wearlaw.fitting.least_squares import Bounds, Solutions, refine, search
-from wearlaw.fitting.observations import Observations, Scatter, observe
+from wearlaw.fitting.observations import Observations, Scatter, observe, wear_index_density
 from wearlaw.models.law import named_outcomes
 from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.pipeline.named_numbers import staged_models
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.ranges import overload_of
-from wearlaw.units.quantities import QuantityLike, coefficient
+from wearlaw.units.quantities import QuantityLike, coefficient, from_si
+from wearlaw.units.variables import UNITS
 from wearlaw.wear_tests.tests import WearTests
 
 NEAR = 10.0
@@ -68,7 +69,7 @@ class Task:
         """
         friction = _one_value(friction)
         if not isinstance(predict, Pipeline):
-            raise FitError(f"predict: give a rig with a contact model, and laws or none, not {shortened(predict)}")
+            raise FitError(f"predict: give a rig with a contact model, and laws or none, not {shown(predict)}")
         if predict.laws:
             predict = predict.with_law(*(law.explicit() for law in predict.laws))
         free = free_names(free)
@@ -113,12 +114,33 @@ class Task:
             for _ in range(ROUNDS):
                 self._weigh(best)
                 best = refine(self.model, target, best.theta[0], bounds)
-            fits = [refine(self.model, target, one.theta[0], bounds) for one in fits]
         if not best.converged[0]:
             advice = give_bounds(self.free.names[0])
             raise FitError(f"the fit has not converged; {advice}, or a law whose parameters are nearer to the tests")
-        refuse_undetermined(best, fits, self.free, where_tested(self.observations))
+        self._check_determined(best)
         return best
+
+    def _check_determined(self, best: Solutions) -> None:
+        """Raise an error that names the parameters which the tests leave open."""
+        names = [name for name, left in zip(self.free.names, undetermined(best.jacobian)[0], strict=True) if left]
+        if not names:
+            return
+        one = self.observations[0]
+        tested = {
+            "creepage": one.problem.rigid_slip,
+            "wear index density": wear_index_density(one.pipeline, one.problem),
+        }
+        units = (UNITS[name.replace(" ", "_")] for name in tested)
+        covered = " and ".join(
+            f"{name} {from_si(values.min(), unit)!r} to {from_si(values.max(), unit)!r}"
+            for (name, values), unit in zip(tested.items(), units, strict=True)
+        )
+        open_ = " and ".join(names)
+        raise FitError(
+            f"free: the tests do not determine {open_}"
+            + (", or determine only a combination of them" if len(names) > 1 else "")
+            + f"; they cover {covered}; fix some of these parameters, or add tests in other regimes"
+        )
 
     def overload(self, best: Solutions) -> Overload | None:
         """Return the test that is furthest beyond first yield, with the traction that the best fit predicts."""

@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from wearlaw.errors import InputError
 from wearlaw.models.contact_model import Model
-from wearlaw.units.quantities import shown
+from wearlaw.units.quantities import full_text
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -24,7 +24,7 @@ def labels(models: Sequence[Model]) -> list[str]:
             raise InputError(f"the model {model.name} is listed twice; leave one out, or give it other options")
         body = ["body"] if getattr(model, "body", None) is not None else []
         fields = dict.fromkeys([*_telling_apart(namesakes), *body])
-        options = [f"{field}={shown(getattr(model, field))}" for field in fields]
+        options = [f"{field}={full_text(getattr(model, field))}" for field in fields]
         found.append(f"{model.name}({', '.join(options)})" if options else model.name)
     return found
 
@@ -39,7 +39,7 @@ def _telling_apart(models: Sequence[Model]) -> list[str]:
     fields: list[str] = []
     kinds: set[tuple[str, ...]] = {()}
     for field in type(models[0]).model_fields:
-        finer = {tuple(shown(getattr(model, name)) for name in (*fields, field)) for model in models}
+        finer = {tuple(full_text(getattr(model, name)) for name in (*fields, field)) for model in models}
         if len(finer) > len(kinds):
             fields, kinds = [*fields, field], finer
     return fields

@@ -30,8 +30,7 @@ from wearlaw.errors import (
     ModelError,
     UnitError,
     did_you_mean,
-    quoted,
-    shortened,
+    shown,
 )
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale, fault, with_origin
 from wearlaw.settings.configuration import Configuration
@@ -94,7 +93,7 @@ class Calibration(Configuration):
         for variable, low, high in self.stated_range:
             if variable not in LAW_VARIABLES:
                 raise InputError(
-                    f"stated_range: unknown variable {quoted(variable)}{did_you_mean(variable, LAW_VARIABLES)}"
+                    f"stated_range: unknown variable {shown(variable)}{did_you_mean(variable, LAW_VARIABLES)}"
                 )
             unit = Unit(UNITS[variable], positive=False)
             found[variable] = float(unit.si(low, variable)), float(unit.si(high, variable))
@@ -146,10 +145,10 @@ class Outcome:
         """Check the fields."""
         if not (isinstance(self.name, str) and self.name.isidentifier()):
             raise InputError(
-                f"outcome: its name must be made of letters, digits and underscores, got {shortened(self.name)}"
+                f"outcome: its name must be made of letters, digits and underscores, got {shown(self.name)}"
             )
         if not isinstance(self.of, str) or self.of not in ("area mean", "patch"):
-            raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shortened(self.of)}")
+            raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shown(self.of)}")
         known = VARIABLES.get(self.name)
         if known is not None:
             if self.name != WEAR:
@@ -279,7 +278,7 @@ class Law(Model):
         by_variable = points if isinstance(points, Mapping) else {"": points}
         for values in by_variable.values():
             if not isinstance(values, tuple | list | np.ndarray):
-                raise fault(self, f'gives {shortened(points)} as `{name}`; it must be like {{"pressure": (2.1e9,)}}')
+                raise fault(self, f'gives {shown(points)} as `{name}`; it must be like {{"pressure": (2.1e9,)}}')
 
     def __repr_args__(self) -> Any:
         inherited = Law.model_fields
@@ -357,9 +356,7 @@ class Law(Model):
             If the law is stated for the whole patch, and the contact has more than one node.
         """
         if not isinstance(contact, Contact):
-            raise CompositionError(
-                f"a {self.kind} takes a contact, not {shortened(contact)}; a pipeline begins with a rig"
-            )
+            raise CompositionError(f"a {self.kind} takes a contact, not {shown(contact)}; a pipeline begins with a rig")
         scale: Scale = "patch" if contact.pressure.size == contact.rolling_speed.size else "cells"
         if self.scale == "patch" and scale != "patch":
             raise CompositionError(

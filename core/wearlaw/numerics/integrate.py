@@ -23,7 +23,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array, extremes, read_only, steadily, steady
-from wearlaw.arrays.kernels import accelerated
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.contact.quadrature import Zone, join, remainder
@@ -38,11 +37,8 @@ from wearlaw.numerics.solving import Solver, check_columns, check_type
 from wearlaw.numerics.splits import split_rates
 from wearlaw.numerics.staged import Staged
 
-BLOCK = 8192
+BLOCK = 16384
 """Operating points of a block in closed form: its arrays stay in the cache and in reused memory."""
-
-COMPILED_BLOCK = 16384
-"""The same number with compiled kernels, which make fewer arrays."""
 
 NODE_BLOCK = 3072
 """Operating points of a block with nodes."""
@@ -330,9 +326,7 @@ def _over_line(
             on_block(problem, found)
         del found["longitudinal"]
         return found, solver
-    block = NODE_BLOCK
-    if fields and not any(one is None for one in ramps):
-        block = COMPILED_BLOCK if accelerated(problem.creepage.size) else BLOCK
+    block = BLOCK if fields and not any(one is None for one in ramps) else NODE_BLOCK
     return solver.by_block(problem, block, columns, on_block, drop_force=fields is not None), solver
 
 

@@ -20,7 +20,7 @@ from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Problem, Strips
 from wearlaw.contact.quadrature import Nodes
-from wearlaw.errors import ModelError, shortened
+from wearlaw.errors import ModelError, shown
 from wearlaw.models.contact_model import QUADRATURE, Blame, ContactModel, Model, fault
 from wearlaw.models.law import Law, Numbers
 from wearlaw.models.line_contact_model import LineContactModel
@@ -194,7 +194,7 @@ def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Pr
 def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
     ellipse = problem.geometry != "line"
     if not isinstance(contact, Contact):
-        raise fault(model, f"returned {shortened(contact)}, not a wearlaw.Contact")
+        raise fault(model, f"returned {shown(contact)}, not a wearlaw.Contact")
     if ellipse and not contact.on_strips:
         raise fault(
             model,

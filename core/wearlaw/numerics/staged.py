@@ -8,7 +8,7 @@ from functools import reduce
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, ModelError, shortened
+from wearlaw.errors import CompositionError, ModelError, shown
 from wearlaw.models.contact_model import Blame, Claim, ContactModel, Scale, with_origin
 from wearlaw.models.stage import Forces, Solve, Stage
 from wearlaw.numerics.solving import Solver, check_problem
@@ -68,7 +68,7 @@ class Staged(ContactModel):
         with Blame(self.stage):
             found = self.stage.altered(there, forces)
         if not isinstance(found, Problem):
-            raise self._altered_wrongly(f"{shortened(found)}, not a wearlaw.Problem")
+            raise self._altered_wrongly(f"{shown(found)}, not a wearlaw.Problem")
         if (found.geometry, found.batch_shape) != (there.geometry, there.batch_shape):
             raise self._altered_wrongly(
                 f"a problem of geometry '{found.geometry}' and shape {found.batch_shape} for one of geometry"

@@ -77,7 +77,7 @@ def write_fit(
         fit.to_toml(folder / LAW)
         names.append(LAW)
     tables = {"parameters": fit.table(), "residuals": fit.residuals}
-    return [*names, *_write(folder, FIT, record, tables, fit.figure_data(), figure_formats, latex)]
+    return [*names, *_write(folder, FIT, record, tables, _named(fit.figure_data()), figure_formats, latex)]
 
 
 def write_comparison(
@@ -87,10 +87,7 @@ def write_comparison(
     figure_formats: Sequence[FigureFormat] = ("png",),
     latex: bool = False,
 ) -> list[str]:
-    """Write a comparison into an empty folder and return the names of the files, the ranking first.
-
-    Parameters, errors: as for `write_fit`.
-    """
+    """Write a comparison as `write_fit` writes a fit, the ranking first."""
     record = {
         "wearlaw": __version__,
         "tests": comparison.tests.source,
@@ -99,7 +96,7 @@ def write_comparison(
         "notes": list(notes),
     }
     tables = {"ranking": comparison.table(), "predictions": comparison.predictions()}
-    return _write(folder, COMPARISON, record, tables, comparison.figure_data(), figure_formats, latex)
+    return _write(folder, COMPARISON, record, tables, _named(comparison.figure_data()), figure_formats, latex)
 
 
 def write_wear(
@@ -111,45 +108,9 @@ def write_wear(
     figure_formats: Sequence[FigureFormat] = ("png",),
     latex: bool = False,
 ) -> list[str]:
-    """Write the wear in contacts of other programs into an empty folder and return the names of the files.
-
-    Parameters
-    ----------
-    tables : mapping of str to DataFrame
-        The tables by the names of their files.
-    figure : FigureData or None
-        The figure, if there is one.
-    laws : sequence of Law
-        The laws.
-    notes, folder, figure_formats, latex
-        As for `write_fit`.
-
-    Raises
-    ------
-    OutputError
-        If a file cannot be written.
-    """
+    """Write the wear in contacts of other programs as `write_fit` writes a fit; tables by the names of their files."""
     record = {"wearlaw": __version__, "laws": [specification(law) for law in laws], "notes": list(notes)}
-    return _write(folder, WEAR, record, tables, figure, figure_formats, latex)
-
-
-def _write(
-    folder: Path,
-    marker: str,
-    record: Mapping[str, Any],
-    tables: Mapping[str, pd.DataFrame],
-    figure: FigureData | None,
-    figure_formats: Sequence[FigureFormat],
-    latex: bool,
-) -> list[str]:
-    """Write tables, a figure if there is one, and a JSON record."""
-    with writing():
-        names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
-        if figure is not None:
-            names += save_figure(figure, folder, figure.name, figure_formats)
-        text = json.dumps(record, indent=2, ensure_ascii=False)
-        (folder / marker).write_text(text + "\n", encoding="utf-8")
-    return [*names, marker]
+    return _write(folder, WEAR, record, tables, _named(figure), figure_formats, latex)
 
 
 def write_uncertainty(
@@ -160,36 +121,46 @@ def write_uncertainty(
     figure_formats: Sequence[FigureFormat] = ("png",),
     latex: bool = False,
 ) -> list[str]:
-    """Write tables, figures and a JSON record into an empty folder, and return the names of the files.
-
-    Raises
-    ------
-    OutputError
-        If a file cannot be written.
-    """
-    files = written(case)
+    """Write the uncertainty of a case, and the case itself, as `write_fit` writes a fit."""
     record = {
         "samples": found.samples,
         "seed": seed,
         "provenance": provenance(case),
         "notes": list(found.notes),
     }
+    tables = {"wear_rates": found.wear_rates, **({"sobol_indices": found.indices} if len(found.indices) else {})}
+    figures = {}
+    for file, one in zip(figure_files(found.pairs), found.pairs, strict=True):
+        name = name_of(one.uncertainty.outcomes[0])
+        title = f"{name[:1].upper()}{name[1:]} by {one.pair.label}: {one.point}"
+        figures[file] = replace(one.uncertainty.figure_data(), title=title)
+    return _write(folder, UNCERTAINTY, record, tables, figures, figure_formats, latex, written(case))
+
+
+def _named(figure: FigureData | None) -> dict[str, FigureData]:
+    return {} if figure is None else {figure.name: figure}
+
+
+def _write(
+    folder: Path,
+    marker: str,
+    record: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    figures: Mapping[str, FigureData],
+    figure_formats: Sequence[FigureFormat],
+    latex: bool,
+    texts: Mapping[str, str] | None = None,
+) -> list[str]:
+    """Write tables, figures and texts by the names of their files, and a JSON record."""
     with writing():
-        names = save_table(found.wear_rates, folder, "wear_rates", latex)
-        if len(found.indices):
-            names += save_table(found.indices, folder, "sobol_indices", latex)
-        figures = []
-        for one in found.pairs:
-            figure = one.uncertainty.figure_data()
-            name = name_of(one.uncertainty.outcomes[0])
-            figures.append(replace(figure, title=f"{name[:1].upper()}{name[1:]} by {one.pair.label}: {one.point}"))
-        for file, figure in zip(figure_files(found.pairs), figures, strict=True):
-            names += save_figure(figure, folder, file, figure_formats)
-        for name, text in files.items():
+        names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
+        for name, figure in figures.items():
+            names += save_figure(figure, folder, name, figure_formats)
+        record_text = json.dumps(record, indent=2, ensure_ascii=False) + "\n"
+        for name, text in {**(texts or {}), marker: record_text}.items():
             (folder / name).write_text(text, encoding="utf-8")
-        text = json.dumps(record, indent=2, ensure_ascii=False)
-        (folder / UNCERTAINTY).write_text(text + "\n", encoding="utf-8")
-    return [*names, *files, UNCERTAINTY]
+            names.append(name)
+    return names
 
 
 def figure_files(pairs: Sequence[UncertainPair]) -> list[str]:

@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from wearlaw.errors import OutputError, quoted
+from wearlaw.errors import OutputError, shown
 from wearlaw.settings.text_files import reason_of
 
 FILES = ".wearlaw-files"
@@ -39,7 +39,7 @@ def results_folder(folder: Path, overwrite: bool, marker: str) -> Iterator[Path]
     made: list[Path] = []
     try:
         if folder.is_file():
-            raise OutputError(f"output: {quoted(folder)} is a file, not a folder; choose another with -o")
+            raise OutputError(f"output: {shown(folder)} is a file, not a folder; choose another with -o")
         _earlier(folder, overwrite, marker)
         made = [path for path in (folder, *folder.parents) if not path.exists()]
         folder.mkdir(parents=True, exist_ok=True)
@@ -50,7 +50,7 @@ def results_folder(folder: Path, overwrite: bool, marker: str) -> Iterator[Path]
         if isinstance(error, OutputError):
             raise
         raise OutputError(
-            f"output: cannot write to {quoted(folder)}: {reason_of(error)}; choose another folder with -o"
+            f"output: cannot write to {shown(folder)}: {reason_of(error)}; choose another folder with -o"
         ) from None
     finally:
         for path in made:
@@ -66,11 +66,9 @@ def _earlier(folder: Path, overwrite: bool, marker: str) -> list[str]:
     files = listed.read_text(encoding="utf-8").splitlines() if listed.is_file() else []
     if marker not in files:
         what = "holds results of another command" if files else f"does not hold results of wearlaw (no {FILES})"
-        raise OutputError(
-            f"output: {quoted(folder)} {what}, and will not be overwritten; choose another folder with -o"
-        )
+        raise OutputError(f"output: {shown(folder)} {what}, and will not be overwritten; choose another folder with -o")
     if not overwrite:
-        raise OutputError(f"output: {quoted(folder)} is not empty; choose another folder with -o, or add --overwrite")
+        raise OutputError(f"output: {shown(folder)} is not empty; choose another folder with -o, or add --overwrite")
     return files
 
 

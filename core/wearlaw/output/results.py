@@ -15,13 +15,13 @@ import matplotlib as mpl
 import pandas as pd
 import xarray
 
-from wearlaw.errors import OutputError, quoted
+from wearlaw.errors import OutputError, shown
 from wearlaw.figures.curves import FigureData, FigureFormat
 from wearlaw.figures.drawing import draw
 from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
-from wearlaw.report.latex import latex_table
 from wearlaw.report.main_result import main_figure, main_result
 from wearlaw.report.page import report
+from wearlaw.report.styled import latex_table
 from wearlaw.report.tables import tables
 from wearlaw.settings.text_files import reason_of
 from wearlaw.study.case import CASE_FILE, Case, written
@@ -239,7 +239,7 @@ def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:
                 if name in found
                 else "its name must be made of letters, digits and underscores"
             )
-            raise OutputError(f"output: the {kind} {quoted(name)} cannot be written: {fault}")
+            raise OutputError(f"output: the {kind} {shown(name)} cannot be written: {fault}")
         found[name] = thing
     return found
 

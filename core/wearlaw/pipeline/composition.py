@@ -10,7 +10,7 @@ import numpy as np
 
 from wearlaw.contact.material import dundurs_beta
 from wearlaw.contact.problem import PATCHES, Body, Geometry, Problem
-from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning, did_you_mean, quoted
+from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning, did_you_mean, shown
 from wearlaw.models.contact_model import ContactModel, Model, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.plugins import loader
@@ -61,7 +61,7 @@ def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str 
         known = list(named_outcomes(laws))
         hint = did_you_mean(outcome, known)
         raise CompositionError(
-            f"no law of the pipeline predicts {quoted(outcome)}{hint} Its laws predict: {', '.join(known) or 'nothing'}"
+            f"no law of the pipeline predicts {shown(outcome)}{hint} Its laws predict: {', '.join(known) or 'nothing'}"
         )
     if body is None and len(found) > 1:
         names = [laws[index].body for index in found]
@@ -71,7 +71,7 @@ def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str 
     if not fitting:
         names = [laws[index].body for index in found]
         raise CompositionError(
-            f"{outcome}: no law predicts it for {quoted(body)}, only for {' and '.join(map(str, names))}"
+            f"{outcome}: no law predicts it for {shown(body)}, only for {' and '.join(map(str, names))}"
         )
     return fitting[0]
 
@@ -86,12 +86,12 @@ def check_laws(laws: Sequence[Law], bodies: Iterable[str]) -> None:
         if law.body is not None and known and law.body not in known:
             hint = did_you_mean(law.body, known)
             raise CompositionError(
-                f"{law.kind} '{law.name}': the rig has no body {quoted(law.body)}{hint} Its bodies are"
+                f"{law.kind} '{law.name}': the rig has no body {shown(law.body)}{hint} Its bodies are"
                 f" {' and '.join(known)}"
             )
     for law, one in itertools.combinations(laws, 2):
         if law.outcome.name == one.outcome.name and (None in (law.body, one.body) or one.body == law.body):
-            which = f" of {quoted(law.body)}" if law.body is not None and law.body == one.body else ""
+            which = f" of {shown(law.body)}" if law.body is not None and law.body == one.body else ""
             raise CompositionError(
                 f"{law.name} and {one.name} both predict '{law.outcome.name}'{which}; keep one of them, or give each"
                 f' its own body, as in body="{(known or ["rail"])[0]}"'
@@ -198,7 +198,7 @@ def warn_of_body(bodies: Mapping[str, Body], law: Law, body: str, stacklevel: in
     if calibration is not None and fitted_to_other_body(bodies, law, body):
         warnings.warn(
             f"the parameters of {law.kind} '{law.name}' were fitted to the wear of the first body, with"
-            f" {calibration.materials}, but are used for the wear of {quoted(body)}; check them against data",
+            f" {calibration.materials}, but are used for the wear of {shown(body)}; check them against data",
             CalibrationWarning,
             stacklevel=stacklevel,
         )

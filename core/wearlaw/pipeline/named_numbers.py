@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import CompositionError, InputError, quoted
+from wearlaw.errors import CompositionError, InputError, shown
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
@@ -100,9 +100,7 @@ class NamedNumbers:
         found = [part for part in self.parts if part.holds(name)]
         if len(found) > 1:
             full = " or ".join(f"'{part.label}.{name}'" for part in found)
-            raise InputError(
-                f"{quoted(name)} is a number of {' and '.join(part.label for part in found)}; write {full}"
-            )
+            raise InputError(f"{shown(name)} is a number of {' and '.join(part.label for part in found)}; write {full}")
         if found:
             return Place(found[0].kind, found[0].index, name)
         for part in self.parts:

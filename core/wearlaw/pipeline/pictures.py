@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import InputError, did_you_mean, quoted
+from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.contact_model import Scale
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.datasets import Conditions, Named, dataset
@@ -83,8 +83,8 @@ def draw(prediction: Drawn, conditions: Conditions, name: str | None, x: str | N
 def _over_points(prediction: Drawn, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
     """Draw a variable over the operating points: a map over two axes of many values, otherwise curves."""
     problem = prediction.problem
-    found, shown = _found(prediction, conditions, name, x)
-    dims = [str(dim) for dim in found[shown].dims if dim not in problem.dims]
+    found, variable = _found(prediction, conditions, name, x)
+    dims = [str(dim) for dim in found[variable].dims if dim not in problem.dims]
     if len(dims) > 2:
         raise InputError(
             f"plot: there are {len(dims)} axes of operating points, and a picture shows two; choose some of the points,"
@@ -96,10 +96,10 @@ def _over_points(prediction: Drawn, conditions: Conditions, name: str | None, x:
     along = x if x in dims else max(dims, key=lambda dim: found.sizes[dim])
     others = [dim for dim in dims if dim != along]
     if x is None and others and found.sizes[others[0]] > MOST_CURVES:
-        return _titled(_map(found, shown, along, others[0], problem, ax), conditions, dims)
+        return _titled(_map(found, variable, along, others[0], problem, ax), conditions, dims)
     together = [name for name in conditions.numbers if name in found and found[name].dims == (along,)]
     across = x or (along if along in together or not together else together[0])
-    return _titled(_curves(found, shown, across, others, problem, ax), conditions, (across, *others))
+    return _titled(_curves(found, variable, across, others, problem, ax), conditions, (across, *others))
 
 
 def _found(
@@ -107,19 +107,19 @@ def _found(
 ) -> tuple[xarray.Dataset, str]:
     """Return the variables to draw, without axes of a single operating point, and the name of the one to draw."""
     outcomes = named_outcomes(prediction.laws)
-    shown = name or next(iter(outcomes), "tangential_force")
-    names = [shown]
+    variable = name or next(iter(outcomes), "tangential_force")
+    names = [variable]
     if x is not None and x not in conditions.numbers:
         names.append(x)
-    if shown in outcomes:
+    if variable in outcomes:
         names.append(OUTSIDE_RANGE)
     found = dataset(prediction, conditions, names)
-    points = [dim for dim in found[shown].dims if dim not in prediction.problem.dims]
-    return found.squeeze([dim for dim in points if found.sizes[dim] == 1]), shown
+    points = [dim for dim in found[variable].dims if dim not in prediction.problem.dims]
+    return found.squeeze([dim for dim in points if found.sizes[dim] == 1]), variable
 
 
 def _curves(
-    found: xarray.Dataset, shown: str, across: str, others: Sequence[str], problem: Problem, ax: Axes | None
+    found: xarray.Dataset, variable: str, across: str, others: Sequence[str], problem: Problem, ax: Axes | None
 ) -> Axes:
     """Draw a curve for each value of the other axes and for each patch."""
     apart = [*others, *(dim for dim in problem.dims if dim in found.dims)]
@@ -129,36 +129,36 @@ def _curves(
     for index in np.ndindex(*(found.sizes[dim] for dim in apart)):
         place = dict(zip(apart, index, strict=True))
         table = found.isel(place).to_dataframe().reset_index()
-        table = table[table[shown].notna() & table[across].notna()]
+        table = table[table[variable].notna() & table[across].notna()]
         if table.empty:
             continue
         named = _series(found, place, problem)
         marked: dict[str, Any] = {"marker": "o" if len(table) <= FEW_POINTS else "", "markersize": 4, "legend": False}
-        outside = table[OUTSIDE_RANGE] > 0.0 if OUTSIDE_RANGE in table else table[shown].isna()  # none
-        inside = table.assign(**{shown: table[shown].where(~outside)})
+        outside = table[OUTSIDE_RANGE] > 0.0 if OUTSIDE_RANGE in table else table[variable].isna()  # none
+        inside = table.assign(**{variable: table[variable].where(~outside)})
         pale |= bool(outside.any())
         if outside.any():  # the whole curve is pale, and on it lies the part inside
             behind: Axes = table.plot(
-                x=across, y=shown, label=named if outside.all() else "_", alpha=PALE, **look, **marked
+                x=across, y=variable, label=named if outside.all() else "_", alpha=PALE, **look, **marked
             )
             marked["color"] = behind.get_lines()[-1].get_color()
             look["ax"] = drawn = behind
         if not outside.all():
-            drawn = inside.plot(x=across, y=shown, label=named, **look, **marked)
+            drawn = inside.plot(x=across, y=variable, label=named, **look, **marked)
         look["ax"] = drawn
     if drawn is None:
-        raise InputError(f"plot: {shown} has no value at these operating points")
+        raise InputError(f"plot: {variable} has no value at these operating points")
     if pale:
         drawn.plot([], [], color="black", alpha=PALE, label=OUTSIDE)
     if apart or pale:
         drawn.legend(fontsize="small")
-    drawn.set(xlabel=_label(found[across]), ylabel=_label(found[shown]))
+    drawn.set(xlabel=_label(found[across]), ylabel=_label(found[variable]))
     return drawn
 
 
-def _map(found: xarray.Dataset, shown: str, along: str, up: str, problem: Problem, ax: Axes | None) -> Axes:
+def _map(found: xarray.Dataset, variable: str, along: str, up: str, problem: Problem, ax: Axes | None) -> Axes:
     """Draw a map over two axes; hatching marks what lies outside the range of the law."""
-    values = found[shown]
+    values = found[variable]
     if values.ndim > 2:
         known = " and ".join(f"{dim} {labels}" for dim, labels in problem.dims.items())
         raise InputError(f"plot: a map shows one patch; choose one of {known}, as in r.sel(...).plot()")
@@ -175,19 +175,19 @@ def _map(found: xarray.Dataset, shown: str, along: str, up: str, problem: Proble
 
 def _bars(prediction: Drawn, conditions: Conditions, name: str | None, ax: Axes | None) -> Axes:
     """Draw a variable of each existing patch at one operating point."""
-    found, shown = _found(prediction, conditions, name)
-    dims = [str(dim) for dim in found[shown].dims]
-    table = found.to_dataframe(dim_order=dims).dropna(subset=shown)
+    found, variable = _found(prediction, conditions, name)
+    dims = [str(dim) for dim in found[variable].dims]
+    table = found.to_dataframe(dim_order=dims).dropna(subset=variable)
     labels = [row if isinstance(row, tuple) else (row,) for row in table.index.tolist()]
     names = [in_words(dict(zip(dims, row, strict=True))) for row in labels]
-    drawn: Axes = table[[shown]].set_axis(names).plot.bar(legend=False, rot=0, **_look(ax))
+    drawn: Axes = table[[variable]].set_axis(names).plot.bar(legend=False, rot=0, **_look(ax))
     marks = table[OUTSIDE_RANGE].tolist() if OUTSIDE_RANGE in table else []
     outside = [place for place, mark in enumerate(marks) if mark > 0.0]
     for place in outside:
         drawn.patches[place].set(alpha=PALE, label=OUTSIDE if place == outside[0] else "_")
     if outside:
         drawn.legend(handles=[drawn.patches[outside[0]]], fontsize="small")
-    drawn.set(xlabel="", ylabel=_label(found[shown]))
+    drawn.set(xlabel="", ylabel=_label(found[variable]))
     drawn.axhline(0.0, color="black", linewidth=0.8)
     return drawn
 
@@ -205,12 +205,14 @@ def _of_patch(prediction: Drawn, name: str | None, ax: Axes | None) -> Axes:
     every = [str(one) for one in fields.data_vars]
     if name is not None and name not in every:
         raise InputError(
-            f"plot: there is one operating point, and {quoted(name)} is no field of its patch"
+            f"plot: there is one operating point, and {shown(name)} is no field of its patch"
             f"{did_you_mean(name, every)} The fields are: {', '.join(every)}"
         )
     if not line:
-        shown = name or FIELDS[0]
-        mesh = fields[shown].plot.pcolormesh(x="x", y="y", cbar_kwargs={"label": _label(fields[shown])}, **_look(ax))
+        variable = name or FIELDS[0]
+        mesh = fields[variable].plot.pcolormesh(
+            x="x", y="y", cbar_kwargs={"label": _label(fields[variable])}, **_look(ax)
+        )
         mesh.axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
         drawn: Axes = mesh.axes
         return drawn
@@ -228,12 +230,12 @@ def _map_of_patch(prediction: Drawn) -> xarray.Dataset:
     contact = prediction.contact
     (*_, strips, nodes) = contact.pressure.shape
 
-    def shown(field: str) -> tuple[tuple[str, str], Any, dict[str, str]]:
+    def values_of(field: str) -> tuple[tuple[str, str], Any, dict[str, str]]:
         values = np.broadcast_to(getattr(contact, field), contact.pressure.shape).reshape(strips, nodes)
         return ("strip", "node"), in_unit(values, UNITS[field]), {"units": UNITS[field], "long_name": name_of(field)}
 
     none = prediction.problem.replaced(dims={})
-    return labelled(none, {name: shown(name) for name in ("x", "y")}, {name: shown(name) for name in FIELDS})
+    return labelled(none, {name: values_of(name) for name in ("x", "y")}, {name: values_of(name) for name in FIELDS})
 
 
 def _look(ax: Axes | None) -> dict[str, Any]:
@@ -252,10 +254,10 @@ def _value(one: xarray.DataArray) -> str:
     return f"{name_of(str(one.name))} {one.item():.4g} {_unit(one)}".rstrip()
 
 
-def _titled(drawn: Axes, conditions: Conditions, shown: Collection[str]) -> Axes:
+def _titled(drawn: Axes, conditions: Conditions, variable: Collection[str]) -> Axes:
     """Write the conditions that a picture does not show above it, and return its axes."""
     drawn.set_title("")  # xarray's
-    lines = textwrap.wrap(conditions.text(without=shown), TITLE)
+    lines = textwrap.wrap(conditions.text(without=variable), TITLE)
     drawn.set_title("\n".join(lines), fontsize="small", loc="left")
     return drawn
 

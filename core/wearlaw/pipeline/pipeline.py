@@ -19,7 +19,7 @@ from pydantic import model_validator
 from wearlaw.arrays.array import Array, extremes, read_only, steadily, steady, type_name
 from wearlaw.contact.conditions import COEFFICIENTS
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, excerpt, shortened
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, shown
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, fault, with_origin
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.stage import Stage
@@ -165,7 +165,7 @@ class Rig(Model):
             self.check_names(conditions)
             raise
         if not isinstance(problem, Problem):
-            raise fault(self, f"returned {shortened(problem)}, not a wearlaw.Problem")
+            raise fault(self, f"returned {shown(problem)}, not a wearlaw.Problem")
         if problem.dims:
             self._check_dims(problem)
         for body in problem.bodies.values():
@@ -188,9 +188,7 @@ class Rig(Model):
         """
         if not isinstance(balanced, Problem):
             raise ModelError(
-                with_origin(
-                    self, f"`balanced` of rig '{self.name}' returned {shortened(balanced)}, not a wearlaw.Problem"
-                )
+                with_origin(self, f"`balanced` of rig '{self.name}' returned {shown(balanced)}, not a wearlaw.Problem")
             )
         shapes = [(one.geometry, one.batch_shape, one.dims) for one in (balanced, problem)]
         if shapes[0] != shapes[1]:
@@ -265,8 +263,7 @@ class Rig(Model):
         for name in conditions if known else ():
             if name not in known:
                 raise ConditionsError(
-                    f"{excerpt(name)}: unknown condition{did_you_mean(name, known)} The conditions are:"
-                    f" {', '.join(known)}"
+                    f"{name}: unknown condition{did_you_mean(name, known)} The conditions are: {', '.join(known)}"
                 )
         for name in self.needed():
             if name not in conditions:
@@ -276,7 +273,7 @@ class Rig(Model):
         """Return the pipeline that solves this rig's contact with a contact model."""
         if not isinstance(model, ContactModel):
             raise CompositionError(
-                f"a rig is followed by a contact model, not by {shortened(model)};"
+                f"a rig is followed by a contact model, not by {shown(model)};"
                 ' for example rig | wl.contact_model("fastsim") | wl.wear_law("usfd")'
             )
         assert isinstance(self, Rig)
@@ -394,11 +391,11 @@ class Pipeline(Configuration, Generic[P]):
         """Return the pipeline with one more law, or one more stage around the contact model."""
         if isinstance(part, Stage):
             if self.laws:
-                raise CompositionError(f"a stage stands before the laws, not after them: {shortened(part)}; {ORDER}")
+                raise CompositionError(f"a stage stands before the laws, not after them: {shown(part)}; {ORDER}")
             return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=(*self.stages, part))
         before, after = ("law", "another law") if self.laws else ("contact model", "a stage or a law")
         if not isinstance(part, Law):
-            raise CompositionError(f"a {before} is followed by {after}, not by {shortened(part)}; {ORDER}")
+            raise CompositionError(f"a {before} is followed by {after}, not by {shown(part)}; {ORDER}")
         pipeline = self.with_law(*self.laws, part)
         warn_of_parameters(self.rig.patch_geometry, self.rig.bodies, self.contact_model, self.scale, part)
         return pipeline
@@ -407,9 +404,7 @@ class Pipeline(Configuration, Generic[P]):
         """Return the contact and the wear under the given conditions; see the rig's `problem` for the conditions."""
         if positional:
             first = next(iter(self.rig.conditions()), "creepage")
-            raise ConditionsError(
-                f"{shortened(positional[0])}: is given without a name; write {first}=..., for example"
-            )
+            raise ConditionsError(f"{shown(positional[0])}: is given without a name; write {first}=..., for example")
         found = self.predict(self.posed(conditions), stacklevel=3)
         found._given = conditions
         return found

@@ -17,7 +17,7 @@ from wearlaw.arrays.array import Array, same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
-from wearlaw.errors import CompositionError, InputError, shortened
+from wearlaw.errors import CompositionError, InputError, shown
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.models.line_contact_model import LineContactModel
@@ -601,7 +601,7 @@ class Prediction:
             isinstance(strips, bool) or not isinstance(strips, int) or not 2 <= strips <= MOST_STRIPS
         ):
             raise InputError(
-                f"strips: must be a whole number from 2 to {MOST_STRIPS}, such as 101; got {shortened(strips)}"
+                f"strips: must be a whole number from 2 to {MOST_STRIPS}, such as 101; got {shown(strips)}"
             )
         index = self._wear_law(body)
         self._warn_of(index, body, stacklevel=4)  # the decorator counts

@@ -10,7 +10,7 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Body, Problem
-from wearlaw.errors import InputError, shortened
+from wearlaw.errors import InputError, shown
 from wearlaw.numerics.blocks import blocks
 from wearlaw.numerics.profiles import onto_positions
 from wearlaw.pipeline.selection import axis_names
@@ -68,8 +68,7 @@ def on_profile(
     positions = VARIABLES[POSITION].expected.si(at, "at")
     if positions.ndim != 1 or positions.size < 2 or not (np.diff(positions) > 0.0).all():
         raise InputError(
-            f"at: must be two or more increasing positions, such as Q(np.linspace(-40, 30, 141), 'mm'); got"
-            f" {shortened(at)}"
+            f"at: must be two or more increasing positions, such as Q(np.linspace(-40, 30, 141), 'mm'); got {shown(at)}"
         )
     if body.profile_position is None:
         raise InputError(

@@ -111,8 +111,7 @@ class RangeWatch:
                 f"{' and '.join(dict.fromkeys(laws))}: the rate follows pressure times slip, p·s, but where the"
                 " contact slips its traction is not μp, as with the parabolic bound of fastsim. ∫p·s dA is then not"
                 " Tγ/μ, and the rate is off by about the same factor. The two agree with exact, for discs, and with"
-                ' fastsim\'s bound="elliptic" and adaptive march, under spin with slip="scaled" too;'
-                f" {seen.outside} of {self.points} {self.counted} {lie} more than"
+                f" strip_theory, for wheels; {seen.outside} of {self.points} {self.counted} {lie} more than"
                 f" {100.0 * SLIDING_TOLERANCE:.0f} % off, as far as {farthest:.3g} times Tγ/μ",
                 RangeWarning,
                 stacklevel=stacklevel + 1,

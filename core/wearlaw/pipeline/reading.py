@@ -14,7 +14,7 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Body, Problem, Strips
-from wearlaw.errors import DataError, InputError, ModelError, UnknownModelError, did_you_mean, quoted, shortened
+from wearlaw.errors import DataError, InputError, ModelError, UnknownModelError, did_you_mean, shown
 from wearlaw.models.contact_model import Blame, fault
 from wearlaw.models.reader import Reader
 from wearlaw.numerics.solved import Solved, flat
@@ -72,12 +72,12 @@ def _read(path: Path, name: str | None, options: dict[str, Any]) -> Contact:
     with Blame(reader):
         contact = reader.read(path)
     if not isinstance(contact, Contact) or contact.problem is None:
-        raise fault(reader, f"returned {shortened(contact)}, not a wearlaw.Contact with its problem")
+        raise fault(reader, f"returned {shown(contact)}, not a wearlaw.Contact with its problem")
     model = Solved(contact=flat(contact, contact.problem), read_by=reader)
     try:
         Solver(model).check(model.contact, model.contact.problem, totals=True)
     except ModelError as error:
-        raise ModelError(f"{quoted(path)}: {error}") from None
+        raise ModelError(f"{shown(path)}: {error}") from None
     return contact
 
 
@@ -87,9 +87,9 @@ def _head(path: Path) -> bytes:
         return read_start(path, HEAD)
     except FileNotFoundError:
         beside = sorted(one.name for one in path.parent.glob(f"[!.]*{escape(path.suffix)}"))
-        raise DataError(f"there is no file {quoted(path)}{did_you_mean(path.name, beside)}") from None
+        raise DataError(f"there is no file {shown(path)}{did_you_mean(path.name, beside)}") from None
     except InputError as error:
-        raise DataError(f"cannot read {quoted(path)}: {error}") from None
+        raise DataError(f"cannot read {shown(path)}: {error}") from None
 
 
 def _by_name(name: str) -> type[Reader]:
@@ -110,7 +110,7 @@ def _recognised(path: Path, head: bytes) -> type[Reader]:
         endings = sorted({suffix for one in shelf.items().values() for suffix in one.suffixes})
         known = unknown("reader", path.suffix or path.name, shelf.items(), found.broken).partition("Installed: ")[2]
         raise DataError(
-            f"cannot read {quoted(path)}: no reader reads files that end in {quoted(path.suffix)}; those of the"
+            f"cannot read {shown(path)}: no reader reads files that end in {shown(path.suffix)}; those of the"
             f" installed readers end in {', '.join(endings) or 'nothing'}. Installed: {known}. If it is a file of"
             " theirs, name the reader, as in read_contact(path, reader=...)"
         )
@@ -119,10 +119,10 @@ def _recognised(path: Path, head: bytes) -> type[Reader]:
     fitting = [(name, one, origin) for name, one, origin in candidates if _recognises(one, head)]
     if len(fitting) == 1:
         return fitting[0][1]
-    names = " and ".join(f"{quoted(name)} of {origin}" for name, _, origin in fitting or candidates)
+    names = " and ".join(f"{shown(name)} of {origin}" for name, _, origin in fitting or candidates)
     which = "several readers recognise it" if fitting else "none of the readers for its ending recognises it"
     raise UnknownModelError(
-        f"cannot read {quoted(path)}: {which}, {names}; name one, as in read_contact(path, reader=...)"
+        f"cannot read {shown(path)}: {which}, {names}; name one, as in read_contact(path, reader=...)"
     )
 
 
@@ -140,7 +140,7 @@ def _stacked(paths: Sequence[Path], contacts: Sequence[Contact]) -> Contact:
     for path, one in zip(paths, problems, strict=True):
         if one.geometry != first.geometry or (one.strips is None) != (first.strips is None):
             raise InputError(
-                f"{quoted(path)}: is of geometry '{one.geometry}', but {quoted(paths[0])} is of '{first.geometry}'"
+                f"{shown(path)}: is of geometry '{one.geometry}', but {shown(paths[0])} is of '{first.geometry}'"
             )
         _check_bodies(path, one, paths[0], first)
     problem = _stacked_problem(problems)
@@ -162,7 +162,7 @@ COMPONENTS = ("traction_x", "traction_y", "slip_x", "slip_y")
 def _single(path: Path, contact: Contact) -> Problem:
     problem = contact.problem
     if problem is None or problem.batch_shape:
-        raise InputError(f"{quoted(path)}: holds several operating points; read it alone")
+        raise InputError(f"{shown(path)}: holds several operating points; read it alone")
     return problem
 
 
@@ -171,14 +171,14 @@ def _check_bodies(path: Path, problem: Problem, first_path: Path, first: Problem
     materials, others = ({name: body.material for name, body in one.bodies.items()} for one in (problem, first))
     if materials != others:
         raise InputError(
-            f"{quoted(path)}: its bodies are of other materials than those of {quoted(first_path)}, {materials} and not"
+            f"{shown(path)}: its bodies are of other materials than those of {shown(first_path)}, {materials} and not"
             f" {others}; read these files apart"
         )
     for name, body in problem.bodies.items():
         if np.isinf(body.rolling_radius) != np.isinf(first.bodies[name].rolling_radius):
             without, one = (path, first_path) if np.isinf(body.rolling_radius) else (first_path, path)
             raise InputError(
-                f"{quoted(without)}: has no radius of {quoted(name)}, but {quoted(one)} has one; give the radius in the"
+                f"{shown(without)}: has no radius of {shown(name)}, but {shown(one)} has one; give the radius in the"
                 " options of the reader, or read these files apart"
             )
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
-from wearlaw.errors import InputError, did_you_mean, quoted, shortened
+from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.numerics.integrate import Across, SlipTotals, Totals
 from wearlaw.units.variables import name_of
 
@@ -61,10 +61,10 @@ class Selection:
         found: dict[str, Position] = {}
         for name, given in labels.items():
             if name not in problem.dims:
-                numbered = f"; {quoted(name)} has none, so use isel({name}=...)" if name in axis_names(problem) else ""
+                numbered = f"; {shown(name)} has none, so use isel({name}=...)" if name in axis_names(problem) else ""
                 known = " and ".join(f"{dim} {_listed(own)}" for dim, own in problem.dims.items()) or "none"
                 hint = did_you_mean(name, problem.dims) if not numbered else "."
-                raise InputError(f"sel: no labels for an axis {quoted(name)}{numbered}{hint} Axes with labels: {known}")
+                raise InputError(f"sel: no labels for an axis {shown(name)}{numbered}{hint} Axes with labels: {known}")
             several = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str)
             places = [_place(name, one, problem.dims[name]) for one in (given if several else [given])]
             found[name] = places if several else places[0]
@@ -84,7 +84,7 @@ class Selection:
         for name in positions:
             if name not in sizes:
                 known = ", ".join(f"{dim} ({size})" for dim, size in sizes.items()) or "none at one operating point"
-                raise InputError(f"isel: no axis {quoted(name)}{did_you_mean(name, names)} Axes (with sizes): {known}")
+                raise InputError(f"isel: no axis {shown(name)}{did_you_mean(name, names)} Axes (with sizes): {known}")
         return cls(tuple(_position(name, positions.get(name, slice(None)), sizes[name]) for name in names))
 
     @classmethod
@@ -176,7 +176,7 @@ def _place(name: str, label: object, labels: Sequence[Label]) -> int:
     for place, known in enumerate(labels):
         if known == label:
             return place
-    raise InputError(f"sel: axis {quoted(name)} has no label {shortened(label)}, only {_listed(labels)}")
+    raise InputError(f"sel: axis {shown(name)} has no label {shown(label)}, only {_listed(labels)}")
 
 
 def _position(name: str, given: object, size: int) -> Position:
@@ -188,11 +188,11 @@ def _position(name: str, given: object, size: int) -> Position:
     except Exception:  # whatever the `__array__` of another package's type raises
         numbers = np.asarray(None)
     if numbers.ndim > 1 or (numbers.size and numbers.dtype.kind not in "iu"):
-        raise InputError(f"isel: {name} must be an integer, a list of integers or a slice, got {shortened(given)}")
+        raise InputError(f"isel: {name} must be an integer, a list of integers or a slice, got {shown(given)}")
     wrong = numbers[(numbers < -size) | (numbers >= size)]
     if wrong.size:
         raise InputError(
-            f"isel: axis {quoted(name)} has {size} entries, 0 to {size - 1}; there is no entry {wrong.flat[0]}"
+            f"isel: axis {shown(name)} has {size} entries, 0 to {size - 1}; there is no entry {wrong.flat[0]}"
         )
     found: list[int] = (numbers % size).reshape(-1).tolist()
     return found if numbers.ndim else found[0]

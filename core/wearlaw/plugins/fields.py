@@ -18,8 +18,7 @@ from wearlaw.errors import (
     WearlawError,
     described,
     did_you_mean,
-    quoted,
-    shortened,
+    shown,
 )
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import Law
@@ -97,10 +96,10 @@ def _rig(value: Any) -> Any:
         return _rig_of_table(value)
     if isinstance(value, str):
         if value not in loader.rigs() and value in known_presets():
-            raise InputError(f'{quoted(value)} is a preset; write {{preset = "{value}"}}')
+            raise InputError(f'{shown(value)} is a preset; write {{preset = "{value}"}}')
         return loader.rig(value)
     if not _is_rig(value):
-        raise InputError(f"must be a rig, its name, or a table of its name and fields; got {shortened(value)}")
+        raise InputError(f"must be a rig, its name, or a table of its name and fields; got {shown(value)}")
     return value
 
 
@@ -112,7 +111,7 @@ def _rig_of_table(table: Mapping[str, Any]) -> Any:
         raise InputError(_without_type(given))
     for name, value in (("type", kind), ("preset", preset)):
         if not isinstance(value, str | None):
-            raise ConfigurationError("rig", [Fault((name,), f"must be a name, got {shortened(value)}")])
+            raise ConfigurationError("rig", [Fault((name,), f"must be a name, got {shown(value)}")])
     if preset is None:
         found = loader.installed()
         try:
@@ -162,24 +161,24 @@ def _of_preset(kind: str | None, preset: str, given: Mapping[str, Any]) -> Any:
     except WearlawError:
         raise
     except Exception as error:
-        raise InputError(f"preset {quoted(preset)} of rig '{rig.name}' failed: {described(error)}") from error
+        raise InputError(f"preset {shown(preset)} of rig '{rig.name}' failed: {described(error)}") from error
     if not _is_rig(made):
-        raise InputError(f"preset {quoted(preset)} of rig '{rig.name}' must return a rig, got {shortened(made)}")
+        raise InputError(f"preset {shown(preset)} of rig '{rig.name}' must return a rig, got {shown(made)}")
     return made
 
 
 def _no_preset(kind: str | None, preset: str, presets: Mapping[str, list[type[Any]]]) -> Fault:
     if preset in presets:
         names = " and ".join(rig.name for rig in presets[preset])
-        return Fault(("preset",), f"{quoted(preset)} is a preset of {names}; add the type")
+        return Fault(("preset",), f"{shown(preset)} is a preset of {names}; add the type")
     if kind is not None and kind not in loader.rigs():
         rigs = loader.rigs()
         return Fault(
-            ("type",), f"no rig is called {quoted(kind)}{did_you_mean(kind, rigs)} Installed: {', '.join(rigs)}"
+            ("type",), f"no rig is called {shown(kind)}{did_you_mean(kind, rigs)} Installed: {', '.join(rigs)}"
         )
-    of = f"rig {quoted(kind)} has no preset" if kind else "no rig has a preset"
+    of = f"rig {shown(kind)} has no preset" if kind else "no rig has a preset"
     known = ", ".join(presets) or "none"
-    return Fault(("preset",), f"{of} {quoted(preset)}{did_you_mean(preset, presets)} There are: {known}")
+    return Fault(("preset",), f"{of} {shown(preset)}{did_you_mean(preset, presets)} There are: {known}")
 
 
 def preset_fields(rig: type[Any], preset: str) -> type[Configuration]:

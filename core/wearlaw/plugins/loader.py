@@ -21,7 +21,7 @@ from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
-from wearlaw.errors import PluginWarning, UnknownModelError, described, shortened
+from wearlaw.errors import PluginWarning, UnknownModelError, described, did_you_mean, shown
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import Law
 from wearlaw.models.reader import Reader
@@ -38,7 +38,7 @@ class Installed:
     Attributes
     ----------
     rigs, contact_models, stages, wear_laws, laws, readers, parameter_sets, materials, material_types, cases, test_sets,
-    sections : Shelf
+    sections, commands : Shelf
         What the plugins provide, by kind and name.
     plugins : list of Origin
         All plugins.
@@ -58,14 +58,22 @@ class Installed:
     cases: Shelf[str] = field(default_factory=lambda: Shelf("case", str))
     test_sets: Shelf[str] = field(default_factory=lambda: Shelf("test set", str))
     sections: Shelf[Callable[..., Any]] = field(default_factory=lambda: Shelf("section", Callable))  # type: ignore[arg-type]
+    commands: Shelf[hookspecs.Command] = field(default_factory=lambda: Shelf("command", hookspecs.Command))
     plugins: list[Origin] = field(default_factory=list)
     broken: list[Broken] = field(default_factory=list)
 
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind."""
-        models = (self.rigs, self.contact_models, self.stages, self.wear_laws, self.laws, self.readers)
-        named = (self.parameter_sets, self.materials, self.material_types, self.cases, self.test_sets, self.sections)
-        return *models, *named
+        named = (self.parameter_sets, self.materials, self.material_types)
+        return *self.model_shelves(), *named, *self.resource_shelves(), self.commands
+
+    def model_shelves(self) -> tuple[Shelf[Any], ...]:
+        """Return the shelf of each kind of model."""
+        return self.rigs, self.contact_models, self.stages, self.wear_laws, self.laws, self.readers
+
+    def resource_shelves(self) -> tuple[Shelf[Any], ...]:
+        """Return the shelf of each kind of resource."""
+        return self.cases, self.test_sets, self.sections
 
     def of_kind(self, kind: str) -> Shelf[Any]:
         """Return the shelf of a kind, such as "wear law"."""
@@ -304,7 +312,7 @@ def _name_and_version(distribution: Distribution) -> tuple[str, str]:
 
 def _check_interface(needed: object) -> None:
     if not isinstance(needed, int) or isinstance(needed, bool):
-        raise TypeError(f"wearlaw_interface must be a whole number, got {shortened(needed)}")
+        raise TypeError(f"wearlaw_interface must be a whole number, got {shown(needed)}")
     if needed != hookspecs.INTERFACE_VERSION:
         behind = "wearlaw" if needed > hookspecs.INTERFACE_VERSION else "the plugin"
         raise TypeError(
@@ -354,38 +362,33 @@ class _Plugin:
 
 
 def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
-    for rig_class in chain.from_iterable(plugin.answers("wearlaw_rigs")):
-        add_model(found.rigs, rig_class, origin)
-    for model in chain.from_iterable(plugin.answers("wearlaw_contact_models")):
-        add_model(found.contact_models, model, origin)
-    for stage_class in chain.from_iterable(plugin.answers("wearlaw_stages")):
-        add_model(found.stages, stage_class, origin)
-    for law_class in chain.from_iterable(plugin.answers("wearlaw_wear_laws")):
-        add_model(found.wear_laws, law_class, origin)
-    for law_class in chain.from_iterable(plugin.answers("wearlaw_laws")):
-        add_model(found.laws, law_class, origin)
-    for reader_class in chain.from_iterable(plugin.answers("wearlaw_readers")):
-        add_model(found.readers, reader_class, origin)
+    shelves = {shelf.kind: shelf for shelf in found.model_shelves()}
+    for model in chain.from_iterable(plugin.answers("wearlaw_models")):
+        kind = getattr(model, "kind", None)
+        if kind not in shelves:
+            raise TypeError(f"wearlaw_models: {shown(model)} is no {', '.join(shelves)}; return classes of models")
+        add_model(shelves[kind], model, origin)
 
 
 def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:
-    shelves: dict[str, Shelf[Any]] = {
-        "wearlaw_parameter_sets": found.parameter_sets,
-        "wearlaw_cases": found.cases,
-        "wearlaw_tests": found.test_sets,
-        "wearlaw_sections": found.sections,
-    }
-    for answer in plugin.answers("wearlaw_materials"):
-        for name, item in answer.items():
+    """Add parameter sets, materials, resources and commands."""
+    for name, item in chain.from_iterable(answer.items() for answer in plugin.answers("wearlaw_named")):
+        if not isinstance(item, WearLaw):
             _add_material(name, item, origin, found)
-    for hook, shelf in shelves.items():
-        for name, item in chain.from_iterable(mapping.items() for mapping in plugin.answers(hook)):
-            if shelf is found.parameter_sets and name in found.wear_laws.providers:  # the look-up would give the law
-                of = found.wear_laws.origin(name)
-                cause = f"parameter set '{name}' has the name of a wear law of {of}; give it another name"
-                found.broken.append(Broken(origin, cause))
-                continue
-            shelf.add(name, known_as(name, item) if isinstance(item, Configuration) else item, origin)
+        elif name in found.wear_laws.providers:  # the look-up would give the law
+            of = found.wear_laws.origin(name)
+            cause = f"parameter set '{name}' has the name of a wear law of {of}; give it another name"
+            found.broken.append(Broken(origin, cause))
+        else:
+            found.parameter_sets.add(name, known_as(name, item), origin)
+    for kind, items in chain.from_iterable(answer.items() for answer in plugin.answers("wearlaw_resources")):
+        shelves = {shelf.kind: shelf for shelf in found.resource_shelves()}
+        if kind not in shelves:
+            raise TypeError(f"wearlaw_resources: there is no kind {shown(kind)}{did_you_mean(kind, shelves)}")
+        for name, item in items.items():
+            shelves[kind].add(name, item, origin)
+    for command in chain.from_iterable(plugin.answers("wearlaw_commands")):
+        found.commands.add(command.name, command, origin)
 
 
 def _add_material(name: object, item: object, origin: Origin, found: Installed) -> None:
@@ -393,7 +396,7 @@ def _add_material(name: object, item: object, origin: Origin, found: Installed) 
     if isinstance(item, type):
         cls: type[Any] = item
         if not issubclass(cls, Material):
-            raise TypeError(f"material {name!r} must be a Material or a class derived from it, got {shortened(item)}")
+            raise TypeError(f"material {name!r} must be a Material or a class derived from it, got {shown(item)}")
         if name != cls.__name__:
             raise TypeError(f"a class of materials goes by its own name: write {cls.__name__!r} in place of {name!r}")
     else:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
-from wearlaw.errors import UnknownModelError, did_you_mean, quoted, shortened
+from wearlaw.errors import UnknownModelError, did_you_mean, shown
 from wearlaw.models.contact_model import Model
 
 T = TypeVar("T")
@@ -48,9 +48,9 @@ class Shelf(Generic[T]):
     def add(self, name: object, item: object, origin: Origin) -> None:
         """Put an item on the shelf, or raise `TypeError` if it is not of the kind."""
         if not isinstance(item, self.base):
-            raise TypeError(f"{self.kind} {name!r} must be a {self.base.__name__}, got {shortened(item)}")
-        if not (isinstance(name, str) and name.isidentifier()):
-            raise TypeError(f"the name of a {self.kind} must be an identifier, got {shortened(name)}")
+            raise TypeError(f"{self.kind} {name!r} must be a {self.base.__name__}, got {shown(item)}")
+        if not (isinstance(name, str) and (name.replace("-", "_") if self.kind == "command" else name).isidentifier()):
+            raise TypeError(f"the name of a {self.kind} must be an identifier, got {shown(name)}")
         self.providers.setdefault(name, []).append((item, origin))
 
     def origin(self, name: str) -> Origin:
@@ -79,7 +79,7 @@ class Shelf(Generic[T]):
             return found[0][0]
         if found:
             origins = " and ".join(str(origin) for _, origin in found)
-            raise UnknownModelError(f"{self.kind} {quoted(name)} is provided more than once, by {origins}; remove one")
+            raise UnknownModelError(f"{self.kind} {shown(name)} is provided more than once, by {origins}; remove one")
         raise UnknownModelError(unknown(self.kind, name, self.items(), broken))
 
 
@@ -91,7 +91,7 @@ def add_model(shelf: Shelf[type[ModelT]], model: Any, origin: Origin) -> None:
         raise TypeError(f"{model.__name__} does not implement {', '.join(sorted(model.__abstractmethods__))}")
     name = getattr(model, "name", None)
     if not (isinstance(name, str) and name.isidentifier()):
-        raise TypeError(f"the name of {model.__name__} must be an identifier, got {shortened(name)}")
+        raise TypeError(f"the name of {model.__name__} must be an identifier, got {shown(name)}")
     shelf.add(name, model, origin)
 
 
@@ -99,6 +99,6 @@ def unknown(kind: str, name: str, known: Iterable[str], broken: Iterable[Broken]
     """Return the message for an unknown name, with the installed names and the plugins that were left out."""
     names = list(known)
     message = (
-        f"no {kind} is called {shortened(name)}{did_you_mean(str(name), names)} Installed: {', '.join(names) or 'none'}"
+        f"no {kind} is called {shown(name)}{did_you_mean(str(name), names)} Installed: {', '.join(names) or 'none'}"
     )
     return message + "".join(f"\n  left out: {plugin}" for plugin in broken)

@@ -15,12 +15,12 @@ from wearlaw.figures.curves import FigureData
 from wearlaw.models.contact_model import Blame
 from wearlaw.models.law import WEAR, Law
 from wearlaw.pipeline.variables import MASS
-from wearlaw.study.figure_kinds import axes_of_map
 from wearlaw.study.figure_spec import FigureSpec, Scale
-from wearlaw.study.figures import figures_of
+from wearlaw.study.figures import axes_of_map, figures_of
 from wearlaw.study.grid import Axis
 from wearlaw.study.results import (
     LIMITS,
+    SHAKEDOWN,
     axes_of,
     beyond_limits,
     main_axis,
@@ -29,9 +29,8 @@ from wearlaw.study.results import (
     predicting,
 )
 from wearlaw.study.study import Study
-from wearlaw.units.quantities import Q, from_si, parse
-from wearlaw.units.registry import symbol
-from wearlaw.units.variables import UNITS, label, name_of, readable
+from wearlaw.units.quantities import Q, from_si
+from wearlaw.units.variables import UNITS, name_of, readable
 
 MANY_CURVES = 6
 """Number of curves beyond which the figure shows the pairs of one contact model only."""
@@ -45,12 +44,11 @@ WIDE = 30.0
 
 @dataclass(frozen=True)
 class MainResult:
-    """The outcomes of the first sweep, with all patches of a point together.
+    """The outcome of the first sweep, with all patches of a point together.
 
     Attributes
     ----------
     study : Study
-        The study.
     name : str
         Name of the sweep.
     sweep : xarray.Dataset
@@ -69,16 +67,6 @@ class MainResult:
     axis: str
     outcome: str
     pairs: tuple[str, ...]
-
-    def along(self, axis: str) -> tuple[Array, str]:
-        """Return the values of an axis, and their unit for a reader, both as the case gives them."""
-        values, unit = self.sweep[axis].values, self.sweep[axis].attrs["units"]
-        given = self.study.case.sweeps[self.name].given[axis]
-        first = given.start if isinstance(given, Axis) else given[0]
-        if not unit or not isinstance(first, str):
-            return values, readable(unit)
-        wanted = parse(first).units
-        return Q(values, unit).to(wanted).magnitude, symbol(wanted, "~P")
 
 
 def main_result(study: Study) -> MainResult:
@@ -113,37 +101,42 @@ def main_figure(main: MainResult) -> FigureData:
     return next((one for one in main.study.figures if _contents(one) == _contents(wanted)), wanted)
 
 
+def main_caption(main: MainResult) -> str:
+    """Return the caption of the main table, which names the axes of the places in it."""
+    axes = " and ".join(map(name_of, axes_of(main.sweep)))
+    return f"Least and most over the sweep '{main.name}'{f', with the {axes} there' if axes else ''}"
+
+
 def main_table(main: MainResult) -> pd.DataFrame:
     """Return the least and the most of the outcome of each pair, the borders of its law, and what lies outside."""
-    what = label(main.outcome, units={main.outcome: main.sweep[main.outcome].attrs["units"]})
-    limits = beyond_limits(main.sweep)
+    what = f"[{readable(main.sweep[main.outcome].attrs['units'])}]"
+    limits, axes = beyond_limits(main.sweep), axes_of(main.sweep)
     rows = []
     for pair in main.pairs:
         of_pair = main.sweep.sel(pair=pair)
         values, model = of_pair[main.outcome], main.study.pair(pair).contact_model
         (law,) = main.study.pair(pair).pipeline.laws
-        known = bool(values.notnull().any())
-        ends = [values.argmin(...), values.argmax(...)] if known else []
         row: dict[str, Any] = {"pair": pair}
-        for word, end in zip(("least", "most"), ends, strict=False):
-            at = {str(axis): int(place) for axis, place in end.items()}
-            row[f"{word} {what}"] = values.isel(at).item()
-            if at:
-                row[f"{word} at"] = _at(main, at)
+        for word, find in (("least", values.argmin), ("most", values.argmax)):
+            found = find(...) if bool(values.notnull().any()) else None
+            row[f"{word} {what}"] = None if found is None else values.isel(found).item()
+            if axes:
+                row[f"{word} at"] = "" if found is None else _at(main, {axis: int(found[axis]) for axis in axes})
         row["regimes change at"] = _borders(law)
         row["outside the range"] = _count(of_pair.outside_range.values > 0.0) if law.valid_range else "not known"
-        for limit, words in LIMITS.items():
-            row[words] = _count(limits[limit].sel(contact_model=model).values) if limits else "not known"
+        beyond = limits[SHAKEDOWN].sel(contact_model=model).values if limits else None
+        row[LIMITS[SHAKEDOWN]] = "not known" if beyond is None else _count(beyond)
         rows.append(row)
     return pd.DataFrame(rows)
 
 
 def _at(main: MainResult, point: dict[str, int]) -> str:
-    """Return an operating point in words, such as "creepage 1 %"."""
-    shown = []
+    """Return the place of an operating point, such as "1 %", in the units of the case."""
+    written, shown = main.study.case.sweeps[main.name].written_units(), []
     for axis, place in point.items():
-        values, unit = main.along(axis)
-        shown.append(f"{name_of(axis)} {values[place]:.4g} {unit}".rstrip())
+        unit = written.get(axis, "")
+        value = Q(main.sweep[axis].values[place], main.sweep[axis].attrs["units"]).m_as(unit)
+        shown.append(f"{value:.4g} {readable(unit)}".rstrip())
     return ", ".join(shown)
 
 
@@ -165,7 +158,7 @@ def _count(mask: NDArray[np.bool_]) -> str:
     """Return in how many points of a sweep something is so."""
     if mask.all() or not mask.any():
         return "everywhere" if mask.all() else "nowhere"
-    return f"{mask.sum()} of {mask.size} points"
+    return f"{mask.sum()} of {mask.size}"
 
 
 def _contents(figure: FigureData) -> list[Any]:

@@ -8,18 +8,17 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache
 
-import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from plotly.offline import get_plotlyjs
 
 from wearlaw.figures.curves import FigureData
 from wearlaw.pipeline.notes import grouped
 from wearlaw.report.interactive import plotly_figure
-from wearlaw.report.main_result import main_figure, main_result, main_table
-from wearlaw.report.tables import Cell, cell, models, parameters, profiles, summaries
+from wearlaw.report.main_result import main_caption, main_figure, main_result, main_table
+from wearlaw.report.styled import html_table
+from wearlaw.report.tables import models, parameters, profiles, summaries
 from wearlaw.study.sections import VERDICTS, CheckedClaim, Verdict
 from wearlaw.study.study import Study, used
 from wearlaw.version import __version__
@@ -46,8 +45,9 @@ def report(study: Study, case_text: str) -> str:
         counted=counted,
         main_figure=first,
         main_table=main_table(main),
-        main_sweep=main.name,
+        main_caption=main_caption(main),
         figures=[figure for figure in study.figures if figure is not first],
+        beyond_shakedown=any(map(has_strip, (first, *study.figures))),
         summaries=[*summaries(study), *profiles(study)],
         parameters=parameters(study),
         models=models(study),
@@ -68,18 +68,9 @@ def _template() -> Template:
         undefined=StrictUndefined,
     )
     environment.filters.update(
-        cells=cells, heading=_heading, paragraphs=paragraphs, plotly=plotly_figure, spaced=spaced
+        heading=_heading, paragraphs=paragraphs, plotly=plotly_figure, spaced=spaced, strip=has_strip, styled=html_table
     )
     return environment.get_template("report.html.j2")
-
-
-def cells(frame: pd.DataFrame) -> tuple[list[Cell], list[list[Cell]]]:
-    """Return the heads and the rows of a table; heads of numeric columns are aligned like numbers."""
-    rows = [[_printed(cell(value)) for value in row] for row in frame.itertuples(index=False, name=None)]
-    heads = [
-        Cell(str(head), number=any(row[number].number for row in rows)) for number, head in enumerate(frame.columns)
-    ]
-    return heads, rows
 
 
 def counted(claims: Sequence[CheckedClaim]) -> str:
@@ -96,6 +87,11 @@ def _of_many(verdict: Verdict, count: int) -> str:
     return verdict.replace("holds", "hold").replace("does", "do")
 
 
+def has_strip(figure: FigureData) -> bool:
+    """Return whether a figure has a strip along the x axis, beyond shakedown."""
+    return any(shade.strip for panel in figure.panels for shade in panel.shades)
+
+
 def paragraphs(text: str) -> list[str]:
     """Split a text into paragraphs at blank lines."""
     return [part for part in re.split(r"\n\s*\n", text.strip()) if part]
@@ -109,10 +105,3 @@ def spaced(name: str) -> str:
 def _heading(figure: FigureData, study: Study) -> str:
     """Return the title of a figure, or its name in words if the title is that of the study."""
     return figure.title if figure.title != study.case.title else spaced(figure.name)
-
-
-def _printed(one: Cell) -> Cell:
-    """Return a cell with typographic minus signs in its number."""
-    if not one.number:
-        return one
-    return replace(one, text=one.text.replace("-", "−"), power=one.power.replace("-", "−"))

@@ -6,7 +6,6 @@ Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 from __future__ import annotations
 
 import itertools
-import numbers
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -19,6 +18,7 @@ import xarray
 from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labelled
 from wearlaw.pipeline.variables import MASS
+from wearlaw.report.styled import Marked
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.study.results import (
@@ -57,40 +57,6 @@ class NamedTable:
     title: str
     frame: pd.DataFrame
     footnotes: tuple[str, ...] = ()
-
-
-class Marked(float):
-    """A number with marks such as "†" behind it, which footnotes explain; files of numbers leave them out."""
-
-    marks: str
-
-    def __new__(cls, value: float, marks: str) -> Marked:
-        """Return the number with its marks."""
-        found = super().__new__(cls, value)
-        found.marks = marks
-        return found
-
-
-@dataclass(frozen=True)
-class Cell:
-    """A cell of a table: a text, or a number with its power of ten and its marks, if any."""
-
-    text: str
-    power: str = ""
-    number: bool = False
-    marks: str = ""
-
-
-def cell(value: Any) -> Cell:
-    """Format a table cell: four significant digits, empty if the value is missing."""
-    if value is None or value is pd.NA or value != value:
-        return Cell("")
-    if isinstance(value, (bool, np.bool_)):
-        return Cell("yes" if value else "no")
-    if isinstance(value, numbers.Integral) or not isinstance(value, numbers.Real):
-        return Cell(str(value), number=isinstance(value, numbers.Integral))
-    mantissa, _, power = f"{value:.4g}".partition("e")
-    return Cell(mantissa, str(int(power)) if power else "", number=True, marks=getattr(value, "marks", ""))
 
 
 def tables(study: Study) -> list[NamedTable]:

@@ -9,12 +9,12 @@ from wearlaw.rigs.wheel_rail import WheelRail
 
 
 @hookimpl
-def wearlaw_rigs() -> list[type[Rig]]:
+def wearlaw_models() -> list[type[Rig]]:
     """Return the rigs of this plugin."""
     return [TwinDisc, WheelRail]
 
 
 @hookimpl
-def wearlaw_cases() -> dict[str, str]:
+def wearlaw_resources() -> dict[str, dict[str, str]]:
     """Return the study of a wheel on a rail."""
-    return {"wheel_on_rail": Path(__file__).with_name("wheel_on_rail.toml").read_text(encoding="utf-8")}
+    return {"case": {"wheel_on_rail": Path(__file__).with_name("wheel_on_rail.toml").read_text(encoding="utf-8")}}

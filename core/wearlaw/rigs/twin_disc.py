@@ -14,7 +14,7 @@ from wearlaw.contact import hertz
 from wearlaw.contact.conditions import COEFFICIENTS, LOADS, ConditionTable, FrictionLaw, condition_arrays
 from wearlaw.contact.material import Material, steel
 from wearlaw.contact.problem import Body, Geometry, Problem
-from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, quoted
+from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, shown
 from wearlaw.pipeline.pipeline import Rig, check_sizes
 from wearlaw.plugins.fields import MaterialField
 from wearlaw.settings.configuration import Configuration
@@ -348,7 +348,7 @@ def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
     unit = str((parse(rotational_speed) if isinstance(rotational_speed, str) else rotational_speed).units)
     if not any(angle in unit for angle in ("radian", "degree", "turn", "revolutions")):
         raise UnitError(
-            f"rotational_speed: got a value in {quoted(unit)}, which does not say whether it counts revolutions or"
+            f"rotational_speed: got a value in {shown(unit)}, which does not say whether it counts revolutions or"
             ' radians; give it in rpm or rad/s, such as "400 rpm"'
         )
     return Q(float(angular) * 0.5 * diameter, "m/s")

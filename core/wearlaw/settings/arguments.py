@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from wearlaw.errors import InputError, shortened
+from wearlaw.errors import InputError, shown
 
 
 def expect(kind: Any, value: object, name: str, wanted: str) -> None:
@@ -22,7 +22,7 @@ def expect(kind: Any, value: object, name: str, wanted: str) -> None:
         What it must be, as in "a name, such as 'wheel'".
     """
     if not isinstance(value, kind):
-        raise InputError(f"{name}: must be {wanted}; got {shortened(value)}")
+        raise InputError(f"{name}: must be {wanted}; got {shown(value)}")
 
 
 def expect_names(value: object, name: str, example: str, least: int = 1) -> list[str]:
@@ -32,6 +32,6 @@ def expect_names(value: object, name: str, example: str, least: int = 1) -> list
     except TypeError:
         found = None
     if found is None or len(found) < least or not all(isinstance(one, str) for one in found):
-        raise InputError(f'{name}: must be a list of names, such as ["{example}"], got {shortened(value)}')
+        raise InputError(f'{name}: must be a list of names, such as ["{example}"], got {shown(value)}')
     names: list[str] = found
     return names

@@ -15,12 +15,10 @@ from wearlaw.errors import (
     Fault,
     FrozenError,
     did_you_mean,
-    excerpt,
-    quoted,
-    shortened,
+    shown,
 )
 from wearlaw.settings.docstrings import field_docstrings, place_of_statement
-from wearlaw.units.quantities import plain_number, shown
+from wearlaw.units.quantities import full_text, plain_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -119,12 +117,10 @@ class Configuration(BaseModel):
         fields = type(self).model_fields
         if name not in fields:
             hint = did_you_mean(name, fields)
-            return FrozenError(
-                f"{self.subject()}: {excerpt(name)}: unknown field{hint} The fields are: {', '.join(fields)}"
-            )
+            return FrozenError(f"{self.subject()}: {name}: unknown field{hint} The fields are: {', '.join(fields)}")
         return FrozenError(
             f"{self.subject()}: {name}: cannot be changed, since it is frozen; make a changed copy with"
-            f" .model_copy(update={{{quoted(name)}: ...}})"
+            f" .model_copy(update={{{shown(name)}: ...}})"
         )
 
     @classmethod
@@ -149,7 +145,7 @@ class Configuration(BaseModel):
 
     def __repr_args__(self) -> Any:
         for name, value in super().__repr_args__():
-            yield name, _Text(shown(value)) if isinstance(value, pint.Quantity) else value
+            yield name, _Text(full_text(value)) if isinstance(value, pint.Quantity) else value
 
 
 def _is_number(annotation: Any) -> bool:
@@ -244,4 +240,4 @@ def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
     if details["type"] == "missing":
         return "is missing"
     message = details["msg"]
-    return f"{message[0].lower()}{message[1:]}, got {shortened(details['input'])}"
+    return f"{message[0].lower()}{message[1:]}, got {shown(details['input'])}"

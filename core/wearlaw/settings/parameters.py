@@ -9,7 +9,7 @@ import numpy as np
 import pint
 from pydantic.fields import FieldInfo
 
-from wearlaw.errors import InputError, did_you_mean, quoted
+from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import Quantity, Unit, from_si
 from wearlaw.units.registry import si_factor, unit_in_si
@@ -84,7 +84,7 @@ def changed(record: ConfigurationT, values: Mapping[str, Quantity | float]) -> C
         if name not in known:
             hint = did_you_mean(name, known)
             raise InputError(
-                f"{record.subject()}: {quoted(name)} is not a number among its fields{hint} There are:"
+                f"{record.subject()}: {shown(name)} is not a number among its fields{hint} There are:"
                 f" {', '.join(known)}"
             )
         outer, _, inner = name.partition(".")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
@@ -23,9 +23,7 @@ from pydantic import (
     Field,
     SerializerFunctionWrapHandler,
     TypeAdapter,
-    ValidationError,
     ValidationInfo,
-    ValidatorFunctionWrapHandler,
     field_validator,
     model_serializer,
     model_validator,
@@ -41,8 +39,7 @@ from wearlaw.errors import (
     WearlawWarning,
     described,
     did_you_mean,
-    quoted,
-    shortened,
+    shown,
     with_problems,
 )
 from wearlaw.models.contact_model import ContactModel, Model
@@ -54,13 +51,13 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
 from wearlaw.plugins.shelf import Shelf
-from wearlaw.settings.configuration import Configuration, configuration_error, known_as
+from wearlaw.settings.configuration import Configuration, known_as
 from wearlaw.settings.text_files import beside, read_text, reading
 from wearlaw.settings.toml_files import LARGEST, parse_toml
-from wearlaw.study.figure_check import Contents, wrong_name
+from wearlaw.study.figure_check import wrong_figures, wrong_name
 from wearlaw.study.figure_spec import FigureSpec
 from wearlaw.study.grid import Condition, Grid
-from wearlaw.study.measured import MeasuredTests, check_rig, known_variables
+from wearlaw.study.measured import MeasuredTests, check_rig
 from wearlaw.study.uncertain_point import Condition as UncertainCondition
 from wearlaw.study.uncertain_point import UncertainPoint
 from wearlaw.units.variables import UNITS, meaning_of
@@ -77,13 +74,13 @@ LISTED = "must be a list of names, or of tables with a name and options"
 
 def _models(value: Any) -> Any:
     if not isinstance(value, (list, tuple)):
-        raise InputError(f"{LISTED}; got {shortened(value)}")
+        raise InputError(f"{LISTED}; got {shown(value)}")
     return value
 
 
 def _some_models(value: Any) -> Any:
     if not _models(value):
-        raise InputError(f"{LISTED}; got {shortened(value)}")
+        raise InputError(f"{LISTED}; got {shown(value)}")
     return value
 
 
@@ -136,7 +133,7 @@ def _unmet(name: str, versions: str) -> str:
     try:
         allowed = SpecifierSet(versions)
     except InvalidSpecifier:
-        return f"{quoted(versions)} is not a version range; write one such as '>=1.2,<2'"
+        return f"{shown(versions)} is not a version range; write one such as '>=1.2,<2'"
     try:
         found = version(name)
     except PackageNotFoundError:
@@ -150,34 +147,6 @@ def _section(name: str) -> str:
     found = loader.installed()
     found.sections.find(name, found.broken)
     return name
-
-
-def _read_conditions(
-    name: Any, given: Any, read: Callable[[dict[Any, Any]], dict[Any, Any]], rig: Rig | None
-) -> tuple[Any, list[Fault]]:
-    """Return the conditions of an operating point or grid as `read` makes them, and every fault of theirs.
-
-    Conditions that cannot be read are left out, so that the faults of the others are found too. Without a rig, because
-    it is wrong itself, conditions are only read.
-    """
-    faults: list[Fault] = []
-    left = given
-    while True:
-        try:
-            (found,) = read({name: left}).values()
-            break
-        except ValidationError as error:
-            problems = configuration_error("", Grid, error).problems
-        faults += problems
-        wrong = {problem.path[1] for problem in problems if len(problem.path) > 1}
-        if not (isinstance(left, dict) and wrong & left.keys()):
-            return None, faults
-        left = {key: value for key, value in left.items() if key not in wrong}
-    if rig is None:
-        return (None if faults else found), faults
-    unread = {fault.path[1] for fault in faults}
-    faults += [Fault((name, *fault.path), fault.message) for fault in found.faults(rig, unread)]
-    return (None if faults else found.checked(rig)), faults
 
 
 LISTS = ("stages", "laws", "wear_laws")
@@ -251,9 +220,7 @@ class Case(Configuration):
         bodies = tuple(info.data["rig"].bodies) if named and "rig" in info.data else ()
         has = f"Its bodies are {' and '.join(bodies)}"
         wrong = [
-            Fault(
-                (str(number), "body"), f"the rig has no body {quoted(law.body)}{did_you_mean(law.body, bodies)} {has}"
-            )
+            Fault((str(number), "body"), f"the rig has no body {shown(law.body)}{did_you_mean(law.body, bodies)} {has}")
             for number, law in enumerate(laws)
             if law.body is not None and bodies and law.body not in bodies
         ]
@@ -269,26 +236,21 @@ class Case(Configuration):
             raise InputError(f"{' and '.join(map(repr, twice))} is listed twice; leave one out")
         return sections
 
-    @field_validator("sweeps", "profiles", "uncertainty", mode="wrap")
+    @field_validator("sweeps", "profiles", "uncertainty")
     @classmethod
-    def _fit_the_rig(cls, given: Any, read: ValidatorFunctionWrapHandler, info: ValidationInfo) -> dict[str, Any]:
-        """Check conditions when the case is read, not when it runs; the error names every wrong one."""
-        if not (isinstance(given, dict) and given):
-            found: dict[str, Any] = read(given)
-            return found
-        checked, wrong = {}, []
-        for name, conditions in given.items():
-            fault = wrong_name(name) if isinstance(name, str) else ""
-            if fault:
-                wrong.append(Fault((), f"the name {quoted(name)} {fault}"))
-            grid, faults = _read_conditions(name, conditions, read, info.data.get("rig"))
-            if grid is not None and info.field_name == "profiles" and grid.axes():
-                faults.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
-            wrong += faults
-            checked[name] = grid
+    def _fit_the_rig(cls, given: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
+        """Let the rig check conditions when the case is read, not when it runs; a wrong rig checks none."""
+        rig, wrong = info.data.get("rig"), []
+        for name, point in given.items():
+            if fault := wrong_name(name):
+                wrong.append(Fault((), f"the name {shown(name)} {fault}"))
+            if info.field_name == "profiles" and point.axes():
+                wrong.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
+            if rig is not None:
+                wrong += [Fault((name, *fault.path), fault.message) for fault in point.faults(rig)]
         if wrong:
             raise ConfigurationError(cls.subject(), wrong)
-        return checked
+        return given if rig is None else {name: point.ordered(rig) for name, point in given.items()}
 
     @cached_property
     def units(self) -> dict[str, str]:
@@ -369,7 +331,7 @@ class Case(Configuration):
                     check_rig(self.measured.data, self.rig)
                 except InputError as error:
                     yield Fault(("measured",), str(error))
-        yield from self._contents().problems(self.figures)
+        yield from wrong_figures(self)
 
     def _wrong_axes(self) -> Iterator[Fault]:
         """Yield the axes of the rig's patches that results would mix up with other columns."""
@@ -377,7 +339,7 @@ class Case(Configuration):
         for axis in next(iter(self.sweeps.values())).problem(self.rig).dims:
             if axis in (*RESERVED, "node", *conditions):
                 yield Fault(
-                    ("rig",), f"its axis {quoted(axis)} has the name of another column of results; rename the axis"
+                    ("rig",), f"its axis {shown(axis)} has the name of another column of results; rename the axis"
                 )
 
     def _wrong_outcomes(self) -> Iterator[Fault]:
@@ -420,19 +382,6 @@ class Case(Configuration):
                         return
                     break
 
-    def _contents(self) -> Contents:
-        return Contents(
-            rig=self.rig,
-            contact_models=self.contact_models_by_label,
-            stages=self.stages,
-            laws=self.laws_by_label,
-            outcomes=self.outcomes,
-            sweeps=self.sweeps,
-            profiles=self.profiles,
-            units=self.units,
-            measured=known_variables(self.measured.data) if self.measured else (),
-        )
-
 
 def case_text(name_or_path: str) -> str:
     """Return the text of a case file, or of a shipped case by its name.
@@ -453,10 +402,10 @@ def case_text(name_or_path: str) -> str:
     except FileNotFoundError:
         hint = did_you_mean(name_or_path, known)
         raise CaseError(
-            f"there is no case file {quoted(Path(name_or_path))}{hint} Shipped cases: {', '.join(known)}"
+            f"there is no case file {shown(Path(name_or_path))}{hint} Shipped cases: {', '.join(known)}"
         ) from None
     except InputError as error:
-        raise CaseError(f"cannot read the case file {quoted(Path(name_or_path))}: {error}") from None
+        raise CaseError(f"cannot read the case file {shown(Path(name_or_path))}: {error}") from None
 
 
 def case_schema() -> dict[str, Any]:
@@ -514,7 +463,7 @@ def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        reason = f"{shelf.kind} {quoted(name)} of {shelf.origin(name)} is left out of the schema: {described(error)}"
+        reason = f"{shelf.kind} {shown(name)} of {shelf.origin(name)} is left out of the schema: {described(error)}"
         warnings.warn(reason, PluginWarning, stacklevel=4)
 
 
@@ -591,14 +540,14 @@ def load_case(name_or_path: str) -> Case:
     try:
         fields = parse_toml(text)
     except InputError as error:
-        raise CaseError(f"case {quoted(Path(name_or_path))} {error}") from None
+        raise CaseError(f"case {shown(Path(name_or_path))} {error}") from None
     try:
         if name_or_path in loader.installed().cases.providers:
             return known_as(name_or_path, Case(**fields))
         with reading(name_or_path):
             return Case(**_beside(fields))
     except ConfigurationError as error:
-        raise CaseError(with_problems(f"case {quoted(Path(name_or_path))} is wrong in:", error.problems)) from None
+        raise CaseError(with_problems(f"case {shown(Path(name_or_path))} is wrong in:", error.problems)) from None
 
 
 def _beside(fields: dict[str, Any]) -> dict[str, Any]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from wearlaw.contact.conditions import LOADS
-from wearlaw.errors import ConfigurationError, Fault, UnitError, excerpt
+from wearlaw.errors import ConfigurationError, Fault
 from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.settings.configuration import Configuration
 from wearlaw.study.grid import Grid
@@ -20,9 +19,6 @@ OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "cr
 
 ACROSS = ("depth", "sliding_distance")
 """Variables across the patch of an elliptic contact, for one of the bodies."""
-
-OF_CONTACTS = {*OF_CONTACT, *OF_POINT, *OF_PATCH, *OF_PROFILE, "sliding_distance"} - {"wear_rate"}
-"""The variables that do not differ from law to law; all others are wear rate, depth, and outcomes of other laws."""
 
 OF_LOAD = (*LOADS, "half_width", "semi_axis_a", "semi_axis_b")
 """The variables that the load alone determines."""
@@ -112,7 +108,19 @@ class FigureSpec(Window):
 
     @model_validator(mode="after")
     def _possible(self) -> FigureSpec:
-        wrong = [Fault(path, message) for path, message in self._problems()]
+        wrong = []
+        if (self.sweep is None) == (self.profile is None):
+            wrong.append(Fault(("sweep",), "give either sweep or profile, which the figure shows"))
+        for number, window in enumerate(self.windows()):
+            if not window.y:
+                wrong.append(Fault((*(("panels", str(number)) if self.panels else ()), "y"), "is missing"))
+        if self.map and (len(self.shown) != 1 or self.shown[0] == self.x):
+            wrong.append(Fault(("y",), "a map runs over two axes of the sweep; name the other one as y"))
+        if self.map:
+            other = [name for name in ("profile", "panels", "measured", "body") if getattr(self, name)]
+            wrong += [Fault((name,), "a map does not take it; leave it out") for name in other]
+        if self.measured and self.profile:
+            wrong.append(Fault(("measured",), "tests are measured over the whole patch; show a sweep"))
         if wrong:
             raise ConfigurationError("figure", wrong)
         return self
@@ -128,58 +136,6 @@ class FigureSpec(Window):
         common = {name: getattr(self, name) for name in inherited}
         own = [{name: value for name, value in panel if value is not None} for panel in self.panels] or [{}]
         return tuple(Window(**{**common, **window}) for window in own)
-
-    def _problems(self) -> Iterator[tuple[tuple[str, ...], str]]:
-        """Yield the faults of the fields that do not depend on the case."""
-        if (self.sweep is None) == (self.profile is None):
-            yield ("sweep",), "give either sweep or profile, which the figure shows"
-            return
-        for number, window in enumerate(self.windows()):
-            path = ("panels", str(number)) if self.panels else ()
-            if window.y is None:
-                yield (*path, "y"), "is missing"
-            elif len(set(window.y)) < len(window.y):
-                yield (*path, "y"), "names a variable twice"
-        shown = self.of_values
-        if self.map:
-            yield from self._of_map()
-        if self.pairs and shown <= OF_CONTACTS:
-            yield (
-                ("pairs",),
-                "the figure does not show wear_rate or another outcome; choose among contact_models instead",
-            )
-        if self.contact_models and shown and not shown & OF_CONTACTS and not shown & {*ACROSS}:
-            only = " and ".join(map(excerpt, sorted(shown)))
-            yield ("contact_models",), f"the figure shows only {only}; choose among pairs instead"
-        if self.measured and self.profile:
-            yield ("measured",), "tests are measured over the whole patch; show them in a figure of a sweep"
-
-    def _of_map(self) -> Iterator[tuple[tuple[str, ...], str]]:
-        """Yield the faults of the fields that a map does not take."""
-        why = {
-            "profile": "a map shows a sweep; name one with at least two axes",
-            "panels": "a map has a panel for each pair; leave them out",
-            "measured": "a map shows no tests; leave it out",
-            "body": "a map shows no single body; leave it out",
-        }
-        yield from (((name,), text) for name, text in why.items() if getattr(self, name))
-        if len(self.shown) != 1 or self.shown[0] == self.x:
-            yield ("y",), "a map runs over two axes of the sweep; name the other one as y"
-
-
-def wrong_range(variable: str, unit: str, given: Range | None, scale: Scale | None) -> Iterator[str]:
-    """Yield the faults of the ends of an axis whose variable is shown in this unit."""
-    if given is None:
-        return
-    try:
-        low, high = ends(variable, unit, given)
-    except UnitError as error:
-        yield str(error)
-        return
-    if low >= high:
-        yield f"must run from the lower end to the higher one, got {excerpt(given[0])} to {excerpt(given[1])}"
-    if scale == "log" and low <= 0.0:
-        yield f"a logarithmic axis must begin above zero, got {excerpt(given[0])}"
 
 
 def ends(variable: str, unit: str, given: Range) -> tuple[float, float]:

@@ -3,39 +3,43 @@
 Line styles stand for contact models. Colours stand for laws in figures of their outcomes, for variables along the patch
 or where several are shown, and otherwise for contact models too. If the rig makes several patches, colours stand for
 patches, line styles for what is shown of each, and values keep their signs. Bands show the published range of a law's
-parameters. Two long axes of a sweep also make a map, and a single operating point makes bars. Parts of curves outside
-the range of their law are thin and pale, and a strip along the x axis shows where the contact is beyond shakedown.
+parameters. Two long axes of a sweep also make a map, and a single operating point makes points beside their names.
+Parts of curves outside the range of their law are thin and pale, and a strip along the x axis shows where the contact
+is beyond shakedown.
 """
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import xarray
 
-from wearlaw.figures.curves import BLACK, Curve, FigureData, Panel, PlotAxis
-from wearlaw.models.law import WEAR
-from wearlaw.study.figure_kinds import (
-    axes_of_map,
-    bars,
-    converted,
-    fit_for_log,
-    limits_in_words,
-    maps,
-    whole_maps,
+from wearlaw.figures.curves import BLACK, OUTSIDE, Curve, FigureData, Map, Panel, PlotAxis, Shade
+from wearlaw.study.figure_spec import (
+    ACROSS,
+    BY_PATCH,
+    OF_PROFILE,
+    FigureSpec,
+    Range,
+    Scale,
+    Window,
+    axis_along,
+    ends,
 )
-from wearlaw.study.figure_spec import ACROSS, BY_PATCH, OF_PROFILE, FigureSpec, Scale, Window, axis_along, ends
 from wearlaw.study.measured import known_variables, measured_points
 from wearlaw.study.results import (
+    LIMITS,
+    SHAKEDOWN,
     Patch,
     Results,
     along,
     axes_of,
+    beyond_limits,
+    by_patch,
     in_words,
     is_of_patches,
     labelled_by,
@@ -47,22 +51,31 @@ from wearlaw.study.results import (
     possible_patches,
     predicting,
 )
-from wearlaw.study.shades import beyond_shakedown, beyond_shakedown_in_patch, lines_of, shade_in, values_of
+from wearlaw.units.quantities import Q
 from wearlaw.units.variables import UNITS, label, name_of
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from wearlaw.arrays.array import Array
     from wearlaw.study.grid import Grid
-
 
 STRESSES = ("pressure", "traction", "traction_bound")
 """Variables along the patch that a title calls stresses."""
 
-TOGETHER = 0.8
-"""Thickness of the bars of a patch together; the next patch is at a distance of 1."""
+TOGETHER = 0.4
+"""Distance from the first to the last point of a patch; the next patch is at a distance of 1."""
 
-MANY_LINES = 8
-"""Number of lines in a panel beyond which a figure's caption says how to choose."""
+MOST_MAPS = 6
+"""Most panels of a map."""
+
+LEAST = 4
+"""Fewest values of each axis of a map that is made without being asked for."""
+
+DECADES = 30.0
+"""Ratio of the largest to the smallest value beyond which a scale that nobody chose is logarithmic."""
+
+Spans: TypeAlias = list[tuple[float, float]]
 
 
 def figures_of(results: Results) -> tuple[FigureData, ...]:
@@ -97,10 +110,9 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
             if point and not several:
                 yield f"{name}_{outcome.name}", FigureSpec(sweep=name, x=axis, y=(outcome.name,))
                 continue
-            along_axis = along(sweep, axis)[outcome.name].values
-            log = not outcome.signed and first != BY_PATCH and (spacing == "log" or fit_for_log(along_axis))
+            log = first != BY_PATCH and (spacing == "log" or fit_for_log(along(sweep, axis)[outcome.name].values))
             for x in (first,) if first == BY_PATCH else ("wear_index", first):
-                y_scale: Scale = "log" if log else "linear"
+                y_scale: Scale = "log" if log and not outcome.signed else "linear"
                 measured = axis == creepage and {x, outcome.name} <= {*known}
                 spec = FigureSpec(
                     sweep=name, x=x, y=(outcome.name,), x_scale=spacing, y_scale=y_scale, measured=measured
@@ -120,6 +132,22 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
             yield f"{name}_along_the_patch", FigureSpec(profile=name, panels=panels)
 
 
+def axes_of_map(sweep: xarray.Dataset, creepage: str) -> tuple[str, str] | None:
+    """Return the axes of the map of a sweep: its main axis and the longest other one, None if these are too short."""
+    if len(axes_of(sweep)) < 2:
+        return None
+    first = main_axis(sweep, creepage)
+    second = max((axis for axis in axes_of(sweep) if axis != first), key=lambda axis: sweep.sizes[axis])
+    return (first, second) if min(sweep.sizes[first], sweep.sizes[second]) >= LEAST else None
+
+
+def fit_for_log(*values: Array) -> bool:
+    """Return whether values that nobody chose a scale for are better seen on a logarithmic one."""
+    found = np.concatenate([np.ravel(one) for one in values]) if values else np.zeros(0)
+    seen = found[np.isfinite(found)]
+    return bool(seen.size and seen.min() > 0.0 and seen.max() > DECADES * seen.min())
+
+
 def _title(spec: FigureSpec, results: Results) -> str:
     """Return a title in words, such as "Wear rate over normal force"."""
     if spec.map:
@@ -134,13 +162,13 @@ def _title(spec: FigureSpec, results: Results) -> str:
             words += f" {'across' if spec.x == 'y' else 'along'} the patch"
         elif spec.x == BY_PATCH:
             words += " by patch"
-        elif not _is_of_bars(results, spec):
+        elif not _is_point(results, spec):
             words += f" over {name_of(spec.x)}"
     return words[:1].upper() + words[1:]
 
 
-def _is_of_bars(results: Results, spec: FigureSpec) -> bool:
-    """Return whether a figure shows the one point of a sweep as bars."""
+def _is_point(results: Results, spec: FigureSpec) -> bool:
+    """Return whether a figure shows the one operating point of a sweep with one patch."""
     sweep = results.sweeps.get(spec.sweep or "")
     return sweep is not None and not (axes_of(sweep) or is_of_patches(sweep) or spec.measured)
 
@@ -148,79 +176,28 @@ def _is_of_bars(results: Results, spec: FigureSpec) -> bool:
 def _figure(results: Results, name: str, spec: FigureSpec, title: str) -> FigureData:
     grid = results.case.sweeps[spec.sweep] if spec.sweep else results.case.profiles[spec.profile or ""]
     units = results.case.result_units | grid.written_units()
-    axis = axis_along(grid, spec.x, results.case.rig.creepage) if spec.sweep else ""
-    of_bars = _is_of_bars(results, spec)
-    free = {spec.x, *spec.shown} if spec.map else {"" if of_bars else axis}
-    fixed = _conditions(grid, free, units)
+    axis, point = axis_along(grid, spec.x, results.case.rig.creepage) if spec.sweep else "", _is_point(results, spec)
+    fixed = _conditions(grid, {spec.x, *spec.shown} if spec.map else {"" if point else axis}, units)
     more, heads = "", []
     if spec.map:
-        panels, left_out = maps(results, spec, units)
-        more = whole_maps(panels)
+        panels, left_out = _maps(results, spec, units)
         if left_out:
-            more += f" {left_out} more are left out; choose among them with pairs, contact_models or patches."
-    elif of_bars:
-        panels = [bars(results, spec, window, units) for window in spec.windows()]
-        more = limits_in_words(results.sweeps[spec.sweep or ""])
+            more = f" {left_out} more are left out; choose among them with pairs, contact_models or patches."
+    elif point:
+        panels = [_points(results, spec, window, units) for window in spec.windows()]
     else:
         heads = [text for condition, text in fixed.items() if condition in grid.axes()]
         panels = [_panel(results, spec, window, axis, heads, units) for window in spec.windows()]
-    head, conditions = results.case.title, ", ".join(fixed.values())
-    below = ", ".join(text for text in fixed.values() if text not in heads)
+    if any(not panel.curves and panel.map is None for panel in panels) or not panels:
+        more = " None of the chosen patches exists here."
+    head, below = results.case.title, ", ".join(text for text in fixed.values() if text not in heads)
     return FigureData(
         name=name,
         title=title,
         panels=tuple(panels),
-        caption=spec.caption or f"At {conditions}.{more}{_hint(results, spec, panels)}{_of_strip(panels)}",
+        caption=spec.caption or f"At {', '.join(fixed.values())}.{more}",
         conditions=f"{head}: {below}" if below else head,
     )
-
-
-def _panel(
-    results: Results, spec: FigureSpec, window: Window, axis: str, heads: list[str], shown_units: Mapping[str, str]
-) -> Panel:
-    """Return a panel of curves, with its x axis in the unit of the case's own file."""
-    units, x = results.case.result_units, spec.x
-    if spec.sweep:
-        curves = _over_sweep(results, spec, window, axis)
-        shades = beyond_shakedown(results, spec, window, axis)
-        if x != BY_PATCH and units[x] != shown_units[x]:
-            curves = [replace(curve, x=converted(curve.x, units[x], shown_units[x])) for curve in curves]
-            shades = tuple(shade_in(shade, units[x], shown_units[x]) for shade in shades)
-        units = {**units, x: shown_units.get(x, "")}
-    else:
-        profile = results.profiles[spec.profile or ""]
-        curves = _of_profile(results, profile, spec, window)
-        shades = beyond_shakedown_in_patch(profile, spec, window, curves)
-        if "y" in profile:
-            x, body = "y", _body(results, window)
-            units = units | {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
-    by_name = x == BY_PATCH
-    x_axis = _named(results.sweep(spec.sweep or ""), window) if by_name else _x_axis(x, window, curves, units)
-    low, high = x_axis.ends or (-np.inf, np.inf)
-    seen = (shade for shade in shades if any(start < high and end > low for start, end in shade.spans))
-    y_axis = _y_axis(x_axis, window, curves, units)
-    title = ", ".join(filter(None, (window.title, *heads)))
-    return Panel(x_axis, y_axis, curves=tuple(curves), title=title, shades=tuple(seen))
-
-
-def _of_strip(panels: list[Panel]) -> str:
-    """Return what a strip along the x axis means."""
-    if not any(panel.shades for panel in panels):
-        return ""
-    return " Above the grey strip the contact is beyond shakedown: see First yield and shakedown, theory.md."
-
-
-def _hint(results: Results, spec: FigureSpec, panels: list[Panel]) -> str:
-    """Return how to choose patches if a panel has too many lines, or why one has none."""
-    dataset = results.sweeps[spec.sweep] if spec.sweep else results.profiles[spec.profile or ""]
-    if not is_of_patches(dataset):
-        return ""
-    if any(not panel.curves and panel.map is None for panel in panels) or not panels:
-        return " None of the chosen patches exists here."
-    if spec.x == BY_PATCH or all(len(panel.curves) <= MANY_LINES for panel in panels):
-        return ""
-    chosen = ", ".join(f"{axis} = {json.dumps(label)}" for axis, label in patches_of(dataset)[0].items())
-    return f" To show fewer lines, choose in the table of the figure, as in patches = {{ {chosen} }}."
 
 
 def _conditions(grid: Grid, free: Collection[str], units: Mapping[str, str]) -> dict[str, str]:
@@ -234,25 +211,158 @@ def _conditions(grid: Grid, free: Collection[str], units: Mapping[str, str]) -> 
     return found
 
 
-def _over_sweep(results: Results, spec: FigureSpec, window: Window, axis: str) -> list[Curve]:
-    """Return curves of outcomes for each pair, and of other variables for each contact model, by patch."""
-    sweep = results.sweeps[spec.sweep or ""]
+# What is shown of each pair or contact model
+
+
+@dataclass(frozen=True, eq=False)
+class _Series:
+    """The results of a pair or of a contact model for a variable, or of all models where they agree.
+
+    Attributes
+    ----------
+    variable, of : str
+        The variable, and the label of the pair or the contact model, "" for all models.
+    data : Dataset
+        The results there.
+    style : (int, int)
+        Colour and dash.
+    """
+
+    variable: str
+    of: str
+    data: xarray.Dataset
+    style: tuple[int, int]
+
+    def label(self, several: bool) -> str:
+        """Return the label; it names the variable if there are several, or if nothing else tells it."""
+        return ", ".join(filter(None, (name_of(self.variable) if several or not self.of else "", self.of)))
+
+    @property
+    def outside(self) -> NDArray[np.bool_] | None:
+        """Where a pair is outside the range of its law."""
+        found = self.data.outside_range if "outside_range" in self.data else None
+        return None if found is None or "pair" in found.dims else found.values > 0.0
+
+    def ends(self) -> dict[str, Any]:
+        """Return the ends of the band of an outcome, if it has one."""
+        low, high = (self.data.get(f"{self.variable}{end}") for end in ("_low", "_high"))
+        if low is None or high is None or "pair" in low.dims or not bool((high > low).any()):
+            return {}
+        return {"low": low.values, "high": high.values}
+
+    def beyond(self) -> dict[str, xarray.DataArray]:
+        """Return where the contact is beyond each limit."""
+        limits = beyond_limits(self.data).items()
+        return {name: one.any("contact_model") if "contact_model" in one.dims else one for name, one in limits}
+
+
+def _series(
+    results: Results, data: xarray.Dataset, spec: FigureSpec, variable: str, names: Collection[str]
+) -> Iterator[_Series]:
+    """Yield what data hold of a variable: for each pair that predicts it, or for each model that `names` depend on."""
+    dims = {dim for name in names for dim in data[name].dims}
+    models, laws = (list(one) for one in (results.case.contact_models_by_label, results.case.laws_by_label))
+    chosen = spec.contact_models or data.contact_model.values.tolist()
+    if "pair" in dims:
+        for pair in map(results.pair, predicting(results, variable, spec.pairs or data.pair.values.tolist())):
+            if pair.contact_model in chosen:
+                at = {"pair": pair.label, "contact_model": pair.contact_model}
+                style = laws.index(pair.law), models.index(pair.contact_model)
+                yield _Series(variable, pair.label, data.sel(at), style)
+    elif "contact_model" in dims:
+        for model in chosen:
+            yield _Series(variable, model, data.sel(contact_model=model), (models.index(model),) * 2)
+    else:
+        yield _Series(variable, "", data, (0, 0))
+
+
+# Curves over a sweep
+
+
+def _panel(
+    results: Results, spec: FigureSpec, window: Window, axis: str, heads: list[str], shown_units: Mapping[str, str]
+) -> Panel:
+    """Return a panel of curves, with its x axis in the unit of the case's own file."""
+    units, x = results.case.result_units, spec.x
+    if spec.sweep:
+        curves, spans = _over_sweep(results, spec, window, axis, shown_units)
+        units = {**units, x: shown_units.get(x, "")}
+    else:
+        profile = results.profiles[spec.profile or ""]
+        across = "y" in profile
+        curves, spans = (_across_the_patch if across else _along_the_patch)(results, profile, spec, window)
+        if across:
+            x, body = "y", _body(results, window)
+            units = units | {name: profile[f"{body}_{name}"].attrs["units"] for name in window.shown}
+    if x == BY_PATCH:
+        sweep = results.sweeps[spec.sweep or ""]
+        names = tuple(map(in_words, patches_of(middle_of(sweep), window.patches)))
+        x_ends = (-0.5, len(names) - 0.5) if names else None
+        x_axis = PlotAxis(", ".join(map(name_of, patch_axes(sweep))), ends=x_ends, names=names)
+    else:
+        # A logarithmic axis hides values that are not positive, as at zero creepage.
+        scale: Scale = "log" if window.x_scale == "log" and any((c.x > 0).any() for c in curves) else "linear"
+        x_axis = PlotAxis(label(x, units=units), scale, _ends(x, units, window.x_range))
+    low, high = x_axis.ends or (-np.inf, np.inf)
+    seen = tuple(dict.fromkeys((start, end) for start, end in spans if start < high and end > low))
+    shades = (Shade(LIMITS[SHAKEDOWN], seen, strip=True),) if seen else ()
+    title = ", ".join(filter(None, (window.title, *heads)))
+    return Panel(x_axis, _y_axis(x_axis, window, curves, units), curves=tuple(curves), title=title, shades=shades)
+
+
+def _over_sweep(
+    results: Results, spec: FigureSpec, window: Window, axis: str, shown_units: Mapping[str, str]
+) -> tuple[list[Curve], Spans]:
+    """Return curves of outcomes for each pair, and of other variables for each contact model, by patch.
+
+    Also return where the contact of any of them is beyond shakedown, as spans of x.
+    """
+    sweep, x, several = results.sweeps[spec.sweep or ""], spec.x, len(window.shown) > 1
+    signed = is_of_patches(sweep)  # signs differ from side to side
     curves: list[Curve] = []
-    for patch, line in lines_of(sweep, spec, window, axis):
-        found = _of_patch(results, line, spec, window)
-        if spec.x == BY_PATCH:
-            step = TOGETHER / len(found) if found else 0.0
-            beside = step * (np.arange(len(found)) - 0.5 * (len(found) - 1))
-            # Bars begin at zero, which a logarithmic axis does not have.
-            look: dict[str, Any] = {"points": True, "hollow": True} if window.y_scale == "log" else {"bars": 0.9 * step}
-            found = [
-                replace(curve, x=curve.x + shift, colour=number, dash=0, **look)
-                for number, (curve, shift) in enumerate(zip(found, beside, strict=True))
+    spans: Spans = []
+    for patch, line in _lines_of(sweep, x, window, axis):
+        found = []
+        for number, y in enumerate(window.shown):
+            for one in _series(results, line, spec, y, (x, y)):
+                own, colour = "pair" in line[y].dims, number if several else one.style[0]
+                at, values = _values(one.data[x], signed), _values(one.data[y], signed or own)
+                if x != BY_PATCH:
+                    at = _converted(at, results.case.result_units[x], shown_units[x])
+                values = np.broadcast_to(values, at.shape)
+                style = one.style if own else (colour, one.style[1])
+                outside = one.outside if own else None
+                found.append(Curve(one.label(several), at, values, *style, outside=outside, **one.ends()))
+                seen = (at > 0.0) | (window.x_scale != "log")
+                beyond = one.beyond()
+                if SHAKEDOWN in beyond:
+                    spans += spans_of(at[seen], beyond[SHAKEDOWN].values[seen])
+        if x == BY_PATCH:
+            beside = TOGETHER * (np.linspace(-0.5, 0.5, len(found)) if len(found) > 1 else np.zeros(1))
+            curves += [
+                replace(curve, x=curve.x + shift, colour=number, dash=0, points=True, hollow=True)
+                for number, (curve, shift) in enumerate(zip(found, beside, strict=False))
             ]
-        elif patch:
-            found = _coloured(found, patch, sweep)
-        curves += found
-    return curves + [_measured(results, spec.x, y) for y in window.shown if spec.measured]
+        else:
+            curves += _coloured(found, patch, sweep) if patch else found
+    return curves + [_measured(results, x, y) for y in window.shown if spec.measured], spans
+
+
+def _values(one: xarray.DataArray, signed: bool) -> Array:
+    found: Array = one.values if signed else abs(one.values)
+    return found
+
+
+def _lines_of(sweep: xarray.Dataset, x: str, window: Window, axis: str) -> Iterator[tuple[Patch, xarray.Dataset]]:
+    """Yield each existing patch that a panel shows, with the sweep along an axis; or all of them as one axis."""
+    if x == BY_PATCH:
+        point = middle_of(sweep)
+        if patches_of(point, window.patches):
+            yield {}, by_patch(point, window.patches)
+        return
+    line = along(sweep, axis)
+    for patch in patches_of(line, window.patches):
+        yield patch, line.sel(patch)
 
 
 def _coloured(curves: list[Curve], patch: Patch, dataset: xarray.Dataset) -> list[Curve]:
@@ -264,51 +374,21 @@ def _coloured(curves: list[Curve], patch: Patch, dataset: xarray.Dataset) -> lis
     ]
 
 
-def _of_patch(results: Results, line: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
-    """Return the curves of a line along an axis of a sweep."""
-    shown = window.shown
-    models = spec.contact_models or line.contact_model.values.tolist()
-    curves = []
-    for y in shown:
-        if "pair" in line[y].dims:
-            pairs = predicting(results, y, spec.pairs or line.pair.values.tolist())
-            curves += [_outcome(results, line, spec.x, shown, y, pair) for pair in pairs]
-        else:
-            alike = None if "contact_model" in line[y].dims or "contact_model" in line[spec.x].dims else 1
-            curves += [_of_contact(results, line, spec.x, shown, y, model, alike) for model in models[:alike]]
-    return curves
+def _converted(values: Array, unit: str, shown: str) -> Array:
+    """Return values of a unit in the unit in which a figure shows them."""
+    found: Array = values if unit == shown else Q(values, unit).to(shown).magnitude
+    return found
 
 
-def _outcome(results: Results, line: xarray.Dataset, x: str, shown: tuple[str, ...], y: str, pair: str) -> Curve:
-    """Return the curve of an outcome of a pair, with its band if the law has one."""
-    one = line.sel(pair=pair)
-    low, high = (one[name].values if name in one else np.array(np.nan) for name in (f"{y}_low", f"{y}_high"))
-    has_band = bool((high > low).any())
-    return Curve(
-        pair if len(shown) == 1 else f"{name_of(y)}, {pair}",
-        values_of(line, x, one.pair_contact_model.item()),
-        one[y].values,
-        *_style(results, pair),
-        low=low if has_band else None,
-        high=high if has_band else None,
-        outside=one.outside_range.values > 0.0,
-    )
-
-
-def _of_contact(
-    results: Results, line: xarray.Dataset, x: str, shown: tuple[str, ...], variable: str, model: str, alike: int | None
-) -> Curve:
-    """Return the curve of a variable for one contact model, or for all if they agree."""
-    along = values_of(line, x, model)
-    dash = 0 if alike else _dash(results, model)
-    several = name_of(variable) if alike else f"{name_of(variable)}, {model}"
-    return Curve(
-        label=model if len(shown) == 1 and not alike else several,
-        x=along,
-        y=np.broadcast_to(values_of(line, variable, model), along.shape),
-        colour=dash if len(shown) == 1 else shown.index(variable),
-        dash=dash,
-    )
+def spans_of(x: Array, beyond: NDArray[np.bool_]) -> Iterator[tuple[float, float]]:
+    """Yield the ends of each run of points beyond a limit, half-way to the next point on either side."""
+    known = np.flatnonzero(np.isfinite(x))
+    order = known[np.argsort(x[known], kind="stable")]
+    x, beyond = x[order], beyond[order]
+    steps = np.flatnonzero(np.diff(np.concatenate([[False], beyond, [False]]).astype(int)))
+    edges = np.concatenate([x[:1], 0.5 * (x[1:] + x[:-1]), x[-1:]])
+    for first, after in zip(steps[::2], steps[1::2], strict=True):
+        yield float(edges[first]), float(edges[after])
 
 
 def _measured(results: Results, x: str, y: str) -> Curve:
@@ -318,27 +398,15 @@ def _measured(results: Results, x: str, y: str) -> Curve:
     values = measured_points(measured.data, results.case.rig)
     along, across = abs(values[x]), abs(values[y])
     there = np.isfinite(along) & np.isfinite(across)
+    found = Curve(measured.label, along[there], across[there], BLACK, points=True)
     uncertainty = measured.data.wear_rate_uncertainty if y == "wear_rate" else None
-    spread = np.zeros(across.shape) if uncertainty is None else uncertainty.to(UNITS[y]).magnitude
-    return Curve(
-        measured.label,
-        along[there],
-        across[there],
-        BLACK,
-        low=None if uncertainty is None else (across - spread)[there],
-        high=None if uncertainty is None else (across + spread)[there],
-        points=True,
-    )
+    if uncertainty is None:
+        return found
+    spread = uncertainty.to(UNITS[y]).magnitude[there]
+    return replace(found, low=found.y - spread, high=found.y + spread)
 
 
-def _of_profile(results: Results, profile: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
-    """Return the curves of a profile, by patch."""
-    make = _across_the_patch if "y" in profile else _along_the_patch
-    curves: list[Curve] = []
-    for patch in patches_of(profile, window.patches):
-        found = make(results, profile.sel(patch), spec, window)
-        curves += _coloured(found, patch, profile) if patch else found
-    return curves
+# Profiles of the patch
 
 
 def _body(results: Results, window: Window) -> str:
@@ -346,28 +414,73 @@ def _body(results: Results, window: Window) -> str:
     return window.body or next(iter(results.case.rig.bodies))
 
 
-def _along_the_patch(results: Results, profile: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
+def _along_the_patch(
+    results: Results, profile: xarray.Dataset, spec: FigureSpec, window: Window
+) -> tuple[list[Curve], Spans]:
     """Return curves along the patch: outcomes for each pair, other variables for each contact model."""
-    curves = []
+    curves: list[Curve] = []
+    spans: Spans = []
     grid = results.case.profiles[spec.profile or ""]
     problem = grid.problem(results.case.rig)
     half = 0.0 if problem.dims else 1e3 * float(np.ravel(problem.half_width)[0])
-    for variable in window.shown:
-        if variable == "creepage":
-            level = np.full(2, grid.level(results.case.rig.creepage, results.case.units))
-            curves.append(Curve(name_of(variable), profile.x.values[[0, -1]], level, OF_PROFILE.index(variable)))
-        elif "pair" in profile[variable].dims:
-            for pair in predicting(results, variable, spec.pairs or profile.pair.values.tolist()):
-                x, y = _at_nodes(profile, profile[variable].sel(pair=pair), "x", results.pair(pair).contact_model)
-                outside = np.full(y.shape, profile.outside_range.sel(pair=pair).item() > 0.0)
-                named = pair if len(window.shown) == 1 or variable == WEAR else f"{name_of(variable)}, {pair}"
-                curves.append(Curve(named, x, y, *_style(results, pair), outside=outside))
-        else:
-            models = spec.contact_models or profile.contact_model.values.tolist()
-            alike = 1 if variable == "pressure" else None
-            found = [_field(results, profile, variable, model) for model in models[:alike]]
-            curves += [_to_the_edges(curve, half) for curve in found] if half and variable in STRESSES else found
-    return curves
+    for patch in patches_of(profile, window.patches):
+        found, here = [], profile.sel(patch)
+        for variable in window.shown:
+            if variable == "creepage":
+                level = np.full(2, grid.level(results.case.rig.creepage, results.case.units))
+                colour = OF_PROFILE.index(variable)
+                found.append(Curve(name_of(variable), here.x.values[[0, -1]], level, colour))
+                continue
+            every = list(_series(results, here, spec, variable, (variable,)))
+            own = "pair" in here[variable].dims
+            for one in every[:1] if variable == "pressure" else every:  # all contact models have Hertz's pressure
+                x, y = _at_nodes(one.data, variable, "x")
+                if own:
+                    outside = np.full(y.shape, bool(one.outside))
+                    curve = Curve(one.label(len(window.shown) > 1), x, y, *one.style, outside=outside)
+                else:
+                    dash = 0 if variable == "pressure" else one.style[1]
+                    named = name_of(variable) if variable == "pressure" else one.label(several=True)
+                    curve = Curve(named, x, y, OF_PROFILE.index(variable), dash)
+                found.append(_to_the_edges(curve, half) if half and variable in STRESSES else curve)
+                spans += _whole(one, found[-1])
+        curves += _coloured(found, patch, profile) if patch else found
+    return curves, spans
+
+
+def _across_the_patch(
+    results: Results, profile: xarray.Dataset, spec: FigureSpec, window: Window
+) -> tuple[list[Curve], Spans]:
+    """Return curves across the patch for a body: depth for each pair, sliding distance for each contact model.
+
+    At the edges, where the patch has no length, both are zero.
+    """
+    curves: list[Curve] = []
+    spans: Spans = []
+    body = _body(results, window)
+    problem = results.case.profiles[spec.profile or ""].problem(results.case.rig)
+    half = 1e3 * float(np.ravel(problem.b)[0]) if problem.geometry == "ellipse" and not problem.dims else 0.0
+    for patch in patches_of(profile, window.patches):
+        found = []
+        for name in (f"{body}_{variable}" for variable in window.shown):
+            own = "pair" in profile[name].dims
+            for one in _series(results, profile.sel(patch), spec, "wear_rate" if own else name, (name,)):
+                x, y = _at_nodes(one.data, name, "y")
+                if not y.size:  # a law for the other body
+                    continue
+                outside = np.full(y.shape, results.is_outside(profile.sel(patch), one.of, body)) if own else None
+                curve = Curve(one.of, x, y, *one.style, outside=outside)
+                found.append(_to_the_edges(curve, half) if half else curve)
+                spans += _whole(one, found[-1])
+        curves += _coloured(found, patch, profile) if patch else found
+    return curves, spans
+
+
+def _whole(one: _Series, curve: Curve) -> Spans:
+    """Return the ends of a curve over a patch if the contact is beyond shakedown."""
+    beyond = one.beyond().get(SHAKEDOWN)
+    there = beyond is not None and bool(beyond) and curve.x.size
+    return [(float(curve.x.min()), float(curve.x.max()))] if there else []
 
 
 def _to_the_edges(curve: Curve, half: float) -> Curve:
@@ -379,96 +492,92 @@ def _to_the_edges(curve: Curve, half: float) -> Curve:
     return replace(curve, x=x, y=y, outside=None if curve.outside is None else np.pad(curve.outside, 1, mode="edge"))
 
 
-def _across_the_patch(results: Results, profile: xarray.Dataset, spec: FigureSpec, window: Window) -> list[Curve]:
-    """Return curves across the patch for a body: depth for each pair, sliding distance for each contact model.
-
-    At the edges, where the patch has no length, both are zero.
-    """
-    curves, body = [], _body(results, window)
-    problem = results.case.profiles[spec.profile or ""].problem(results.case.rig)
-    half = 1e3 * float(np.ravel(problem.b)[0]) if problem.geometry == "ellipse" and not problem.dims else 0.0
-    for variable in window.shown:
-        values = profile[f"{body}_{variable}"]
-        if "pair" in values.dims:
-            for pair in spec.pairs or profile.pair.values.tolist():
-                x, y = _at_nodes(profile, values.sel(pair=pair), "y", results.pair(pair).contact_model)
-                if not y.size:  # a law for the other body
-                    continue
-                outside = np.full(y.shape, results.is_outside(profile, pair, body))
-                curves.append(Curve(pair, x, y, *_style(results, pair), outside=outside))
-        else:
-            for model in spec.contact_models or profile.contact_model.values.tolist():
-                x, y = _at_nodes(profile, values.sel(contact_model=model), "y", model)
-                curves.append(Curve(model, x, y, _dash(results, model), _dash(results, model)))
-    return [_to_the_edges(curve, half) for curve in curves] if half else curves
-
-
-def _field(results: Results, profile: xarray.Dataset, variable: str, model: str) -> Curve:
-    """Return the curve of a field along the patch; all contact models have Hertz's pressure."""
-    x, y = _at_nodes(profile, profile[variable].sel(contact_model=model), "x", model)
-    colour = OF_PROFILE.index(variable)
-    if variable == "pressure":
-        return Curve(name_of(variable), x, y, colour)
-    return Curve(f"{name_of(variable)}, {model}", x, y, colour, _dash(results, model))
-
-
-def _at_nodes(profile: xarray.Dataset, values: xarray.DataArray, position: str, model: str) -> tuple[Array, Array]:
+def _at_nodes(data: xarray.Dataset, variable: str, position: str) -> tuple[Array, Array]:
     """Return the positions of the nodes of a contact model, and the values of a variable there."""
-    there = values.notnull().values
-    places = profile[position]
-    places = places.sel(contact_model=model) if "contact_model" in places.dims else places
-    return places.values[there], values.values[there]
+    there = data[variable].notnull().values
+    return data[position].values[there], data[variable].values[there]
 
 
-def _dash(results: Results, model: str) -> int:
-    return list(results.case.contact_models_by_label).index(model)
+# One operating point, and maps
 
 
-def _style(results: Results, label_of_pair: str) -> tuple[int, int]:
-    """Return the colour of a pair's law and the dash of its contact model."""
-    pair = results.pair(label_of_pair)
-    return list(results.case.laws_by_label).index(pair.law), _dash(results, pair.contact_model)
+def _points(results: Results, spec: FigureSpec, window: Window, units: Mapping[str, str]) -> Panel:
+    """Return a panel with a point for each pair, or for each contact model, at the one point of a sweep."""
+    point, several = results.sweeps[spec.sweep or ""], len(window.shown) > 1
+    found = [one for y in window.shown for one in _series(results, point, spec, y, (y,))]
+    names = tuple(one.label(several) for one in found)
+    curves = []
+    for number, (one, name) in enumerate(zip(found, names, strict=True)):
+        own = "pair" in point[one.variable].dims
+        value = _values(one.data[one.variable], own)
+        shown: dict[str, Any] = {**one.ends(), **({"outside": one.outside} if own else {})}
+        shown = {field: np.atleast_1d(values) for field, values in shown.items()}
+        place = np.array([float(number)])
+        curves.append(Curve(name, np.atleast_1d(value), place, one.style[0], points=True, hollow=True, **shown))
+    values = [one for curve in curves for one in (curve.x, curve.low, curve.high) if one is not None]
+    log = window.y_scale == "log" or (window.y_scale is None and fit_for_log(*values))
+    return Panel(
+        PlotAxis(label(*window.shown, units=units), "log" if log else "linear",
+                 _ends(window.shown[0], units, window.y_range)),
+        PlotAxis("", ends=(-0.5, len(names) - 0.5), inverted=True, names=names),
+        tuple(curves),
+        window.title,
+    )  # fmt: skip
 
 
-def _x_axis(x: str, window: Window, curves: list[Curve], units: Mapping[str, str]) -> PlotAxis:
-    """Return the x axis of a panel."""
-    x_ends = ends(x, units[x], window.x_range) if window.x_range else None
-    # A logarithmic axis hides values that are not positive, as at zero creepage.
-    scale: Scale = "log" if window.x_scale == "log" and any((c.x > 0).any() for c in curves) else "linear"
-    return PlotAxis(label(x, units=units), scale, x_ends)
+def _maps(results: Results, spec: FigureSpec, units: Mapping[str, str]) -> tuple[list[Panel], int]:
+    """Return a panel for each pair or contact model and patch, and how many more there would be."""
+    sweep, grid = results.sweeps[spec.sweep or ""], results.case.sweeps[spec.sweep or ""]
+    variable, x, y = spec.map or "", spec.x, spec.shown[0]
+    plane = sweep.isel({axis: sweep.sizes[axis] // 2 for axis in axes_of(sweep) if axis not in (x, y)})
+    found = [
+        (patch, one)
+        for patch in patches_of(plane, spec.patches)
+        for one in _series(results, plane.sel(patch), spec, variable, (variable,))
+    ]
+    signed, own = is_of_patches(sweep), "pair" in plane[variable].dims
+    values = [_values(one.data[variable].transpose(y, x), signed or own) for _, one in found]
+    log = variable not in results.case.outcomes or not results.case.outcomes[variable].signed
+    scale: Scale = "log" if log and fit_for_log(*values) else "linear"
+    axes, places = [], []
+    for name, chosen, given in ((x, spec.x_scale, spec.x_range), (y, spec.y_scale, spec.y_range)):
+        at = _converted(plane[name].values, results.case.result_units[name], units[name])
+        spacing = (chosen or grid.spacing(name)) if (at > 0.0).all() else "linear"
+        axes.append(PlotAxis(label(name, units=units), spacing, _ends(name, units, given)))
+        places.append(at)
+    panels = []
+    for (patch, one), shown in zip(found[:MOST_MAPS], values, strict=False):
+        regions = {LIMITS[limit]: region.transpose(y, x).values for limit, region in one.beyond().items()}
+        if own:
+            regions[OUTSIDE] = one.data.outside_range.transpose(y, x).values > 0.0
+        whole = (f"all {words}" for words, region in regions.items() if region.all())  # no border shows them
+        title = ", ".join(filter(None, (one.of, in_words(patch), *whole)))
+        drawn = Map(label(variable, units=units), places[0], places[1], shown, scale, regions)
+        panels.append(Panel(axes[0], axes[1], (), title, map=drawn))
+    return panels, len(found) - len(panels)
+
+
+# Axes
+
+
+def _ends(variable: str, units: Mapping[str, str], given: Range | None) -> tuple[float, float] | None:
+    return ends(variable, units[variable], given) if given else None
 
 
 def _y_axis(x_axis: PlotAxis, window: Window, curves: list[Curve], units: Mapping[str, str]) -> PlotAxis:
-    """Return the y axis of a panel."""
-    seen = _seen(curves, x_axis.ends)
-    positive = seen[seen > 0]
-    scale: Scale = "log" if window.y_scale == "log" and positive.size else "linear"
-    y_ends: tuple[float, float] | None
-    if window.y_range:
-        y_ends = ends(window.shown[0], units[window.shown[0]], window.y_range)
-    elif scale == "log":
-        y_ends = (positive.min() / 1.5, positive.max() * 1.5) if x_axis.ends else None
-    else:
-        room = 1.12 if any(curve.bars for curve in curves) else 1.05  # for the numbers at the ends of bars
-        y_ends = (0.0, room * seen.max()) if positive.size and seen.min() >= 0.0 else None
-    return PlotAxis(label(*window.shown, units=units), scale, y_ends)
-
-
-def _named(sweep: xarray.Dataset, window: Window) -> PlotAxis:
-    """Return the axis of a figure with a point for each patch."""
-    names = tuple(map(in_words, patches_of(middle_of(sweep), window.patches)))
-    return PlotAxis(
-        ", ".join(map(name_of, patch_axes(sweep))), ends=(-0.5, len(names) - 0.5) if names else None, names=names
-    )
-
-
-def _seen(curves: list[Curve], x_ends: tuple[float, float] | None) -> Array:
-    """Return all finite values of curves and bands between the ends of the x axis."""
-    low, high = x_ends or (-np.inf, np.inf)
+    """Return the y axis of a panel; without ends of its own it holds all values and bands between the ends of x."""
     values = [
-        y[(low <= curve.x) & (curve.x <= high) & np.isfinite(y)]
+        y[x_axis.shows(curve.x) & np.isfinite(y)]
         for curve in curves
         for y in (curve.y, curve.low, curve.high)
         if y is not None
     ]
-    return np.concatenate([np.empty(0), *values])
+    seen = np.concatenate([np.empty(0), *values])
+    positive = seen[seen > 0]
+    scale: Scale = "log" if window.y_scale == "log" and positive.size else "linear"
+    y_ends = _ends(window.shown[0], units, window.y_range)
+    if y_ends is None and scale == "log":
+        y_ends = (positive.min() / 1.5, positive.max() * 1.5) if x_axis.ends else None
+    elif y_ends is None:
+        y_ends = (0.0, 1.05 * seen.max()) if positive.size and seen.min() >= 0.0 else None
+    return PlotAxis(label(*window.shown, units=units), scale, y_ends)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
@@ -21,8 +21,7 @@ from wearlaw.errors import (
     WearlawError,
     WearlawWarning,
     did_you_mean,
-    quoted,
-    shortened,
+    shown,
 )
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.configuration import Configuration
@@ -38,9 +37,7 @@ MOST_POINTS = 10_000_000
 def _value(value: Any) -> Any:
     """Raise an error unless this may be a value of a condition."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise InputError(
-            f"must be a value, a list of values, or a table with from, to and points; got {shortened(value)}"
-        )
+        raise InputError(f"must be a value, a list of values, or a table with from, to and points; got {shown(value)}")
     if isinstance(value, float) and not np.isfinite(value):
         raise InputError(f"must be finite, got {value}")
     return value
@@ -139,29 +136,17 @@ class Grid(Configuration, extra="allow"):
         """The number of operating points."""
         return math.prod(self.axes().values())
 
-    def checked(self, rig: Rig) -> Grid:
-        """Return the grid with its conditions in the order in which the rig names them.
-
-        Raises
-        ------
-        ConfigurationError
-            If the rig does not take the conditions at both ends of the axes.
-        """
-        wrong = self.faults(rig)
-        if wrong:
-            raise ConfigurationError("Grid", wrong)
+    def ordered(self, rig: Rig) -> Grid:
+        """Return the grid with its conditions in the order in which the rig names them."""
         known = rig.conditions()
         return Grid(**{name: self.given[name] for name in known or self.given if name in self.given})
 
-    def faults(self, rig: Rig, wrong: Collection[str] = ()) -> list[Fault]:
-        """Return what a rig finds wrong at the ends of the axes, one fault for each condition.
-
-        `wrong` holds the names of conditions that were left out because they cannot be read.
-        """
+    def faults(self, rig: Rig) -> list[Fault]:
+        """Return what a rig finds wrong at the ends of the axes, one fault for each condition."""
         found: dict[tuple[str, ...], Fault] = {}
         for end in (np.min, np.max):
             ends = {name: axis.given(float(end(axis.values))) for name, axis in self._axes.items()}
-            for fault in wrong_conditions(rig, {**self.given, **ends}, wrong):
+            for fault in wrong_conditions(rig, {**self.given, **ends}):
                 found.setdefault(fault.path, fault)
         return list(found.values())
 
@@ -228,50 +213,23 @@ class Grid(Configuration, extra="allow"):
         return _quietly(rig, {**self.given, **first})
 
 
-def wrong_conditions(rig: Rig, given: Mapping[str, Any], wrong: Collection[str] = ()) -> Iterator[Fault]:
-    """Yield the faults that a rig finds in the conditions of an operating point, each under its name.
-
-    A rig raises an error for the first wrong condition that it meets. To find the next one, the condition takes its
-    value from the rig's example if the rig needs it, and is left out otherwise. What the rig then says of conditions
-    together means nothing and is not yielded.
-
-    Parameters
-    ----------
-    rig : Rig
-    given : mapping of str to object
-        The conditions that could be read.
-    wrong : collection of str, optional
-        Names of further conditions of the point, which could not be read.
-    """
-    known, needed = rig.conditions(), rig.needed()
+def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield the unknown and missing conditions of an operating point, or else the first one that the rig refuses."""
+    known = rig.conditions()
     unknown = [name for name in given if known and name not in known]
-    missing = [name for name in needed if name not in given and name not in wrong]
+    missing = [name for name in rig.needed() if name not in given]
     for name in unknown:
         hint = did_you_mean(name, known)
         yield Fault((name,), f"unknown condition{hint} The conditions of the rig are: {', '.join(known)}")
-    for name in missing:
-        yield Fault((name,), "is missing")
-    tried = {name: value for name, value in given.items() if name not in unknown}
-    tried |= {name: rig.example[name] for name in wrong if name in needed and name in rig.example}
-    suspects, whole = tried.keys() - {*wrong}, not (unknown or missing or wrong)
-    while True:
-        try:
-            _quietly(rig, tried)
-        except WearlawError as error:
-            text = str(error)
-        else:
-            return
-        about = next((name for name in suspects if text.startswith(f"{name}: ")), None)
-        if about is None:
-            if whole:
-                yield Fault((), text)
-            return
-        yield Fault((about,), text.removeprefix(f"{about}: "))
-        suspects, whole = suspects - {about}, False
-        if about in needed and about in rig.example:
-            tried[about] = rig.example[about]
-        else:
-            del tried[about]
+    yield from (Fault((name,), "is missing") for name in missing)
+    if unknown or missing:
+        return
+    try:
+        _quietly(rig, given)
+    except WearlawError as error:
+        text = str(error)
+        about = next((name for name in given if text.startswith(f"{name}: ")), None)
+        yield Fault((about,), text.removeprefix(f"{about}: ")) if about else Fault((), text)
 
 
 def _quietly(rig: Rig, conditions: Mapping[str, Any]) -> Any:
@@ -279,12 +237,6 @@ def _quietly(rig: Rig, conditions: Mapping[str, Any]) -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", WearlawWarning)
         return rig.checked_problem(conditions)
-
-
-def with_units(conditions: Mapping[str, Array]) -> dict[str, Any]:
-    """Return SI conditions of discs with units, as a rig takes them."""
-    units = {"normal_force": "N", "normal_force_per_width": "N/m", "max_pressure": "Pa", "creepage": ""}
-    return {name: Q(si, units[name]) if name in units else si for name, si in conditions.items()}
 
 
 def shown_unit(name: str, written: str | None) -> str:
@@ -316,14 +268,13 @@ def _in_one_unit(values: tuple[float | str, ...], names: tuple[str, ...] = ()) -
         if not isinstance(value, str):
             with_unit = next(one for one in values if isinstance(one, str))
             raise UnitError(
-                f"got the bare number {shortened(value)}, which has no unit, beside {shortened(with_unit)}; give all"
-                " values one"
+                f"got the bare number {shown(value)}, which has no unit, beside {shown(with_unit)}; give all values one"
             )
     quantities = [_parsed(value, number, values, names) for number, value in enumerate(values)]
     unit = _symbol(quantities[0])
     for quantity, value in zip(quantities, values, strict=True):
         if not quantity.is_compatible_with(quantities[0]):
-            raise UnitError(f"{quoted(values[0])} and {quoted(value)} are not of one dimension")
+            raise UnitError(f"{shown(values[0])} and {shown(value)} are not of one dimension")
     numbers = [quantity.to(quantities[0].units).magnitude for quantity in quantities]
     return np.array(numbers, dtype=np.float64), unit
 
@@ -334,7 +285,7 @@ def _parsed(value: float | str, number: int, values: tuple[float | str, ...], na
         return parse(str(value))
     except UnitError as error:
         units = [_symbol(one) for one in map(_quantity, values) if one is not None]
-        with_unit = quoted(f"{value} {units[0] or 'dimensionless'}") if units else ""
+        with_unit = shown(f"{value} {units[0] or 'dimensionless'}") if units else ""
         fixed = f"; write {with_unit}" if with_unit and _quantity(with_unit.strip("'\"")) is not None else ""
         raise UnitError(f"{f'{names[number]}: ' if names else ''}{error}{fixed}") from None
 

@@ -36,6 +36,10 @@ class MeasuredTests(Configuration):
     """Their name in the legend."""
     tests: str
     """The name of shipped tests, or the path of a CSV file relative to the case file."""
+    sep: str | None = None
+    """What separates the cells of the file; None for the first of semicolon, tab and comma that its header has."""
+    decimal: str = "."
+    """The decimal mark of the file."""
 
     @model_validator(mode="after")
     def _readable(self) -> MeasuredTests:
@@ -51,7 +55,7 @@ class MeasuredTests(Configuration):
     @cached_property
     def data(self) -> WearTests:
         """The tests."""
-        return parse_tests(self.text, self.tests)
+        return parse_tests(self.text, self.tests, (), self.sep, self.decimal)
 
     @property
     def shipped(self) -> bool:

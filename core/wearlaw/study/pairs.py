@@ -13,7 +13,6 @@ from wearlaw.models.stage import Stage
 from wearlaw.pipeline.composition import TAKE_MEANS
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.study.case import Case
 from wearlaw.study.composed import TAKE_MEANS_IN_A_CASE, composed
 
 
@@ -36,8 +35,8 @@ class Pair:
         return self.pipeline.laws[0].outcome
 
 
-def pairs_of(case: Case, notes: Notes) -> list[Pair]:
-    """Compose all pairs of a case with `compose`, for the first operating point of its first sweep."""
+def pairs_of(case: Any, notes: Notes) -> list[Pair]:
+    """Compose all pairs of a `Case`, which imports this file, for the first operating point of its first sweep."""
     problem = next(iter(case.sweeps.values())).problem(case.rig)
     models, laws = case.contact_models_by_label, case.laws_by_label
     return compose(case.rig, models, laws, notes, problem, case.stages, TAKE_MEANS_IN_A_CASE)

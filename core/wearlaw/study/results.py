@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import xarray
 
-from wearlaw.errors import InputError, did_you_mean, quoted
+from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import WEAR, Outcome
 from wearlaw.pipeline.composition import fitted_to_other_body
 from wearlaw.pipeline.selection import in_words as in_words
@@ -50,7 +50,7 @@ class Results:
         """
         if name not in self.sweeps:
             raise InputError(
-                f"the case has no sweep {quoted(name)}{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]"
+                f"the case has no sweep {shown(name)}{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]"
             )
         return self.sweeps[name]
 
@@ -68,7 +68,7 @@ class Results:
         kind, name = ("sweep", sweep) if sweep is not None else ("profile", profile or "")
         grids = self.case.sweeps if kind == "sweep" else self.case.profiles
         if name not in grids:
-            raise InputError(f"the case has no {kind} {quoted(name)}{did_you_mean(name, grids)} Add [{kind}s.{name}]")
+            raise InputError(f"the case has no {kind} {shown(name)}{did_you_mean(name, grids)} Add [{kind}s.{name}]")
         return grids[name].conditions()
 
     def pair(self, label: str) -> Pair:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
-from wearlaw.errors import InputError, shortened
+from wearlaw.errors import InputError, shown
 from wearlaw.figures.curves import FigureData
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class CheckedClaim:
 
     def __post_init__(self) -> None:
         if self.verdict not in VERDICTS:
-            raise InputError(f"verdict: must be one of {', '.join(map(repr, VERDICTS))}, got {shortened(self.verdict)}")
+            raise InputError(f"verdict: must be one of {', '.join(map(repr, VERDICTS))}, got {shown(self.verdict)}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,8 +25,7 @@ from wearlaw.errors import (
     WearlawWarning,
     described,
     message_of,
-    quoted,
-    shortened,
+    shown,
 )
 from wearlaw.models.contact_model import Model
 from wearlaw.models.law import WEAR
@@ -104,12 +103,12 @@ class Study(Results):
             "notes": [str(len(self.notes))] if self.notes else [],
         }
         indent = 13 * " "
-        shown = [
+        parts = [
             textwrap.fill(", ".join(those), LINE, initial_indent=f"  {row:11}", subsequent_indent=indent)
             for row, those in rows.items()
             if those
         ]
-        return "\n".join([f"Study of {quoted(self.case.title)}", *shown])
+        return "\n".join([f"Study of {shown(self.case.title)}", *parts])
 
 
 @steady
@@ -158,7 +157,7 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
         with notes.of(f"section '{name}'"):
             section = make(_copied(study))
         if not isinstance(section, Section):
-            raise TypeError(f"it must be a Section, got {shortened(section)}")
+            raise TypeError(f"it must be a Section, got {shown(section)}")
     except WearlawError as error:
         raise InputError(
             f"{subject}: {message_of(error)}\nTo run the case without this section, take '{name}' out of `sections`"

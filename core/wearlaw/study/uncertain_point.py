@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from wearlaw.errors import ConfigurationError, Fault, InputError, did_you_mean, shortened
+from wearlaw.errors import Fault, InputError, did_you_mean, shown
 from wearlaw.models.law import Law
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig
@@ -56,7 +56,7 @@ def _uncertain(value: Any) -> Any:
         return Spread(**value)
     if isinstance(value, Spread | str | float | int) and not isinstance(value, bool):
         return value
-    raise InputError(f"must be a value, or a table such as {{uniform = [0.3, 0.5]}}; got {shortened(value)}")
+    raise InputError(f"must be a value, or a table such as {{uniform = [0.3, 0.5]}}; got {shown(value)}")
 
 
 Condition = Annotated[float | str | Spread, BeforeValidator(_uncertain)]
@@ -82,36 +82,20 @@ class UncertainPoint(Configuration, extra="allow"):
         """The conditions as written in the case."""
         return self.__pydantic_extra__
 
-    def checked(self, rig: Rig) -> UncertainPoint:
-        """Return the point with its conditions in the order in which the rig names them.
-
-        Raises
-        ------
-        ConfigurationError
-            If a distribution is impossible, the rig makes several patches, or it does not take the conditions, tried at
-            the first number of each distribution.
-        """
-        wrong = self.faults(rig)
-        if wrong:
-            raise ConfigurationError("UncertainPoint", wrong)
+    def ordered(self, rig: Rig) -> UncertainPoint:
+        """Return the point with its conditions in the order in which the rig names them."""
         known = rig.conditions()
         ordered = {name: self.given[name] for name in known or self.given if name in self.given}
         return UncertainPoint(laws=self.laws, **ordered)
 
-    def faults(self, rig: Rig, wrong: Collection[str] = ()) -> list[Fault]:
-        """Return what is wrong with the conditions, tried at the first number of each distribution.
-
-        `wrong` holds the names of conditions that were left out because they cannot be read.
-        """
+    def faults(self, rig: Rig) -> list[Fault]:
+        """Return what is wrong with the conditions, tried at the first number of each distribution."""
         conditions = self.conditions()
         spread = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
         middle = {name: one.first for name, one in spread.items()}
-        found = list(wrong_conditions(rig, {**conditions, **middle}, wrong))
-        blamed = {fault.path for fault in found}
-        found += [
-            Fault((name,), fault) for name, one in spread.items() if (name,) not in blamed and (fault := one.fault())
-        ]
-        if not (found or wrong) and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
+        found = list(wrong_conditions(rig, {**conditions, **middle}))
+        found += [Fault((name,), fault) for name, one in spread.items() if not found and (fault := one.fault())]
+        if not found and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
             found = [Fault((), f"{several}; leave it out")]
         return found
 

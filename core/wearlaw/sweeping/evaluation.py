@@ -13,7 +13,7 @@ from wearlaw.arrays import kernels
 from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, InputError, RangeWarning, did_you_mean, quoted
+from wearlaw.errors import CompositionError, InputError, RangeWarning, did_you_mean, shown
 from wearlaw.models.contact_model import fault
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction
@@ -179,7 +179,7 @@ def output_units(
     for name in list(named_outcomes(pipeline.laws)) if outputs is None else outputs:
         if name in given:
             raise InputError(
-                f"outputs: {quoted(name)} is one of the conditions, and among the coordinates of the results"
+                f"outputs: {shown(name)} is one of the conditions, and among the coordinates of the results"
             )
         _check_body(name, pipeline.laws)
         value = _output(prediction, name)
@@ -187,7 +187,7 @@ def output_units(
             named = dict.fromkeys((*of_laws, *dir(prediction)))
             known = [one for one in named if one not in given and _is_output(prediction, one)]
             raise InputError(
-                f"outputs: there is no {quoted(name)} at an operating point{did_you_mean(name, known)}"
+                f"outputs: there is no {shown(name)} at an operating point{did_you_mean(name, known)}"
                 f" There are: {', '.join(known)}"
             )
         units[name] = unit_of(name, value, pipeline.laws)
@@ -198,7 +198,7 @@ def _check_body(name: str, laws: Sequence[Law]) -> None:
     """Raise an error for an outcome that has a law for each body, if the body is not named."""
     of_bodies = [known for known, index in named_outcomes(laws).items() if laws[index].outcome.name == name != known]
     if of_bodies:
-        raise InputError(f"outputs: {quoted(name)} has a law for each body; name {' or '.join(of_bodies)}")
+        raise InputError(f"outputs: {shown(name)} has a law for each body; name {' or '.join(of_bodies)}")
 
 
 def _output(prediction: Prediction, name: str) -> Quantity | None:

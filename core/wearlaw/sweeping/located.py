@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import DataError, InputError, quoted
+from wearlaw.errors import DataError, InputError
 from wearlaw.sweeping.points import Points
+from wearlaw.tables import Table
 from wearlaw.units.variables import VARIABLES
-
-if TYPE_CHECKING:
-    from wearlaw.sweeping.table_files import TableFile
 
 
 def posed(points: Points, pose: Callable[[Mapping[str, Any]], Problem]) -> Problem:
@@ -38,7 +36,7 @@ def posed(points: Points, pose: Callable[[Mapping[str, Any]], Problem]) -> Probl
 
 def _located(
     points: Points,
-    file: TableFile,
+    table: Table,
     numbers: range,
     pose: Callable[[Mapping[str, Any]], Problem],
     error: InputError,
@@ -65,18 +63,13 @@ def _located(
         return error
     message = str(first)
     name = next((name for name in points.varying if message.startswith(f"{name}: ")), None)
-    if name is None:
-        place, column = 0, ""
-    else:
-        head = points.varying[name].origin.rpartition(" of ")[0]
-        texts = [one.text for one in file.heads]
-        place, column = texts.index(head.removeprefix("-") if head not in texts else head), f", column {quoted(head)}"
-        if points.varying[name].unit is None and "has no unit" in message:
-            message += f"; the column {advice(name, head)}"
+    head = "" if name is None else points.varying[name].origin.rpartition(" of ")[0]
+    column = f", column '{head}'" if head else ""
+    if name is not None and points.varying[name].unit is None and "has no unit" in message:
+        message += f"; the column {advice(name, head)}"
     if low == 0 and len(numbers) > 1 and last is not None and str(last) == str(first):  # so is every row
-        return DataError(f"table {quoted(file.path)}{column}: {message}")
-    ((where, _),) = file.places_of([(numbers[low], place)])
-    return DataError(f"table {quoted(file.path)}, {where}{column}: {message}")
+        return DataError(f"{table.label}{column}: {message}")
+    return DataError(f"{table.label}, {table.where(numbers[low])}{column}: {message}")
 
 
 def advice(name: str, text: str) -> str:

@@ -26,7 +26,7 @@ from wearlaw.units.registry import symbol
 from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
-    from wearlaw.sweeping.table_files import TableFile
+    from wearlaw.tables import Table
 
 ITEM = np.dtype(np.float64).itemsize
 
@@ -132,7 +132,7 @@ class Points:
         Labels of a table's rows, by their dimension.
     kept : mapping of str to Varying
         Columns of a table that are not conditions, to be coordinates of the results.
-    file : TableFile or None
+    file : Table or None
         The file from which the points come, to name the places of errors.
     numbers : range or None
         The numbers of the points among the rows of the file.
@@ -146,7 +146,7 @@ class Points:
     rows: Mapping[str, Any] = field(default_factory=dict)
     weight: float = 1.0
     kept: Mapping[str, Varying] = field(default_factory=dict)
-    file: TableFile | None = None
+    file: Table | None = None
     numbers: range | None = None
 
     @cached_property

@@ -6,8 +6,6 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
-from wearlaw.errors import printable
-
 
 class _Rate(ProgressColumn):
     """Points per second."""
@@ -53,7 +51,7 @@ class Bar:
 
     def stage(self, text: str) -> None:
         """Show the current stage."""
-        self._bar.update(self._task, description=printable(text))
+        self._bar.update(self._task, description=text)
 
     def __exit__(self, *_: object) -> None:
         self._bar.stop()

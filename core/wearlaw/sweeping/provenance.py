@@ -11,7 +11,7 @@ from typing import Any
 import pint
 
 from wearlaw.arrays.kernels import WORTHWHILE, accelerated
-from wearlaw.errors import OutputError, quoted, with_problems
+from wearlaw.errors import OutputError, shown, with_problems
 from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import parts
@@ -75,10 +75,10 @@ def check_same(path: Path, before: Provenance, now: Provenance) -> None:
     """
     changes = list(_changes("", before, now))
     if changes:
-        head = f"{quoted(path)} holds another sweep and cannot be resumed, since these have changed:"
+        head = f"{shown(path)} holds another sweep and cannot be resumed, since these have changed:"
         raise OutputError(
             with_problems(head, changes)
-            + f"\nChange them back, choose another place, or remove {quoted(path)} to start again"
+            + f"\nChange them back, choose another place, or remove {shown(path)} to start again"
         )
 
 

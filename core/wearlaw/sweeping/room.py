@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from wearlaw.errors import InputError, OutputError, quoted
+from wearlaw.errors import InputError, OutputError, shown
 
 GIB = 2.0**30
 
@@ -31,7 +31,7 @@ def writing_to(store: object) -> Iterator[None]:
         if store is None or error.errno is None:  # no error of a file, but a timeout of a cluster
             raise
         advice = "make room, and add resume=True to go on" if error.errno in FULL else "choose another folder"
-        raise OutputError(f"store: cannot write to {quoted(store)}: {error.strerror}; {advice}") from None
+        raise OutputError(f"store: cannot write to {shown(store)}: {error.strerror}; {advice}") from None
 
 
 def check_memory(size: int, advice: str) -> None:
@@ -61,7 +61,7 @@ def check_disk(size: int, path: Path) -> None:
     there = shutil.disk_usage(nearest).free
     if size > there:
         raise InputError(
-            f"the results need {size / GIB:.3g} GiB on disk, but {quoted(nearest)} has {there / GIB:.3g} GiB free;"
+            f"the results need {size / GIB:.3g} GiB on disk, but {shown(nearest)} has {there / GIB:.3g} GiB free;"
             " choose another disk, fewer outputs or fewer points"
         )
 

@@ -17,7 +17,7 @@ from pydantic import TypeAdapter
 from zarr.codecs import Crc32cCodec
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import OutputError, quoted
+from wearlaw.errors import OutputError, shown
 from wearlaw.sweeping.evaluation import BlockRecord, Job, Outputs
 from wearlaw.sweeping.points import ITEM, Block, Points, Varying
 from wearlaw.sweeping.provenance import check_same, provenance_of
@@ -69,7 +69,7 @@ class Store:
         try:
             self._lock.acquire()
         except filelock.Timeout:
-            raise OutputError(f"store: {quoted(path)} is being written by another process; wait for its end") from None
+            raise OutputError(f"store: {shown(path)} is being written by another process; wait for its end") from None
         try:
             self._begin_or_go_on(resume)
         except BaseException:
@@ -90,7 +90,7 @@ class Store:
                 if (record := self._kept(block)) is not None:
                     self.done[block.number] = record
         except (ValueError, KeyError, TypeError) as error:  # what describes an array is damaged
-            raise OutputError(f"store: {quoted(self.path)} is damaged ({error}); remove it to start again") from None
+            raise OutputError(f"store: {shown(self.path)} is damaged ({error}); remove it to start again") from None
 
     def _begun(self, resume: bool) -> bool:
         """Return whether the folder holds a part of this sweep, or is empty."""
@@ -101,12 +101,12 @@ class Store:
             before, status = json.loads(str(found["provenance"])), found["status"]
         except (OSError, ValueError, KeyError, TypeError):
             raise OutputError(
-                f"store: {quoted(self.path)} is not empty, and holds no sweep of wearlaw; choose another folder"
+                f"store: {shown(self.path)} is not empty, and holds no sweep of wearlaw; choose another folder"
             ) from None
         if not resume:
             what = "the results of a sweep" if status == COMPLETE else "an unfinished sweep"
             raise OutputError(
-                f"store: {quoted(self.path)} holds {what}; add resume=True, choose another folder, or remove it"
+                f"store: {shown(self.path)} holds {what}; add resume=True, choose another folder, or remove it"
             )
         check_same(self.path, before, self._provenance)
         return True

@@ -20,8 +20,7 @@ from wearlaw.errors import (
     ConditionsError,
     InputError,
     ResumeWarning,
-    quoted,
-    shortened,
+    shown,
 )
 from wearlaw.models.contact_model import fault
 from wearlaw.pipeline.composition import warn_of_unlike_materials
@@ -59,6 +58,8 @@ def sweep(
     *,
     columns: Mapping[str, str] | None = None,
     keep: Mapping[str, str] | None = None,
+    sep: str | None = None,
+    decimal: str = ".",
     outputs: Sequence[str] | None = None,
     workers: int = 1,
     client: Any = None,
@@ -74,16 +75,16 @@ def sweep(
     predict : Pipeline
         A rig, a contact model, and stages and laws if given.
     table : pandas.DataFrame, xarray.Dataset or path, optional
-        Operating points in rows, conditions in columns, with units by type (pint), `attrs["units"]` or heads such as
-        "creepage [%]". Further conditions are the same in all rows. A file may be CSV, parquet (with pyarrow), netCDF
-        or zarr. It is read in pieces. With `store`, a table in a file of any length needs no more memory than a short
-        one.
+        Operating points in rows, conditions in columns, with units as in `read_table`. Further conditions are the same
+        in all rows. A file is read in pieces. With `store`, one of any length needs no more memory than a short one.
     columns : mapping of str to str, optional
         The column of each condition, as in {"normal_force": "Fz [N]", "longitudinal_creepage": "-creep_x [-]"}. A minus
         changes the sign. The unit in brackets may be left out if the table has it, and the table may lack it if it is
         given. Other columns are not used. Default: columns have the names of conditions.
     keep : mapping of str to str, optional
         Further columns of numbers to keep as coordinates of the results, such as {"time": "Time [s]"}.
+    sep, decimal : str, optional
+        Of a CSV file: what separates its cells, and its decimal mark, as in `read_table`.
     outputs : sequence of str, optional
         Names of outcomes and properties of a prediction to keep, such as "wear_rate", "rcf_damage" or
         "tangential_force". If laws of one outcome differ by body, the name of the body follows, as in "wear_rate_rail".
@@ -125,8 +126,9 @@ def sweep(
     """
     expect_pipeline(predict)
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
-        raise InputError(f"workers: must be the number of processes, at least 1; got {shortened(workers)}")
-    with writing_to(store), _points(predict, table, conditions, columns, keep, store, progress) as points:
+        raise InputError(f"workers: must be the number of processes, at least 1; got {shown(workers)}")
+    as_csv = {"sep": sep, "decimal": decimal}
+    with writing_to(store), _points(predict, table, conditions, columns, keep, as_csv, store, progress) as points:
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
         points = dataclasses.replace(points, weight=weight(first))
@@ -155,7 +157,7 @@ def target_of(job: Job, points: Points, store: Path | None, resume: bool) -> Mem
 
 def kept(count: int, of: int, where: Path) -> str:
     """Return the remark of a sweep that is resumed, with numbers of blocks."""
-    return f"{count} of {of} blocks are kept in {quoted(where)}; the others are missing or damaged, and are computed"
+    return f"{count} of {of} blocks are kept in {shown(where)}; the others are missing or damaged, and are computed"
 
 
 @contextmanager
@@ -165,6 +167,7 @@ def _points(
     conditions: Mapping[str, Any],
     columns: Mapping[str, str] | None,
     keep: Mapping[str, str] | None,
+    as_csv: Mapping[str, Any],
     store: str | os.PathLike[str] | None,
     progress: bool,
 ) -> Iterator[Points]:
@@ -178,7 +181,7 @@ def _points(
     on_disk = None if store is None else Path(store)
     check = predict.rig.check_names
     with from_table(
-        table, conditions, columns=columns, keep=keep, check=check, on_disk=on_disk, progress=progress
+        table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk, progress=progress
     ) as points:
         yield points
 

@@ -11,9 +11,18 @@ from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import QUADRATURE, ContactModel
 from wearlaw.testing.contact_checks import sums_of
-from wearlaw.testing.examples import assert_close, for_each
+from wearlaw.testing.examples import assert_close
 from wearlaw.testing.problems import friction_limit, random_ellipses, sliding_power, without_spin
-from wearlaw.testing.shapes import ELLIPSE, PATCHES, Claims, Shape, on_each_shape
+from wearlaw.testing.shapes import (
+    ELLIPSE,
+    PATCHES,
+    Claims,
+    Shape,
+    assert_same_forces,
+    on_each_shape,
+    on_problems_of_each_shape,
+    on_shapes,
+)
 
 CHANCE = 1.3
 """Scatter of a mean of `MANY` errors: they scatter by 0.58 of their mean where one step falls anywhere in a
@@ -27,18 +36,14 @@ STRIPS = 200
 """Number of strips of equal width; their sum of a parabola across the patch is off by the share 1/(2 `STRIPS`²)."""
 
 
-@on_each_shape
-def slip_dissipates_the_energy_fed_in(model: ContactModel, shape: Shape) -> None:
+@on_problems_of_each_shape
+def slip_dissipates_the_energy_fed_in(model: ContactModel, shape: Shape, problem: Problem) -> None:
     """Traction times slip, summed over the patch, is ξFx, and on an ellipse without spin ξFx + ηFy."""
-
-    def examine(problem: Problem) -> None:
-        straight = without_spin(problem)
-        contact = model.solve(straight)
-        due = straight.power(contact.forces)
-        allowed = shape.error_of_power(model, straight, contact, due)
-        assert_close(contact.cell_wear_index, due, "the energy dissipated per metre", 0.0, allowed)
-
-    for_each(shape.problems, examine)
+    straight = without_spin(problem)
+    contact = model.solve(straight)
+    due = straight.power(contact.forces)
+    allowed = shape.error_of_power(model, straight, contact, due)
+    assert_close(contact.cell_wear_index, due, "the energy dissipated per metre", 0.0, allowed)
 
 
 @on_each_shape
@@ -90,7 +95,8 @@ def _traction_error(shape: Shape, problem: Problem, contact: Contact) -> Array:
     return off / shape.sizes(problem, due)["longitudinal"]
 
 
-def refined_strips_improve_the_forces(model: ContactModel) -> None:
+@on_shapes(ELLIPSE)
+def refined_strips_improve_the_forces(model: ContactModel, shape: Shape) -> None:  # noqa: ARG001
     """Each refinement, to twice the nodes or more, changes the forces on an ellipse half as much as the one before.
 
     Or less, or no more than quadrature.
@@ -107,7 +113,8 @@ def refined_strips_improve_the_forces(model: ContactModel) -> None:
     )
 
 
-def other_strips_have_the_same_sums(model: ContactModel) -> None:
+@on_shapes(ELLIPSE)
+def other_strips_have_the_same_sums(model: ContactModel, shape: Shape) -> None:
     """On given strips, traction and energy sum to the same over y as on the model's own."""
     shares = (2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0
     problem = random_ellipses(PATCHES)
@@ -115,7 +122,7 @@ def other_strips_have_the_same_sums(model: ContactModel) -> None:
     if contact is None:  # its nodes are where they are
         return
     assert_close(contact.y, shares * problem.b[:, None, None], "the position of a strip")
-    error = 2.0 * ELLIPSE.error_of_sums(model) + 1.0 / STRIPS**2
+    error = 2.0 * shape.error_of_sums(model) + 1.0 / STRIPS**2
     qx, qy = (contact.over_strip(traction) for traction in (contact.traction_x, contact.traction_y))
     lateral, y = qy * contact.strip_width, contact.y[..., 0, :]
     turning = contact.over_strip(contact.x * contact.traction_y) + y * qx
@@ -124,8 +131,8 @@ def other_strips_have_the_same_sums(model: ContactModel) -> None:
         lateral=lateral.sum(axis=-1),
         spin_moment=-(turning * contact.strip_width).sum(axis=-1),
     )
-    ELLIPSE.assert_same_forces(problem, sums, own.forces, "summed over the strips", error)
-    ELLIPSE.assert_same_forces(problem, contact.forces, own.forces, "on the strips", error)
+    assert_same_forces(shape, problem, sums, own.forces, "summed over the strips", error)
+    assert_same_forces(shape, problem, contact.forces, own.forces, "on the strips", error)
     energy = (contact.over_strip(contact.wear_index_density) * contact.strip_width).sum(axis=-1)
     assert_close(energy, own.cell_wear_index, "the energy summed over the strips", 0.0, error * sliding_power(problem))
 
@@ -139,12 +146,8 @@ CLAIMS: Claims = {
 
 CHECKS = (refined_strips_improve_the_forces, other_strips_have_the_same_sums)
 
-
-OF_REFINED = (refined_nodes_improve_the_sums,)
+OF_REFINED = (refined_nodes_improve_the_sums, refined_strips_improve_the_forces)
 """Checks of models that can refine their nodes."""
-
-OF_REFINED_STRIPS = (refined_strips_improve_the_forces,)
-"""Checks of models of ellipses that can refine their nodes."""
 
 OF_STRIPS = (other_strips_have_the_same_sums,)
 """Checks of models that solve on given strips."""

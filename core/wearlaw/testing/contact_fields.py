@@ -171,6 +171,8 @@ def excess_dissipation_is_that_of_the_fields(model: LineContactModel) -> None:
         if found is None:
             return
         assert (found >= 0).all(), f"the energy above a threshold is negative, {found.min()!r} N/m"
+        alone = np.array([model.excess_dissipation(problem[i], threshold[i]) for i in range(0, POINTS, 8)])
+        assert_close(alone, found[::8], "the energy of a point alone", 0.0, SUM * dissipation[::8])
         due = _integral(zone, threshold, edges)
         # Both are differences of sums that are rounded as the whole dissipation is.
         assert_close(found, due, f"the energy above {share:g} of the highest q·s", 0.0, SUM * dissipation)

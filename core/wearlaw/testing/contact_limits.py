@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
-from hypothesis import strategies as st
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
@@ -24,8 +23,17 @@ from wearlaw.testing.problems import (
     with_creepage,
     without_spin,
 )
-from wearlaw.testing.shapes import LINE, Claims, Shape, on_each_shape
-from wearlaw.testing.strategies import log_uniform
+from wearlaw.testing.shapes import (
+    ELLIPSE,
+    LINE,
+    Claims,
+    Shape,
+    assert_same_forces,
+    on_each_shape,
+    on_problems,
+    on_problems_of_each_shape,
+    on_shapes,
+)
 
 POINTS = 32
 """Number of patches checked at once."""
@@ -40,20 +48,14 @@ Solved: TypeAlias = Callable[[Array], Contact]
 """From the reduced creepages of some problems to the contacts."""
 
 
-@on_each_shape
-def traction_keeps_its_bound(model: ContactModel, shape: Shape) -> None:
+@on_problems_of_each_shape
+def traction_keeps_its_bound(model: ContactModel, shape: Shape, problem: Problem) -> None:
     """The magnitude of the traction does not exceed the bound at any node."""
-
-    def examine(problem: Problem) -> None:
-        for contact in shape.solutions(model, problem):
-            traction = np.abs(contact.traction)
-            over = traction > contact.traction_bound * (1.0 + shape.error_of_traction(model))
-            share = traction[over] / contact.traction_bound[over]
-            assert not over.any(), (
-                f"the traction is {share} times its bound at x, y = {contact.x[over]}, {contact.y[over]}"
-            )
-
-    for_each(shape.problems, examine)
+    for contact in shape.solutions(model, problem):
+        traction = np.abs(contact.traction)
+        over = traction > contact.traction_bound * (1.0 + shape.error_of_traction(model))
+        share = traction[over] / contact.traction_bound[over]
+        assert not over.any(), f"the traction is {share} times its bound at x, y = {contact.x[over]}, {contact.y[over]}"
 
 
 @on_each_shape
@@ -157,31 +159,25 @@ def _steps_into_full_slip(solved: Solved, full: Array, gap: float) -> dict[str, 
     }
 
 
-AT_SMALL_CREEPAGES = st.tuples(LINE.problems, log_uniform(1e-9, 1e-4))
-"""Lines, and creepages relative to the creepage of full slip."""
-
-
-def initial_slope_is_that_of_the_half_space(model: ContactModel) -> None:
+@on_problems(LINE)
+def initial_slope_is_that_of_the_half_space(model: ContactModel, shape: Shape, problem: Problem) -> None:
     """On a line the force at small creepage is (π/2) E* a ξ per width."""
-
-    def examine(case: tuple[Problem, float]) -> None:
-        problem, reduced = case
-        creepage = reduced * saturation(problem)
-        whole, half = (
-            model.solve(with_creepage(problem, share * creepage)).tangential_force / (share * creepage)
-            for share in (1.0, 0.5)
-        )
-        due = 0.5 * np.pi * problem.effective_modulus * problem.half_width * problem.track_width
-        # T/ξ = T'(0) + c ξ + ..., so that half the creepage halves the remainder: it is twice the difference, except
-        # for the next order, which is the share ξR/(μa) of it. With an error e of each T, the first quotient is off by
-        # e, and twice the difference by 4 e.
-        remainder = 2.0 * (1.0 + reduced) * np.abs(whole - half)
-        assert_close(whole, due, "the force over a small creepage", 5.0 * LINE.error_of_force(model), remainder)
-
-    for_each(AT_SMALL_CREEPAGES, examine)
+    reduced = np.logspace(-9, -4, problem.size)  # relative to the creepage of full slip
+    creepage = reduced * saturation(problem)
+    whole, half = (
+        model.solve(with_creepage(problem, share * creepage)).tangential_force / (share * creepage)
+        for share in (1.0, 0.5)
+    )
+    due = 0.5 * np.pi * problem.effective_modulus * problem.half_width * problem.track_width
+    # T/ξ = T'(0) + c ξ + ..., so that half the creepage halves the remainder: it is twice the difference, except for
+    # the next order, which is the share ξR/(μa) of it. With an error e of each T, the first quotient is off by e, and
+    # twice the difference by 4 e.
+    remainder = 2.0 * (1.0 + reduced) * np.abs(whole - half)
+    assert_close(whole, due, "the force over a small creepage", 5.0 * shape.error_of_force(model), remainder)
 
 
-def initial_slopes_are_kalkers(model: ContactModel) -> None:
+@on_shapes(ELLIPSE)
+def initial_slopes_are_kalkers(model: ContactModel, shape: Shape) -> None:  # noqa: ARG001
     """For small creepages Fx is G ab C11 ξ, and Fy is G ab C22 η and G ab √(ab) C23 φ.
 
     The creepage is a millionth of the creepage at saturation, so that the force differs from the linear one by far less
@@ -219,18 +215,14 @@ def contacts_are_similar(model: ContactModel, shape: Shape) -> None:
 
     On an ellipse forces over μN and the moment over μN a depend on a/b, ν and Gξ/(μp0), Gη/(μp0), Gφa/(μp0) alone.
     """
-
-    def examine(pair: tuple[Problem, Problem]) -> None:
-        problem, other = pair
-        known, ratio = shape.forces(model, problem), friction_limit(other) / friction_limit(problem)
-        due = CreepForces(
-            longitudinal=ratio * known.longitudinal,
-            lateral=ratio * known.lateral,
-            spin_moment=ratio * other.a / problem.a * known.spin_moment,
-        )
-        shape.assert_same_forces(other, shape.forces(model, other), due, "of a similar contact", SUM)
-
-    for_each(shape.similar, examine)
+    problem, other = shape.problems, shape.similar
+    known, ratio = shape.forces(model, problem), friction_limit(other) / friction_limit(problem)
+    due = CreepForces(
+        longitudinal=ratio * known.longitudinal,
+        lateral=ratio * known.lateral,
+        spin_moment=ratio * other.a / problem.a * known.spin_moment,
+    )
+    assert_same_forces(shape, other, shape.forces(model, other), due, "of a similar contact", SUM)
 
 
 CLAIMS: Claims = {
@@ -240,9 +232,3 @@ CLAIMS: Claims = {
     "initial_slope": (initial_slope_is_that_of_the_half_space, initial_slopes_are_kalkers),
     "similarity": (contacts_are_similar,),
 }
-
-OF_LINES = (initial_slope_is_that_of_the_half_space,)
-"""Checks of models that solve lines."""
-
-OF_ELLIPSES = (initial_slopes_are_kalkers,)
-"""Checks of models that solve ellipses."""

@@ -11,7 +11,7 @@ from wearlaw.contact.problem import Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.testing.examples import SAME, assert_close, for_each
 from wearlaw.testing.problems import friction_limit, without_spin
-from wearlaw.testing.shapes import LINE, Claims, Shape, on_each_shape, on_patches_of_strips
+from wearlaw.testing.shapes import LINE, Claims, Shape, on_each_shape, on_patches_of_strips, on_problems_of_each_shape
 
 POINTS = 32
 """Number of patches checked at once."""
@@ -30,24 +30,18 @@ def declared_accuracy_is_not_coarse(model: ContactModel, shape: Shape) -> None:
     )
 
 
-@on_each_shape
-def nodes_cover_the_patch(model: ContactModel, shape: Shape) -> None:
+@on_problems_of_each_shape
+def nodes_cover_the_patch(model: ContactModel, shape: Shape, problem: Problem) -> None:
     """Nodes with an area lie in the patch, none has a negative area, and the areas sum to the area of the patch.
 
     Nodes outside the patch, such as those of a rectangular grid, have no area.
     """
-
-    def examine(problem: Problem) -> None:
-        contact = model.solve(problem)
-        assert (contact.area >= 0).all(), f"an area is negative: {contact.area.min()!r}"
-        assert (contact.strip_width >= 0).all(), f"a strip's width is negative: {contact.strip_width.min()!r}"
-        outside = ~shape.inside(problem, contact) & (contact.area > 0)
-        assert not outside.any(), (
-            f"a node lies outside the patch, at x, y = {contact.x[outside]!r}, {contact.y[outside]!r}"
-        )
-        assert_close(contact.patch_area, problem.patch_area, "the sum of the areas", shape.error_of_areas(model))
-
-    for_each(shape.problems, examine)
+    contact = model.solve(problem)
+    assert (contact.area >= 0).all(), f"an area is negative: {contact.area.min()!r}"
+    assert (contact.strip_width >= 0).all(), f"a strip's width is negative: {contact.strip_width.min()!r}"
+    outside = ~shape.inside(problem, contact) & (contact.area > 0)
+    assert not outside.any(), f"a node lies outside the patch, at x, y = {contact.x[outside]!r}, {contact.y[outside]!r}"
+    assert_close(contact.patch_area, problem.patch_area, "the sum of the areas", shape.error_of_areas(model))
 
 
 @on_each_shape
@@ -116,17 +110,13 @@ def strips_have_their_widths(model: ContactModel, shape: Shape) -> None:
     for_each(shape.problems, examine)
 
 
-@on_each_shape
-def pressure_sums_to_the_load(model: ContactModel, shape: Shape) -> None:
+@on_problems_of_each_shape
+def pressure_sums_to_the_load(model: ContactModel, shape: Shape, problem: Problem) -> None:
     """The pressure is never negative, and pressure times area sums to the normal force."""
-
-    def examine(problem: Problem) -> None:
-        contact = model.solve(problem)
-        assert (contact.pressure >= 0).all(), f"a pressure is negative: {contact.pressure.min()!r}"
-        load = contact.sum_over_nodes(contact.pressure * contact.area)
-        assert_close(load, problem.normal_force, "the sum of the pressures", shape.error_of_sums(model))
-
-    for_each(shape.problems, examine)
+    contact = model.solve(problem)
+    assert (contact.pressure >= 0).all(), f"a pressure is negative: {contact.pressure.min()!r}"
+    load = contact.sum_over_nodes(contact.pressure * contact.area)
+    assert_close(load, problem.normal_force, "the sum of the pressures", shape.error_of_sums(model))
 
 
 @on_each_shape
@@ -196,6 +186,3 @@ CLAIMS: Claims = {
     "friction": (bound_sums_to_friction,),
     "leading_edge": (stick_lies_before_slip,),
 }
-
-OF_STRIPS = (strips_have_their_widths,)
-"""Checks of models that solve ellipses or strips."""

@@ -1,24 +1,21 @@
-"""The search of the checks for counter-examples, and their shared tolerances."""
+"""How the checks run on examples, and their shared tolerances."""
 
 from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
-from hypothesis import HealthCheck, Phase, given, settings
-from hypothesis import strategies as st
 
 from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import described
 from wearlaw.testing.sampling import EPS
 
-T = TypeVar("T")
-
-EXAMPLES = 25
-"""Number of examples that a check draws."""
+T = TypeVar("T", Contact, Problem)
 
 SAME = 16.0 * EPS
 """Relative difference of two orders of the same few operations: vector and scalar code may round differently."""
@@ -26,53 +23,20 @@ SAME = 16.0 * EPS
 SUM = 64.0 * EPS
 """Error of a sum over nodes, relative to the sum of magnitudes."""
 
-_SETTINGS = settings(
-    max_examples=EXAMPLES,
-    derandomize=True,
-    database=None,
-    deadline=None,
-    report_multiple_bugs=False,
-    phases=(Phase.generate, Phase.shrink),
-    suppress_health_check=(HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example),
-)
-"""Deterministic and without files, so that a check gives the same answer everywhere."""
 
-
-def for_each(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> None:
-    """Run a function on examples; shrink a counter-example and name it in a note of the error."""
-    for example in _examples(strategy):
-        try:
-            examine(copy.deepcopy(example))
-        except Exception as error:
-            failure = error
-            break
-    else:
-        return
-    _search(strategy, examine)
-    raise failure  # the search did not find it again: the model is not deterministic
-
-
-def _examples(strategy: st.SearchStrategy[T]) -> list[T]:
-    """Return the examples of a strategy, drawn once since drawing takes longer than most checks."""
-    if strategy not in _drawn:
-        examples: list[T] = []
-        _search(strategy, examples.append)
-        _drawn[strategy] = examples
-    return _drawn[strategy]
-
-
-_drawn: dict[st.SearchStrategy[Any], list[Any]] = {}
-
-
-def _search(strategy: st.SearchStrategy[T], examine: Callable[[T], None]) -> None:
-    """Run a function on the examples of a strategy, the same for every function until one fails."""
-
-    @_SETTINGS
-    @given(strategy)
-    def check(example: T) -> None:
-        examine(example)
-
-    check()
+def for_each(examples: T, examine: Callable[[T], None]) -> None:
+    """Run a function on a batch of problems or contacts; if it fails, name the first one that fails by itself."""
+    try:
+        examine(copy.deepcopy(examples))
+    except Exception:
+        for point in range(len(examples.rolling_speed)):
+            alone = examples[point : point + 1]
+            try:
+                examine(copy.deepcopy(alone))
+            except Exception as error:
+                error.add_note(f"example={alone!r}")
+                raise error from None
+        raise  # only together
 
 
 class ModelRaisedError(AssertionError):

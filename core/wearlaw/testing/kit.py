@@ -295,25 +295,6 @@ def _of_law(law: Law) -> tuple[list[CheckFunction], list[CheckFunction]]:
 
 
 def _of_contact_model(model: ContactModel) -> tuple[list[CheckFunction], list[CheckFunction]]:
-    idle: list[CheckFunction] = []
-    if "line" not in model.geometries():
-        idle += [*contact_checks.OF_LINES, *contact_limits.OF_LINES]
-    if "ellipse" not in model.geometries():
-        idle += [*contact_checks.OF_ELLIPSES, *contact_force.OF_ELLIPSES, *contact_limits.OF_ELLIPSES]
-        idle += contact_energy.OF_REFINED_STRIPS
-    if model.geometries() == ("line",):
-        idle += [*contact_nodes.OF_STRIPS, *contact_force.OF_STRIPS]
-    if model.refined() is None:
-        idle += [*contact_energy.OF_REFINED, *contact_energy.OF_REFINED_STRIPS]
-    if type(model).on_strips is ContactModel.on_strips or "ellipse" not in model.geometries():
-        idle += contact_energy.OF_STRIPS
-    if not isinstance(model, LineContactModel):
-        idle += contact_fields.OF_FIELDS
-    else:
-        if type(model).crossings is LineContactModel.crossings:
-            idle += contact_fields.OF_CROSSINGS
-        if type(model).excess_dissipation is LineContactModel.excess_dissipation:
-            idle += contact_fields.OF_EXCESS
     functions: list[CheckFunction] = [
         *contact_checks.CHECKS,
         *contact_nodes.CHECKS,
@@ -322,6 +303,19 @@ def _of_contact_model(model: ContactModel) -> tuple[list[CheckFunction], list[Ch
         *contact_energy.CHECKS,
         *contact_fields.CHECKS,
     ]
+    solved = {*model.geometries()}
+    idle = [function for function in functions if not solved & vars(function).get("geometries", solved)]
+    if model.refined() is None:
+        idle += contact_energy.OF_REFINED
+    if type(model).on_strips is ContactModel.on_strips:
+        idle += contact_energy.OF_STRIPS
+    if not isinstance(model, LineContactModel):
+        idle += contact_fields.OF_FIELDS
+    else:
+        if type(model).crossings is LineContactModel.crossings:
+            idle += contact_fields.OF_CROSSINGS
+        if type(model).excess_dissipation is LineContactModel.excess_dissipation:
+            idle += contact_fields.OF_EXCESS
     return [*functions, *COMMON, *acceleration.CHECKS], idle
 
 

@@ -17,7 +17,7 @@ from wearlaw.errors import WearlawError
 from wearlaw.models.law import Law, Numbers
 from wearlaw.settings.parameters import changed, number_like, numbers
 from wearlaw.testing.examples import SAME, assert_close
-from wearlaw.testing.law_contacts import borders, for_each_contact, for_each_of_nodes
+from wearlaw.testing.law_contacts import borders, for_each_contact, on_contacts, on_nodes
 from wearlaw.testing.law_shape import of_patch, with_slip_across
 from wearlaw.testing.sampling import NODE_FIELDS, aimed, arrays_of, at_nodes, forward, random_contacts, retotalled, rows
 from wearlaw.units.quantities import Quantity
@@ -31,23 +31,20 @@ SUMS = 1e-9
 without areas, or the first node alone, is off by the difference of one of at most 40 nodes from the others."""
 
 
-def order_of_nodes_does_not_matter(law: Law) -> None:
+@on_nodes
+def order_of_nodes_does_not_matter(law: Law, contact: Contact) -> None:
     """Each node keeps its rate when nodes or strips are listed in another order, and a patch its value."""
-
-    def examine(contact: Contact) -> None:
-        rate = law.rate(contact, law.numbers)
-        for axis in _axes(contact):
-            count = contact.pressure.shape[axis]
-            for order in (np.arange(count)[::-1], np.random.default_rng(count).permutation(count)):
-                listed: Callable[[Array], Array] = partial(np.take, indices=order, axis=axis)
-                found, due = (
-                    law.rate(_nodes(contact, listed, axis), law.numbers),
-                    rate if law.outcome.of == "patch" else listed(rate),
-                )
-                message = f"the rate with the nodes in the order {order.tolist()}"
-                assert_close(found, due, message, of_patch(law, SUMS, SAME))
-
-    for_each_of_nodes(law, examine)
+    rate = law.rate(contact, law.numbers)
+    for axis in _axes(contact):
+        count = contact.pressure.shape[axis]
+        for order in (np.arange(count)[::-1], np.random.default_rng(count).permutation(count)):
+            listed: Callable[[Array], Array] = partial(np.take, indices=order, axis=axis)
+            found, due = (
+                law.rate(_nodes(contact, listed, axis), law.numbers),
+                rate if law.outcome.of == "patch" else listed(rate),
+            )
+            message = f"the rate with the nodes in the order {order.tolist()}"
+            assert_close(found, due, message, of_patch(law, SUMS, SAME))
 
 
 def position_does_not_matter(law: Law) -> None:
@@ -68,69 +65,57 @@ def position_does_not_matter(law: Law) -> None:
     for_each_contact(law, examine)
 
 
-def batching_does_not_matter(law: Law) -> None:
+@on_contacts
+def batching_does_not_matter(law: Law, contact: Contact) -> None:
     """One operating point at a time gives the same as all at once."""
-
-    def examine(contact: Contact) -> None:
-        together = law.rate(contact, law.numbers)
-        for point in range(contact.rolling_speed.size):
-            alone = law.rate(rows(contact, [point]), law.numbers)[0]
-            assert_close(together[point], alone, f"the rate at operating point {point} of a batch")
-
-    for_each_contact(law, examine)
+    together = law.rate(contact, law.numbers)
+    for point in range(contact.rolling_speed.size):
+        alone = law.rate(rows(contact, [point]), law.numbers)[0]
+        assert_close(together[point], alone, f"the rate at operating point {point} of a batch")
 
 
-def splitting_a_node_does_not_matter(law: Law) -> None:
+@on_nodes
+def splitting_a_node_does_not_matter(law: Law, contact: Contact) -> None:
     """Two parts of a node wear at the rate of the whole, as do two parts of a strip; the rest stays the same.
 
     So a mean over the nodes has to be weighted by their areas.
     """
-
-    def examine(contact: Contact) -> None:
-        rate = law.rate(contact, law.numbers)
-        for axis in _axes(contact):
-            count = contact.pressure.shape[axis]
-            split: Callable[[Array], Array] = partial(np.repeat, repeats=[2, *[1] * (count - 1)], axis=axis)
-            parts, share = _nodes(contact, split, axis), np.array([0.25, 0.75, *[1.0] * (count - 1)])
-            width = share * parts.strip_width if _of_strips(contact, axis) else parts.strip_width
-            parts = parts.replaced(area=share.reshape(-1, *[1] * (-1 - axis)) * parts.area, strip_width=width)
-            found, due = law.rate(parts, law.numbers), rate if law.outcome.of == "patch" else split(rate)
-            assert_close(found, due, "the rate with a node in two parts", of_patch(law, SUMS, SAME))
-
-    for_each_of_nodes(law, examine)
+    rate = law.rate(contact, law.numbers)
+    for axis in _axes(contact):
+        count = contact.pressure.shape[axis]
+        split: Callable[[Array], Array] = partial(np.repeat, repeats=[2, *[1] * (count - 1)], axis=axis)
+        parts, share = _nodes(contact, split, axis), np.array([0.25, 0.75, *[1.0] * (count - 1)])
+        width = share * parts.strip_width if _of_strips(contact, axis) else parts.strip_width
+        parts = parts.replaced(area=share.reshape(-1, *[1] * (-1 - axis)) * parts.area, strip_width=width)
+        found, due = law.rate(parts, law.numbers), rate if law.outcome.of == "patch" else split(rate)
+        assert_close(found, due, "the rate with a node in two parts", of_patch(law, SUMS, SAME))
 
 
-def each_node_wears_by_itself(law: Law) -> None:
+@on_nodes
+def each_node_wears_by_itself(law: Law, contact: Contact) -> None:
     """The rate at a node depends on its own values and the totals of the patch, not on its neighbours."""
-
-    def examine(contact: Contact) -> None:
-        rate = law.rate(contact, law.numbers)
-        names = [name for name in NODE_FIELDS if name != "area"]
-        of_nodes = rate.shape[contact.rolling_speed.ndim :]
-        for node in np.ndindex(of_nodes):
-            at: Any = (..., *(slice(index, index + 1) for index in node))
-            alike = {name: np.broadcast_to(getattr(contact, name)[at], rate.shape).copy() for name in names}
-            found = law.rate(contact.replaced(**alike), law.numbers)[at]
-            assert_close(found, rate[at], f"the rate at node {_named(node)} among others like it")
-
-    for_each_of_nodes(law, examine)
+    rate = law.rate(contact, law.numbers)
+    names = [name for name in NODE_FIELDS if name != "area"]
+    of_nodes = rate.shape[contact.rolling_speed.ndim :]
+    for node in np.ndindex(of_nodes):
+        at: Any = (..., *(slice(index, index + 1) for index in node))
+        alike = {name: np.broadcast_to(getattr(contact, name)[at], rate.shape).copy() for name in names}
+        found = law.rate(contact.replaced(**alike), law.numbers)[at]
+        assert_close(found, rate[at], f"the rate at node {_named(node)} among others like it")
 
 
-def strips_wear_as_lines_do(law: Law) -> None:
+@on_nodes
+def strips_wear_as_lines_do(law: Law, contact: Contact) -> None:
     """Nodes on strips wear at the rate of the same nodes on a line, where traction and slip are parallel to x."""
-
-    def examine(contact: Contact) -> None:
-        if not contact.on_strips:
-            return
-        along = with_slip_across(contact, 0.0)
-        nodes = ("pressure", "traction", "slip", "traction_bound", "area", "x")
-        totals = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
-        values = {name: getattr(along, name).reshape(contact.rolling_speed.size, -1) for name in nodes}
-        line = Contact(**values, **{name: getattr(along, name) for name in totals}, problem=contact.problem)
-        rate = law.rate(along, law.numbers).reshape(line.pressure.shape)
-        assert_close(rate, law.rate(line, law.numbers), "the rate on strips, against a line")
-
-    for_each_of_nodes(law, examine)
+    if not contact.on_strips:
+        return
+    along = with_slip_across(contact, 0.0)
+    nodes = ("pressure", "traction", "slip", "traction_bound", "area", "x")
+    totals = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
+    values = {name: getattr(along, name).reshape(contact.rolling_speed.size, -1) for name in nodes}
+    line = Contact(**values, **{name: getattr(along, name) for name in totals}, problem=contact.problem)
+    rate = law.rate(along, law.numbers).reshape(line.pressure.shape)
+    assert_close(rate, law.rate(line, law.numbers), "the rate on strips, against a line")
 
 
 def _named(node: tuple[int, ...]) -> str:
@@ -226,13 +211,14 @@ def parameters_may_vary(law: Law) -> None:
                     assert_close(_at(found, point), _at(expected, 0), f"the {of} with {name} for each point")
 
     def examine(contact: Contact) -> None:
-        batch, alone = rows(contact, [0] * len(STEPS)), rows(contact, [0])
-        for name, laws in of_each.items():
-            rate = law.rate(batch, with_values(name, of_patch(law, 0, batch.pressure.ndim - 1)))
+        for first in range(contact.rolling_speed.size):
+            batch, alone = rows(contact, [first] * len(STEPS)), rows(contact, [first])
             due = of_patch(law, batch.pressure.shape[:1], batch.pressure.shape)
-            assert np.shape(rate) == due, f"rates of shape {np.shape(rate)} when {name} varies"
-            for point, one in laws.items():
-                assert_close(rate[point], one.rate(alone, one.numbers)[0], f"the rate with {name} for each point")
+            for name, laws in of_each.items():
+                rate = law.rate(batch, with_values(name, of_patch(law, 0, batch.pressure.ndim - 1)))
+                assert np.shape(rate) == due, f"rates of shape {np.shape(rate)} when {name} varies"
+                for point, one in laws.items():
+                    assert_close(rate[point], one.rate(alone, one.numbers)[0], f"the rate with {name} for each point")
 
     for_each_contact(law, examine)
 

@@ -1,19 +1,17 @@
 """Contacts on which the checks try a wear law: on lines, on strips of an ellipse, and the means of an ellipse.
 
-The plain ones have one axis of nodes, and one value at all nodes if they are at a border of the law. The others are
-mixed: in one contact, nodes lie below, at and above a border of the law, nodes stick beside nodes that slip, and nodes
-stand for no area. On strips, traction and slip point in different directions. The strips are of different widths and
-lie in one part or in two, as in a patch that is no ellipse.
+In one contact of several nodes, nodes lie below, at and above a border of the law, nodes stick beside nodes that slip,
+and nodes stand for no area. On strips, traction and slip point in different directions. The strips are of different
+widths and lie in one part or in two, as in a patch that is no ellipse.
 """
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
-from functools import cache, partial
 from typing import TypeAlias
 
 import numpy as np
-from hypothesis import strategies as st
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import LAW_VARIABLES, Contact
@@ -29,9 +27,6 @@ from wearlaw.testing.sampling import (
     with_problem,
     with_totals_of_strips,
 )
-from wearlaw.testing.strategies import contacts
-
-Contacts: TypeAlias = st.SearchStrategy[Contact]
 
 Border: TypeAlias = tuple[str, float]
 """A variable of a contact, and the SI value at which a law branches."""
@@ -47,6 +42,12 @@ SPINNING = 0.75
 
 WIDEST = np.arccos(0.05)
 """Largest angle between traction and slip. At a right angle they would dissipate nothing."""
+
+POINTS = 24
+"""Operating points of a batch."""
+
+LINES, AXES = (1, 3, 8), ((3, 1), (4, 3), (5, 4))
+"""Numbers of nodes on a line, and along a strip and of strips."""
 
 LINE, STRIPS, MEANS = "", "on strips: ", "on the means of an ellipse: "
 """How messages begin."""
@@ -68,9 +69,12 @@ def borders(law: Law) -> tuple[Border, ...]:
 
 def for_each_contact(law: Law, examine: Callable[[Contact], None]) -> None:
     """Run a function on contacts of the scale of a law."""
-    for where, strategy in _of_law(law.scale == "patch", borders(law)):
-        with beginning(where):
-            for_each(strategy, lambda contact: examine(with_problem(contact, law)))
+    patch, of_law = law.scale == "patch", borders(law)
+    lines = (1,) if patch else LINES
+    _run(law, LINE, [on_line(of_law, seed, POINTS, nodes) for seed, nodes in enumerate(lines)], examine)
+    if not patch:
+        _run(law, STRIPS, [on_strips(of_law, seed, POINTS, axes) for seed, axes in enumerate(AXES)], examine)
+    _run(law, MEANS, [means_of(of_law, 0, POINTS)], examine)
 
 
 def for_each_of_nodes(law: Law, examine: Callable[[Contact], None]) -> None:
@@ -78,55 +82,43 @@ def for_each_of_nodes(law: Law, examine: Callable[[Contact], None]) -> None:
 
     A law of the patch, which may sum over the nodes, is not tried at its borders, which a sum meets but for rounding.
     """
-    for where, strategy in _of_law(False, borders(law) if law.outcome.of != "patch" else ()):
-        if where != MEANS:
-            with beginning(where):
-                for_each(strategy, lambda contact: examine(with_problem(contact, law)))
+    of_law = borders(law) if law.outcome.of != "patch" else ()
+    _run(law, LINE, [on_line(of_law, seed, POINTS, nodes) for seed, nodes in enumerate(LINES)], examine)
+    _run(law, STRIPS, [on_strips(of_law, seed, POINTS, axes) for seed, axes in enumerate(AXES)], examine)
 
 
-@cache  # draws once for each law
-def _of_law(patch: bool, of_law: tuple[Border, ...]) -> tuple[tuple[str, Contacts], ...]:
-    crowded: dict[str, tuple[float, ...]] = {}
-    for name, value in of_law:
-        crowded[name] = (*crowded.get(name, ()), value)
-    plain, means = contacts(nodes=st.just(1) if patch else st.integers(1, 5), crowded=crowded), means_of(of_law)
-    if patch:
-        return (LINE, plain), (MEANS, means)
-    return (LINE, plain), (LINE, on_lines(of_law)), (STRIPS, on_strips(of_law)), (MEANS, means)
+def on_contacts(check: Callable[[Law, Contact], None]) -> Callable[[Law], None]:
+    """Run a check on contacts of the scale of a law."""
+    return functools.wraps(check)(lambda law: for_each_contact(law, functools.partial(check, law)))
 
 
-_POINTS, _SEEDS = st.integers(2, 4), st.integers(0, 2**32 - 1)
+def on_nodes(check: Callable[[Law, Contact], None]) -> Callable[[Law], None]:
+    """Run a check on contacts whose nodes can be listed anew."""
+    return functools.wraps(check)(lambda law: for_each_of_nodes(law, functools.partial(check, law)))
 
 
-@cache
-def on_lines(of_law: tuple[Border, ...]) -> Contacts:
-    """Return mixed contacts with one axis of nodes."""
-    return st.builds(partial(_on_line, of_law), _SEEDS, _POINTS, st.integers(3, 8))
+def _run(law: Law, where: str, found: list[Contact], examine: Callable[[Contact], None]) -> None:
+    with beginning(where):
+        for contact in found:
+            for_each(with_problem(contact, law), examine)
 
 
-@cache
-def on_strips(of_law: tuple[Border, ...]) -> Contacts:
-    """Return mixed contacts on strips."""
-    return st.builds(partial(_on_strips, of_law), _SEEDS, _POINTS, st.tuples(st.integers(3, 5), st.integers(1, 4)))
+def on_line(of_law: tuple[Border, ...], seed: int, points: int, nodes: int) -> Contact:
+    """Return mixed contacts with one axis of nodes; those of one node do not stick."""
+    random = np.random.default_rng(seed)
+    contact = _at_borders(random, _random(random, points, nodes), of_law)
+    return contact if nodes == 1 else _sticking(random, contact)
 
 
-@cache
-def means_of(of_law: tuple[Border, ...]) -> Contacts:
+def on_strips(of_law: tuple[Border, ...], seed: int, points: int, axes: tuple[int, int]) -> Contact:
+    """Return mixed contacts on strips, with axes of nodes along a strip and of strips."""
+    random = np.random.default_rng(seed)
+    contact = _strips(random, _random(random, points, axes[0] * axes[1]), axes)
+    return _sticking(random, _at_borders(random, contact, of_law))
+
+
+def means_of(of_law: tuple[Border, ...], seed: int, points: int) -> Contact:
     """Return contacts of one node with the means of an ellipse, whose Tγ is not the product of traction and slip."""
-    return st.builds(partial(_means, of_law), _SEEDS, _POINTS)
-
-
-def _on_line(of_law: tuple[Border, ...], seed: int, points: int, nodes: int) -> Contact:
-    random = np.random.default_rng(seed)
-    return _mixed(random, _random(random, points, nodes), of_law)
-
-
-def _on_strips(of_law: tuple[Border, ...], seed: int, points: int, axes: tuple[int, int]) -> Contact:
-    random = np.random.default_rng(seed)
-    return _mixed(random, _strips(random, _random(random, points, axes[0] * axes[1]), axes), of_law)
-
-
-def _means(of_law: tuple[Border, ...], seed: int, points: int) -> Contact:
     random = np.random.default_rng(seed)
     contact = _strips(random, _random(random, points, 1), (1, 1))
     # Spin alone dissipates energy without a force, up to that of full slip.
@@ -173,9 +165,8 @@ def _strips(random: np.random.Generator, contact: Contact, axes: tuple[int, int]
     )
 
 
-def _mixed(random: np.random.Generator, contact: Contact, of_law: tuple[Border, ...]) -> Contact:
-    """Return a contact with nodes on both sides of borders, and with nodes that stick."""
-    contact = _at_borders(random, contact, of_law)
+def _sticking(random: np.random.Generator, contact: Contact) -> Contact:
+    """Return the contact with nodes that stick, a share of them at each operating point."""
     share = random.choice(STICK, contact.rolling_speed.shape)
     sticks = random.random(contact.slip.shape) < contact.per_node(share)
     return retotalled(contact, slip=np.where(sticks, 0.0, contact.slip))
@@ -190,17 +181,3 @@ def _at_borders(random: np.random.Generator, contact: Contact, of_law: tuple[Bor
         there = (chosen == number) & (random.random(shape) >= EMPTY)
         contact = aimed(contact, name, np.where(there, near, at_nodes(contact, name)))
     return contact
-
-
-def straddles(contact: Contact, border: Border) -> bool:
-    """Return whether one operating point has nodes below a border and nodes at or above it, all of which slip."""
-    value = at_nodes(contact, border[0]).reshape(contact.rolling_speed.size, -1)
-    slips = contact.slip.reshape(value.shape) != 0.0
-    below, above = (value < border[1]) & slips, (value >= border[1]) & slips
-    return bool((below.any(axis=-1) & above.any(axis=-1)).any())
-
-
-def sticks_in_part(contact: Contact) -> bool:
-    """Return whether one operating point has nodes that stick and nodes that dissipate energy."""
-    slip, density = (a.reshape(contact.rolling_speed.size, -1) for a in (contact.slip, contact.wear_index_density))
-    return bool(((slip == 0.0).any(axis=-1) & (density > 0.0).any(axis=-1)).any())

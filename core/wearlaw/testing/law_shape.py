@@ -12,22 +12,19 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.models.law import Law
 from wearlaw.testing.examples import assert_close
-from wearlaw.testing.law_contacts import for_each_contact
+from wearlaw.testing.law_contacts import for_each_contact, on_contacts
 from wearlaw.testing.sampling import retotalled
 
 T = TypeVar("T")
 
 
-def rate_has_the_right_shape(law: Law) -> None:
+@on_contacts
+def rate_has_the_right_shape(law: Law, contact: Contact) -> None:
     """There is a rate for each node, or one value for each patch, with no batch axis, one or two."""
-
-    def examine(contact: Contact) -> None:
-        for shape in ((), (1,), (2, 1)):
-            batch = contact[0].mapped(partial(_repeated, shape))
-            found, due = np.shape(law.rate(batch, law.numbers)), of_patch(law, shape, batch.pressure.shape)
-            assert found == due, f"rates of shape {found} in place of {due}"
-
-    for_each_contact(law, examine)
+    for shape in ((), (1,), (2, 1)):
+        batch = contact[0].mapped(partial(_repeated, shape))
+        found, due = np.shape(law.rate(batch, law.numbers)), of_patch(law, shape, batch.pressure.shape)
+        assert found == due, f"rates of shape {found} in place of {due}"
 
 
 def of_patch(law: Law, patch: T, nodes: T) -> T:
@@ -39,36 +36,27 @@ def _repeated(shape: tuple[int, ...], array: Array) -> Array:
     return np.broadcast_to(array, shape + array.shape).copy()
 
 
-def rate_is_finite(law: Law) -> None:
+@on_contacts
+def rate_is_finite(law: Law, contact: Contact) -> None:
     """The rate is a finite number at every node, even if pressure, traction or slip is zero."""
-
-    def examine(contact: Contact) -> None:
-        rate = law.rate(contact, law.numbers)
-        assert np.isfinite(rate).all(), f"the rate is not finite: {rate!r}"
-
-    for_each_contact(law, examine)
+    rate = law.rate(contact, law.numbers)
+    assert np.isfinite(rate).all(), f"the rate is not finite: {rate!r}"
 
 
-def rate_is_never_negative(law: Law) -> None:
+@on_contacts
+def rate_is_never_negative(law: Law, contact: Contact) -> None:
     """Wear takes material away; no rate is below zero, whatever the sign of the creepage."""
-
-    def examine(contact: Contact) -> None:
-        rate = law.rate(contact, law.numbers)
-        assert not (rate < 0).any(), f"the rate is negative: {rate!r}"
-
-    for_each_contact(law, examine)
+    rate = law.rate(contact, law.numbers)
+    assert not (rate < 0).any(), f"the rate is negative: {rate!r}"
 
 
-def no_slip_no_wear(law: Law) -> None:
+@on_contacts
+def no_slip_no_wear(law: Law, contact: Contact) -> None:
     """Without slip, and hence without dissipation, the rate is exactly zero: at one node or in the whole patch."""
-
-    def examine(contact: Contact) -> None:
-        rate = law.rate(retotalled(contact, slip=np.zeros_like(contact.slip)), law.numbers)
-        assert (rate == 0).all(), f"without slip the rate is {rate!r}, not zero"
-        rate = law.rate(contact, law.numbers)[contact.slip == 0.0]
-        assert (rate == 0).all(), f"where the bodies stick beside nodes that slip, the rate is {rate!r}, not zero"
-
-    for_each_contact(law, examine)
+    rate = law.rate(retotalled(contact, slip=np.zeros_like(contact.slip)), law.numbers)
+    assert (rate == 0).all(), f"without slip the rate is {rate!r}, not zero"
+    rate = law.rate(contact, law.numbers)[contact.slip == 0.0]
+    assert (rate == 0).all(), f"where the bodies stick beside nodes that slip, the rate is {rate!r}, not zero"
 
 
 def direction_of_creepage_does_not_matter(law: Law) -> None:

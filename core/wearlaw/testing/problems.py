@@ -20,6 +20,11 @@ from wearlaw.rigs.wheel_rail import WheelRail
 SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 """Reduced creepages at which a theory of ellipses may saturate."""
 
+FULL_SLIP = (1.0, 1.5)
+"""Reduced creepages at which Carter's theory and FASTSIM slip everywhere on a line."""
+
+_RIGHT = 0.5 * np.pi
+
 STRIP_AT = np.linspace(-0.95, 0.95, 20)
 """Positions y/b of the strips of a patch."""
 
@@ -144,9 +149,13 @@ def at_magnitude(problem: Problem, reduced: Array | float) -> Problem:
     return creeping(problem, reduced / size, reduced / size, 1.0)
 
 
-def random_lines(points: int) -> Problem:
-    """Return discs of many sizes and stiffnesses under many loads, frictions and speeds; always the same ones."""
-    random = np.random.default_rng(5)
+def random_lines(points: int, seed: int = 5) -> Problem:
+    """Return discs of many sizes and stiffnesses under many loads, frictions and speeds, the same for a seed.
+
+    Creepages are uniform in their logarithm, from a thousandth of μa/R, where nearly all of the patch sticks, to ten
+    times that; three quarters stick in part. Every eighth lies next to full slip in Carter's theory or in FASTSIM.
+    """
+    random = np.random.default_rng(seed)
     radius, modulus = 10.0 ** random.uniform(-3, 1, points), 10.0 ** random.uniform(9, 12, points)
     half_width = 2.0 * radius * 10.0 ** random.uniform(-5, np.log10(3e-2), points)
     friction = random.uniform(0.01, 1.5, points)
@@ -155,11 +164,37 @@ def random_lines(points: int) -> Problem:
         relative_radius=radius,
         effective_modulus=modulus,
         friction_coefficient=friction,
-        creepage=friction * half_width / radius * 10.0 ** random.uniform(-3, 1, points),
+        creepage=np.minimum(friction * half_width / radius * _reduced(random, points, (1e-3, 10.0), FULL_SLIP), 1.0),
         rolling_speed=10.0 ** random.uniform(-2, 2, points),
         track_width=10.0 ** random.uniform(-4, 0, points),
         density=random.uniform(1e3, 2e4, points),
     )
+
+
+def _reduced(random: np.random.Generator, points: int, limits: tuple[float, float], full: tuple[float, ...]) -> Array:
+    """Return reduced creepages, uniform in their logarithm; every eighth next to one of those of full slip."""
+    anywhere = _between(random, points, *limits)
+    gap = random.choice([-1.0, 1.0], points) * 10.0 ** random.uniform(-12, -1, points)
+    return np.where(np.arange(points) % 8 == 7, random.choice(full, points) * (1.0 + gap), anywhere)
+
+
+def wide_ellipses(points: int, seed: int = 7) -> Problem:
+    """Return patches of one material, slender and round, in nearly full stick and in full slip, the same for a seed.
+
+    Axis ratios a/b go from 1/20 to 20. Reduced creepages are uniform in their logarithm from 0.01 to 30, every eighth
+    next to saturation, along x or y or between. Every other patch spins, by either sign. Nothing slips more than it
+    rolls.
+    """
+    random = np.random.default_rng(seed)
+    size = _reduced(random, points, (1e-2, 30.0), SATURATION)
+    angle = np.where(
+        random.random(points) < 0.5, random.uniform(-np.pi, np.pi, points), _RIGHT * (np.arange(points) // 2)
+    )
+    spin = 10.0 ** random.uniform(-2, 1, points) * random.choice([-1.0, 1.0], points) * (np.arange(points) % 2)
+    problem = _resting_ellipses(random, points, ratios=(0.05, 20.0))
+    problem = at_reduced(problem, size * np.cos(angle), size * np.sin(angle), spin)
+    fastest = translation(problem) + np.abs(problem.spin) * np.maximum(problem.a, problem.b)
+    return creeping(problem, 1.0 / np.maximum(fastest, 1.0))
 
 
 def random_ellipses(points: int) -> Problem:
@@ -169,13 +204,26 @@ def random_ellipses(points: int) -> Problem:
     Every other patch spins.
     """
     random = np.random.default_rng(6)
+    problem = _resting_ellipses(random, points, ratios=(0.1, 10.0))
+    size, angle = _between(random, points, 0.3, 3.5), random.uniform(-np.pi, np.pi, points)
+    spin = _between(random, points, 0.1, 3.0) * random.choice([-1.0, 1.0], points) * (np.arange(points) % 2)
+    return at_reduced(problem, size * np.cos(angle), size * np.sin(angle), spin)
+
+
+def _between(random: np.random.Generator, points: int, low: float, high: float) -> Array:
+    value: Array = 10.0 ** random.uniform(np.log10(low), np.log10(high), points)
+    return value
+
+
+def _resting_ellipses(random: np.random.Generator, points: int, ratios: tuple[float, float]) -> Problem:
+    """Return patches without creepage."""
 
     def between(low: float, high: float) -> Array:
-        return 10.0 ** random.uniform(np.log10(low), np.log10(high), points)
+        return _between(random, points, low, high)
 
-    size, ratio = between(1e-4, 2e-2), between(0.1, 10.0)
+    size, ratio = between(1e-4, 2e-2), between(*ratios)
     a, b, shear_modulus = size * np.sqrt(ratio), size / np.sqrt(ratio), between(1e9, 1e12)
-    problem = Problem.ellipse_from_si(
+    return Problem.ellipse_from_si(
         a=a,
         b=b,
         normal_force=2.0 / 3.0 * np.pi * a * b * between(1e-4, 2e-2) * shear_modulus,
@@ -188,6 +236,3 @@ def random_ellipses(points: int) -> Problem:
         rolling_speed=between(0.1, 100.0),
         density=random.uniform(1e3, 2e4, points),
     )
-    size, angle = between(0.3, 3.5), random.uniform(-np.pi, np.pi, points)
-    spin = between(0.1, 3.0) * random.choice([-1.0, 1.0], points) * (np.arange(points) % 2)
-    return at_reduced(problem, size * np.cos(angle), size * np.sin(angle), spin)

@@ -10,8 +10,8 @@ import pint
 import scipy
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError, UnitError, shortened
-from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, parse, real_array, shown
+from wearlaw.errors import InputError, UnitError, shown
+from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, full_text, parse, real_array
 
 Value = Quantity | float
 """A quantity, or a plain number if it has no unit."""
@@ -91,7 +91,7 @@ def lognormal(median: QuantityLike | float, geometric_standard_deviation: float)
     except UnitError:
         factor = np.zeros(())
     if not (factor.ndim == 0 and factor > 1.0):
-        given = shortened(geometric_standard_deviation)
+        given = shown(geometric_standard_deviation)
         raise InputError(f"{name}: must be a factor above 1, such as 1.2; got {given}")
     return Distribution("lognormal", _value(median, "median"), float(factor))
 
@@ -117,4 +117,4 @@ def _value(value: QuantityLike | float, name: str) -> Value:
 
 
 def _shown(value: Value) -> str:
-    return shown(value) if isinstance(value, pint.Quantity) else f"{value:g}"
+    return full_text(value) if isinstance(value, pint.Quantity) else f"{value:g}"

@@ -11,7 +11,7 @@ import numpy as np
 import pint
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError, did_you_mean, quoted, shortened
+from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.named_numbers import Kind, NamedNumbers, Place
@@ -96,10 +96,8 @@ def condition(name: str, given: Distribution) -> Uncertain:
     if isinstance(given.first, pint.Quantity):
         unit = symbol(given.first.units, "~C")
         return replace(_uncertain(name, given, Unit(unit, positive=False)), unit=unit)
-    first = float(given.first)
-    second = float(given.second if isinstance(given.second, float) else coefficient(given.second, name))
-    _check(name, given, first, second)
-    return Uncertain(name, given, {name: (first, second)}, str(given))
+    second = given.second if isinstance(given.second, float) else coefficient(given.second, name)
+    return _checked(name, given, float(given.first), float(second))
 
 
 def numbers_of(predict: Pipeline[...], kind: Kind, given: Mapping[str, Any]) -> list[Uncertain]:
@@ -120,27 +118,19 @@ def numbers_of(predict: Pipeline[...], kind: Kind, given: Mapping[str, Any]) -> 
         If a distribution has the wrong unit.
     """
     named = NamedNumbers(predict, kind)
-    if given and not named.parts:
-        what = "a law" if kind == "law" else "a stage"
-        raise InputError(
-            f"{kind}: the pipeline has no {kind}, so {', '.join(given)} cannot be uncertain; add {what} with |"
-        )
+    parts = predict.laws if kind == "law" else predict.stages
     found: dict[Place, Uncertain] = {}
     for name, one in given.items():
         place = named.place(name)
-        parts = predict.laws if kind == "law" else predict.stages
         if place is None:
-            if len(parts) > 1 or not named.known:
-                some = "laws have" if kind == "law" else "stages have"
-                hint = did_you_mean(name, named.known)
-                raise InputError(
-                    f"the {some} no number {quoted(name)}{hint} There are: {', '.join(named.known) or 'none'}"
-                )
-            place = Place(kind, 0, name)  # its own error
+            hint = did_you_mean(name, named.known)
+            owners = f"{named.owners()} has" if len(parts) == 1 else f"the {kind}s have"
+            raise InputError(
+                f"{kind}: {owners} no number {shown(name)}{hint} There are: {', '.join(named.known) or 'none'}"
+            )
         if place in found:
-            raise InputError(f"{quoted(name)} is given twice, as {quoted(found[place].name)} too")
-        one = parameter(place.field, one, parts[place.index])
-        found[place] = replace(one, name=name, part=(kind, place.index))
+            raise InputError(f"{kind}: {shown(name)} is given twice, as {shown(found[place].name)} too")
+        found[place] = replace(parameter(place.field, one, parts[place.index]), name=name, part=(kind, place.index))
     return list(found.values())
 
 
@@ -159,12 +149,12 @@ def parameter(name: str, given: object, law: Law | Stage) -> Uncertain:
     if not isinstance(given, Distribution):
         raise InputError(
             f"{name}: must be a distribution, such as wl.normal(5.3, 0.5) with its unit, or wl.published_range();"
-            f" got {shortened(given)}"
+            f" got {shown(given)}"
         )
     known = numbers(law.explicit() if isinstance(law, Law) else law)
     if name not in known:
         hint = did_you_mean(name, known)
-        raise InputError(f"{law.kind} '{law.name}' has no number {quoted(name)}{hint} There are: {', '.join(known)}")
+        raise InputError(f"{law.kind} '{law.name}' has no number {shown(name)}{hint} There are: {', '.join(known)}")
     number = known[name]
     unit = Unit(symbol(number.units, "~C"), positive=False) if isinstance(number, pint.Quantity) else None
     return _uncertain(name, given, unit)
@@ -174,14 +164,13 @@ def _uncertain(name: str, given: Distribution, unit: Unit | None) -> Uncertain:
     """Return an uncertain input of one number; without a unit it is a coefficient."""
     if unit is None:
         first = float(coefficient(given.first, name))
-        plain = isinstance(given.second, float)  # `_check` names the wrong one of the two numbers
+        plain = isinstance(given.second, float)  # its fault is that of the distribution
         second = float(given.second if plain else coefficient(given.second, name))
     else:
         first = float(unit.si(given.first, name))
         is_factor = given.kind == "lognormal"
         second = float(given.second if is_factor else Unit(unit.unit, positive=False).si(given.second, name))
-    _check(name, given, first, second)
-    return Uncertain(name, given, {name: (first, second)}, str(given))
+    return _checked(name, given, first, second)
 
 
 def _published(name: str, law: Law | Stage) -> Uncertain:
@@ -203,13 +192,11 @@ def _published(name: str, law: Law | Stage) -> Uncertain:
     return Uncertain(name, uniform(0.0, 1.0), ends, "published_range()")
 
 
-def _check(name: str, given: Distribution, first: float, second: float) -> None:
-    if given.kind == "uniform" and not second > first:
-        raise InputError(f"{name}: the upper end of {given} must lie above the lower one")
-    if given.kind == "normal" and not second > 0.0:
-        raise InputError(f"{name}: the standard deviation of {given} must be positive")
-    if given.kind == "lognormal" and not first > 0.0:
-        raise InputError(f"{name}: the median of {given} must be positive")
+def _checked(name: str, given: Distribution, first: float, second: float) -> Uncertain:
+    """Return an uncertain input of one number, whose distribution must be possible."""
+    if fault := given.fault():
+        raise InputError(f"{name}: {fault}")
+    return Uncertain(name, given, {name: (first, second)}, str(given))
 
 
 def split(conditions: Mapping[str, Any], rig: Rig | None = None) -> tuple[dict[str, Any], list[Uncertain]]:

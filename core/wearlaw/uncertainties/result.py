@@ -15,11 +15,10 @@ import scipy
 from wearlaw.arrays.array import Array, steadily
 from wearlaw.contact.conditions import Known, broadcast
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import InputError, did_you_mean, shortened
+from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis, Shade
 from wearlaw.figures.plot import plot
 from wearlaw.models.law import WEAR, Numbers, named_outcomes
-from wearlaw.numerics.blocks import Columns
 from wearlaw.numerics.integrate import integrate_laws
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
 from wearlaw.pipeline.named_numbers import Kind, Place, check_loads_stay, staged_models
@@ -117,9 +116,9 @@ class Uncertainty:
         stage: Mapping[str, Distribution] | None = None,
     ) -> None:
         if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
-            raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {shortened(samples)}")
+            raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {shown(samples)}")
         if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-            raise InputError(f"seed: must be a whole number, zero or positive; got {shortened(seed)}")
+            raise InputError(f"seed: must be a whole number, zero or positive; got {shown(seed)}")
         if not predict.laws:
             predict.wear_law  # noqa: B018  raises
         self._predict = predict
@@ -184,7 +183,7 @@ class Uncertainty:
             Share of the samples inside, between 0 and 1.
         """
         if not 0.0 < confidence < 1.0:
-            raise InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {shortened(confidence)}")
+            raise InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {shown(confidence)}")
         return self._quantile(0.5 - 0.5 * confidence), self._quantile(0.5 + 0.5 * confidence)
 
     def table(self) -> pd.DataFrame:
@@ -271,7 +270,7 @@ class Uncertainty:
         known = named_outcomes(self._laws)
         if outcome not in known:
             hint = did_you_mean(outcome, known) if isinstance(outcome, str) else "."
-            raise InputError(f"no law predicts {shortened(outcome)}{hint} The outcomes are: {', '.join(known)}")
+            raise InputError(f"no law predicts {shown(outcome)}{hint} The outcomes are: {', '.join(known)}")
         return known[outcome]
 
     @property
@@ -354,11 +353,7 @@ class Uncertainty:
         predict, laws = self._predict, tuple(self._laws[index] for index in indices)
         watch = RangeWatch(*laws)
         check_traction(predict.contact_model, flat)
-
-        def see(part: Problem, columns: Columns) -> None:
-            watch.see_block(part, columns)
-
-        watching = see if stacklevel is not None else None
+        watching = None if stacklevel is None else watch.see_block
         points = np.arange(math.prod(shape)).reshape(-1, count)
         of_stages = {
             Place(kind, index, name): values
@@ -384,50 +379,41 @@ class Uncertainty:
         return tuple(values.reshape(shape) for values in found)
 
     def __repr__(self) -> str:
-        several = len(self.outcomes) > 1
-        what = f"{len(self.outcomes)} outcomes" if several else f"the {name_of(self.outcomes[0])}"
+        what = f"{len(self.outcomes)} outcomes" if len(self.outcomes) > 1 else f"the {name_of(self.outcomes[0])}"
         lines = [f"Uncertainty of {what}, {self.samples} samples"]
-        share = f"{100 * CONFIDENCE:g} % of the samples"
-        for outcome in self.outcomes if not self.shape else ():
-            one = self.of(outcome)
-            low, high = one.interval()
-            if several:
-                lines.append(f"{outcome:20} {one.median!r}, {share} {low!r} to {high!r}")
-            else:
-                lines += [f"{'median':20} {one.median!r}", f"{share:20} {low!r} to {high!r}"]
-        for outcome in self.outcomes if self.shape else ():
-            median = self.of(outcome).median
-            name = f"median of {outcome}" if several else "median"
-            lines.append(f"{name:20} {median.min()!r} to {median.max()!r}")
-        lines += [f"{one.name:20} {one.shown}" for one in self.inputs]
-        return "\n  ".join(lines)
+        for one in map(self.of, self.outcomes):
+            median, (low, high) = one.median, one.interval()
+            spread = f"{median!r}, {100 * CONFIDENCE:g} % of the samples {low!r} to {high!r}"
+            lines.append(
+                f"{one.outcomes[0]:20} {f'medians {median.min()!r} to {median.max()!r}' if self.shape else spread}"
+            )
+        return "\n  ".join([*lines, *(f"{one.name:20} {one.shown}" for one in self.inputs)])
 
 
 def _figure_data(uncertainty: Uncertainty) -> FigureData:
     """Return the cumulative distribution of one operating point, or the band along the axis of several."""
     inputs = ", ".join(f"{one.name} {one.shown}" for one in uncertainty.inputs)
-    panel = _cumulative(uncertainty) if math.prod(uncertainty.shape) == 1 else _along_axis(uncertainty)
+    name, band = uncertainty.outcomes[0], f"{CONFIDENCE:.0%} of the samples"
+    outcome = PlotAxis(label(name, units={name: uncertainty.unit}))
+    panel = (_cumulative if math.prod(uncertainty.shape) == 1 else _along_axis)(uncertainty, outcome)
     samples = f"{uncertainty.samples} samples of {inputs}"
-    band = f"{CONFIDENCE:.0%} of the samples"
     return FigureData("uncertainty", uncertainty.title, (panel,), f"{samples}.", band, samples)
 
 
-def _cumulative(uncertainty: Uncertainty) -> Panel:
+def _cumulative(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
     name = uncertainty.outcomes[0]
     values = np.ravel(uncertainty[name].magnitude)
     share = (np.arange(STEPS) + 0.5) / STEPS
-    low, high = (np.ravel(end.magnitude) for end in uncertainty.interval(CONFIDENCE))
-    median = np.ravel(uncertainty.median.magnitude)
+    low, median, high = np.quantile(values, [0.5 - 0.5 * CONFIDENCE, 0.5, 0.5 + 0.5 * CONFIDENCE])
     curves = (
         Curve(name_of(name), np.quantile(values, share), share),
         Curve("median", np.repeat(median, 2), np.array([0.0, 0.5]), colour=1, dash=1),
     )
-    inside = Shade(f"{CONFIDENCE:.0%} of the samples", ((float(low[0]), float(high[0])),))
-    y = PlotAxis("share of the samples below [-]", ends=(0.0, 1.0))
-    return Panel(PlotAxis(_label(uncertainty)), y, curves, shades=(inside,))
+    inside = Shade(f"{CONFIDENCE:.0%} of the samples", ((float(low), float(high)),))
+    return Panel(outcome, PlotAxis("share of the samples below [-]", ends=(0.0, 1.0)), curves, shades=(inside,))
 
 
-def _along_axis(uncertainty: Uncertainty) -> Panel:
+def _along_axis(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
     axes = {name: one for name, one in uncertainty.known.items() if np.size(one.values) > 1}
     if len(axes) != 1:
         raise InputError(f"plot: needs one condition with several values, or none; there are {', '.join(axes)}")
@@ -436,12 +422,8 @@ def _along_axis(uncertainty: Uncertainty) -> Panel:
     if name in UNITS:
         x, shown = Q(x, one.unit or "").to(UNITS[name]).magnitude, label(name)
     order = np.argsort(x)
-    low, high = (np.ravel(end.magnitude)[order] for end in uncertainty.interval(CONFIDENCE))
-    median = np.ravel(uncertainty.median.magnitude)[order]
-    curve = Curve("median", x[order], median, low=low, high=high)
-    return Panel(PlotAxis(shown), PlotAxis(_label(uncertainty)), (curve,))
-
-
-def _label(uncertainty: Uncertainty) -> str:
-    name = uncertainty.outcomes[0]
-    return label(name, units={name: uncertainty.unit})
+    low, median, high = (
+        np.ravel(values.magnitude)[order]
+        for values in (uncertainty.interval()[0], uncertainty.median, uncertainty.interval()[1])
+    )
+    return Panel(PlotAxis(shown), outcome, (Curve("median", x[order], median, low=low, high=high),))

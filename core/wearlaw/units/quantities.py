@@ -16,7 +16,7 @@ import pint
 from pydantic_core import core_schema
 
 from wearlaw.arrays.array import extremes
-from wearlaw.errors import VALUE, UnitError, quoted, shortened
+from wearlaw.errors import LONGEST, UnitError, shown
 from wearlaw.units.registry import (
     application_registry,
     divided,
@@ -62,7 +62,7 @@ def Q(value: ArrayLike, unit: str) -> Quantity:
         If the unit is not known, or the value is not a real number.
     """
     if not isinstance(unit, str):
-        raise UnitError(f"unit: must be a text, such as 'kN'; got {shortened(unit)}")
+        raise UnitError(f"unit: must be a text, such as 'kN'; got {shown(unit)}")
     magnitude: Any = value
     if type(value) not in (int, float):
         array = real_array(value)
@@ -79,9 +79,9 @@ def parse(text: str) -> Quantity:
     UnitError
         If the text is not a number followed by a known unit.
     """
-    match = _QUANTITY_TEXT.fullmatch(text) if isinstance(text, str) and len(text) <= 10 * VALUE else None
+    match = _QUANTITY_TEXT.fullmatch(text) if isinstance(text, str) and len(text) <= LONGEST else None
     if match is None or not match["unit"]:
-        raise UnitError(f"{quoted(text)} is not a number with a unit")
+        raise UnitError(f"{shown(text)} is not a number with a unit")
     return Q(float(match["number"]), match["unit"])
 
 
@@ -90,7 +90,7 @@ def text_of(quantity: Quantity) -> str:
     return f"{float(quantity.magnitude)!r} {symbol(quantity.units, '~C') or 'dimensionless'}"
 
 
-def shown(value: object) -> str:
+def full_text(value: object) -> str:
     """Return the text of a value for a reader; scalar quantities have all their digits."""
     if not isinstance(value, pint.Quantity):
         return str(value)
@@ -352,8 +352,7 @@ def scalar_si(quantity: Quantity, unit: str) -> float:
         return quantity.magnitude * si_factor(quantity, unit)  # type: ignore[no-any-return]
     except (AttributeError, TypeError):
         raise UnitError(
-            f'give a quantity and its unit, as in scalar_si(Q(1, "mm"), "m"); got {shortened(quantity)} and'
-            f" {shortened(unit)}"
+            f'give a quantity and its unit, as in scalar_si(Q(1, "mm"), "m"); got {shown(quantity)} and {shown(unit)}'
         ) from None
 
 
@@ -385,4 +384,4 @@ def _first(values: NDArray[np.float64], wrong: NDArray[np.bool_]) -> tuple[float
 
 def _describe(value: object) -> str:
     kind = "the bare number " if isinstance(value, (int, float)) and not isinstance(value, bool) else ""
-    return f"{kind}{shortened(value)}"
+    return f"{kind}{shown(value)}"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pint
 
-from wearlaw.errors import VALUE, UnitError, printable, quoted
+from wearlaw.errors import LONGEST, UnitError, shown
 
 _SIGNIFICANT_DIGITS = 4
 
@@ -46,14 +46,14 @@ _UNBOUNDED = re.compile(r"(?<![.\d])\d{3,}|(\*\*|\^)[^a-zA-Zµμ°%*/]*(\*\*|\^)
 @functools.lru_cache(maxsize=512)
 def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
     """Return the unit of a text, or raise a `UnitError`."""
-    if len(unit) > 10 * VALUE or printable(unit) != unit or _UNBOUNDED.search(unit):
-        raise UnitError(f"{quoted(unit)} is not a unit")
+    if len(unit) > LONGEST or not unit.isprintable() or _UNBOUNDED.search(unit):
+        raise UnitError(f"{shown(unit)} is not a unit")
     try:
         return registry.Unit(unit)
     except pint.UndefinedUnitError:
-        raise UnitError(f"{quoted(unit)} is not a known unit") from None
+        raise UnitError(f"{shown(unit)} is not a known unit") from None
     except Exception:  # the registry's expression parser raises many types of error on malformed text
-        raise UnitError(f"{quoted(unit)} is not a unit") from None
+        raise UnitError(f"{shown(unit)} is not a unit") from None
 
 
 def si_factor(quantity: Any, due: str) -> float:

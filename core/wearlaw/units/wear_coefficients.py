@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, overload
 
-from wearlaw.errors import InputError, UnitError, did_you_mean, shortened
+from wearlaw.errors import InputError, UnitError, did_you_mean, shown
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, coefficient, from_si
 
 PlainForm: TypeAlias = Literal["k", "k_of_3h"]
@@ -159,7 +159,7 @@ def _listed(words: Sequence[str]) -> str:
 def _known(form: str, argument: str) -> _Form:
     if not isinstance(form, str) or form not in FORMS:
         forms = "; ".join(f"{name}, {one.formula}" for name, one in FORMS.items())
-        raise InputError(f"{argument}: no form {shortened(form)}{did_you_mean(str(form), FORMS)} There are: {forms}")
+        raise InputError(f"{argument}: no form {shown(form)}{did_you_mean(str(form), FORMS)} There are: {forms}")
     return FORMS[form]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
-from wearlaw.errors import UnitError, quoted
+from wearlaw.errors import UnitError, shown
 from wearlaw.units.quantities import Q
 from wearlaw.units.registry import si_factor
 from wearlaw.units.variables import VARIABLES, Variable
@@ -70,7 +70,7 @@ def factor(name: str, unit: str) -> float:
     try:
         return si_factor(Q(1.0, unit), expected)
     except UnitError as error:
-        reason = str(error) if str(error).startswith("'") else f"got {quoted(unit)}, {error}"
+        reason = str(error) if str(error).startswith("'") else f"got {shown(unit)}, {error}"
         raise UnitError(f"{reason}; {advice}") from None
 
 

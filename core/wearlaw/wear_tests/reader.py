@@ -1,35 +1,38 @@
-"""Reading wear tests from CSV as spreadsheets write it, with errors by line and column."""
+"""Reading wear tests from CSV, with errors by line and column."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection
+from difflib import get_close_matches
 from pathlib import Path
-from typing import NoReturn
+from typing import Any
 
 import numpy as np
+import pint
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import DataError, InputError, did_you_mean, excerpt, quoted, shortened
+from wearlaw.errors import DataError, InputError, UnitError, did_you_mean, shown
 from wearlaw.plugins import loader
 from wearlaw.settings.arguments import expect_names
-from wearlaw.settings.csv_files import kind_of
-from wearlaw.settings.text_files import MIB, UTF_16, decoded, read_file
+from wearlaw.settings.text_files import MIB, read_text
+from wearlaw.tables import Column, CsvTable, Head
 from wearlaw.units.quantities import Q
-from wearlaw.wear_tests.columns import faulty, with_traction
-from wearlaw.wear_tests.csv_table import TEXTS, Head, Problems, Table, table_of
+from wearlaw.wear_tests.columns import COLUMNS, factor, faulty, faulty_columns, head, with_traction
 from wearlaw.wear_tests.tests import WearTests
 
 LARGEST = 4 * MIB
 """Size of the largest file of tests that is read [bytes]."""
 
-MISSING = ("", "na", "n/a", "nan", "-")
-"""Contents of a cell without a value, in upper or lower case."""
+TEXTS = ("label", "comment")
+"""Columns of text."""
 
-_NUMBER = re.compile(r"[+\-\u2212]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
+WEAR_OF = "wear_rate"
+"""The wear rate; behind it may follow the name of a body, as in "wear_rate_rail"."""
 
 
-def read_tests(path_or_name: str | Path, *, outcomes: Collection[str] = ()) -> WearTests:
+def read_tests(
+    path_or_name: str | Path, *, outcomes: Collection[str] = (), sep: str | None = None, decimal: str = "."
+) -> WearTests:
     """Read tests from a CSV file, or return shipped tests by their name.
 
     Parameters
@@ -40,6 +43,8 @@ def read_tests(path_or_name: str | Path, *, outcomes: Collection[str] = ()) -> W
         outcomes of laws.
     outcomes : collection of str, optional
         Names of columns that are outcomes of laws that no plugin provides. Without it, such a column must be complete.
+    sep, decimal : str, optional
+        What separates the cells, and the decimal mark, as in `read_table`.
 
     Raises
     ------
@@ -51,7 +56,7 @@ def read_tests(path_or_name: str | Path, *, outcomes: Collection[str] = ()) -> W
     if isinstance(outcomes, str):
         raise DataError(f'outcomes: give a list of names, such as ["{outcomes}"]')
     outcomes = expect_names(outcomes, "outcomes", "rcf_damage", least=0)
-    return parse_tests(text_of_tests(path_or_name), str(path_or_name), outcomes)
+    return parse_tests(text_of_tests(path_or_name), str(path_or_name), outcomes, sep, decimal)
 
 
 def text_of_tests(path_or_name: str | Path) -> str:
@@ -67,36 +72,19 @@ def text_of_tests(path_or_name: str | Path) -> str:
         return found.test_sets.find(str(path_or_name), found.broken)
     path = Path(path_or_name)
     try:
-        content = read_file(path, LARGEST)
+        return read_text(path, LARGEST)
     except FileNotFoundError:
-        _refuse_missing(path, list(found.test_sets.items()))
+        shipped = list(found.test_sets.items())
+        beside = sorted(one.name for one in path.parent.glob("*.csv")) if path.parent.is_dir() else []
+        hint = did_you_mean(path.name, [*beside, *shipped])
+        raise DataError(f"there is no file {shown(path)}{hint} Shipped tests: {', '.join(shipped) or 'none'}") from None
     except InputError as error:
-        raise DataError(f"cannot read the tests {quoted(path)}: {error}") from None
-    return _decoded(content, path)
+        raise DataError(f"cannot read the tests {shown(path)}: {error}") from None
 
 
-def _refuse_missing(path: Path, shipped: list[str]) -> NoReturn:
-    beside = sorted(one.name for one in path.parent.glob("*.csv")) if path.parent.is_dir() else []
-    hint = did_you_mean(path.name, [*beside, *shipped])
-    raise DataError(f"there is no file {quoted(path)}{hint} Shipped tests: {', '.join(shipped) or 'none'}")
-
-
-def _decoded(content: bytes, path: Path) -> str:
-    """Decode UTF-8, UTF-16 with its mark, or else the code page of old spreadsheets."""
-    kind = kind_of(content)
-    if kind is None and b"\0" in content and not content.startswith(UTF_16):
-        kind = "no text"
-    if kind is not None:
-        raise DataError(f"cannot read the tests {quoted(path)}: it is {kind}; save it as CSV and give that file")
-    try:
-        return decoded(content, otherwise="cp1252")
-    except UnicodeDecodeError:
-        raise DataError(
-            f"cannot read the tests {quoted(path)}: it is not text in UTF-8; save it as CSV in UTF-8"
-        ) from None
-
-
-def parse_tests(text: str, name: str, outcomes: Collection[str] = ()) -> WearTests:
+def parse_tests(
+    text: str, name: str, outcomes: Collection[str] = (), sep: str | None = None, decimal: str = "."
+) -> WearTests:
     """Parse tests from a CSV text.
 
     Parameters
@@ -105,7 +93,7 @@ def parse_tests(text: str, name: str, outcomes: Collection[str] = ()) -> WearTes
         The content of the file.
     name : str
         Its path, or its name if shipped; also the source of tests that state none.
-    outcomes : collection of str, optional
+    outcomes, sep, decimal
         As for `read_tests`.
 
     Raises
@@ -113,88 +101,106 @@ def parse_tests(text: str, name: str, outcomes: Collection[str] = ()) -> WearTes
     DataError
         If the contents are wrong. The message names all faults.
     """
-    wrong = Problems()
-    measured = {*outcomes, *_outcomes()}
-    table = table_of(text, name, wrong, _conditions(), measured)
-    columns = {one.name: _values(one, table, wrong) for one in table.heads if one.is_numbers}
-    texts = {one.name: [row.cells[one.place].strip() for row in table.rows] for one in table.heads if one.name in TEXTS}
-    _check_values(columns, table, measured, wrong)
-    _check_decimal_marks(table, wrong)
-    if not wrong.found:
-        _check_duplicates([*columns.values(), *texts.values()], table, wrong)
-    if wrong.found:
-        raise DataError(f"the tests {quoted(Path(name))} are wrong in:", wrong.texts())
-    labels = texts.get("label", [""] * len(table.rows))
-    others = {
-        one.name: columns[one.name] if one.unit is None else Q(columns[one.name], one.unit)
-        for one in table.heads
-        if one.is_other
-    }
-    tests = WearTests(with_traction(columns), tuple(labels), table.source or Path(name).name, others)
+    label = f"the tests {shown(Path(name))}"
+    table = CsvTable(label, text.encode(), sep, decimal)
+    conditions = {name for rig in loader.rigs().values() for name in rig.conditions()}
+    measured = {*outcomes, *(law.outcome.name for law in loader.laws().values())}
+    wrong = _use_columns(table, conditions, measured)
+    columns: dict[str, Array] = {}
+    others: dict[str, pint.Quantity[Array] | Array] = {}
+    try:
+        lines = table.lines
+        for column in table.columns.values():
+            if column.name not in TEXTS:
+                _add_column(table, column, columns, others, wrong)
+    except DataError as error:  # rows of different lengths
+        if not error.problems:
+            raise
+        raise DataError(f"{label} are wrong in:", [*wrong, *error.problems]) from None
+    if not lines.size and not wrong:
+        wrong.append("no test follows the header")
+    every = columns | {name: np.asarray(getattr(value, "magnitude", value)) for name, value in others.items()}
+    for row, name, rule in faulty(every, measured):
+        cell = table.texts(name)[row]
+        wrong.append(f"{table.where(row, name)}: {f'got {cell:.100}, which ' if cell else ''}{rule}")
+    texts = {name: table.texts(name) for name in TEXTS if name in table.columns}
+    wrong += [] if wrong else _duplicates([*every.values(), *texts.values()], lines.tolist())
+    if wrong:
+        raise DataError(f"{label} are wrong in:", wrong)
+    source = next((one.partition(":")[2].strip() for one in table.comments if one.casefold().startswith("source:")), "")
+    labels = texts.get("label", [""] * lines.size)
+    tests = WearTests(with_traction(columns), tuple(labels), source or Path(name).name, others)
     return tests.measuring(measured)
 
 
-def _conditions() -> set[str]:
-    """Return the conditions of the installed rigs."""
-    return {name for rig in loader.rigs().values() for name in rig.conditions()}
+def _use_columns(table: CsvTable, conditions: Collection[str], outcomes: Collection[str]) -> list[str]:
+    """Take the columns of tests into use, and return the faults of the header."""
+    wrong: list[str] = []
+    present = [one.name for one in table.heads]
+    missing = [name for name in (*COLUMNS, *TEXTS) if name not in present]
+    for place, one in enumerate(table.heads):
+        where = f"line {table.header}, column '{one.text}'"
+        if present.count(one.name) > 1:
+            wrong.append(f"{where}: is there more than once; keep one of them")
+        if one.name in TEXTS and one.units:
+            wrong.append(f"{where}: is text and takes no unit")
+        elif one.name in COLUMNS and COLUMNS[one.name].unit and not one.units:
+            wrong.append(f"{where}: has no unit; write it as '{head(one.name)}'")
+        elif one.name not in (*COLUMNS, *TEXTS) and not _is_other(one, missing, {*conditions, *outcomes}):
+            bracket = "; write the unit in square brackets" if "(" in one.name else ""
+            wrong.append(
+                f"{where}: unknown column{bracket}{did_you_mean(one.name, [*COLUMNS, *TEXTS])} The columns are:"
+                f" {', '.join([*COLUMNS, *TEXTS])}; another condition of a rig has its unit in brackets, as in"
+                " 'mass [kg]'"
+            )
+        else:
+            table.columns |= {one.name: Column(one.name, one.text, place, next(iter(one.units), None))}
+    meant = [near for one in present if one not in table.columns for near in get_close_matches(one, COLUMNS, n=1)]
+    known = [name for name in (*table.columns, *meant) if name not in (*TEXTS, *outcomes)]
+    others = [name for name in table.columns if name not in (*COLUMNS, *TEXTS)]
+    measured = any(name in outcomes or name not in conditions for name in others)  # a law of a script may predict it
+    return wrong + [f"line {table.header}: {fault}" for fault in faulty_columns(known, measured)]
 
 
-def _outcomes() -> set[str]:
-    """Return the outcomes of the installed laws."""
-    return {law.outcome.name for law in loader.laws().values()}
+def _is_other(one: Head, missing: Collection[str], known: Collection[str]) -> bool:
+    """Return whether a column is a condition or an outcome that is not in the table of columns.
+
+    It belongs to an installed rig or law, or has a unit and a name unlike those of missing columns.
+    """
+    if one.name.startswith(f"{WEAR_OF}_"):  # the wear rate of one body
+        missing = [column for column in missing if column != WEAR_OF]
+    unlike = bool(one.units) and not get_close_matches(one.name, missing, n=1)
+    return one.name.isidentifier() and (one.name in known or unlike)
 
 
-def _values(one: Head, table: Table, wrong: Problems) -> Array:
-    """Return a column in SI, with NaN for missing or wrong cells."""
-    numbers = [_number(row.line, row.cells[one.place].strip(), one, table.separator, wrong) for row in table.rows]
-    with np.errstate(over="ignore"):  # an overflow is reported as not finite
-        return np.array(numbers, dtype=np.float64) * one.factor
+def _add_column(
+    table: CsvTable,
+    column: Column,
+    columns: dict[str, Array],
+    others: dict[str, pint.Quantity[Array] | Array],
+    wrong: list[str],
+) -> None:
+    """Add the values of a column: to `columns` in SI, or to `others` in their own unit; note what is wrong."""
+    try:
+        values = table.numbers(column.name)
+        unit = "" if column.unit in (None, "-") else str(column.unit)
+        if column.name not in COLUMNS:
+            others[column.name] = values if column.unit is None else Q(values, unit)
+            return
+        with np.errstate(over="ignore"):  # an overflow is reported as not finite
+            columns[column.name] = values * factor(column.name, unit)
+    except UnitError as error:
+        wrong.append(f"line {table.header}, column '{column.head}': {error}")
+    except DataError as error:
+        wrong += error.problems
 
 
-def _number(line: int, text: str, one: Head, separator: str, wrong: Problems) -> float:
-    if text.casefold() in MISSING:
-        return np.nan
-    if not _NUMBER.fullmatch(text):
-        hint = "; the unit goes into the header" if _NUMBER.match(text) else ""
-        wrong.add(line, one.text, f"{shortened(text)} is not a number{hint}")
-    elif separator == "," and "," in text:
-        wrong.add(line, one.text, f"{quoted(text)} has a decimal comma; write a point, or separate cells by ';'")
-    else:
-        return float(text.replace(",", ".").replace("\u2212", "-"))
-    return np.nan
-
-
-def _check_values(columns: dict[str, Array], table: Table, outcomes: Collection[str], wrong: Problems) -> None:
-    """Note missing and impossible values in the columns with a valid unit."""
-    heads = {one.name: one for one in table.heads if not np.isnan(one.factor)}
-    for i, name, rule in faulty({name: values for name, values in columns.items() if name in heads}, outcomes):
-        row = table.rows[i]
-        text = row.cells[heads[name].place].strip()
-        got = "" if text.casefold() in MISSING else f"got {excerpt(text)}, which "
-        wrong.add(row.line, heads[name].text, f"{got}{rule}")
-
-
-def _check_decimal_marks(table: Table, wrong: Problems) -> None:
-    """Note a mix of decimal commas and points: one of them may separate thousands."""
-    first: dict[str, int] = {}
-    for row in table.rows:
-        for one in table.heads:
-            text = row.cells[one.place].strip()
-            if one.is_numbers and _NUMBER.fullmatch(text):
-                for mark in set(text) & {",", "."}:
-                    first.setdefault(mark, row.line)
-    if len(first) == 2 and table.separator != ",":
-        wrong.add(
-            max(first.values()),
-            "",
-            f"decimal marks are mixed: a comma in line {first[',']}, a point in line {first['.']}; use one of them",
-        )
-
-
-def _check_duplicates(columns: Sequence[Iterable[object]], table: Table, wrong: Problems) -> None:
-    """Note rows that are equal in every column: a row pasted twice would count twice."""
+def _duplicates(columns: list[Any], lines: list[int]) -> list[str]:
+    """Return the faults of rows that are equal in every column: a row pasted twice would count twice."""
     first: dict[tuple[str, ...], int] = {}
-    for row, values in zip(table.rows, zip(*columns, strict=True), strict=True):
-        line = first.setdefault(tuple(map(str, values)), row.line)
-        if line != row.line:
-            wrong.add(row.line, "", f"is equal to line {line} in every column; leave it out, or label a repeated test")
+    rows = zip(*columns, strict=True)
+    return [
+        f"line {line}: is equal to line {earlier} in every column; leave it out, or label a repeated test"
+        for line, values in zip(lines, rows, strict=True)
+        if (earlier := first.setdefault(tuple(map(str, values)), line)) != line
+    ]

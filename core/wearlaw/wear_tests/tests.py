@@ -17,7 +17,7 @@ import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
-from wearlaw.errors import ConditionsError, DataError, UnitError, printable, shortened
+from wearlaw.errors import ConditionsError, DataError, UnitError, shown
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, parse, real_array
 from wearlaw.units.registry import si_factor, symbol
 from wearlaw.wear_tests.columns import COLUMNS, factor, faulty, faulty_columns, head, with_traction
@@ -144,7 +144,7 @@ class WearTests:
         ]
         count = len(next(iter(arrays.values())))
         if labels is not None and (isinstance(labels, str) or len(labels) != count):
-            faults.append(f"labels: give one text for each of the {count} tests, got {shortened(labels)}")
+            faults.append(f"labels: give one text for each of the {count} tests, got {shown(labels)}")
         if faults:
             raise DataError("the tests are wrong in:", faults)
         named = tuple(map(str, [""] * count if labels is None else labels))
@@ -324,7 +324,7 @@ class WearTests:
             *(self._summary(name, self._quantity(name)) for name in self.columns),
             *(self._summary(name, value) for name, value in self.outcomes.items()),
         ]
-        return "\n  ".join(lines) + (f"\nfrom {printable(self.source)}" if self.source else "")
+        return "\n  ".join(lines) + (f"\nfrom {self.source}" if self.source else "")
 
     def _summary(self, name: str, column: Quantity | Array) -> str:
         """Return the range of a column, and the number of tests with a value unless all have one."""

@@ -276,36 +276,36 @@ assert_type((predicted.contact | Fatigue(threshold=Q(15, "N"))).value, wl.Quanti
 
 
 @wl.hookimpl
-def wearlaw_stages() -> list[type[wl.Stage]]:
-    """Return stages."""
-    return [Lubricated, Consistent]
+def wearlaw_models() -> list[type[wl.Stage | wl.Law]]:
+    """Return classes of several kinds."""
+    return [Lubricated, Consistent, Fatigue, Flash, Patch, Half]
 
 
-@wl.hookimpl
-def wearlaw_laws() -> list[type[wl.Law]]:
-    """Return laws of other outcomes."""
-    return [Fatigue, Flash]
-
-
-@wl.hookimpl
-def wearlaw_rigs() -> Iterable[type[wl.Rig]]:
+@wl.hookimpl(specname="wearlaw_models")
+def rigs() -> Iterable[type[wl.Rig]]:
     """Return rigs."""
     return [Roller]
 
 
 @wl.hookimpl
-def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
-    """Return laws."""
-    return [Patch, Half]
+def wearlaw_commands() -> list[wl.Command]:
+    """Return a command."""
+    return [wl.Command("roll", "rolling.command:roll", "Roll.")]
 
 
 @wl.hookimpl
-def wearlaw_materials() -> dict[str, wl.Material | type[wl.Material]]:
+def wearlaw_resources() -> dict[str, dict[str, str]]:
+    """Return a case."""
+    return {"case": {"rolling": "title = 'Rolling'"}}
+
+
+@wl.hookimpl
+def wearlaw_named() -> dict[str, wl.Material | type[wl.Material]]:
     """Return a material and a class."""
     return {"hard": hard, "RailSteel": RailSteel}
 
 
-@wl.hookimpl(specname="wearlaw_parameter_sets")
+@wl.hookimpl(specname="wearlaw_named")
 def sets() -> Mapping[str, wl.WearLaw]:
     """Return a parameter set."""
     return {"lab": Patch()}

@@ -115,36 +115,24 @@ Wet(facter=0.5)  # expect-error
 
 
 @wl.hookimpl  # expect-error
-def wearlaw_stages() -> list[wl.Stage]:
+def wearlaw_models() -> list[wl.Stage]:
     """Return instances in place of classes."""
     return [wl.patch_mean()]
 
 
 @wl.hookimpl  # expect-error
-def wearlaw_laws() -> list[wl.Law]:
-    """Return instances in place of classes."""
-    return [law]
-
-
-@wl.hookimpl  # expect-error
-def wearlaw_materials() -> list[wl.Material]:
+def wearlaw_named() -> list[wl.Material]:
     """Return materials without names."""
     return [wl.steel()]
 
 
 @wl.hookimpl  # expect-error
-def wearlaw_wear_laws() -> int:
-    """Return no laws."""
+def wearlaw_commands() -> int:
+    """Return no commands."""
     return 3
 
 
 @wl.hookimpl  # expect-error
-def wearlaw_contact_models() -> list[wl.ContactModel]:
-    """Return instances in place of classes."""
-    return [model]
-
-
-@wl.hookimpl  # expect-error
-def wearlaw_cases() -> dict[str, float]:
-    """Return numbers in place of texts."""
-    return {"case": 1.0}
+def wearlaw_resources() -> dict[str, str]:
+    """Return texts without their kind."""
+    return {"my_case": "title = 'Mine'"}

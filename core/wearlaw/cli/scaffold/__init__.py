@@ -11,7 +11,7 @@ from pathlib import Path
 from string import Template
 from typing import Literal, TypeAlias
 
-from wearlaw.errors import InputError, OutputError, quoted, shortened
+from wearlaw.errors import InputError, OutputError, shown
 from wearlaw.plugins import loader
 from wearlaw.version import __version__
 
@@ -65,19 +65,19 @@ def write_plugin(name: str, kind: Kind, parent: Path) -> Path:
     if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", name) or keyword.iskeyword(name):
         raise InputError(
             f"name: must be a Python name of lower-case letters, digits and single underscores between them,"
-            f" such as 'zobory', got {shortened(name)}"
+            f" such as 'zobory', got {shown(name)}"
         )
     for holder in _holders(name):
-        raise InputError(f"name: {quoted(name)} is taken by {holder}; choose another")
+        raise InputError(f"name: {shown(name)} is taken by {holder}; choose another")
     folder = parent / f"wearlaw-{name}"
     if os.path.lexists(folder):
-        raise OutputError(f"output: {quoted(folder)} exists and is left as it is; choose another parent folder with -o")
+        raise OutputError(f"output: {shown(folder)} exists and is left as it is; choose another parent folder with -o")
     try:
         for path, text in _files(name, kind).items():
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (folder / path).write_text(text, encoding="utf-8")
     except OSError as error:
-        raise OutputError(f"output: cannot write to {quoted(folder)}: {error.strerror or error}") from None
+        raise OutputError(f"output: cannot write to {shown(folder)}: {error.strerror or error}") from None
     return folder
 
 

@@ -8,40 +8,22 @@ from wearlaw_outside.material import MADE_UP_STEEL
 from wearlaw_outside.rig import Weighted
 from wearlaw_outside.stage import Wet
 
-wearlaw_interface = 2
+wearlaw_interface = 3
 
 
 @wl.hookimpl
-def wearlaw_rigs() -> list[type[wl.Rig]]:
-    """Return the rigs of this plugin."""
-    return [Weighted]
+def wearlaw_models() -> list[type[wl.Rig | wl.ContactModel | wl.Stage | wl.Law]]:
+    """Return the rig, the contact model, the stage and the laws of this plugin."""
+    return [Weighted, Rigid, Wet, MadeUp, Flash]
 
 
 @wl.hookimpl
-def wearlaw_contact_models() -> list[type[wl.ContactModel]]:
-    """Return the contact models of this plugin."""
-    return [Rigid]
-
-
-@wl.hookimpl
-def wearlaw_stages() -> list[type[wl.Stage]]:
-    """Return the stages of this plugin."""
-    return [Wet]
-
-
-@wl.hookimpl
-def wearlaw_wear_laws() -> list[type[wl.WearLaw]]:
-    """Return the wear laws of this plugin."""
-    return [MadeUp]
-
-
-@wl.hookimpl
-def wearlaw_laws() -> list[type[wl.Law]]:
-    """Return the laws of other outcomes of this plugin."""
-    return [Flash]
-
-
-@wl.hookimpl
-def wearlaw_materials() -> dict[str, wl.Material]:
+def wearlaw_named() -> dict[str, wl.Material]:
     """Return the materials of this plugin by name."""
     return {"made_up_steel": MADE_UP_STEEL}
+
+
+@wl.hookimpl
+def wearlaw_commands() -> list[wl.Command]:
+    """Return the command of this plugin."""
+    return [wl.Command("weigh", "wearlaw_outside.command:weigh", "Print the weight of a mass.")]

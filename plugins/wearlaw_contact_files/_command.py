@@ -19,7 +19,6 @@ from wearlaw.cli.shared import (
     written_formats,
 )
 from wearlaw.contact.contact import Contact
-from wearlaw.errors import printable
 from wearlaw.figures.curves import FigureFormat
 from wearlaw.figures.worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
 from wearlaw.models.law import Law
@@ -112,7 +111,7 @@ def _predicted(contact: Contact, laws: Sequence[Law], notes: Notes) -> Predictio
 def _labels(files: Sequence[str]) -> list[str]:
     """Return the names of the files without their folders, or the paths if names are equal."""
     names = [Path(one).name for one in files]
-    return [printable(one) for one in (names if len({*names}) == len(names) else files)]
+    return names if len({*names}) == len(names) else [*files]
 
 
 def _note_powers(table: pd.DataFrame, notes: Notes) -> None:

@@ -1,0 +1,150 @@
+r"""Tables through pandas' Styler: as HTML for the page, and for LaTeX, to \input into a paper."""
+
+from __future__ import annotations
+
+import html
+import numbers
+import re
+import unicodedata
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from pandas.io.formats.style import Styler
+
+_MATHS = {
+    "−": "-", "·": r"\cdot", "×": r"\times", "±": r"\pm", "≤": r"\le", "≥": r"\ge", "≠": r"\ne", "≈": r"\approx",
+    "∞": r"\infty", "√": r"\surd", "∫": r"\int", "∂": r"\partial", "∝": r"\propto", "→": r"\to", "°": r"^{\circ}",
+    "ṡ": r"\dot{s}", "<": "<", ">": ">", "|": "|",
+    **{letter: f"\\{unicodedata.name(letter).rsplit()[-1].lower().replace('lamda', 'lambda')}"
+       for letter in "αβγδεζηθικλμνξπρστυφχψω"},
+    **{letter: f"\\{unicodedata.name(letter).rsplit()[-1].capitalize().replace('Lamda', 'Lambda')}"
+       for letter in "ΓΔΘΛΞΠΣΦΨΩ"},
+}  # fmt: skip
+_TEXT = {
+    **{character: f"\\{character}" for character in "&%$#_{}"},
+    "\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "µ": r"\textmu{}",
+    "–": r"\textendash{}", "—": r"\textemdash{}", "…": r"\dots{}",
+    "†": r"\textdagger{}", "‡": r"\textdaggerdbl{}",
+}  # fmt: skip
+_SYMBOLS = str.maketrans({**{character: f"${command}$" for character, command in _MATHS.items()}, **_TEXT})
+_SHIFTED = {"superscript": "⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "subscript": "₀₁₂₃₄₅₆₇₈₉ᵢᵣ"}
+LONG = 40
+"""Letters beyond which a text column wraps."""
+
+UUID = "0"
+"""Identifier of a table, left out of the page, where tables would share it; Styler draws one by lot otherwise."""
+
+
+class Marked(float):
+    """A number with marks such as "†" behind it, which footnotes explain; files of numbers leave them out."""
+
+    marks: str
+
+    def __new__(cls, value: float, marks: str) -> Marked:
+        """Return the number with its marks."""
+        found = super().__new__(cls, value)
+        found.marks = marks
+        return found
+
+
+def is_number(value: Any) -> bool:
+    """Return whether a cell holds a number, which stands at the right."""
+    return not isinstance(value, (bool, np.bool_)) and isinstance(value, numbers.Real) and bool(value == value)
+
+
+def cell(value: Any) -> tuple[str, str, str]:
+    """Return the text of a cell, and for numbers its power of ten and its marks: four significant digits.
+
+    The text is empty if the value is missing.
+    """
+    if value is None or value is pd.NA or value != value:
+        return "", "", ""
+    if isinstance(value, (bool, np.bool_)):
+        return ("yes" if value else "no"), "", ""
+    if isinstance(value, numbers.Integral) or not is_number(value):
+        return str(value), "", ""
+    mantissa, _, power = f"{value:.4g}".partition("e")
+    return mantissa, str(int(power)) if power else "", getattr(value, "marks", "")
+
+
+def html_table(frame: pd.DataFrame, caption: str) -> str:
+    """Return a table for the page, with the first column as the heads of its rows, and numbers at the right."""
+    rows = list(frame.itertuples(index=False, name=None))
+    classes = pd.DataFrame([[_class(value) for value in row] for row in rows])
+    heads = [html.escape(str(head)) for head in frame.columns]
+    right = [any(is_number(row[number]) for row in rows) for number in range(len(heads))]
+    heads = [f'<span class="number">{head}</span>' if at_right else head
+             for head, at_right in zip(heads, right, strict=True)]  # fmt: skip
+    style = _styled(frame, _html, heads, first_as_index=True).set_td_classes(classes.iloc[:, 1:])
+    found: str = style.set_caption(html.escape(caption)).to_html()
+    return found[found.index("<table") :].replace(f' id="T_{UUID}"', "")
+
+
+def latex_table(frame: pd.DataFrame, footnotes: Iterable[str] = ()) -> str:
+    """Return a table as a tabular, with the units in the heads of its columns, and footnotes below it."""
+    heads = [_guarded(escaped(str(head))) for head in frame.columns]
+    tabular = _styled(frame, _latex, heads).hide(axis="index").to_latex(column_format=_columns(frame), hrules=True)
+    below = (rf"\par{{\footnotesize {escaped(note)}}}" for note in footnotes)
+    return "\n".join([r"% \usepackage{booktabs}", tabular.rstrip("\n"), *below]) + "\n"
+
+
+def _styled(
+    frame: pd.DataFrame, source: Callable[[Any], str], heads: list[str], first_as_index: bool = False
+) -> Styler:
+    """Return a table whose cells and heads are their sources."""
+    shown = pd.DataFrame([[source(value) for value in row] for row in frame.itertuples(index=False, name=None)])
+    shown = shown.reindex(columns=range(frame.shape[1]))
+    firsts = shown[0].tolist()
+    if first_as_index:
+        shown = shown.drop(columns=0).rename_axis(columns=heads[0])
+    style = Styler(shown, uuid=UUID, cell_ids=False)
+    style = style.format_index(lambda number: heads[int(str(number))], axis="columns")
+    return style.format_index(lambda number: firsts[int(str(number))], axis="index")
+
+
+def _class(value: Any) -> str:
+    """Return the class of a cell: a number, or a text that wraps."""
+    return "number" if is_number(value) else "long" if len(str(value)) > LONG // 2 else ""
+
+
+def _html(value: Any) -> str:
+    text, power, marks = (html.escape(part) for part in cell(value))
+    if is_number(value):
+        text, power = text.replace("-", "−"), power.replace("-", "−")
+    return f"{text}{f' × 10<sup>{power}</sup>' if power else ''}{f'<sup>{marks}</sup>' if marks else ''}"
+
+
+def _latex(value: Any) -> str:
+    text, power, marks = cell(value)
+    if not is_number(value):
+        return _guarded(escaped(text))
+    mantissa = text.replace("inf", r"\infty")
+    return (rf"${mantissa} \times 10^{{{power}}}$" if power else f"${mantissa}$") + escaped(marks)
+
+
+def escaped(text: str) -> str:
+    """Escape a text for LaTeX."""
+    # Two hyphens would become a dash.
+    source = re.sub("-(?=-)", "-{}", " ".join(text.split()).translate(_SYMBOLS))
+    for kind, digits in _SHIFTED.items():
+        plain = str.maketrans({digit: unicodedata.normalize("NFKC", digit).replace("−", "-") for digit in digits})
+        source = re.sub(f"[{digits}]+", lambda run: rf"\text{kind}{{{run[0].translate(plain)}}}", source)  # noqa: B023
+    return source
+
+
+def _guarded(source: str) -> str:
+    r"""Keep LaTeX from reading a bracket or star as an option of the \\ of the line above."""
+    return "{}" + source if source.startswith(("[", "*")) else source
+
+
+def _columns(frame: pd.DataFrame) -> str:
+    """Return the alignment of each column: numbers right, long texts wrapped."""
+    kinds = []
+    for number, dtype in enumerate(frame.dtypes):
+        longest = max((len(str(value)) for value in frame.iloc[:, number]), default=0)
+        text = rf"p{{{LONG / 100:g}\linewidth}}" if longest > LONG else "l"
+        marked = all(isinstance(value, Marked) for value in frame.iloc[:, number])
+        kinds.append("r" if marked or pd.api.types.is_numeric_dtype(dtype) else text)
+    return "".join(kinds)

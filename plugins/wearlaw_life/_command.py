@@ -1,0 +1,122 @@
+"""The command that wears a profile over a distance."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+import pandas as pd
+
+import wearlaw as wl
+from wearlaw.cli.shared import echo, fields, folder_for, print_notes, print_results, written_formats
+from wearlaw.figures.curves import FigureFormat
+from wearlaw.output.folder import results_folder
+from wearlaw.output.results import save_figure, save_table, writing
+from wearlaw.pipeline.notes import Notes
+from wearlaw.study.case import load_case
+from wearlaw_life._life import Life
+
+LIFE = "life.json"
+"""The file with the models and notes of a life, which tells its folder from others."""
+
+
+@click.command()
+@click.argument("case")
+@click.argument("line", type=click.Path(path_type=Path))
+@click.option("--over", required=True, metavar="DISTANCE", help='Distance, as in "100000 km"; passages for a rail.')
+@click.option("--share", default="share", show_default=True, help="Column of LINE with the shares of the distance.")
+@click.option("--set", "conditions", metavar="CONDITION=VALUE", multiple=True, help="Condition of all states.")
+@click.option("--until", "limits", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
+@click.option("--body", default="wheel", show_default=True, help="The body that wears: wheel or rail.")
+@click.option("--side", type=click.Choice(["mean", "left", "right"]), default="mean", show_default=True)
+@click.option("--depth-step", default="0.05 mm", show_default=True, help="Largest depth of a step.")
+@click.option("--smoothing", default="3 mm", show_default=True, help="Standard deviation of the smoothing.")
+@click.option("--resume", is_flag=True, help="Go on from the finished steps of an interrupted life, in FOLDER.partial.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: LINE-life].")
+@click.option("--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay.")
+@written_formats
+def life(
+    case: str,
+    line: Path,
+    over: str,
+    share: str,
+    conditions: tuple[str, ...],
+    limits: tuple[str, ...],
+    body: str,
+    side: Any,
+    depth_step: str,
+    smoothing: str,
+    resume: bool,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+) -> None:
+    """Wear a profile over a distance: CASE is a case file with a rig, LINE a table of states with their shares.
+
+    \b
+    wearlaw life wheel_life line.csv --over "20000 km"
+    wearlaw life my-case.toml line.csv --over "100000 km" --until flange_thickness="25 mm" -o life/
+
+    The first contact model and the first wear law of the case predict. The folder then holds life.csv, the measures
+    at every step; profiles.csv; a figure; the worn profile, worn.csv; and life.json.
+    """  # noqa: D301
+    folder = output if output is not None else folder_for(str(line), "life")
+    partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
+    loaded, notes = load_case(case), Notes()
+    until = {name: _plain(text) for name, text in fields("--until", limits, "MEASURE=VALUE").items()}
+    given: dict[str, Any] = {
+        name: _plain(text) for name, text in fields("--set", conditions, "CONDITION=VALUE").items()
+    }
+    with results_folder(folder, overwrite, LIFE) as fresh:
+        with notes.of("life"):
+            pipeline = loaded.rig | loaded.contact_models[0]
+            for stage in loaded.stages:
+                pipeline = pipeline | stage
+            predict = pipeline | loaded.wear_laws[0]
+            found = wl.wear_out(
+                predict, line, over=_plain(over) if body == "rail" else over, share=share, until=until, body=body,
+                side=side, depth_step=depth_step, smoothing=smoothing, store=partial, resume=resume, progress=True,
+                **given,
+            )  # fmt: skip
+        names = _write(found, notes.texts, fresh, figure_formats, latex)
+    shutil.rmtree(partial, ignore_errors=True)
+    print_notes(notes.texts)
+    echo(repr(found))
+    print_results(folder, names)
+
+
+def _write(
+    found: Life, notes: Sequence[str], folder: Path, figure_formats: Sequence[FigureFormat], latex: bool
+) -> list[str]:
+    """Write a life into an empty folder and return the names of the files."""
+    profiles = found.profiles
+    columns = profiles.reset_coords("body", drop=True).to_dataframe().reset_index()
+    y, z = (value.magnitude for value in found.profile.points)
+    tables = {
+        "life": found.table,
+        "profiles": columns.rename(columns=lambda name: f"{name} [{profiles[name].units}]".removesuffix(" []")),
+        "worn": pd.DataFrame({"y [mm]": y, "z [mm]": z}),
+    }
+    laws = [repr(law) for law in found.pipeline.laws]
+    record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": list(notes)}
+    with writing():
+        names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
+        names += save_figure(found.figure(), folder, "life", figure_formats)
+        text = json.dumps(record, indent=2, ensure_ascii=False)
+        (folder / LIFE).write_text(text + "\n", encoding="utf-8")
+    return [*names, LIFE]
+
+
+def _plain(text: str) -> str | float:
+    """Return a plain number as such; other texts have a unit."""
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    return number if math.isfinite(number) else text

@@ -1,0 +1,153 @@
+"""Removing a wear depth from a profile: smoothing, removal along the normal, and the mass that is removed."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol, Self
+
+import numpy as np
+import scipy
+
+import wearlaw as wl
+from wearlaw import Array
+
+
+class Profile(Protocol):
+    """What a body of a rig needs in order to wear, as `wearlaw_wheelset.Profile` has it."""
+
+    @property
+    def curve(self) -> Any:
+        """The profile by its arc length: arrays s, y, z [m] and angle [rad], and a method `at`."""
+        ...
+
+    @property
+    def kind(self) -> str:
+        """Whether it is that of a "wheel" or a "rail"."""
+        ...
+
+    @property
+    def points(self) -> tuple[wl.Quantity, wl.Quantity]:
+        """Coordinates y and z of its points."""
+        ...
+
+    def model_dump_json(self) -> str:
+        """Return the fields as JSON, as any `wearlaw.Configuration` does."""
+        ...
+
+    def worn(self, s: wl.Quantity, depth: wl.Quantity | str, /) -> Self:
+        """Return the profile after wear along its normal, with points at even arc lengths."""
+        ...
+
+
+ACCURACY = 5e-11
+"""Share of the predicted mass by which the removed one may differ, after the factor."""
+
+STEPS = 6
+"""Most steps of the secant method for the factor; two are usual."""
+
+
+def positions(profile: Profile, count: int) -> Array:
+    """Return even arc lengths from end to end of a profile [m]."""
+    s = profile.curve.s
+    return np.linspace(s[0], s[-1], count)
+
+
+def even(profile: Profile) -> Profile:
+    """Return a profile with points at even arc lengths."""
+    s = profile.curve.s
+    return profile.worn(wl.Q(1e3 * s[[0, -1]], "mm"), "0 mm")
+
+
+def smoothed(depth: Array, at: Array, length: float) -> Array:
+    """Return depths smoothed by a Gaussian kernel; their sum stays.
+
+    Parameters
+    ----------
+    depth : ndarray, (..., positions)
+        Depths at even positions, in any unit.
+    at : ndarray, (positions,)
+        The positions [m].
+    length : float
+        Standard deviation of the kernel [m]; it reaches four times as far, and mirrors at the ends of the profile.
+    """
+    if not length:
+        return depth
+    kernel: Array = scipy.ndimage.gaussian_filter1d(depth, length / (at[1] - at[0]), mode="reflect")
+    return kernel
+
+
+def removed(profile: Profile, at: Array, depth: Array) -> Profile:
+    """Return the profile after removal of depths [m] along its normal, with points at even arc lengths.
+
+    Depths between the positions `at` [m] follow a cubic spline, so that no kinks arise.
+    """
+    s = profile.curve.s
+    between = np.maximum(scipy.interpolate.CubicSpline(at, depth)(np.clip(s, at[0], at[-1])), 0.0)
+    return profile.worn(wl.Q(1e3 * s, "mm"), wl.Q(1e3 * between, "mm"))
+
+
+def swept(old: Profile, new: Profile, radius: float | None) -> float:
+    """Return the volume between two profiles [m³], or the area of the section [m²] if they do not turn.
+
+    Both are taken as polygons through their points, closed at their ends. A wheel turns about an axis at a distance
+    `radius` from z = 0 [m]; the volume is exact for frustums of cones.
+    """
+    ends = [[1e-3 * value.magnitude for value in one.points] for one in (old, new)]
+    y, z = (np.concatenate([ends[0][axis], ends[1][axis][::-1], ends[0][axis][:1]]) for axis in (0, 1))
+    low, high = z[:-1], z[1:]
+    height = low + high if radius is None else 2.0 * radius * (low + high)
+    integrand = 0.5 * height if radius is None else np.pi * (0.5 * height + (low**2 + low * high + high**2) / 3.0)
+    return float(abs((integrand * np.diff(y)).sum()))
+
+
+class Removal(NamedTuple):
+    """A profile after a step.
+
+    Attributes
+    ----------
+    profile : Profile
+    volume : float
+        Volume [m³] or, per metre of rail, area [m²] that was removed.
+    factor : float
+        What the depths were multiplied by so that the removed mass is the predicted one.
+    """
+
+    profile: Profile
+    volume: float
+    factor: float
+
+
+def conserving(profile: Profile, at: Array, depth: Array, volume: float, radius: float | None) -> Removal:
+    """Return the profile after removal of depths, multiplied by one factor so that a given volume is removed.
+
+    Without the factor the volume differs: a depth along the normal of a curved profile sweeps an area that also depends
+    on the curvature, and smoothing moves wear to other radii.
+    """
+
+    def by(factor: float) -> tuple[Profile, float]:
+        new = removed(profile, at, factor * depth)
+        return new, swept(profile, new, radius)
+
+    new, found = by(1.0)
+    before, factor = (1.0, found), volume / found
+    for _ in range(STEPS):
+        new, found = by(factor)
+        if abs(found - volume) <= ACCURACY * volume or found == before[1]:
+            break
+        slope = (found - before[1]) / (factor - before[0])
+        before, factor = (factor, found), factor + (volume - found) / slope
+    return Removal(new, found, factor)
+
+
+def normal_depth(first: Profile, now: Profile, s: Array) -> Array:
+    """Return the depth between two profiles along the normals of the first one, at its arc lengths [m]."""
+    y, z, angle, _ = first.curve.at(s)
+    curve = now.curve
+    share = (s - first.curve.s[0]) / np.ptp(first.curve.s)
+    place = curve.s[0] + share * np.ptp(curve.s)
+    for _ in range(4):
+        there = curve.at(np.clip(place, curve.s[0], curve.s[-1]))
+        along = (there[0] - y) * np.cos(angle) + (there[1] - z) * np.sin(angle)
+        place = place - along / np.cos(there[2] - angle)
+    there = curve.at(np.clip(place, curve.s[0], curve.s[-1]))
+    depth = (there[0] - y) * np.sin(angle) - (there[1] - z) * np.cos(angle)
+    return np.asarray(-depth if first.kind == "rail" else depth)

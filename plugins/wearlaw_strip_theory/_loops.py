@@ -1,0 +1,156 @@
+"""Formulas of one strip and one node that NumPy shares with the loops over nodes that numba compiles.
+
+Strips are rows of one array: along, across, turning, k_x and k_y of `Strips`, and V, n_x and n_y of `Start`. Nodes are
+the fields of `_strips.Nodes`, in the order there. Tables hold what nodes at the same place of all strips share.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import numpy as np
+
+import wearlaw as wl
+from wearlaw import Array
+
+BELOW = 1.0 - 8.0 * float(np.finfo(np.float64).eps)
+"""Factor that keeps the magnitude of a traction below its bound despite rounding."""
+
+TINY = 1e-100
+"""Keeps divisors from zero."""
+
+Number = TypeVar("Number", float, Array)
+
+
+def root(value: Number) -> Number:
+    """Return the square root of a float or of an array."""
+    return np.sqrt(value)  # type: ignore[no-any-return]
+
+
+def shape(k_x: Number, k_y: Number, turning: Number, n_x: Number, n_y: Number) -> tuple[Number, Number]:
+    """Return k and p."""
+    return k_x * n_x * n_x + k_y * n_y * n_y, turning * n_y
+
+
+def stuck(v: Number, n_x: Number, n_y: Number, spin: Number, cosine: float, sine: float) -> tuple[Number, ...]:
+    """Return x, the bound and the traction at x = -V - D cos t of strips that stick; `spin` is φ/k_y."""
+    d = 1.0 - v
+    ahead, inner = d * (1.0 - cosine), d * sine
+    bound = root(ahead * (2.0 - ahead))
+    q_x, q_y = n_x * (bound - inner), n_y * (bound - inner) + spin * inner
+    within: Any = np.minimum(BELOW * bound / (root(q_x * q_x + q_y * q_y) + TINY), 1.0)
+    return ahead - 1.0, bound, within * q_x, within * q_y
+
+
+def energy(k: Number, p: Number, v: Number, behind: Number, angle: Number, sine: float, arc: float) -> Number:
+    """Return 2E at 1 - x = `behind` = 1 - cos `angle`.
+
+    `arc` is ∫ sin² β dβ up to the trailing edge, as ∫ (1+x) √((1-x)(x-1+2V)) dx = V² ((2-V) arc + V sin³β/3).
+    """
+    bound = root(behind * (2.0 - behind))
+    beyond = angle - (1.0 - behind) * bound  # twice ∫ √(1-x²) dx
+    inner = v * ((2.0 - v) * arc + v * (sine * sine * sine / 3.0))
+    twice: Any = (k - p) * v * (2.0 * inner - beyond) + 2.0 / 3.0 * p * bound * bound * bound
+    return np.maximum(twice, TINY)  # type: ignore[no-any-return]
+
+
+def rate(w_x: Number, w_y: Number, v: Number, behind: Number, sine: float, twice: Number) -> Number:
+    """Return the rate at which the traction turns by β, |w| √(1-x²)/(2E) dx/dβ."""
+    return root((w_x * w_x + w_y * w_y) * (behind * (2.0 - behind))) * (v * sine) / twice
+
+
+def lag(kappa: Number) -> Number:
+    """Return by how much of a step q̂ lags behind a turning w, if κ grew evenly over the step.
+
+    The lag is 1/κ - 1/(exp κ - 1) within 0.011.
+    """
+    return (6.0 + kappa) / (12.0 + kappa * (4.0 + kappa))
+
+
+def turn(along: Number, across: Number, decay: Number) -> tuple[Number, Number, Number]:
+    """Return the factors of a step on a vector at half the angle of q̂: of x along x, of y across, of the other one.
+
+    As complex numbers, a step towards w takes the vector h to (1 + d)/2 h + (1 - d)/2 (w/|w|) h*; the tangent of half
+    the angle between q̂ and w decays by the factor d = exp -κ.
+    """
+    over = (0.5 - 0.5 * decay) / (root(along * along + across * across) + TINY)
+    stays, turns = 0.5 + 0.5 * decay, over * along
+    return stays + turns, stays - turns, over * across
+
+
+def taken_up(k: Number, p: Number, v: Number, behind: Number, cosine: float) -> Number:
+    """Return e."""
+    return k * v - p * (1.0 - behind + v) - (k - p) * root((2.0 - behind) * (v * (1.0 - cosine)))
+
+
+def direction(x: Number, y: Number) -> tuple[Number, Number]:
+    """Return the direction with (x, y) at half its angle, shortened for rounding."""
+    over = BELOW / (x * x + y * y + TINY)
+    return (x - y) * (x + y) * over, 2.0 * x * y * over
+
+
+ROWS, NODES = "float64[:, ::1]", "float64[:, :, ::1]"
+
+
+@wl.compiled_loop(f"void({ROWS}, {ROWS}, {NODES})")
+def stick_loop(strips: Array, table: Array, nodes: Array) -> None:
+    """Fill the first nodes of strips, which stick; the table holds cosine, sine and length over D."""
+    turning, k_y, v, n_x, n_y = strips[2], strips[4], strips[5], strips[6], strips[7]
+    for at in range(table.shape[0]):
+        cosine, sine, length = table[at, 0], table[at, 1], table[at, 2]
+        to_x, to_length, to_bound = nodes[0, at], nodes[1, at], nodes[2, at]
+        to_q_x, to_q_y = nodes[3, at], nodes[4, at]
+        nodes[5, at] = 0.0
+        for i in range(v.size):
+            x, bound, q_x, q_y = stuck(v[i], n_x[i], n_y[i], turning[i] / k_y[i], cosine, sine)
+            to_x[i], to_length[i], to_bound[i] = x, (1.0 - v[i]) * length, bound
+            to_q_x[i], to_q_y[i] = q_x, q_y
+
+
+@wl.compiled_loop(f"void({ROWS}, {ROWS}, {', '.join([ROWS] * 3)})")
+def lag_loop(strips: Array, table: Array, angle: Array, kappa: Array, lagging: Array) -> None:
+    """Fill in κ, and w across where the traction lags behind; the table is that of `slip_loop`."""
+    along, across, turning, k_x, k_y = strips[0], strips[1], strips[2], strips[3], strips[4]
+    v, n_x, n_y = strips[5], strips[6], strips[7]
+    rates = np.zeros(v.size)
+    for at in range(table.shape[0]):
+        cosine, sine, _, arc, step, way = table[at]
+        angles, to_kappa, to_lagging = angle[at], kappa[at], lagging[at]
+        for i in range(v.size):
+            k, p = shape(k_x[i], k_y[i], turning[i], n_x[i], n_y[i])
+            behind = v[i] * (1.0 + cosine)
+            w_y = across[i] - turning[i] * (1.0 - behind)
+            twice = energy(k, p, v[i], behind, angles[i], sine, arc)
+            here = rate(along[i], w_y, v[i], behind, sine, twice)
+            to_kappa[i] = 0.5 * step * (rates[i] + here)
+            to_lagging[i] = w_y + turning[i] * (lag(to_kappa[i]) * v[i] * way)
+            rates[i] = here
+
+
+@wl.compiled_loop(f"void({ROWS}, {ROWS}, {', '.join([ROWS] * 3)}, int64, {NODES})")
+def slip_loop(strips: Array, table: Array, half: Array, decay: Array, lagging: Array, first: int, nodes: Array) -> None:
+    """Fill the nodes from `first` on, which slip.
+
+    The table holds cosine, sine, length over V, arc, and the steps in β and x from the node before. `half` holds a
+    vector at half the angle of n, which the loop turns.
+    """
+    along, across, turning, k_x, k_y = strips[0], strips[1], strips[2], strips[3], strips[4]
+    v, n_x, n_y, half_x, half_y = strips[5], strips[6], strips[7], half[0], half[1]
+    for at in range(table.shape[0]):
+        cosine, length, decays, lags, row = table[at, 0], table[at, 2], decay[at], lagging[at], first + at
+        to_x, to_length, to_bound = nodes[0, row], nodes[1, row], nodes[2, row]
+        to_q_x, to_q_y, to_slip = nodes[3, row], nodes[4, row], nodes[5, row]
+        for i in range(v.size):
+            more, less, other = turn(along[i], lags[i], decays[i])
+            to_x[i], to_length[i] = more * half_x[i] + other * half_y[i], less * half_y[i] + other * half_x[i]
+        for i in range(v.size):
+            half_x[i], half_y[i] = to_x[i], to_length[i]
+            k, p = shape(k_x[i], k_y[i], turning[i], n_x[i], n_y[i])
+            behind = v[i] * (1.0 + cosine)
+            w_y = across[i] - turning[i] * (1.0 - behind)
+            bound = root(behind * (2.0 - behind))
+            q_x, q_y = direction(half_x[i], half_y[i])
+            to_bound[i], to_q_x[i], to_q_y[i] = bound, bound * q_x, bound * q_y
+            to_slip[i] = along[i] * q_x + w_y * q_y - taken_up(k, p, v[i], behind, cosine)
+        for i in range(v.size):
+            to_x[i], to_length[i] = 1.0 - v[i] * (1.0 + cosine), v[i] * length
