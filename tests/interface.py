@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import wearlaw
-import wearlaw.testing
+import wearlaw_kit
 from wearlaw import hookspecs
 
 AGREED = Path(__file__).with_suffix(".txt")
@@ -23,9 +23,7 @@ def interface() -> list[str]:
     """Return the lines: hooks, public names, and what public classes add to their bases."""
     hooks = (name + arguments(hook) for name, hook in vars(hookspecs).items() if name.startswith("wearlaw_"))
     names = (line for name in wearlaw.__all__ for line in described(name, getattr(wearlaw, name)))
-    kit = (
-        line for name in wearlaw.testing.__all__ for line in described(f"testing.{name}", vars(wearlaw.testing)[name])
-    )
+    kit = (line for name in wearlaw_kit.__all__ for line in described(f"testing.{name}", vars(wearlaw_kit)[name]))
     return [FIRST, *sorted({*hooks, *names, *kit} - {"INTERFACE_VERSION"})]
 
 

@@ -56,7 +56,7 @@ def test_the_small_extra_for_checks_needs_hypothesis_and_pytest_only() -> None:
     blocked = [name.replace("-", "_").replace("pytest_xdist", "xdist") for name in sorted(others)]
     code = (
         f"import sys; sys.modules.update(dict.fromkeys({blocked}))\n"
-        "import wearlaw; from wearlaw.testing import checks, conformance\n"
+        "import wearlaw; from wearlaw_kit import checks, conformance\n"
         "law = wearlaw.wear_law('kth'); conformance(law)\n"
         "print(sum(check() is None for check in checks(law)))"
     )

@@ -12,7 +12,6 @@ from tests.environments import ROOT
 
 DEFERRED = {
     ("wearlaw.arrays.kernels", "numba"): "is optional, and takes a second to load",
-    ("wearlaw.cli.model_commands", "wearlaw.testing"): "needs hypothesis, which is optional",
     ("wearlaw.figures.plot", "wearlaw.figures.drawing"): "matplotlib takes longer to load than all else; few plot",
     ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
     ("wearlaw.pipeline.profiles", "xarray"): "takes as long to load as the rest of wearlaw; for profiles alone",
@@ -22,7 +21,7 @@ DEFERRED = {
     ("wearlaw.tables", "pandas"): "takes half as long to load as the rest of wearlaw",
     ("wearlaw.tables", "pyarrow.parquet"): "is optional",
     ("wearlaw.tables", "xarray"): "takes as long to load as the rest of wearlaw; for netCDF and zarr",
-    ("wearlaw.testing.kit", "pytest"): "is not needed to run the checks of the kit",
+    ("wearlaw_kit.kit", "pytest"): "is not needed to run the checks of the kit",
     ("wearlaw.wear_tests.tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
     ("wearlaw_life", "wearlaw_life._section"): "is needed for a report alone",
     ("wearlaw_life._wear_out", "wearlaw_life._store"): "zarr takes as long to load as all else",

@@ -244,7 +244,6 @@ __all__ = [
 ]
 
 if _TYPE_CHECKING:
-    from wearlaw import testing as testing
     from wearlaw.fitting.comparison import Comparison, compare
     from wearlaw.fitting.fit import fit
     from wearlaw.fitting.law_files import read_law, read_wear_law
@@ -277,8 +276,6 @@ _LATER = {
 
 
 def __getattr__(name: str) -> object:
-    if name == "testing":
-        return _import_module("wearlaw.testing")
     if name not in _LATER:
         raise AttributeError(f"module 'wearlaw' has no attribute {name!r}")
     return getattr(_import_module(_LATER[name]), name)

@@ -259,7 +259,7 @@ def test_a_parameter_set_is_checked_like_a_law(install: Install, monkeypatch: py
         checked.append(model)
         return []
 
-    monkeypatch.setattr("wearlaw.testing.kit.checks", checks)
+    monkeypatch.setattr("wearlaw_kit.kit.checks", checks)
     assert wearlaw("check", "lab_2026").stdout == "0 ok, 0 failed, 0 not claimed\n"
     wearlaw("check", "lab_2026", "--option", "m_c=75 ug/m/N")
     assert checked == [wl.wear_law("lab_2026"), wl.wear_law("lab_2026", m_c="75 ug/m/N")]
