@@ -55,6 +55,7 @@ def __getattr__(name: str) -> object:
 
 @wl.hookimpl
 def wearlaw_commands() -> Iterable[wl.Command]:
+    """Return the commands of this plugin."""
     return [
         wl.Command("check", "wearlaw_kit.commands:check", "Check that a model keeps what wearlaw relies on."),
         wl.Command("new-plugin", "wearlaw_kit.commands:new_plugin", "Write a small plugin to start from."),

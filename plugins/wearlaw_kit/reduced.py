@@ -14,8 +14,8 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact import kalker
 from wearlaw.contact.material import steel
 from wearlaw.contact.problem import CreepForces, Problem, Strips
-from wearlaw.rigs.twin_disc import TwinDisc
-from wearlaw.rigs.wheel_rail import WheelRail
+from wearlaw_twin_disc import TwinDisc
+from wearlaw_wheel_rail import WheelRail
 
 SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 """Reduced creepages at which a theory of ellipses may saturate."""

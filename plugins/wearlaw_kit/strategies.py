@@ -16,11 +16,11 @@ from hypothesis import strategies as st
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Problem
-from wearlaw.rigs.twin_disc import Disc, SpeedOf, TwinDisc
-from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.units.quantities import Q
 from wearlaw_kit.law_contacts import on_line
 from wearlaw_kit.reduced import random_lines, wide_ellipses
+from wearlaw_twin_disc import Disc, SpeedOf, TwinDisc
+from wearlaw_wheel_rail import WheelRail
 
 
 @cache  # hypothesis validates each new strategy, which costs more than drawing from it

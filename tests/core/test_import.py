@@ -58,12 +58,12 @@ def test_commands_that_only_print_do_not_load_what_others_need(arguments: list[s
 
 
 def test_a_worker_process_loads_no_labels() -> None:
-    assert not {"xarray", "pandas", "rich", "scipy.optimize"} & loaded("import wearlaw.sweeping.workers")
+    assert not {"xarray", "pandas", "rich", "scipy.optimize"} & loaded("import wearlaw_sweeps.workers")
 
 
 def test_dir_shows_the_public_names_also_those_loaded_later_and_no_room() -> None:
-    code = f"{IMPORT}; import wearlaw.study.study; assert dir(wl) == sorted(wl.__all__), dir(wl)"
-    assert "wearlaw.study.study" in loaded(code)
+    code = f"{IMPORT}; import wearlaw_studies.study; assert dir(wl) == sorted(wl.__all__), dir(wl)"
+    assert "wearlaw_studies.study" in loaded(code)
     modules = [name for name in dir(wl) if inspect.ismodule(getattr(wl, name))]
     assert modules == ["elastic_limit", "half_space", "hertz", "hertz_ellipse", "kalker"]
     assert {"fit", "sweep", "Uncertainty", "load_case"} <= set(dir(wl))
