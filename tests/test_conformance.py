@@ -62,7 +62,7 @@ CONTACT_MODELS: list[wl.ContactModel] = [
 WEAR_LAWS: list[wl.WearLaw] = [
     *(wl.wear_law("usfd", fitted_for=fitted_for) for fitted_for in ("global", "exact", "fastsim")),
     *(wl.wear_law("kth", coefficient=coefficient) for coefficient in ("low", "mid", "high", OWN)),
-    wl.wear_law("brr"),
+    *(wl.wear_law("brr", spin=spin) for spin in ("included", "left_out")),
     wl.wear_law("archard", coefficient=1e-4),
     wl.wear_law("archard", coefficient=1e-4, hardness="3 GPa"),
     wl.wear_law("energy", mass_per_energy="5 ug/J"),
@@ -74,7 +74,7 @@ WEAR_LAWS: list[wl.WearLaw] = [
 LAWS: list[wl.Law] = [
     wl.law("wlrm", threshold="20 N", peak="65 N", balance="175 N", peak_damage=1e-5, beyond=beyond, traction=traction)
     for beyond, traction in itertools.product(("falls", "zero"), ("either", "driving", "braking"))
-]
+] + [wl.law("wlrm", threshold="20 N", peak="65 N", balance="175 N", peak_damage=1e-5, beyond="falls", spin="left_out")]
 
 STAGES: list[wl.Stage] = [
     wl.patch_mean(),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from functools import cache, cached_property
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -65,6 +66,10 @@ class BRR(wl.WearLaw):
     severe_limit: Force = Field(default="200 N", validate_default=True)
     """Tγ at which the severe regime begins [N]."""
 
+    spin: Literal["included", "left_out"] = "included"
+    """Whether Tγ has the part of the spin: "included" takes ξFx + ηFy + φMz, "left_out" ξFx + ηFy, as many vehicle
+    programs do. A negative ξFx + ηFy wears nothing."""
+
     @model_validator(mode="after")
     def _never_falls(self) -> BRR:
         mild_end, plateau, severe_start = _at_borders(self.numbers)
@@ -78,7 +83,8 @@ class BRR(wl.WearLaw):
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         """Return the wear rate of the one node [kg/m/m²]."""
-        index = contact.per_node(contact.wear_index)
+        tgamma = contact.wear_index if self.spin == "included" else np.maximum(contact.wear_index_without_spin, 0.0)
+        index = contact.per_node(tgamma)
         section_times_diameter = np.select(
             [index < p["mild_limit"], index < p["severe_limit"]],
             [p["mild_slope"] * index, p["plateau"]],
@@ -89,18 +95,32 @@ class BRR(wl.WearLaw):
 
     def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         """Return the borders of the regimes."""
-        return {"wear_index": (p["mild_limit"], p["severe_limit"])}
+        return {self._variable: (p["mild_limit"], p["severe_limit"])}
 
     def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
         """Return the start of the severe regime for the published numbers, or else each border with a jump."""
         mild_end, plateau, severe_start = _at_borders(p)
         steps = ((p["mild_limit"], plateau - mild_end), (p["severe_limit"], severe_start - plateau))
-        return {"wear_index": tuple(limit for limit, step in steps if np.any(step > ROUNDING * plateau))}
+        return {self._variable: tuple(limit for limit, step in steps if np.any(step > ROUNDING * plateau))}
+
+    @property
+    def _variable(self) -> str:
+        return "wear_index" if self.spin == "included" else "wear_index_without_spin"
+
+    @property
+    def own_variables(self) -> Mapping[str, Callable[[wl.Contact], Array]]:
+        """Tγ without the part of the spin, if that is left out."""
+        return {} if self.spin == "included" else {self._variable: _without_spin}
 
     @cached_property
     def published(self) -> wl.Calibration | None:
         """The record of the published law; None with numbers of your own."""
         return calibration() if self.numbers == BRR().numbers else None
+
+
+def _without_spin(contact: wl.Contact) -> Array:
+    """Return Tγ without the part of the spin at the nodes."""
+    return np.broadcast_to(contact.per_node(contact.wear_index_without_spin), contact.pressure.shape)
 
 
 def _at_borders(p: wl.Numbers) -> tuple[Any, Any, Any]:

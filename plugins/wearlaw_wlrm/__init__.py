@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
@@ -53,6 +54,10 @@ class WLRM(wl.Law):
     """Longitudinal traction under which cracks grow. "driving" counts passages at which the first body of the rig, the
     wheel or disc 1, drives, "braking" those at which it brakes, "either" all of them, also without traction."""
 
+    spin: Literal["included", "left_out"] = "included"
+    """Whether Tγ has the part of the spin: "included" takes ξFx + ηFy + φMz, "left_out" ξFx + ηFy, as many vehicle
+    programs do. Choose what the three points were found with."""
+
     @model_validator(mode="after")
     def _ordered(self) -> WLRM:
         if not self.threshold < self.peak < self.balance:
@@ -63,7 +68,7 @@ class WLRM(wl.Law):
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         """Return the damage of each patch by a passage [-]."""
-        index = contact.wear_index
+        index = contact.wear_index if self.spin == "included" else contact.wear_index_without_spin
         rise = np.maximum((index - p["threshold"]) / (p["peak"] - p["threshold"]), 0.0)
         damage: Array = p["peak_damage"] * np.minimum(rise, (p["balance"] - index) / (p["balance"] - p["peak"]))
         if self.beyond == "zero":
@@ -80,7 +85,18 @@ class WLRM(wl.Law):
 
     def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         """Return the three points."""
-        return {"wear_index": (p["threshold"], p["peak"], p["balance"])}
+        variable = "wear_index" if self.spin == "included" else "wear_index_without_spin"
+        return {variable: (p["threshold"], p["peak"], p["balance"])}
+
+    @property
+    def own_variables(self) -> Mapping[str, Callable[[wl.Contact], Array]]:
+        """Tγ without the part of the spin, if that is left out."""
+        return {} if self.spin == "included" else {"wear_index_without_spin": _without_spin}
+
+
+def _without_spin(contact: wl.Contact) -> Array:
+    """Return Tγ without the part of the spin at the nodes."""
+    return np.broadcast_to(contact.per_node(contact.wear_index_without_spin), contact.pressure.shape)
 
 
 @wl.hookimpl

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
+from tests.plugins.ellipses import of_ratio
 from tests.plugins.laws import around, contact_of
 from tests.strategies import EPS
 
@@ -156,3 +157,28 @@ def test_the_published_law_names_its_materials_and_no_range() -> None:
     assert "prints no range" in calibration.source
     assert BRR.valid_range == {}
     assert wl.wear_law("brr", plateau="26 mm^3/km").calibration is None
+
+
+@pytest.mark.parametrize("lateral_creepage", [1e-4, 0.0, -1e-4])
+def test_without_spin_tgamma_is_that_of_the_creepages_in_kalkers_linear_theory(lateral_creepage: float) -> None:
+    # Fx = G ab C11 ξ and Fy = G ab (C22 η + √(ab) C23 φ). The last case has Fy against η, and ξFx + ηFy below zero.
+    xi, eta, phi = (2e-5 if lateral_creepage else 1e-4), lateral_creepage, 0.2
+    problem = of_ratio(1.5, 0.28, longitudinal_creepage=xi, lateral_creepage=eta, spin=phi)
+    found = wl.contact_model("linear").solve(problem)
+    size, c = np.sqrt(problem.a * problem.b), wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
+    due = problem.shear_modulus * size**2 * (c.c11 * xi**2 + eta * (c.c22 * eta + size * c.c23 * phi))
+    assert found.wear_index_without_spin == pytest.approx(due, rel=1e-12)
+    assert (due < 0.0) == (lateral_creepage < 0.0)
+    with_spin, without = (wl.wear_law("brr", spin=spin) for spin in ("included", "left_out"))
+    means = found.patch_mean()
+    assert without.checked_rate(means) * means.patch_area == pytest.approx(  # in mild wear, volume per km π × 0.25 Tγ
+        7850.0 * math.pi * 0.25 * max(due, 0.0) * 1e-12, rel=1e-12
+    )
+    assert with_spin.checked_rate(means).item() > without.checked_rate(means).item()
+
+
+@pytest.mark.parametrize("spin", ["included", "left_out"])
+def test_the_declared_borders_are_those_of_tgamma_as_chosen(spin: str) -> None:
+    law = wl.wear_law("brr", spin=spin)
+    variable = "wear_index" if spin == "included" else "wear_index_without_spin"
+    assert list(law.breakpoints(law.numbers) or {}) == list(law.jumps(law.numbers)) == [variable]

@@ -193,3 +193,24 @@ def test_no_value_is_assumed() -> None:
         wl.law("wlrm")
     for name in (*POINTS, "beyond"):
         assert f"{name}: is missing" in str(error.value)
+
+
+def test_spin_alone_damages_only_where_it_is_included() -> None:
+    wheels = {"longitudinal_creepage": "0 %", "spin": Q([1.0, 2.0], "1/m")}
+    points = {"threshold": Q(0.1, "N"), "peak": Q(65, "N")}
+    included, left_out = (
+        (RIG | wl.contact_model("fastsim") | law(spin=spin, **points))(**WHEEL, **wheels)
+        for spin in ("included", "left_out")
+    )
+    assert (included["rcf_damage"].magnitude > 0.0).all()
+    assert (left_out["rcf_damage"].magnitude == 0.0).all()
+
+
+def test_without_spin_the_damage_is_that_of_the_creepages() -> None:
+    found = (RIG | wl.contact_model("fastsim") | law(spin="left_out"))(
+        **WHEEL, longitudinal_creepage="0.1 %", lateral_creepage="0.2 %", spin=Q([-1.0, 0.0, 1.0], "1/m")
+    )
+    index = 1e-3 * found.longitudinal_force.m_as("N") + 2e-3 * found.lateral_force.m_as("N")
+    assert (np.abs(found.wear_index.m_as("N") - index) > [0.1, -1.0, 0.1]).all()
+    due = np.interp(index, [20.0, 65.0, 175.0], [0.0, 1e-5, 0.0]) - 1e-5 * np.maximum(index - 175.0, 0.0) / 110.0
+    assert found["rcf_damage"].magnitude == pytest.approx(due, rel=1e-12)

@@ -415,6 +415,21 @@ class Contact:
         return self.traction_x * self.slip_x + self.traction_y * self.slip_y
 
     @property
+    def wear_index_without_spin(self) -> Array:
+        """Wear index without the part of the spin, ξFx + ηFy = Tγ - φMz [N], of the batch shape.
+
+        It is negative where spin, against the creepages, turns the forces.
+
+        Raises
+        ------
+        InputError
+            If an ellipse was solved elsewhere, and has no `problem`.
+        """
+        if not self.on_strips:
+            return self.wear_index
+        return self.wear_index - self._solved_problem("wear_index_without_spin").spin * self.moment_z
+
+    @property
     def slip_speed(self) -> Array:
         """Magnitude of the slip velocity, sV [m/s], of shape (batch, nodes)."""
         return np.abs(self.slip) * self.per_node(self.rolling_speed)
