@@ -53,6 +53,8 @@ class Rows(NamedTuple):
         Place across the patch from the contact point, half the length [m] and the maximum pressure [Pa] of each row.
     width : float
         Width of a row [m].
+    rail_y : float
+        Place of the centre of the pressure on the rail, in the axes of `Gaps.y` [m].
     angle : float
         Contact angle, the mean over the pressure [rad].
     pressure : ndarray, (along x, along y)
@@ -65,6 +67,7 @@ class Rows(NamedTuple):
     half_length: Array
     max_pressure: Array
     width: float
+    rail_y: float
     angle: float
     pressure: Array
     middle: int
@@ -126,8 +129,10 @@ def rows(
     force, most = dx * pressure.sum(axis=0)[kept], np.maximum(most[kept], FLOOR * most.max())
     half_length = 2.0 / np.pi * force / most
     half_length = np.maximum(half_length, FLOOR * half_length.max())
-    angle = float((there.angle[kept] * force).sum() / force.sum())
-    return Rows(y[kept], half_length, most, dy, angle, pressure, middle, own)
+    share = force / force.sum()
+    # The pressed wheel overlaps the rail, and on a slope the surfaces' points on a normal then differ in y.
+    foot = np.interp(share @ y[kept], y[kept], (at.y - distance * np.sin(turn))[kept])
+    return Rows(y[kept], half_length, most, dy, float(foot), float(share @ there.angle[kept]), pressure, middle, own)
 
 
 def _moved(start: Rows, shape: tuple[int, ...], middle: int, own: int) -> Array:

@@ -684,7 +684,7 @@ class Balance:
         arc = part.between(part.arcs, shapes["centre"][:, None])[:, 0]
         place = placed(self.section, part.position, arc)
         if "angle" in shapes:  # of two humps the middle may lie between them
-            place = place._replace(angle=shapes["angle"])
+            place = place._replace(angle=shapes["angle"], rail_arc=self.section.rail_position.at(shapes["rail_y"])[0])
         sliding = creepages(
             part.position, place, task.speed[part.point], side * task.lateral_velocity[part.point],
             side * task.turn_rate[part.point], side * self.roll_rate[part.point], side,
@@ -750,14 +750,14 @@ class Balance:
     def _half_spaces(self, part: Candidates) -> dict[str, Array]:
         """Return rows of elements as strips, an ellipse of their area and length, their centres and mean angles."""
         y, half_length, pressure = np.empty((3, part.arc.size, 2 * self.strips))
-        width, angle = np.empty((part.arc.size, 1)), np.empty(part.arc.size)
+        width, (rail_y, angle) = np.empty((part.arc.size, 1)), np.empty((2, part.arc.size))
         for k, depth in enumerate(self._depth(part)):
             key = int(part.wheel[k]), int(part.number[k])
             self.starts[key] = found = _half_space.rows(
                 self.section, part.part(np.array([k])), float(depth), self.elastic.modulus, 2 * self.strips,
                 self.starts.get(key),
             )  # fmt: skip
-            y[k], half_length[k], pressure[k], width[k], angle[k] = found[:5]
+            y[k], half_length[k], pressure[k], width[k], rail_y[k], angle[k] = found[:6]
         load, a = half_length * pressure, half_length.max(axis=-1)
         return self._sided(
             part,
@@ -769,6 +769,7 @@ class Balance:
                 "a": a,
                 "b": 2.0 / np.pi * half_length.sum(axis=-1) * width[:, 0] / a,
                 "centre": (load * y).sum(axis=-1) / load.sum(axis=-1),
+                "rail_y": rail_y,
                 "angle": angle,
             },
         )

@@ -88,8 +88,11 @@ def test_yawed_flanges_are_pressed_as_in_space(
         angle=float(place.angle[0]), at=float(1e3 * place.y[0] + displacement),
         half_width=2.0, half_length=13.0, step=0.05,
     )  # fmt: skip
-    full = normal_half_space.pressed(1e-3 * gap.height[::6], 3e-4, 5e-5, MODULUS, force).pressure.max()
+    in_space = normal_half_space.pressed(1e-3 * gap.height[::6], 3e-4, 5e-5, MODULUS, force).pressure
+    full = in_space.max()
     assert problem.max_pressure[1, 0] == pytest.approx(full, rel=half_spaces)
+    moved = 1e3 * (problem.bodies["rail"].profile_position[1, 0] - place.rail_arc[0])
+    assert moved == pytest.approx(gap.t @ in_space.sum(axis=0) / in_space.sum(), abs=0.05 / 4)  # a quarter of a row
     for pressure in ("kpec", "hertz"):
         other = posed(pressure, **where, vertical_load="20 kN")
         assert other.normal_force[1, 0] == pytest.approx(force, rel=0.005)  # 0.17 % of the pressure
