@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import time
 import warnings
 from collections.abc import Iterator
@@ -62,7 +63,8 @@ OTHERS = (
     Case("yaw", 20.0, 6.8, 36.0, HALF_SPACE),
 )
 GROUPS = (SERVICE, MANCHESTER, OTHERS)
-CASES = tuple(sorted(sum(GROUPS, ()), key=lambda case: ("tread", "humps", "root", "flange", "yaw").index(case.place)))
+PLACES = ("tread", "humps", "root", "flange", "yaw")
+CASES = tuple(sorted(sum(GROUPS, ()), key=lambda case: PLACES.index(case.place)))
 """All cases, by place."""
 
 
@@ -286,8 +288,8 @@ Table = list[tuple[str, ...]]
 def tables(found: Computed) -> dict[str, str]:
     """Return the tables by the names of their files."""
     lines: Table = [(
-        "place", "load [kN]", "displacement [mm]", "yaw [mrad]", "from", "N [N]", "δ [mrad]", "p_max [MPa]", "area [mm²]",
-        "Fx [N]", "Fy [N]", "Tγ [N]", "rows", "roll [mrad]",
+        "place", "load [kN]", "displacement [mm]", "yaw [mrad]", "from", "N [N]", "δ [mrad]", "p_max [MPa]",
+        "area [mm²]", "Fx [N]", "Fy [N]", "Tγ [N]", "rows", "roll [mrad]",
     )]  # fmt: skip
     for case in CASES:
         one = found.due[case]
@@ -296,8 +298,8 @@ def tables(found: Computed) -> dict[str, str]:
             case.place, *named(case), case.reference, f"{one.force:.0f}", f"{one.angle:.1f}", f"{one.pressure:.0f}",
             f"{one.area:.1f}", f"{one.along:.0f}", f"{one.across:.0f}", f"{one.power:.4g}", count, f"{one.roll:.3f}",
         ))  # fmt: skip
-    by_place = {"cases": lines}
-    for place in dict.fromkeys(case.place for case in CASES):
+    by_place = {"cases": lines, "summary": summary(found)}
+    for place in PLACES:
         lines = [("load [kN]", "displacement [mm]", "yaw [mrad]", "`pressure`", "model", *DIFFERENCES)]
         for case in CASES:
             if case.place != place:
@@ -314,6 +316,27 @@ def tables(found: Computed) -> dict[str, str]:
         taken = (f"{1e3 * found.taken[pressure, model]:.2g}" for model in MODELS)
         by_place["times"].append((f"`{pressure}`", *taken))
     return {name: as_csv(rows) for name, rows in by_place.items()}
+
+
+SUMMED: tuple[tuple[Pressure, str], ...] = (
+    ("hertz", "fastsim"), ("kpec", "fastsim"), ("kpec", "strip_theory"), ("half_space", "strip_theory"),
+    ("half_space", "half_space"),
+)  # fmt: skip
+"""Pressures and models of the summary."""
+
+
+def summary(found: Computed) -> Table:
+    """Return the largest differences at each place from the cases that CONTACT solved, or else `half_space`."""
+    lines: Table = [("place", "`pressure`", "model", "cases", *DIFFERENCES)]
+    for place, chosen in itertools.product(PLACES, SUMMED):
+        cases = [case for case in CASES if case.place == place and (case.reference == CONTACT or place == "yaw")]
+        if place == "yaw" and chosen == ("half_space", "half_space"):
+            continue
+        each = [np.abs(differences(found.ours[chosen][case], found.due[case])) for case in cases]
+        most = zip(np.fmax.reduce(each), DIFFERENCES.values(), strict=True)  # NaN where CONTACT's rows are not known
+        cells = ("" if np.isnan(value) else f"{value:.{n}f}" for value, n in most)
+        lines.append((place, f"`{chosen[0]}`", f"`{chosen[1]}`", f"{len(cases)}", *cells))
+    return lines
 
 
 def named(case: Case) -> tuple[str, str, str]:
