@@ -307,7 +307,7 @@ def two(case: str) -> tuple[Array, wl.Prediction]:
 
 @pytest.mark.validates(
     "wheelset",
-    "Places of two patches of a wheel at once, on the tread and on the flange with yaw",
+    "Places of two patches of a wheel at once under 10 kN, on the tread and on the flange with yaw",
     source="CONTACT (Vollebregt)",
     held_to="{metres:g} mm",
     metres=0.1,
@@ -320,7 +320,7 @@ def test_two_patches_are_where_contact_has_them(case: str, metres: float) -> Non
 
 @pytest.mark.validates(
     "wheelset",
-    "Creepages of two patches at once on the tread",
+    "Creepages of two patches at once under 10 kN, on the tread",
     source="CONTACT (Vollebregt)",
     held_to="{share:.0%}",
     share=0.01,
@@ -345,7 +345,7 @@ def test_a_patch_in_the_plane_of_another_slides_as_in_contact() -> None:
 
 @pytest.mark.validates(
     "wheelset",
-    "Loads of two patches at once on the tread",
+    "Loads of two patches at once under 10 kN, on the tread",
     source="CONTACT (Vollebregt)",
     held_to="{share:.0%} of the wheel's load",
     share=0.04,

@@ -67,7 +67,7 @@ def test_a_ball_with_a_hump_is_carried_by_both_areas() -> None:
 
 @pytest.mark.validates(
     "wheelset",
-    "Maximum pressure on strongly yawed flanges, 24 and 36 mrad, at wearlaw's force",
+    "Maximum pressure on strongly yawed flanges, 24 and 36 mrad, under 20 kN a wheel, at wearlaw's force",
     source="half-spaces between the surfaces in space, on a grid of 0.3 mm by 0.05 mm",
     held_to="{strips:.0%} by strips and by ellipses, {half_spaces:.1%} on half-spaces",
     strips=0.03,
