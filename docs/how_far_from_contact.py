@@ -125,16 +125,18 @@ def manchester_rows() -> list[int]:
 def computed(group: tuple[Case, ...], pressure: Pressure, model: str) -> tuple[list[Result], float]:
     """Return wearlaw's results of a group of cases, and the processor time that they took [s]."""
     rig = wheelset(pressure)
+    predict: Any = rig | wl.contact_model(model)
+    frictionless: Any = rig | wl.contact_model("fastsim")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.WearlawWarning)  # wheels climb, steel yields, strips have two humps
         start = time.process_time()
-        r = (rig | wl.contact_model(model))(**conditions(group))
+        r = predict(**conditions(group))
         taken = time.process_time() - start
         roll = np.asarray(r.problem.roll)[:, RIGHT, 0]
         if group is SERVICE:  # CONTACT's roll has no friction
             free = {name: value for name, value in conditions(group).items() if name != "roll"}
             free["friction_coefficient"] = 1e-9
-            roll = np.asarray((rig | wl.contact_model("fastsim"))(**free).problem.roll)[:, RIGHT, 0]
+            roll = np.asarray(frictionless(**free).problem.roll)[:, RIGHT, 0]
     totals = {
         "along": r.longitudinal_force.m_as("N"),
         "across": r.lateral_force.m_as("N"),
@@ -159,7 +161,7 @@ def computed(group: tuple[Case, ...], pressure: Pressure, model: str) -> tuple[l
     return results, taken
 
 
-def rows_of(rig: Any, r: wl.Prediction, case: int) -> Iterator[Rows]:
+def rows_of(rig: Any, r: Any, case: int) -> Iterator[Rows]:
     """Yield the rows of each patch of the right wheel, by their places in the track."""
     contact, problem = r.contact, r.problem
     middle = 1e3 * in_track(rig, np.asarray(problem.bodies["rail"].profile_position))[case, RIGHT]
@@ -182,7 +184,7 @@ def of_contact(group: tuple[Case, ...]) -> list[Result]:
         table, humps = reference(), pd.read_csv(DATA / "contact_two_humps.csv", comment="#")
         found = {name: column[manchester_rows(), RIGHT] for name, column in table.items() if name != "side"}
         names = ("xi", "fx"), ("eta", "fs"), ("phi", "mn")
-        power = -sum(found[creepage] * found[force] for creepage, force in names)
+        power = -np.sum([found[creepage] * found[force] for creepage, force in names], axis=0)
         width = np.full(humps.y.size, 0.2)
         first = Rows(humps.y.to_numpy(), width, humps.fn.to_numpy() / width, -humps.power.to_numpy() / SPEED / width)
         rows: list[tuple[Rows, ...]] = [(first,), *[() for _ in group[1:]]]
@@ -233,7 +235,7 @@ def placed(ours: Result, due: Result, name: Literal["force", "energy"] = "energy
     (rows,) = due.rows
     edges = np.concatenate([rows.y - 0.5 * rows.width, [rows.y[-1] + 0.5 * rows.width[-1]]])
     edges = np.concatenate([[edges[0] - BEYOND], edges, [edges[-1] + BEYOND]])
-    found = sum(spread(one, edges, name) for one in ours.rows)
+    found = np.sum([spread(one, edges, name) for one in ours.rows], axis=0)
     expected = np.concatenate([[0.0], rows.width * getattr(rows, name), [0.0]])
     found, expected = found / found.sum(), expected / expected.sum()
     return Placed(float(0.5 * np.abs(found - expected).sum()), float(found.max() / expected.max() - 1.0))

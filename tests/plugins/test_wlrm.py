@@ -196,8 +196,8 @@ def test_no_value_is_assumed() -> None:
 
 
 def test_spin_alone_damages_only_where_it_is_included() -> None:
-    wheels = {"longitudinal_creepage": "0 %", "spin": Q([1.0, 2.0], "1/m")}
-    points = {"threshold": Q(0.1, "N"), "peak": Q(65, "N")}
+    wheels: dict[str, Any] = {"longitudinal_creepage": "0 %", "spin": Q([1.0, 2.0], "1/m")}
+    points: dict[str, Any] = {"threshold": Q(0.1, "N"), "peak": Q(65, "N")}
     included, left_out = (
         (RIG | wl.contact_model("fastsim") | law(spin=spin, **points))(**WHEEL, **wheels)
         for spin in ("included", "left_out")
