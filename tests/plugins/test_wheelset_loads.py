@@ -77,8 +77,14 @@ JUMP = {
 
 SLOW = [
     ("kpec", {"displacement": -0.0062, "yaw": -0.01540756195341, "load": 37788.0, "friction": 0.25, "share": 0.484375}),
-    ("hertz", {"displacement": -0.00617449514599, "yaw": -0.01643274945306, "load": 32865.25795147, "friction": 0.07242787782078, "share": 0.39512837404633}),
-    ("hertz", {"displacement": 0.00619741018068, "yaw": 0.01778119122705, "load": 67028.17566976, "friction": 0.32313998429788, "share": 0.03098676046704, "curvature": 0.00218766046118}),
+    ("hertz", {
+        "displacement": -0.00617449514599, "yaw": -0.01643274945306, "load": 32865.25795147,
+        "friction": 0.07242787782078, "share": 0.39512837404633,
+    }),
+    ("hertz", {
+        "displacement": 0.00619741018068, "yaw": 0.01778119122705, "load": 67028.17566976,
+        "friction": 0.32313998429788, "share": 0.03098676046704, "curvature": 0.00218766046118,
+    }),
 ]  # fmt: skip
 """Conditions near a jump, under which Newton's method takes more than twenty steps."""
 
