@@ -67,7 +67,7 @@ NEWTON_STEPS, STEPS = 20, 100
 """Greatest number of steps by Newton's method, of which three or four are usual, and within bounds."""
 
 PATIENCE = 5
-"""Number of steps in which Newton's method must halve the imbalance to take more than `NEWTON_STEPS`."""
+"""Steps beyond `NEWTON_STEPS` that Newton's method is given to halve the imbalance once more, as near a jump."""
 
 WIDEST_STEP, MOST_TURN, WIDEST_ROLL = 1.0, 0.01, 1e-3
 """Greatest step of the logarithm of the penetration, of the speed of rotation as a share of it, and of the roll [rad].
