@@ -42,10 +42,14 @@ def test_pyproject_names_every_package_wherever_packages_are_named() -> None:
     assert [
         Path(path).name for path in tools["hatch"]["build"]["targets"]["wheel"]["packages"] if path[-3:] != ".py"
     ] == names
-    assert sorted(PYPROJECT["project"]["entry-points"]["wearlaw"].values()) == ["wearlaw.rigs", *names[1:]]
+    without_hooks = {"wearlaw_output", "wearlaw_sweeps"}
+    found = PYPROJECT["project"]["entry-points"]["wearlaw"].values()
+    assert sorted(found) == [name for name in names[1:] if name not in without_hooks]
     assert tools["importlinter"]["root_packages"] == names
-    assert [one.get("modules") or one["forbidden_modules"] for one in contracts[:2]] == [names[1:]] * 2
-    assert contracts[2]["source_modules"] == names[1:]
+    assert contracts[0]["forbidden_modules"] == names[1:]
+    models, applications = contracts[1]["modules"], contracts[2]["forbidden_modules"]
+    assert sorted([*models, *applications]) == names[1:]
+    assert contracts[2]["source_modules"] == contracts[3]["source_modules"] == models
 
 
 def test_the_small_extra_for_checks_needs_hypothesis_and_pytest_only() -> None:
@@ -56,7 +60,7 @@ def test_the_small_extra_for_checks_needs_hypothesis_and_pytest_only() -> None:
     blocked = [name.replace("-", "_").replace("pytest_xdist", "xdist") for name in sorted(others)]
     code = (
         f"import sys; sys.modules.update(dict.fromkeys({blocked}))\n"
-        "import wearlaw; from wearlaw.testing import checks, conformance\n"
+        "import wearlaw; from wearlaw_kit import checks, conformance\n"
         "law = wearlaw.wear_law('kth'); conformance(law)\n"
         "print(sum(check() is None for check in checks(law)))"
     )

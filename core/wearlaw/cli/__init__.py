@@ -17,16 +17,8 @@ from wearlaw.plugins import loader
 from wearlaw.version import __version__
 
 OWN = (
-    Command("case", "wearlaw.cli.case_commands:case", "Print a case file, to edit a copy."),
-    Command("check", "wearlaw.cli.model_commands:check", "Check that a model keeps what wearlaw relies on."),
-    Command("compare", "wearlaw.cli.data_commands:compare", "Rank models by how well they predict your tests."),
-    Command("fit", "wearlaw.cli.data_commands:fit", "Fit the parameters of a wear law to your tests."),
-    Command("new-plugin", "wearlaw.cli.model_commands:new_plugin", "Write a small plugin to start from."),
     Command("plugins", "wearlaw.cli.model_commands:list_plugins", "List what the installed plugins provide."),
-    Command("run", "wearlaw.cli.study_commands:run", "Run a study and write its results and report."),
-    Command("schema", "wearlaw.cli.case_commands:schema", "Print the JSON Schema of case files."),
     Command("show", "wearlaw.cli.model_commands:show", "Explain anything that wearlaw plugins lists."),
-    Command("uncertainty", "wearlaw.cli.study_commands:uncertainty", "Say how uncertain predictions are."),
 )
 """The commands of wearlaw itself. Their modules import pandas, matplotlib and more when a command is called."""
 
