@@ -307,7 +307,7 @@ class Balance:
         if known:  # places that are far from touching need no samples
             far = touching.gap > FAR * self.whole.reshape(-1, 2)[rows][..., None]
             touching = touching._replace(arc=np.where(far, np.nan, touching.arc))
-        places = candidates(self.section, position, touching, self._spacing)
+        places = candidates(self.section, position, touching, self._spacing, self.roll.size)
         saddle = touching.saddle[places.point, places.side, places.number]
         places = replace(places, point=rows[places.point])
         first = np.flatnonzero(places.number == 0)
@@ -358,7 +358,7 @@ class Balance:
         task = self.task
         if not rows.size:
             return
-        _, touching = searched(self.section, task.displacement[rows], task.yaw[rows], roll)
+        _, touching = searched(self.section, task.displacement[rows], task.yaw[rows], roll, self.roll.size)
         on = ~np.isnan(touching.arc[..., 0]).any(axis=-1)
         if on.any():
             self._stand(rows[on], roll[on], Touching(*(array[on] for array in touching)))
@@ -384,12 +384,13 @@ class Balance:
             patch = _normal.loaded(
                 part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
                 self.task.load[part.point] / part.cosine, 5, guess if guess is None else guess[open_] * part.cosine,
+                self.roll.size,
             )  # fmt: skip
             penetration[open_] = patch.penetration / part.cosine
             open_ = open_[patch.narrow]
             if not open_.size or widening == WIDENINGS:
                 break
-            sample(self.section, found, rows[open_], self._spacing * 2.0 ** (widening + 1))
+            sample(self.section, found, rows[open_], self._spacing * 2.0 ** (widening + 1), self.roll.size)
         return penetration
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> Balance:
@@ -733,7 +734,7 @@ class Balance:
         """Return the strips of patches, their semi-axes and their centres."""
         found = _normal.penetrated(
             part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
-            self._depth(part), self.strips,
+            self._depth(part), self.strips, self.roll.size,
         )  # fmt: skip
         shapes = {name: getattr(found, name) for name in ("y", "width", "half_length", "a", "b", "centre")}
         return self._sided(part, shapes | {"max_pressure": found.pressure})
