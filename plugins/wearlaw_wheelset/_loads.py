@@ -312,12 +312,16 @@ class Balance:
         places = replace(places, point=rows[places.point])
         first = np.flatnonzero(places.number == 0)
         again = first
-        if known:  # `whole` decides where places are close, and how wide the samples must be
+        if known:  # `whole` decides where places are close
             turned = self._chosen(rows[np.abs(roll - self.estimated[rows]) > SMALL_ROLL])
+            step = np.zeros(self.whole.size)
+            np.maximum.at(step, self.found.wheel, self.found.step)
             wheels = np.zeros(self.whole.size, dtype=np.bool_)
-            wheels[places.wheel[(places.number > 0) & turned[places.point]]] = True
-            wheels[self.found.wheel[self.found.step > self._spacing]] = True
-            again = first[wheels[places.wheel[first]]]
+            several = places.wheel[places.number > 0]
+            wheels[several] = (turned.repeat(2) | (step > self._spacing))[several]
+            again, single = first[wheels[places.wheel[first]]], first[~wheels[places.wheel[first]]]
+            wide = single[step[places.wheel[single]] > self._spacing]
+            self._sample(places, wide, step[places.wheel[wide]])  # as wide as they were
         if again.size:
             guess = self.whole[places.wheel[again]] if known else None
             self.whole[places.wheel[again]] = self._alone(places, again, guess)
@@ -379,7 +383,8 @@ class Balance:
         """Return the vertical penetration if one patch of each wheel carries the whole load, and widen its samples."""
         penetration = np.empty(rows.size)
         open_ = np.arange(rows.size)
-        for widening in range(WIDENINGS + 1):
+        widest = self._spacing * 2.0**WIDENINGS
+        while open_.size:
             part = found.part(rows[open_])
             patch = _normal.loaded(
                 part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
@@ -387,11 +392,14 @@ class Balance:
                 self.roll.size,
             )  # fmt: skip
             penetration[open_] = patch.penetration / part.cosine
-            open_ = open_[patch.narrow]
-            if not open_.size or widening == WIDENINGS:
-                break
-            sample(self.section, found, rows[open_], self._spacing * 2.0 ** (widening + 1), self.roll.size)
+            open_ = open_[patch.narrow & (part.step < widest)]
+            self._sample(found, rows[open_], 2.0 * found.step[rows[open_]])
         return penetration
+
+    def _sample(self, places: Candidates, rows: NDArray[np.intp], spacing: Array) -> None:
+        """Fill in, in place, the gaps around some places at spacings of their own [m]."""
+        for one in np.unique(spacing):
+            sample(self.section, places, rows[spacing == one], float(one), self.roll.size)
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> Balance:
         """Return the loads with penetrations and speeds of rotation that balance the creep forces.
