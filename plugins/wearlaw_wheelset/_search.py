@@ -399,7 +399,9 @@ def _root(section: Section, position: Position, left: Array, right: Array) -> Ar
     return right
 
 
-def searched(section: Section, displacement: Array, yaw: Array, roll: Array | None = None) -> tuple[Array, Touching]:
+def searched(
+    section: Section, displacement: Array, yaw: Array, roll: Array | None = None, among: int = 0
+) -> tuple[Array, Touching]:
     """Return the roll at which both wheels touch [rad], positive if it lowers the right one, and where they touch.
 
     Parameters
@@ -411,12 +413,14 @@ def searched(section: Section, displacement: Array, yaw: Array, roll: Array | No
         Yaw [rad], positive if the right wheel moves backwards.
     roll : ndarray, (positions,), optional
         The roll, if it is given; each wheel then touches at a height of its own.
+    among : int
+        Number of positions of the task, if these are some of them: compiled loops pay for the last few as well.
 
     Notes
     -----
     Where a wheel stands on the end of a profile, its own or the rail's, there is no contact point.
     """
-    if wl.accelerated(LOOPS * displacement.size):
+    if wl.accelerated(LOOPS * max(displacement.size, among)):
         rolls, found = _compiled(section, displacement, yaw, roll)
     else:
         rolls = np.empty(displacement.shape)

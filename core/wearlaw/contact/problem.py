@@ -248,7 +248,8 @@ class Problem:
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, ARRAYS)
+        if type(self.longitudinal_creepage) is not np.float64:  # one operating point has numbers
+            freeze(self, ARRAYS)
 
     @classmethod
     @np.errstate(all="ignore")  # `_checked_size` rejects what overflows
