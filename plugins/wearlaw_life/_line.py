@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw.settings.caught_warnings import caught_warnings
+from wearlaw.sweeping.evaluation import weight
 from wearlaw.sweeping.points import Points
-from wearlaw.sweeping.sweep import weight
 from wearlaw.sweeping.tables import from_table
 from wearlaw_life._removal import Profile
 

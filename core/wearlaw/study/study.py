@@ -43,9 +43,9 @@ from wearlaw.study.figures import figures_of
 from wearlaw.study.pairs import Pair, pairs_of
 from wearlaw.study.results import PATCH_AXES, Results, axes_of
 from wearlaw.study.sections import Section
+from wearlaw.sweeping.evaluation import weight
 from wearlaw.sweeping.evaluator import Evaluator
 from wearlaw.sweeping.points import Points
-from wearlaw.sweeping.sweep import weight
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
 
