@@ -17,7 +17,7 @@ from wearlaw import Array
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.sweeping.located import posed
 from wearlaw.sweeping.points import Points
-from wearlaw.sweeping.sweep import run
+from wearlaw.sweeping.sweep import checked_profile, run
 from wearlaw.sweeping.tables import from_table
 from wearlaw.sweeping.wear_profile import SHARE, ProfileJob, Sum, check_shares
 
@@ -67,7 +67,7 @@ class Line:
     """
 
     points: Points
-    job: LineJob
+    job: ProfileJob
     workers: int
     client: Any
 
@@ -123,5 +123,6 @@ def read_line(
         check_shares(points, share)
         with caught_warnings():  # the first step gives them
             first = posed(points.part([slice(0, 1)]), predict.rig.checked_problem)
-        job = LineJob.of(predict, first, body, at, True)
+        elsewhere = workers > 1 or client is not None
+        job = checked_profile(predict, first, body, wl.Q(1e3 * at, "mm"), True, elsewhere, LineJob)
         yield Line(dataclasses.replace(points, weight=job.weight(first)), job, workers, client)

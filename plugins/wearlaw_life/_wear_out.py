@@ -17,7 +17,6 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.sweeping.progress import Bar
-from wearlaw.sweeping.sweep import check_importable
 from wearlaw_life._life import SIDES, UNITS, Life, unit_of
 from wearlaw_life._line import Line, Wear, read_line
 from wearlaw_life._measures import NAMES, flange, hollow
@@ -194,8 +193,6 @@ def wear_out(
     """
     expect_pipeline(predict)
     plan = _plan(predict, body, over, depth_step, smoothing, spacing, conicity_step, amplitude, sides, until)
-    if workers > 1 or client is not None:
-        check_importable(predict)
     first = tuple(even(one) for one in _given(predict.rig, plan))
     count = math.ceil(max(np.ptp(one.curve.s) for one in first) / plan.spacing) + 1
     with ExitStack() as stack:

@@ -16,6 +16,7 @@ from wearlaw.errors import ConditionsError, DataError, shown
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.profiles import PATCH, POSITION
+from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.sweeping.evaluation import BlockRecord, Job, Outputs
 from wearlaw.sweeping.points import Block, Points
 from wearlaw.sweeping.provenance import digest, provenance_of
@@ -98,7 +99,8 @@ class ProfileJob(Job):
 
     def outputs(self, prediction: Prediction, part: Points) -> Outputs:
         """Return the depth and the sliding distance, (points, *sides, positions), or the sums of these and the mass."""
-        across = prediction.wear_profile(self.body, at=Q(1e3 * self.at, "mm"))
+        with caught_warnings():  # `checked_profile` has given those of the law and the body
+            across = prediction.wear_profile(self.body, at=Q(1e3 * self.at, "mm"))
         found = {
             name: Q(across[name].values, across[name].attrs["units"]).m_as(unit)
             for name, unit in self.units.items()
@@ -176,20 +178,22 @@ def check_shares(points: Points, name: str) -> None:
     DataError
         If a share is missing or negative, or they do not add up to one.
     """
-    column, total = points.kept[SHARE], 0.0
+    column, total, table = points.kept[SHARE], 0.0, points.file
+    assert table is not None
     factor = 1.0 if column.unit is None else float(coefficient(Q(1.0, column.unit), name))
     for start in range(0, column.values.size, PIECE):
         shares = column.values[start : start + PIECE]
         wrong = np.flatnonzero(~(shares >= 0.0))
         if wrong.size:
-            assert points.file is not None
-            row = points.file.where(start + int(wrong[0]))
+            row = table.where(start + int(wrong[0]))
             raise DataError(
-                f"{points.file.label}, {row}, column {shown(name)}: must be a share of the distance, zero or more, got"
+                f"{table.label}, {row}, column {shown(name)}: must be a share of the distance, zero or more, got"
                 f" {shares[wrong[0]]:g}"
             )
         total += factor * float(shares.sum())
     if abs(total - 1.0) > ROUNDED:
         percent = "; are they in percent? Name the column with its unit, as in 'share [%]'"
         advice = percent if abs(total - 100.0) < 100.0 * ROUNDED else f"; divide the column by {total:.6g}"
-        raise DataError(f"the shares in {shown(name)} must add up to 1, but add up to {total:.6g}{advice}")
+        raise DataError(
+            f"{table.label}: the shares in {shown(name)} must add up to 1, but add up to {total:.6g}{advice}"
+        )
