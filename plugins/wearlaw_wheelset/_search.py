@@ -281,7 +281,7 @@ class Position(NamedTuple):
     displacement: Array
     roll: Array
     yaw: Array
-    side: NDArray[np.intp]
+    side: Any
 
     def widened(self) -> Position:
         """Return the position with one more axis."""
@@ -531,8 +531,8 @@ def _level(
 
 def both_sides(displacement: Array, roll: Array, yaw: Array) -> Position:
     """Return the positions of the left and the right wheel in outward coordinates, with an axis of sides."""
-    pairs = [np.stack([-array, array], axis=-1) for array in (displacement, roll, yaw)]
-    return Position(*pairs, np.broadcast_to(np.arange(2), pairs[0].shape))
+    across, lowered, turned = (np.stack([-array, array], axis=-1) for array in (displacement, roll, yaw))
+    return Position(across, lowered, turned, np.broadcast_to(np.arange(2), across.shape))
 
 
 def _starts(section: Section) -> Array:

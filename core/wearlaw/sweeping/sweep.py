@@ -168,7 +168,11 @@ def sweep(
             check_shares(points, share)
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
-        target = target_of(job, points, None if store is None else Path(store), resume)
+        target: Memory | Sum | Store
+        if isinstance(job, ProfileJob) and job.summed:
+            target = Sum(job, points)
+        else:
+            target = target_of(job, points, None if store is None else Path(store), resume)
         blocks = len(points.blocks())
         if target.resumed and len(target.done) < blocks:
             warnings.warn(kept(len(target.done), blocks, Path(target.store or "")), ResumeWarning, stacklevel=2)
@@ -179,10 +183,8 @@ def sweep(
             return target.finish([*notes, *map(str, of_results)])
 
 
-def target_of(job: Job, points: Points, store: Path | None, resume: bool) -> Memory | Sum | Store:
-    """Return where the results of a sweep go: to memory, to a sum, or to a store."""
-    if isinstance(job, ProfileJob) and job.summed:
-        return Sum(job, points)
+def target_of(job: Job, points: Points, store: Path | None, resume: bool) -> Memory | Store:
+    """Return where the results of a sweep go: to memory, or to a store."""
     if store is None:
         return Memory(job, points)
     from wearlaw.sweeping.store import Store  # zarr takes half a second
