@@ -15,11 +15,11 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw.settings.caught_warnings import caught_warnings
-from wearlaw.sweeping.located import posed
-from wearlaw.sweeping.points import Points
-from wearlaw.sweeping.sweep import checked_profile, run
-from wearlaw.sweeping.tables import from_table
-from wearlaw.sweeping.wear_profile import SHARE, ProfileJob, Sum, check_shares
+from wearlaw_sweeps.located import posed
+from wearlaw_sweeps.points import Points
+from wearlaw_sweeps.sweep import checked_profile, run
+from wearlaw_sweeps.tables import from_table
+from wearlaw_sweeps.wear_profile import SHARE, ProfileJob, Sum, check_shares
 
 
 class Wear(NamedTuple):

@@ -54,7 +54,7 @@ def test_sum_is_weighted_by_the_shares() -> None:
 def test_sum_is_the_same_from_a_file_in_blocks_on_two_processes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw.sweeping.points.BLOCK", 300)
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 300)
     TABLE.to_csv(tmp_path / "line.csv", index=False)
     one, two = (wl.sweep(PREDICT, tmp_path / "line.csv", share="share", workers=workers, **GIVEN) for workers in (1, 2))
     assert np.array_equal(one["depth"], two["depth"])

@@ -187,7 +187,7 @@ def test_a_pair_of_unlike_wheels_has_no_mean() -> None:
 
 def test_several_processes_give_the_same_life(tmp_path: Path, short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
     """From a file, in blocks of a few states."""
-    monkeypatch.setattr("wearlaw.sweeping.points.BLOCK", 2500)
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)
     line().to_csv(tmp_path / "line.csv", index=False)
     lives = [
         wl.wear_out(pipeline(), tmp_path / "line.csv", over="500 km", workers=workers, **GIVEN) for workers in (1, 2)
