@@ -18,7 +18,7 @@ from zarr.codecs import Crc32cCodec
 
 import wearlaw as wl
 from wearlaw_life._line import Line, Wear
-from wearlaw_life._wear_out import Plan, State
+from wearlaw_life._state import Plan, State
 from wearlaw_sweeps.provenance import check_same, provenance_of
 
 PROVENANCE = "provenance"

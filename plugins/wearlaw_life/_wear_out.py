@@ -7,9 +7,9 @@ import os
 import tempfile
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from wearlaw_life._life import SIDES, UNITS, Life, unit_of
 from wearlaw_life._line import Line, Wear, read_line
 from wearlaw_life._measures import NAMES, flange, hollow
 from wearlaw_life._removal import Profile, conserving, even, normal_depth, positions, smoothed, swept
+from wearlaw_life._state import Plan, State
 from wearlaw_sweeps.progress import Bar
 
 if TYPE_CHECKING:
@@ -52,54 +53,6 @@ NEAR = 1e-9
 
 EDGE = 1e-3
 """Share of the deepest wear at an end of a profile that says that the profile is too short."""
-
-
-@dataclass(frozen=True)
-class Plan:
-    """The settings of a life, in SI; see `wear_out`."""
-
-    body: str
-    over: float
-    depth_step: float
-    smoothing: float
-    spacing: float
-    conicity_step: float
-    amplitude: float
-    each: bool
-    until: Mapping[str, float]
-
-    @property
-    def along(self) -> str:
-        """What the life is counted in."""
-        return "passages" if self.body == "rail" else "distance"
-
-    def of_profiles(self, values: Array) -> Array:
-        """Return values of both sides for each profile: as they are, or their mean."""
-        return values if self.each else values.mean(axis=0, keepdims=True)
-
-
-class State(NamedTuple):
-    """The profiles after a step, and what the next step extrapolates.
-
-    Attributes
-    ----------
-    profiles : tuple of Profile
-        One for both sides, or those of the left and the right side.
-    row : dict of str to float
-        The measures in SI.
-    wear : Wear or None
-        The wear at the beginning of the step; None at the start.
-    step : float
-        Distance of the step [m], or passages.
-    change : float
-        Change of the conicity in the step.
-    """
-
-    profiles: tuple[Profile, ...]
-    row: dict[str, float]
-    wear: Wear | None = None
-    step: float = 0.0
-    change: float = 0.0
 
 
 def wear_out(
