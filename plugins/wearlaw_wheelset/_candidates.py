@@ -136,11 +136,15 @@ def candidates(
 
 def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing: float, among: int = 0) -> None:
     """Fill in, in place, the gaps around some of the places at a spacing [m]; `among` as in `searched`."""
+    if section.left is not None:
+        for side, one in enumerate(section.sides):
+            sample(one, found, rows[found.side[rows] == side], spacing, among)
+        return
     found.start[rows] = -spacing * (SAMPLES // 2)
     found.step[rows] = spacing
     if wl.accelerated(max(rows.size, among) * SAMPLES):
         samples, arcs = np.empty((2, rows.size, SAMPLES))
-        position = (np.ascontiguousarray(array[rows]) for array in found.position)
+        position = (np.ascontiguousarray(array[rows]) for array in found.position[:3])
         compiled_samples(
             *position, found.arc[rows], spacing, *section.wheel_y, *section.wheel_radius, *section.rail_z, samples, arcs
         )

@@ -770,8 +770,8 @@ class Balance:
         for k, depth in enumerate(self._depth(part)):
             key = int(part.wheel[k]), int(part.number[k])
             self.starts[key] = found = _half_space.rows(
-                self.section, part.part(np.array([k])), float(depth), self.elastic.modulus, 2 * self.strips,
-                self.starts.get(key),
+                self.section.sides[part.side[k]], part.part(np.array([k])), float(depth), self.elastic.modulus,
+                2 * self.strips, self.starts.get(key),
             )  # fmt: skip
             y[k], half_length[k], pressure[k], width[k], angle[k] = found[:5]
         load, a = half_length * pressure, half_length.max(axis=-1)
@@ -792,9 +792,9 @@ class Balance:
     def _ellipses(self, part: Candidates) -> dict[str, Array]:
         """Return Hertz's ellipses of the curvatures at first touching."""
         at = placed(self.section, part.position, part.arc)
-        along, wheel = part.curvature_x, self.section.wheel.at(part.arc)[3]
+        along, wheel = part.curvature_x, self.section.at("wheel", part.arc, part.side)[3]
         circle = part.cosine / at.radius
-        across = 0.5 * (wheel + circle + self.section.rail.at(at.rail_arc)[3]) - along
+        across = 0.5 * (wheel + circle + self.section.at("rail", at.rail_arc, part.side)[3]) - along
         turn = np.tan(part.position.yaw) / part.cosine  # of the wheel's circles, which skews the gap
         skew = 0.5 * (wheel - circle) * turn / (1.0 + turn**2)
         more = np.hypot(0.5 * (along - across), skew) - np.abs(0.5 * (along - across))
