@@ -59,7 +59,8 @@ def excess_dissipation(creepage: Array, *others: Any) -> Array:
     if not creepage.ndim:
         reduced, level, unit = _reduced(*map(float, (creepage, *others)))
         of_point = _maximum(OF_FLOATS, reduced)
-        return np.float64(unit * _above(OF_FLOATS, level, *of_point) if level < of_point[-1] else 0.0)
+        of_patch: Any = np.float64(unit * _above(OF_FLOATS, level, *of_point) if level < of_point[-1] else 0.0)
+        return of_patch  # type: ignore[no-any-return]
     with np.errstate(over="ignore"):  # a threshold may lie infinitely far above all values
         reduced, level, unit = _reduced(creepage, *others)
     excess, of_points = np.zeros(creepage.shape), _maximum(OF_ARRAYS, reduced)

@@ -248,7 +248,8 @@ class Problem:
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        if type(self.longitudinal_creepage) is not np.float64:  # one operating point has numbers
+        creepage: object = self.longitudinal_creepage
+        if not isinstance(creepage, float):  # one operating point has NumPy's scalars
             freeze(self, ARRAYS)
 
     @classmethod
