@@ -23,7 +23,9 @@ def interface() -> list[str]:
     """Return the lines: hooks, public names, and what public classes add to their bases."""
     hooks = (name + arguments(hook) for name, hook in vars(hookspecs).items() if name.startswith("wearlaw_"))
     names = (line for name in wearlaw.__all__ for line in described(name, getattr(wearlaw, name)))
-    kit = (line for name in wearlaw_kit.__all__ for line in described(f"testing.{name}", vars(wearlaw_kit)[name]))
+    kit = (
+        line for name in wearlaw_kit.__all__ for line in described(f"wearlaw_kit.{name}", getattr(wearlaw_kit, name))
+    )
     return [FIRST, *sorted({*hooks, *names, *kit} - {"INTERFACE_VERSION"})]
 
 
@@ -60,7 +62,7 @@ def member(cls: type, name: str) -> str:
 
 def is_ours(cls: type) -> bool:
     """Return whether a class is defined in wearlaw."""
-    return cls.__module__.partition(".")[0] == "wearlaw"
+    return cls.__module__.startswith("wearlaw")
 
 
 def arguments(function: Callable[..., Any]) -> str:

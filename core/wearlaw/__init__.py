@@ -8,7 +8,6 @@
 """
 
 import sys as _sys
-from importlib import import_module as _import_module
 from typing import TYPE_CHECKING
 
 from wearlaw.arrays.array import Array
@@ -44,6 +43,7 @@ from wearlaw.errors import (
     WorkerWarning,
     shown,
 )
+from wearlaw.extras import load as _load
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
 from wearlaw.models.contact_model import Claim, ContactModel, Scale
 from wearlaw.models.creep_force_model import CreepForceModel
@@ -294,7 +294,7 @@ _LATE = {
 def __getattr__(name: str) -> object:
     if name not in _LATE:
         raise AttributeError(f"module 'wearlaw' has no attribute {name!r}")
-    return getattr(_import_module(_LATE[name]), name)
+    return _load(_LATE[name], name, f"wearlaw.{name}")
 
 
 def __dir__() -> list[str]:

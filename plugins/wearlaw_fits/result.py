@@ -15,12 +15,12 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError
 from wearlaw.models.law import WEAR, Law
-from wearlaw.plugins.law_files import write_law
 from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor
 from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import SAME, LackOfFit
+from wearlaw_fits.law_files import write_law
 from wearlaw_fits.observations import TRACTION, Observations, Scatter, wear_index_density
 from wearlaw_fits.wear_tests.tests import WearTests
 from wearlaw_output.curves import BLACK, Curve, FigureData, Panel, PlotAxis

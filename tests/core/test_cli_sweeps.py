@@ -255,7 +255,7 @@ def test_a_wear_rate_that_does_not_vary_has_no_indices(folder: Path) -> None:
 def test_a_full_disk_is_one_clear_error_and_leaves_nothing_of_the_uncertainty(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw_fits.written.save_figure", full_disk)  # after tables were written
+    monkeypatch.setattr("wearlaw_output.files.save_figure", full_disk)  # after tables were written
     result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "64", "-o", "out")
     assert_refused(result, "output: cannot write the results: No space left on device")
     assert [path.name for path in folder.iterdir()] == ["case.toml"]

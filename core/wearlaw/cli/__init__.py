@@ -5,13 +5,13 @@ from __future__ import annotations
 import signal
 import sys
 import traceback
-from importlib import import_module
 from io import TextIOWrapper
 from typing import IO, Any
 
 import click
 
 from wearlaw.errors import WearlawError, described, did_you_mean, message_of, shown
+from wearlaw.extras import MissingPackageError, load
 from wearlaw.hookspecs import Command
 from wearlaw.plugins import loader
 from wearlaw.version import __version__
@@ -55,7 +55,9 @@ class _Commands(click.Group):
             )
         module, _, function = asked.function.partition(":")
         try:
-            command: click.Command = getattr(import_module(module), function)
+            command: click.Command = load(module, function, f"wearlaw {cmd_name}")
+        except MissingPackageError as error:
+            raise click.ClickException(message_of(error)) from error
         except Exception as error:
             of = "" if cmd_name in own else f" of {loader.installed().commands.origin(cmd_name)}"
             raise click.ClickException(f"command {shown(cmd_name)}{of} cannot be loaded: {described(error)}") from error

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from typing import Any
 
 from wearlaw.cli.describe import describe, fields_of
 from wearlaw.contact.material import Material
 from wearlaw.errors import UnknownModelError
+from wearlaw.extras import load
 from wearlaw.hookspecs import Command
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import unknown
@@ -41,7 +41,7 @@ def _explained(kind: str, name: str, item: Any) -> str:
     tell = _TELL.get(kind)
     if kind in found.explanations:
         module, _, function = found.explanations[kind].partition(":")
-        tell = getattr(import_module(module), function)
+        tell = load(module, function, f"wearlaw show {name}")
     if tell is None:
         return describe(item)
     head = f"{name}: a {kind} of {found.of_kind(kind).origin(name)}"

@@ -5,8 +5,6 @@ from __future__ import annotations
 import warnings
 
 import click
-from rich.console import Console
-from rich.table import Table
 
 from wearlaw.cli.explain import explain
 from wearlaw.cli.shared import echo
@@ -20,10 +18,11 @@ def list_plugins() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PluginWarning)  # the listing below names what is left out
         found = loader.installed()
-    table = Table("kind", "name", "distribution", "version", box=None, pad_edge=False)
-    for kind, name, origin in found.listing():
-        table.add_row(kind, name, origin.distribution, origin.version)
-    Console().print(table)
+    rows = [("kind", "name", "distribution", "version")]
+    rows += [(kind, name, origin.distribution, origin.version) for kind, name, origin in found.listing()]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        echo("  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
     for plugin in found.broken:
         echo(f"left out: {plugin}", err=True)
 

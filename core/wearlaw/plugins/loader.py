@@ -7,6 +7,7 @@ others go on working. If two models have the same name, an error names both dist
 from __future__ import annotations
 
 import functools
+import re
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -17,7 +18,6 @@ from threading import RLock
 from typing import Any
 
 import pluggy
-from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
@@ -300,7 +300,9 @@ def _entry_points() -> list[tuple[EntryPoint, Origin]]:
         if f"[{hookspecs.PROJECT}]" in (distribution.read_text("entry_points.txt") or ""):  # parse only the few plugins
             name, version = _name_and_version(distribution)
             points = distribution.entry_points.select(group=hookspecs.PROJECT)
-            found.setdefault(canonicalize_name(name), [(point, Origin(point.name, name, version)) for point in points])
+            found.setdefault(
+                re.sub(r"[-_.]+", "-", name).lower(), [(point, Origin(point.name, name, version)) for point in points]
+            )
     return sorted(chain.from_iterable(found.values()), key=lambda pair: (pair[1].distribution, pair[1].entry_point))
 
 
