@@ -149,7 +149,6 @@ MODELS_OF_THE_DOCUMENTATION = {
     "wearlaw_fatigue": "Fatigue",
     "wearlaw_rigid": "Rigid",
     "wearlaw_rigid_ellipse": "RigidEllipse",
-    "wearlaw_sliding": "Sliding",
     "wearlaw_wet": "Wet",
     "wearlaw_roller": "Roller",
 }
