@@ -57,7 +57,7 @@ def minimum(session: nox.Session) -> None:
 
 @nox.session(python="3.11", default=False)
 def docs(session: nox.Session) -> None:
-    session.install("-e", ".", *nox.project.dependency_groups(PYPROJECT, "docs"))
+    session.install("-e", ".[studies]", *nox.project.dependency_groups(PYPROJECT, "docs"))
     session.run("sphinx-build", "-W", "--keep-going", "-b", "html", "docs", "docs/_build/html")
 
 

@@ -64,21 +64,10 @@ def draw() -> None:
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([sys.executable, script], cwd=folder, env={**os.environ, "MPLBACKEND": "agg"}, check=True)
             shutil.copy(Path(folder) / f"{script.stem}.png", FOLDER / f"gallery_{script.stem}.png")
-    with tempfile.TemporaryDirectory() as folder:
-        copy_from_page("vehicle-runs", "vehicle_run.png", Path(folder))
     if shutil.which("chromium") is None or shutil.which("chromedriver") is None:
         return
     with tempfile.TemporaryDirectory() as folder:
         photograph(Path(folder) / write(study, Path(folder), figure_formats=())[0])
-
-
-def copy_from_page(page: str, name: str, folder: Path) -> None:
-    """Run the blocks of a page that show no output in a folder, and copy a picture that they save there."""
-    text = (Path(__file__).parent / f"{page}.md").read_text(encoding="utf-8")
-    code = "\n".join(re.findall(r"^```python\n(?!>>>)(.*?)^```", text, re.DOTALL | re.MULTILINE))
-    environment = {**os.environ, "MPLBACKEND": "agg"}
-    subprocess.run([sys.executable, "-W", "ignore", "-c", code], cwd=folder, env=environment, check=True)
-    shutil.copy(folder / name, FOLDER / name)
 
 
 def save(figure: Figure, path: Path) -> None:

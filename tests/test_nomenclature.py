@@ -186,7 +186,7 @@ def test_every_variable_with_a_symbol_in_the_table_has_one_in_its_documentation(
 
 
 def test_what_is_in_no_class_is_explained_on_the_page() -> None:
-    page = (ROOT / "docs/nomenclature.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/conventions.md").read_text(encoding="utf-8")
     assert all(f"`{name}`" in page for name in IN_NO_CLASS)
 
 

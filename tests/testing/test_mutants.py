@@ -143,14 +143,12 @@ def test_right_models_pass(model: Any) -> None:
 
 
 MODELS_OF_THE_DOCUMENTATION = {
-    "wearlaw_work": "Work",
-    "wearlaw_threshold": "Threshold",
+    "wearlaw_plateau": "Plateau",
+    "wearlaw_ours": "Ours",
     "pv_limit": "PvLimit",
     "wearlaw_fatigue": "Fatigue",
-    "wearlaw_flash": "Flash",
     "wearlaw_rigid": "Rigid",
     "wearlaw_rigid_ellipse": "RigidEllipse",
-    "wearlaw_sliding": "Sliding",
     "wearlaw_wet": "Wet",
     "wearlaw_roller": "Roller",
 }
@@ -160,7 +158,7 @@ FIELDS_OF_THE_DOCUMENTATION = {
     "Fatigue": {"slope": "2e-7 1/N", "threshold": "10 N"},
 }
 """Fields of classes without defaults."""
-PAGES = ("plugins", "law-plugin", "contact-model-plugin", "stage-plugin", "rig-plugin")
+PAGES = ("write-a-law", "validate-in-ci", "contact-model-plugin", "rig-plugin")
 
 
 @pytest.fixture(scope="module")
