@@ -112,7 +112,6 @@ def test_a_law_that_has_seen_the_tests_is_marked_and_cross_validation_ranks_fits
     assert result.exit_code == 0, result.output
     assert result.stdout.startswith("2 predictors on 9 tests, best first, fits cross-validated (leave-one-out);")
     assert json.loads(Path("cv/comparison.json").read_text(encoding="utf-8"))["cross_validated"] == "leave-one-out"
-    assert wearlaw(*command, "--cross-validate", "3", "-o", "cv3").exit_code == 0
     assert wearlaw(*command, "-o", "seen").exit_code == 0
     factors = [
         pd.read_csv(f"{folder}/ranking.csv").set_index("predictor").rms_factor[f"{LAW} fitted on exact"]

@@ -31,8 +31,10 @@ def slow_tests(**more: Any) -> tuple[wl.WearTests, Any, Any]:
     held_to="{within:g}, relative",
     within=1e-07,
 )
-@pytest.mark.parametrize("contact", ["global", "exact", "fastsim"])
-@pytest.mark.parametrize("scatter", ["relative", "absolute"])
+@pytest.mark.parametrize(
+    ("contact", "scatter"),
+    [("global", "relative"), ("global", "absolute"), ("exact", "relative"), ("fastsim", "relative")],
+)
 def test_the_parameters_that_made_the_tests_are_found_again(contact: str, scatter: Any, within: float) -> None:
     predict = usfd(contact)
     # No test depends on m_c and tr_sc where the search begins: another starting point must find them.

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
@@ -111,24 +109,6 @@ def test_a_function_law_compares_hashes_and_pickles() -> None:
     changed = two_slopes.model_copy(update={"limit": Q(3, "N/mm^2")})
     assert pickle.loads(pickle.dumps(changed)) == changed != two_slopes
     assert type(two_slopes).model_validate_json(changed.model_dump_json()) == changed
-
-
-def test_a_pickled_function_law_opens_in_a_fresh_process() -> None:
-    script = (
-        "import sys, pickle; law = pickle.load(sys.stdin.buffer);"
-        " print(law.name, law.breakpoints(law.numbers)['wear_index_density'][0])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], input=pickle.dumps(two_slopes), capture_output=True, check=True, cwd=_root()
-    )
-    assert done.stdout.decode().split() == ["two_slopes", "4000000.0"]
-
-
-def _root() -> str:
-    """Return the folder from which this module imports by its name."""
-    file = sys.modules[__name__].__file__
-    assert file is not None
-    return file[: -len(__name__.replace(".", "/") + ".py")]
 
 
 def test_the_docstring_and_the_source_are_kept() -> None:

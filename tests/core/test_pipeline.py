@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-import subprocess
-import sys
 import warnings
 from itertools import product
 from typing import Any
@@ -222,19 +220,6 @@ def test_wrong_json_is_an_error_of_the_package_with_the_path() -> None:
     message = str(caught.value)
     assert "rig.track_width: got 10.00 kN, which does not have the dimension of 'mm'" in message
     assert "laws.0: no wear law is called 'khh'; did you mean 'kth'?" in message
-
-
-def test_a_pickled_pipeline_predicts_the_same_in_a_fresh_process() -> None:
-    predict = RIG | GLOBAL | FITTED["global"]
-    code = (
-        "import pickle, sys; predict = pickle.load(sys.stdin.buffer);"
-        "print(predict(normal_force='2.7 kN', creepage='1 %', friction_coefficient=0.46).wear_rate.magnitude)"
-    )
-    run = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], input=pickle.dumps(predict), capture_output=True, check=False
-    )
-    assert run.returncode == 0, run.stderr.decode()
-    assert float(run.stdout) == predict(**{**CONDITIONS, "normal_force": Q(2.7, "kN")}).wear_rate.magnitude
 
 
 def test_negative_creepage_mirrors_the_force_and_leaves_the_wear() -> None:

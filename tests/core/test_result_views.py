@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-import subprocess
-import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -390,15 +388,3 @@ def test_pictures_of_too_many_axes_or_of_no_values_are_refused() -> None:
     for ax in (None, plt.subplots()[1]):
         with pytest.raises(wl.InputError, match="plot: wear_rate has no value at these operating points"):
             missing.plot(ax=ax)
-
-
-def test_matplotlib_is_loaded_with_the_first_picture() -> None:
-    code = (
-        "import sys; sys.modules['dask'] = None; import wearlaw as wl\n"
-        "r = (wl.TwinDisc.suros() | wl.contact_model('global') | wl.wear_law('usfd'))"
-        "(normal_force='2.7 kN', creepage=wl.Q([1, 2], '%'), friction_coefficient=0.4)\n"
-        "r.to_dataframe(), r[0], r == r, r._repr_html_()\n"
-        "assert 'matplotlib' not in sys.modules\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr

@@ -66,9 +66,9 @@ def rates(model: wl.ContactModel, law: wl.WearLaw, values: Mapping[str, Any], pr
 @pytest.mark.parametrize("law", [wl.wear_law("usfd"), wl.wear_law("kth").explicit(), Stepped()], ids=lambda x: x.name)
 def test_each_point_gets_the_rate_of_its_own_law(law: wl.WearLaw, contact: str) -> None:
     model = wl.contact_model(contact)
-    problem, rng = points(40)
+    problem, rng = points(10)
     units = numbers(law)
-    values = {name: si * rng.uniform(0.97, 1.03, 40) for name, si in law.numbers.items()}
+    values = {name: si * rng.uniform(0.97, 1.03, 10) for name, si in law.numbers.items()}
     found = rates(model, law, values, problem)
     for point, rate in enumerate(found):
         own = changed(law, {name: number_like(units[name], float(si[point])) for name, si in values.items()})

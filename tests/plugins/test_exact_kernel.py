@@ -55,7 +55,7 @@ def apply(copy: str, reduced: Array, level: Array) -> Array:
 def integrals() -> tuple[Array, Array, Array]:
     """Return reduced creepages, thresholds, and the energy above these."""
     random = np.random.default_rng(41)
-    reduced = crowded(random, 80)
+    reduced = crowded(random, 40)
     densities = [density(d) for d in reduced]
     level = shares(random, reduced.size) * [each.peak for each in densities]
     return reduced, level, np.array([each.excess(at) for each, at in zip(densities, level, strict=True)])
@@ -104,7 +104,7 @@ def test_a_threshold_next_to_nothing_leaves_the_whole_dissipation(copy: str) -> 
 
 def test_values_in_si_are_reduced_as_in_the_literature() -> None:
     random = np.random.default_rng(44)
-    size = 40
+    size = 15
     friction, pressure = random.uniform(0.05, 1.0, size), random.uniform(0.3e9, 4e9, size)
     half_width, radius = random.uniform(1e-4, 1e-2, size), random.uniform(5e-3, 0.5, size)
     columns = (crowded(random, size) * friction * half_width / radius, friction, pressure, half_width, radius)

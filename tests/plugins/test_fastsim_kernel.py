@@ -85,9 +85,9 @@ def sample(bound: str, seed: int, size: int) -> tuple[Array, Array, list[Density
 def in_si(bound: str) -> tuple[tuple[Array, ...], Array, Array]:
     """Return the arguments of a kernel, the energy above the thresholds among them, and the whole energy."""
     random = np.random.default_rng(55)
-    reduced, level, _ = sample(bound, 56, 40)
-    slope, centre = random.uniform(1e-3, 0.1, 40), random.uniform(1e8, 4e9, 40)
-    arguments = (reduced * slope, slope, centre, random.uniform(1e-4, 1e-2, 40), level * slope * centre)
+    reduced, level, _ = sample(bound, 56, 15)
+    slope, centre = random.uniform(1e-3, 0.1, 15), random.uniform(1e8, 4e9, 15)
+    arguments = (reduced * slope, slope, centre, random.uniform(1e-4, 1e-2, 15), level * slope * centre)
     expected, most = [], []
     with mpmath.workdps(DIGITS):
         for xi, g, top, a, at in ([mpmath.mpf(value) for value in row] for row in zip(*arguments, strict=True)):
@@ -107,7 +107,7 @@ def in_si(bound: str) -> tuple[tuple[Array, ...], Array, Array]:
 )
 @every_bound
 def test_the_energy_above_a_threshold_is_its_integral(bound: str, parabolic: float, elliptic: float) -> None:
-    reduced, level, densities = sample(bound, 51, 90)
+    reduced, level, densities = sample(bound, 51, 45)
     expected = np.array([float(each.excess(at)) for each, at in zip(densities, level, strict=True)])
     for copy in KERNELS[bound]:
         error = np.abs(apply(bound, copy, reduced, level) - expected)

@@ -8,7 +8,7 @@ import scipy
 
 import wearlaw as wl
 from tests.plugins.contact_files import FILES
-from tests.plugins.full_theory import rows, spheres
+from tests.plugins.full_theory import spheres
 from wearlaw import Array
 from wearlaw_kit.reduced import random_ellipses
 
@@ -98,44 +98,6 @@ def test_the_elements_of_a_cylinder_are_contacts(within: float) -> None:
     # CONTACT computes power from the slip before an element.
     assert found.cell_wear_index == pytest.approx(found.wear_index, rel=1e-9)
     assert known.cell_wear_index < found.cell_wear_index
-
-
-@pytest.mark.validates(
-    "elliptic-contact",
-    "Fx, Fy and Tγ of `half_space` on {cells} cells without spin, and the power from the slip before each element",
-    source="CONTACT (Vollebregt), on as many elements",
-    held_to="{within:g} of μN, and the power to {power:g} of itself",
-    cells=40,
-    within=0.001,
-    power=0.01,
-)
-def test_the_power_is_contacts_on_its_grid(cells: int, within: float, power: float) -> None:
-    known = spheres("full40")  # these are as many cells, which take some seconds
-    at = known.at("comb_A_xi1e-3_eta1e-3")
-    found = wl.contact_model("half_space", cells=cells).solve(known.problem[at : at + 1])
-    for force, due in ((found.force_x, known.force_x), (found.force_y, known.force_y)):
-        assert force[0] == pytest.approx(due[at], abs=within * known.bound[at])
-    before = power_before(found)
-    assert before == pytest.approx(float(rows("hertz3d_reference.csv")[at]["full40_power_slip"]), rel=power)
-
-
-def power_before(found: wl.Contact) -> float:
-    """Return the power without spin from the slip half-way from the element before, as CONTACT defines it."""
-    inside = found.area[0] > 0.0
-    x, y = found.x[0][inside], found.y[0][inside]
-    step, width = found.x[0, 1, 0] - found.x[0, 0, 0], found.strip_width[0, 0]
-    problem: wl.Problem = found.problem  # type: ignore[assignment]
-    q = found.traction_x[0][inside], found.traction_y[0][inside]
-    stiffness = np.pi * float(problem.shear_modulus[0])
-    moved = []
-    for back in (0.0, step):
-        xx, yy, xy = wl.half_space.influence(
-            x[:, None] - x - back, y[:, None] - y, step, width, problem.poisson_ratio[0]
-        )
-        moved.append(np.array([xx @ q[0] - xy @ q[1], yy @ q[1] - xy @ q[0]]) / stiffness)
-    grown = (moved[0] - moved[1]) / step
-    slip = problem.longitudinal_creepage[0] - grown[0], problem.lateral_creepage[0] - grown[1]
-    return float((q[0] * slip[0] + q[1] * slip[1]).sum() * step * width)
 
 
 def test_pressure_times_slip_is_the_energy_over_friction() -> None:
