@@ -171,9 +171,7 @@ def test_what_the_balance_leaves_over_is_in_the_result() -> None:
 def test_a_balance_that_leaves_over_more_than_a_thousandth_warns() -> None:
     # As the wheelset rolls, the second of two patches vanishes near -5.39 mm, where no roll is level.
     pair: Any = wheelset()
-    with pytest.warns(
-        wl.RangeWarning, match=r"the loads of \d+ of 9 positions do not balance: .* of the load is left"
-    ):
+    with pytest.warns(wl.RangeWarning, match=r"the loads of \d+ of 9 positions do not balance: .* of the load is left"):
         result = (pair | FASTSIM)(
             lateral_displacement=Q(np.linspace(-5.4, -5.38, 9), "mm"), vertical_load="90 kN", friction_coefficient=0.4
         )
