@@ -4,7 +4,7 @@ import csv
 import inspect
 import io
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import cached_property, reduce
 from itertools import takewhile
 from pathlib import Path
@@ -16,15 +16,10 @@ from wearlaw.plugins.loader import installed
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.settings.parameters import numbers
 from wearlaw.units.variables import UNITS, VARIABLES, label
-from wearlaw_twin_disc import TwinDiscConditions
-from wearlaw_wheel_rail import WheelRailConditions
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
-CLASSES = (
-    *(wl.Problem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
-    *(wl.CreepForces, WheelRailConditions, wl.Body),
-)
+CLASSES = (wl.Problem, wl.Contact, wl.Prediction, wl.LocalWear, wl.CreepForces, wl.Body)
 OF_ANY_UNIT = ("outcome", "outcome_error", "value", "local_value")
 """Quantities of a law, whose unit is that of its outcome."""
 
@@ -34,8 +29,6 @@ WITHOUT_DEFAULTS: dict[str, tuple[dict[str, Any], ...]] = {
     "energy": ({**SEVERE, "power_limit": "4 W/mm^2"}, {**SEVERE, "energy_limit": "10 N/mm^2"}),
 }
 """Fields of wear laws that have no defaults; all fields of a law together have a row."""
-
-SHOWN_AS = {"TwinDiscConditions": "conditions", "WheelRailConditions": "conditions"}
 
 ATTRIBUTE = re.compile(
     r"^(?P<name>\w+) : (?:ndarray|Quantity|array_like).*\n(?P<text>(?: {4}.*(?:\n|$))+)", re.MULTILINE
@@ -60,9 +53,10 @@ def documented() -> Iterator[Documented]:
     """Yield all fields and properties that are numbers; raise a ValueError for one without a unit in brackets."""
     for cls in CLASSES:
         for name, text in (*attributes(cls), *properties(cls)):
-            yield read(name, SHOWN_AS.get(cls.__name__, cls.__name__), text)
-    for name, text in parameters(ws.Wheelset.problem):
-        yield read(name, "conditions", text)
+            yield read(name, cls.__name__, text)
+    for rig in (wl.TwinDisc, wl.WheelRail, ws.Wheelset):
+        for name, condition in rig.conditions().items():
+            yield read(name, "conditions", condition.meaning)
     for record in (wl.TwinDisc.suros(), wheel_rail(), wheelset(), falling_friction()):
         for holder, name in fields(record):
             yield read(name, type(holder).__name__, field_docstrings(type(holder))[name])
@@ -115,13 +109,6 @@ def attributes(cls: type) -> Iterator[tuple[str, str]]:
     """Yield name and text of each number under "Attributes" in the docstring of a class."""
     _, _, section = (inspect.getdoc(cls) or "").partition("Attributes\n----------\n")
     for found in ATTRIBUTE.finditer(section):
-        yield found["name"], found["text"]
-
-
-def parameters(function: Callable[..., object]) -> Iterator[tuple[str, str]]:
-    """Yield name and text of each number under "Parameters" in the docstring of a function."""
-    _, _, section = (inspect.getdoc(function) or "").partition("Parameters\n----------\n")
-    for found in ATTRIBUTE.finditer(section.partition("\n\n")[0] + "\n"):
         yield found["name"], found["text"]
 
 

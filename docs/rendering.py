@@ -11,6 +11,7 @@ from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.errors import ExtensionError
 
 from wearlaw.cli import main
+from wearlaw.contact.conditions import declared
 
 LOADED = re.compile(r'<(?:script|img|link|iframe)\b[^>]*\b(?:src|href)="(?:https?:)?//[^"]*"')
 """Addresses that a browser loads by itself, unlike the target of a link."""
@@ -45,8 +46,17 @@ def check_offline(app: Any, exception: Exception | None) -> None:
         raise ExtensionError(f"pages need the network: {', '.join(sorted(loaded))}")
 
 
+def list_conditions(_: Any, what: str, name: str, method: Any, __: Any, lines: list[str]) -> None:
+    """List the conditions of a rig below the docstring of its `problem`."""
+    if what == "method" and name.endswith(".problem"):
+        of_table = [one for one in declared(method).values() if one.table is not None]
+        lines += [f":param {one.name}: {' '.join(one.meaning.split())}" for one in of_table]
+
+
 def setup(app: Any) -> dict[str, bool]:
     app.add_html_math_renderer("mathml", inline_renderers=(mathml, None), block_renderers=(mathml, None))
     app.add_directive("command-line", CommandLine)
     app.connect("build-finished", check_offline)
+    app.setup_extension("sphinx.ext.autodoc")
+    app.connect("autodoc-process-docstring", list_conditions, priority=600)  # after napoleon
     return {"parallel_read_safe": True, "parallel_write_safe": True}

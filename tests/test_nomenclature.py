@@ -5,20 +5,16 @@ from __future__ import annotations
 import contextlib
 import csv
 import dataclasses
-import inspect
 from collections import defaultdict
 from collections.abc import Iterable
 
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from docs import nomenclature
 from docs.nomenclature import Documented, read
 from tests.environments import ROOT
 from wearlaw.units.variables import VARIABLES
-from wearlaw_twin_disc import TWIN_DISC
-from wearlaw_wheel_rail import WHEEL_RAIL
 
 SYMBOLS_OF_SEVERAL_NAMES = {
     "k": "KTH's map has a wear coefficient in each of its four fields",
@@ -75,8 +71,7 @@ def test_all_fields_of_the_records_and_all_conditions_are_in_the_table(documente
     for record in (wl.Problem, wl.Contact, wl.CreepForces):
         numbers = {field.name for field in dataclasses.fields(record)} - OF_OTHER_KINDS
         assert numbers <= names(documented, record.__name__)
-    of_wheelset = {*inspect.signature(ws.Wheelset.problem).parameters} - {"self"}
-    assert names(documented, "conditions") == {*TWIN_DISC.names, *WHEEL_RAIL.names, *of_wheelset}
+    assert names(documented, "conditions") == {name for rig in wl.rigs().values() for name in rig.conditions()}
 
 
 def test_all_quantities_of_results_are_in_the_table_with_a_unit_of_their_dimension(

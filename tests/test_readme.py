@@ -40,7 +40,7 @@ def imported(path: Path) -> Iterator[tuple[str, str]]:
 @pytest.mark.parametrize("folder", PLUGINS, ids=lambda folder: folder.name)
 def test_the_plugins_of_wearlaw_use_only_names_that_are_public(folder: Path) -> None:
     public = {"", *dir(wl)}
-    if folder.name in APPLICATIONS | {"wearlaw_twin_disc", "wearlaw_wheel_rail"}:
+    if folder.name in APPLICATIONS:
         return  # what is done with predictions may use the rest of the core, and so may commands
     models = [path for path in folder.rglob("*.py") if path.name not in {"_command.py", "_worn.py"}]
     found = {one for path in models for one in imported(path)}

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop
 from wearlaw.contact import elastic_limit, half_space, hertz, hertz_ellipse, kalker
+from wearlaw.contact.conditions import Coefficient, Condition, Creepage, Friction
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
 from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
@@ -104,9 +105,11 @@ __all__ = [
     "CaseError",
     "CheckedClaim",
     "Claim",
+    "Coefficient",
     "Command",
     "Comparison",
     "CompositionError",
+    "Condition",
     "ConditionsError",
     "Configuration",
     "ConfigurationError",
@@ -115,6 +118,7 @@ __all__ = [
     "ContactModelField",
     "CreepForceModel",
     "CreepForces",
+    "Creepage",
     "Curve",
     "DataError",
     "Density",
@@ -126,6 +130,7 @@ __all__ = [
     "FitError",
     "FitWarning",
     "Forces",
+    "Friction",
     "FrozenError",
     "Geometry",
     "InputError",

@@ -178,28 +178,33 @@ def _assert_broadcasts(rig: Rig) -> None:
 
 def conditions_are_declared(rig: Rig) -> None:
     """`conditions()` has the names in the example and the one in `creepage`, and the example is one test."""
-    declared = rig.conditions()
-    for name in (*rig.example, rig.creepage):
-        assert name in declared, f"`conditions()` does not name '{name}', only {', '.join(declared) or 'none'}"
-    assert rig.creepage in varied(rig), f"the example gives no '{rig.creepage}', which `creepage` names"
+    known, creepage = rig.conditions(), () if rig.creepage is None else (rig.creepage,)
+    for name in (*rig.example, *creepage):
+        assert name in known, f"`conditions()` does not name '{name}', only {', '.join(known) or 'none'}"
+    for name in creepage:
+        assert name in varied(rig), f"the example gives no '{name}', which `creepage` names"
     for name, value in varied(rig).items():
         assert np.ndim(value) == 0, f"the example has an array of {name}; give one value"
 
 
 def creepage_is_proportional_to_its_condition(rig: Rig) -> None:
     """Half of the condition that `creepage` names is half of the problem's creepage; without it all stays finite."""
-    none = _problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], 0.0)}).existing()
+    none = _crept(rig, 0.0).existing()
     for name, value in values_of(none).items():
         assert np.isfinite(value).all(), f"{name} of the problem is {value!r} where {rig.creepage} is zero"
     found = none.longitudinal_creepage
     assert (found == 0.0).all(), f"the problem has the creepage {found!r} where {rig.creepage} is zero"
-    whole, half = (
-        _problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], share)}).existing() for share in (1.0, 0.5)
-    )
+    whole, half = (_crept(rig, share).existing() for share in (1.0, 0.5))
     assert (whole.longitudinal_creepage != 0.0).all(), f"the example has no creepage; give another {rig.creepage}"
     assert_close(
         half.longitudinal_creepage, 0.5 * whole.longitudinal_creepage, f"the creepage of half the {rig.creepage}"
     )
+
+
+def _crept(rig: Rig, share: float) -> Any:
+    """Return the problem of the example with a share of the condition that `creepage` names."""
+    assert rig.creepage is not None
+    return _problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], share)})
 
 
 def only_creepage_turns_with_its_sign(rig: Rig) -> None:
@@ -207,7 +212,7 @@ def only_creepage_turns_with_its_sign(rig: Rig) -> None:
 
     A rolling speed may, where it is the mean of a speed that is kept and one that makes the creepage.
     """
-    problem, turned = (_problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], sign)}) for sign in (1.0, -1.0))
+    problem, turned = (_crept(rig, sign) for sign in (1.0, -1.0))
     expected = values_of(problem)
     expected["longitudinal_creepage"] = -expected["longitudinal_creepage"]
     expected["rolling_speed"] = values_of(turned)["rolling_speed"]
@@ -215,8 +220,12 @@ def only_creepage_turns_with_its_sign(rig: Rig) -> None:
 
 
 def units_of_conditions_are_checked(rig: Rig) -> None:
-    """A bare number, or a quantity of another dimension, is refused by a `UnitError` that names the condition."""
-    for name, value in varied(rig).items():
+    """A bare number, or a quantity of another dimension, is refused by a `UnitError` that names the condition.
+
+    Each condition of the example with a unit is tried, and each one that the rig declares with a unit.
+    """
+    declared = {name: Q(1.0, one.unit.unit) for name, one in rig.conditions().items() if one.unit is not None}
+    for name, value in {**declared, **varied(rig)}.items():
         if isinstance(value, pint.Quantity):
             _assert_refused(
                 rig, {name: value.magnitude}, UnitError, name, f"the bare number {name}={value.magnitude!r}"

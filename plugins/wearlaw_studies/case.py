@@ -54,7 +54,7 @@ from wearlaw.plugins.shelf import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
 from wearlaw.settings.text_files import beside, read_text, reading
 from wearlaw.settings.toml_files import LARGEST, parse_toml
-from wearlaw.units.variables import UNITS, meaning_of
+from wearlaw.units.variables import UNITS
 from wearlaw_studies.figure_check import wrong_figures, wrong_name
 from wearlaw_studies.figure_spec import FigureSpec
 from wearlaw_studies.grid import Condition, Grid
@@ -489,15 +489,17 @@ def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
 
 def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
     """Return the schemas of the tables of a case that hold a rig's conditions."""
-    found = {}
+    found, known = {}, rig.conditions()
+    needed = [name for name, condition in known.items() if condition.required]
+    given = [{"required": needed}, *({"oneOf": [{"required": [name]} for name in names]} for names in rig.choices)]
     kinds: dict[str, Any] = {"sweeps": Condition, "profiles": Condition, "uncertainty": UncertainCondition}
     for field, annotation in kinds.items():
         one = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
         definitions.update(one.pop("$defs", {}))
-        properties = {name: {**one, "description": meaning_of(name)} for name in rig.conditions()}
+        properties = {name: {**one, "description": condition.meaning} for name, condition in known.items()}
         if field == "uncertainty":
             properties["laws"] = definitions["UncertainPoint"]["properties"]["laws"]
-        table = {"properties": properties, "required": list(rig.needed()), "additionalProperties": False}
+        table = {"properties": properties, "allOf": given, "additionalProperties": False}
         found[field] = {"additionalProperties": table}
     return found
 

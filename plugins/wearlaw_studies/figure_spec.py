@@ -155,7 +155,7 @@ def ends(variable: str, unit: str, given: Range) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def axis_along(grid: Grid, x: str, creepage: str) -> str:
+def axis_along(grid: Grid, x: str, creepage: str | None) -> str:
     """Return the axis of a grid along which a figure runs: its x, else the creepage, else the longest axis.
 
     For an x that depends on the load, the axis is the load, or the first condition that only the rig knows. A figure by
@@ -169,4 +169,6 @@ def axis_along(grid: Grid, x: str, creepage: str) -> str:
         return x
     if x in OF_LOAD and loads:
         return loads[0]
-    return creepage if creepage in axes or not axes else max(axes, key=lambda name: axes[name])
+    if creepage is not None and (creepage in axes or not axes):
+        return creepage
+    return max(axes, key=lambda name: axes[name], default=next(iter(grid.given)))

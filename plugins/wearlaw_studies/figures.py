@@ -132,7 +132,7 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
             yield f"{name}_along_the_patch", FigureSpec(profile=name, panels=panels)
 
 
-def axes_of_map(sweep: xarray.Dataset, creepage: str) -> tuple[str, str] | None:
+def axes_of_map(sweep: xarray.Dataset, creepage: str | None) -> tuple[str, str] | None:
     """Return the axes of the map of a sweep: its main axis and the longest other one, None if these are too short."""
     if len(axes_of(sweep)) < 2:
         return None
@@ -427,7 +427,9 @@ def _along_the_patch(
         found, here = [], profile.sel(patch)
         for variable in window.shown:
             if variable == "creepage":
-                level = np.full(2, grid.level(results.case.rig.creepage, results.case.units))
+                along, units = results.case.rig.creepage, results.case.units
+                at = grid.level(along, units) if along else 100.0 * float(np.ravel(problem.longitudinal_creepage)[0])
+                level = np.full(2, at)
                 colour = OF_PROFILE.index(variable)
                 found.append(Curve(name_of(variable), here.x.values[[0, -1]], level, colour))
                 continue

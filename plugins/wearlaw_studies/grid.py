@@ -217,7 +217,7 @@ def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
     """Yield the unknown and missing conditions of an operating point, or else the first one that the rig refuses."""
     known = rig.conditions()
     unknown = [name for name in given if known and name not in known]
-    missing = [name for name in rig.needed() if name not in given]
+    missing = [name for name, condition in known.items() if condition.required and name not in given]
     for name in unknown:
         hint = did_you_mean(name, known)
         yield Fault((name,), f"unknown condition{hint} The conditions of the rig are: {', '.join(known)}")

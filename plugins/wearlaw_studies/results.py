@@ -151,18 +151,18 @@ def labelled_by(patch: Patch, label: str) -> str:
     return f"{label}, {in_words(patch)}" if patch else label
 
 
-def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
+def main_axis(sweep: xarray.Dataset, creepage: str | None) -> str:
     """Return the axis along which tables and figures run: the creepage of the rig, or else the longest axis.
 
     Without axes, it is the creepage of the single point, or else another condition.
     """
     axes = axes_of(sweep)
     if creepage in axes or not axes:
-        return creepage if creepage in sweep else _other(sweep)
+        return creepage if creepage is not None and creepage in sweep else _other(sweep)
     return max(axes, key=lambda axis: sweep.sizes[axis])
 
 
-def along_main_axis(sweep: xarray.Dataset, creepage: str) -> xarray.Dataset:
+def along_main_axis(sweep: xarray.Dataset, creepage: str | None) -> xarray.Dataset:
     """Return a sweep along its main axis, at the middle of the other axes."""
     return along(sweep, main_axis(sweep, creepage))
 

@@ -71,7 +71,7 @@ def from_table(
     if not given:
         raise DataError(f"{table.label}: none of its columns is a condition; name them in columns={{...}}")
     try:
-        check({**fixed, **dict.fromkeys(given)})
+        check({**fixed, **given})
     except ConditionsError as error:
         name = str(error).partition(": ")[0]
         if name not in given:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Required, TypeAlias, TypedDict, Unpack
@@ -9,90 +10,46 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Required, T
 import numpy as np
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array
-from wearlaw.contact import hertz
-from wearlaw.contact.conditions import COEFFICIENTS, LOADS, ConditionTable, FrictionLaw, condition_arrays
-from wearlaw.contact.material import Material, steel
-from wearlaw.contact.problem import Body, Geometry, Problem
-from wearlaw.errors import ConfigurationError, Fault, InputError, UnitError, shown
-from wearlaw.hookspecs import hookimpl
-from wearlaw.pipeline.pipeline import Rig, check_sizes
-from wearlaw.plugins.fields import MaterialField
-from wearlaw.settings.configuration import Configuration
-from wearlaw.units.quantities import (
-    Length,
-    Q,
-    Quantity,
-    QuantityLike,
-    Speed,
-    Unit,
-    parse,
-    scalar_si,
-)
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+import wearlaw as wl
+from wearlaw import Array
 
 SpeedOf: TypeAlias = Literal["mean", "disc_1"]
 """Whose surface speed a rig keeps: the mean of both discs or that of disc 1."""
 
 
 class TwinDiscConditions(TypedDict, total=False):
-    """The conditions of a twin-disc test; arrays broadcast against each other.
+    """The conditions of a twin-disc test; exactly one of the first three gives the load. Arrays broadcast."""
 
-    Exactly one of `normal_force`, `normal_force_per_width` and `max_pressure` gives the load.
-
-    Attributes
-    ----------
-    normal_force : Quantity or str
-        Normal force on the whole width, N [N].
-    normal_force_per_width : Quantity or str
-        Normal force per unit width, P [N/m].
-    max_pressure : Quantity or str
-        Hertz's maximum pressure, p0 [Pa].
-    creepage : Quantity or str
-        Creepage, ξ [-], positive if disc 1 is the faster one, of magnitude at most 1.
-    friction_coefficient : array_like of float, Quantity, str or FallingFriction
-        Friction coefficient, μ [-].
-    traction_coefficient : array_like of float, Quantity or str
-        Measured tangential over normal force, T/N [-], for contact models that can use it.
-    rolled_distance : Quantity or str
-        Distance that the bodies have rolled since they were new [m], for laws of running-in.
-    """
-
-    normal_force: QuantityLike
-    normal_force_per_width: QuantityLike
-    max_pressure: QuantityLike
-    creepage: Required[QuantityLike]
-    friction_coefficient: Required[ArrayLike | FrictionLaw]
-    traction_coefficient: ArrayLike
-    rolled_distance: QuantityLike
+    normal_force: Annotated[wl.QuantityLike, wl.Unit("kN")]
+    """Normal force on the whole width, N [N]."""
+    normal_force_per_width: Annotated[wl.QuantityLike, wl.Unit("kN/m")]
+    """Normal force per unit width, P [N/m]."""
+    max_pressure: Annotated[wl.QuantityLike, wl.Unit("MPa")]
+    """Hertz's maximum pressure, p0 [Pa]."""
+    creepage: Required[wl.Creepage]
+    """Creepage, ξ [-], positive if disc 1 is the faster one, of magnitude at most 1."""
+    rolled_distance: Annotated[wl.QuantityLike, wl.Unit("km", positive=False, negative=False)]
+    """Distance that the bodies have rolled since they were new [m], for laws of running-in."""
+    friction_coefficient: Required[wl.Friction]
+    """Friction coefficient, μ [-]."""
+    traction_coefficient: wl.Coefficient
+    """Measured tangential over normal force, T/N [-], for contact models that can use it."""
 
 
-TWIN_DISC = ConditionTable(
-    LOADS,
-    ("creepage",),
-    COEFFICIENTS,
-    {"creepage": 'Q(1, "%")', "friction_coefficient": "0.46"},
-    ("rolled_distance",),
-)
-"""The conditions of a twin-disc test."""
-
-
-class Disc(Configuration):
+class Disc(wl.Configuration):
     """A disc of a twin-disc rig."""
 
-    diameter: Annotated[Quantity, Unit("mm", infinite=True)]
+    diameter: Annotated[wl.Quantity, wl.Unit("mm", infinite=True)]
     """Diameter, D [m]; infinite for a flat body."""
-    material: MaterialField
+    material: wl.MaterialField
     """Material of the disc; a file may also give the name of an installed material."""
 
     if TYPE_CHECKING:
 
-        def __init__(self, *, diameter: QuantityLike, material: Material) -> None: ...
+        def __init__(self, *, diameter: wl.QuantityLike, material: wl.Material) -> None: ...
 
 
-class TwinDisc(Rig):
+class TwinDisc(wl.Rig):
     """Two discs with parallel axes, pressed together and rolling with slip.
 
     Disc 1 is the wheel disc, whose wear is predicted; with positive creepage it is the faster one. The discs' elastic
@@ -105,12 +62,13 @@ class TwinDisc(Rig):
         "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(c), after Tassini et al., Wear"
         " 268 (2010) 660-667, eqs. (1) and (2)"
     )
-    patch_geometry: ClassVar[Geometry | None] = "line"
+    patch_geometry: ClassVar[wl.Geometry | None] = "line"
     example: ClassVar[Mapping[str, Any]] = {
         "max_pressure": "1500 MPa",
         "creepage": "1 %",
         "friction_coefficient": 0.46,
     }
+    choices: ClassVar = [("normal_force", "normal_force_per_width", "max_pressure")]
     example_fields: ClassVar[Mapping[str, Any]] = {
         "disc_1": {"diameter": "47 mm", "material": "steel"},
         "disc_2": {"diameter": "47 mm", "material": "steel"},
@@ -122,9 +80,9 @@ class TwinDisc(Rig):
     """The wheel disc."""
     disc_2: Disc
     """The rail disc."""
-    track_width: Length
+    track_width: wl.Length
     """Width of the running track across the rolling direction [m]."""
-    rolling_speed: Speed
+    rolling_speed: wl.Speed
     """Surface speed that the rig keeps at every creepage, V [m/s] unless `speed_of` is "disc_1"."""
     speed_of: SpeedOf = "mean"
     """Whose surface speed the rig keeps: "mean", that of both discs, which is V; or "disc_1". If disc 1 keeps its speed
@@ -137,8 +95,8 @@ class TwinDisc(Rig):
             *,
             disc_1: Disc,
             disc_2: Disc,
-            track_width: QuantityLike,
-            rolling_speed: QuantityLike,
+            track_width: wl.QuantityLike,
+            rolling_speed: wl.QuantityLike,
             speed_of: SpeedOf = "mean",
         ) -> None: ...
 
@@ -152,13 +110,13 @@ class TwinDisc(Rig):
     def suros(
         cls,
         *,
-        diameter: Annotated[QuantityLike, Unit("mm")] = "47 mm",
-        material: MaterialField | None = None,
+        diameter: Annotated[wl.QuantityLike, wl.Unit("mm")] = "47 mm",
+        material: wl.MaterialField | None = None,
         disc_1: Disc | None = None,
         disc_2: Disc | None = None,
-        track_width: Annotated[QuantityLike, Unit("mm")] = "10 mm",
-        rotational_speed: Annotated[QuantityLike, Unit("rpm")] | None = None,
-        rolling_speed: Annotated[QuantityLike, Unit("m/s")] | None = None,
+        track_width: Annotated[wl.QuantityLike, wl.Unit("mm")] = "10 mm",
+        rotational_speed: Annotated[wl.QuantityLike, wl.Unit("rpm")] | None = None,
+        rolling_speed: Annotated[wl.QuantityLike, wl.Unit("m/s")] | None = None,
         speed_of: SpeedOf | None = None,
     ) -> TwinDisc:
         """Return the rig of the University of Sheffield: steel discs of 47 mm, a 10 mm track, disc 1 at 400 rpm.
@@ -184,7 +142,7 @@ class TwinDisc(Rig):
         Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, read in a secondary transcription. It gives 400 rpm
         as the nominal speed; that disc 1 keeps it is an interpretation.
         """
-        standard = Disc(diameter=diameter, material=steel() if material is None else material)
+        standard = Disc(diameter=diameter, material=wl.steel() if material is None else material)
         disc_1 = standard if disc_1 is None else _disc("disc_1", disc_1)
         disc_2 = standard if disc_2 is None else _disc("disc_2", disc_2)
         if speed_of is None:
@@ -192,7 +150,7 @@ class TwinDisc(Rig):
         if rolling_speed is None:
             rolling_speed = _surface_speed(disc_1, "400 rpm" if rotational_speed is None else rotational_speed)
         elif rotational_speed is not None:
-            raise InputError("rolling_speed: follows from rotational_speed; give one of the two")
+            raise wl.InputError("rolling_speed: follows from rotational_speed; give one of the two")
         return cls(
             disc_1=disc_1,
             disc_2=disc_2,
@@ -202,36 +160,13 @@ class TwinDisc(Rig):
         )
 
     @classmethod
-    def conditions(cls) -> tuple[str, ...]:
-        """Return the names of the conditions, some of which exclude each other."""
-        return TWIN_DISC.names
-
-    @classmethod
-    def needed(cls) -> tuple[str, ...]:
-        """Return the names of the required conditions, besides one of the loads."""
-        return tuple(TWIN_DISC.examples)
-
-    @classmethod
-    def presets(cls) -> Mapping[str, Callable[..., Rig]]:
+    def presets(cls) -> Mapping[str, Callable[..., wl.Rig]]:
         """Return the rig of the University of Sheffield."""
         return {"suros": cls.suros}
 
-    @np.errstate(all="ignore")  # `check_sizes` rejects what overflows
-    def problem(self, /, **conditions: Unpack[TwinDiscConditions]) -> Problem:
+    @np.errstate(all="ignore")  # `checked` rejects what overflows
+    def problem(self, /, **conditions: Unpack[TwinDiscConditions]) -> wl.Problem:
         """Return the contact problem that the conditions of a test pose.
-
-        Parameters
-        ----------
-        normal_force, normal_force_per_width, max_pressure : Quantity or str
-            The load, exactly one of them: N [N], P [N/m] or p0 [Pa].
-        creepage : Quantity or str
-            ξ, a ratio or in percent, of magnitude at most 1.
-        friction_coefficient : array_like of float, Quantity, str or FallingFriction
-            μ [-].
-        traction_coefficient : array_like of float, Quantity or str, optional
-            Measured T/N [-], for contact models that can use it.
-        rolled_distance : Quantity or str, optional
-            Distance rolled since the discs were new [m], for laws of running-in.
 
         Raises
         ------
@@ -241,13 +176,9 @@ class TwinDisc(Rig):
             If a condition lacks its unit or is out of bounds.
         """
         constants = self._constants
-        arrays = condition_arrays(
-            conditions, TWIN_DISC, lambda a: self._mean_speed(a["creepage"]) * np.abs(a["creepage"])
-        )
+        arrays = self.in_si(conditions, lambda a: self._mean_speed(a["creepage"]) * np.abs(a["creepage"]))
         per_width = self._normal_force_per_width(arrays)
-        half_width = hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
-        max_pressure = hertz.max_pressure(per_width, half_width)
-        check_sizes({"half width": half_width, "max pressure": max_pressure}, arrays)
+        half_width = wl.hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
         creepage = arrays["creepage"]
         shape = creepage.shape
         same: dict[str, Any] = self._same
@@ -255,11 +186,11 @@ class TwinDisc(Rig):
         if shape:
             same = {name: np.broadcast_to(value, shape) for name, value in same.items()}
             rolling_speed = np.broadcast_to(rolling_speed, shape)
-        return Problem(
+        return wl.Problem(
             geometry="line",
             a=half_width,
             normal_force=per_width * constants["track_width"],
-            max_pressure=max_pressure,
+            max_pressure=wl.hertz.max_pressure(per_width, half_width),
             friction_coefficient=arrays["friction_coefficient"],
             longitudinal_creepage=creepage,
             rolling_speed=rolling_speed,
@@ -267,17 +198,17 @@ class TwinDisc(Rig):
             rolled_distance=arrays.get("rolled_distance"),
             bodies=self._bodies,
             **same,
-        )
+        ).checked()
 
     @property
-    def bodies(self) -> Mapping[str, Body]:
+    def bodies(self) -> Mapping[str, wl.Body]:
         """The two discs, "disc_1" and "disc_2"."""
         return self._bodies
 
     @cached_property
-    def _bodies(self) -> dict[str, Body]:
+    def _bodies(self) -> dict[str, wl.Body]:
         discs = {"disc_1": self.disc_1, "disc_2": self.disc_2}
-        return {name: Body(disc.material, 0.5 * scalar_si(disc.diameter, "m")) for name, disc in discs.items()}
+        return {name: wl.Body(disc.material, 0.5 * wl.scalar_si(disc.diameter, "m")) for name, disc in discs.items()}
 
     def _mean_speed(self, creepage: Array) -> Array:
         """Return V [m/s], the mean of the surface speeds, at creepages ξ [-]."""
@@ -290,7 +221,7 @@ class TwinDisc(Rig):
     def _normal_force_per_width(self, arrays: dict[str, Array]) -> Array:
         constants = self._constants
         if "max_pressure" in arrays:
-            return hertz.force_from_max_pressure(
+            return wl.hertz.force_from_max_pressure(
                 arrays["max_pressure"], constants["relative_radius"], constants["effective_modulus"]
             )
         if "normal_force" in arrays:
@@ -302,17 +233,17 @@ class TwinDisc(Rig):
     def _constants(self) -> dict[str, Any]:
         """Constants of the rig, as SI scalars."""
         discs = (self.disc_1, self.disc_2)
-        radii = (0.5 * scalar_si(disc.diameter, "m") for disc in discs)
+        radii = (0.5 * wl.scalar_si(disc.diameter, "m") for disc in discs)
         (e_1, nu_1), (e_2, nu_2) = (
-            (scalar_si(d.material.youngs_modulus, "Pa"), d.material.poisson_ratio) for d in discs
+            (wl.scalar_si(d.material.youngs_modulus, "Pa"), d.material.poisson_ratio) for d in discs
         )
         values = {
-            "relative_radius": hertz.relative_radius(*radii),
-            "effective_modulus": hertz.effective_modulus(e_1, nu_1, e_2, nu_2),
-            "poisson_ratio": hertz.mean_poisson_ratio(e_1, nu_1, e_2, nu_2),
-            "rolling_speed": scalar_si(self.rolling_speed, "m/s"),
-            "track_width": scalar_si(self.track_width, "m"),
-            "density": scalar_si(self.disc_1.material.density, "kg/m^3"),
+            "relative_radius": wl.hertz.relative_radius(*radii),
+            "effective_modulus": wl.hertz.effective_modulus(e_1, nu_1, e_2, nu_2),
+            "poisson_ratio": wl.hertz.mean_poisson_ratio(e_1, nu_1, e_2, nu_2),
+            "rolling_speed": wl.scalar_si(self.rolling_speed, "m/s"),
+            "track_width": wl.scalar_si(self.track_width, "m"),
+            "density": wl.scalar_si(self.disc_1.material.density, "kg/m^3"),
         }
         return {name: np.float64(value) for name, value in values.items()}
 
@@ -333,29 +264,29 @@ def _disc(name: str, disc: Disc) -> Disc:
     """Return a disc, or raise an error that names the argument."""
     try:
         return Disc.model_validate(disc)
-    except ConfigurationError as error:
-        faults = [Fault((name, *fault.path), fault.message) for fault in error.problems]
-        raise ConfigurationError(TwinDisc.subject(), faults) from None
+    except wl.ConfigurationError as error:
+        problems = [dataclasses.replace(fault, path=(name, *fault.path)) for fault in error.problems]
+        raise wl.ConfigurationError(TwinDisc.subject(), problems) from None
 
 
-def _surface_speed(disc: Disc, rotational_speed: QuantityLike) -> Quantity:
+def _surface_speed(disc: Disc, rotational_speed: wl.QuantityLike) -> wl.Quantity:
     """Return the speed of a disc's surface, ω D/2."""
-    diameter = scalar_si(disc.diameter, "m")
+    diameter = wl.scalar_si(disc.diameter, "m")
     if np.isinf(diameter):
-        raise InputError("rolling_speed: a flat disc_1 has no rotational speed; give rolling_speed instead")
-    angular = Unit("rpm").si(rotational_speed, "rotational_speed")
+        raise wl.InputError("rolling_speed: a flat disc_1 has no rotational speed; give rolling_speed instead")
+    angular = wl.Unit("rpm").si(rotational_speed, "rotational_speed")
     if angular.ndim:
-        raise UnitError(f"rotational_speed: must be one value, got an array of shape {angular.shape}")
-    unit = str((parse(rotational_speed) if isinstance(rotational_speed, str) else rotational_speed).units)
+        raise wl.UnitError(f"rotational_speed: must be one value, got an array of shape {angular.shape}")
+    unit = str((wl.parse(rotational_speed) if isinstance(rotational_speed, str) else rotational_speed).units)
     if not any(angle in unit for angle in ("radian", "degree", "turn", "revolutions")):
-        raise UnitError(
-            f"rotational_speed: got a value in {shown(unit)}, which does not say whether it counts revolutions or"
+        raise wl.UnitError(
+            f"rotational_speed: got a value in {wl.shown(unit)}, which does not say whether it counts revolutions or"
             ' radians; give it in rpm or rad/s, such as "400 rpm"'
         )
-    return Q(float(angular) * 0.5 * diameter, "m/s")
+    return wl.Q(float(angular) * 0.5 * diameter, "m/s")
 
 
-@hookimpl
-def wearlaw_models() -> list[type[Rig]]:
+@wl.hookimpl
+def wearlaw_models() -> list[type[wl.Rig]]:
     """Return the rig of this plugin."""
     return [TwinDisc]

@@ -10,69 +10,40 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Required
 import numpy as np
 from pydantic import Field, field_validator, model_validator
 
-from wearlaw.arrays.array import Array
-from wearlaw.contact import hertz, hertz_ellipse
-from wearlaw.contact.conditions import COEFFICIENTS, ConditionTable, FrictionLaw, condition_arrays
-from wearlaw.contact.material import Material
-from wearlaw.contact.problem import Body, Geometry, Problem
-from wearlaw.errors import UnitError
-from wearlaw.hookspecs import hookimpl
-from wearlaw.pipeline.pipeline import TINY, Rig, check_sizes
-from wearlaw.plugins.fields import MaterialField
-from wearlaw.units.quantities import Length, Quantity, QuantityLike, Speed, Unit, from_si, scalar_si
+import wearlaw as wl
+from wearlaw import Array
 
-Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
-Angle = Annotated[Quantity, Unit("deg", positive=False)]
+Radius = Annotated[wl.Quantity, wl.Unit("mm", positive=False, infinite=True)]
+Angle = Annotated[wl.Quantity, wl.Unit("deg", positive=False)]
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+
+LEAST_RADIUS = 1e-150
+"""Least magnitude of a radius of curvature [m]; its square is a float of full precision."""
 
 
 class WheelRailConditions(TypedDict, total=False):
-    """The conditions of a wheel on a rail; arrays broadcast against each other.
+    """The conditions of a wheel on a rail; exactly one of the first two gives the load. Arrays broadcast.
 
-    Exactly one of `normal_force` and `max_pressure` gives the load. Creepages are the velocity of the wheel minus that
-    of the rail, over V, as in CONTACT; a positive spin adds to a positive lateral creepage at the leading edge. The
-    contact angle is positive where the surface falls towards y.
-
-    Attributes
-    ----------
-    normal_force : Quantity or str
-        Normal force, N [N].
-    max_pressure : Quantity or str
-        Hertz's maximum pressure, p0 [Pa].
-    longitudinal_creepage : Quantity or str
-        Longitudinal creepage, ξ [-], of magnitude at most 1; positive if the wheel is braked.
-    lateral_creepage : Quantity or str
-        Lateral creepage, η [-], of magnitude at most 1; zero if not given.
-    spin : Quantity or str
-        Spin, φ [1/m]; that of the contact angle, sin δ / r, if not given.
-    contact_angle : Quantity or str
-        Contact angle, δ [rad], between -90 and 90 deg; that of the rig if not given.
-    friction_coefficient : array_like of float, Quantity, str or FallingFriction
-        Friction coefficient, μ [-].
-    rolled_distance : Quantity or str
-        Distance that the bodies have rolled since they were new [m], for laws of running-in.
+    Creepages are the velocity of the wheel minus that of the rail, over V, as in CONTACT; a positive spin adds to a
+    positive lateral creepage at the leading edge. The contact angle is positive where the surface falls towards y.
     """
 
-    normal_force: QuantityLike
-    max_pressure: QuantityLike
-    longitudinal_creepage: Required[QuantityLike]
-    lateral_creepage: QuantityLike
-    spin: QuantityLike
-    contact_angle: QuantityLike
-    friction_coefficient: Required[ArrayLike | FrictionLaw]
-    rolled_distance: QuantityLike
-
-
-WHEEL_RAIL = ConditionTable(
-    ("normal_force", "max_pressure"),
-    ("longitudinal_creepage", "lateral_creepage", "spin"),
-    COEFFICIENTS[:1],
-    {"longitudinal_creepage": 'Q(0.2, "%")', "friction_coefficient": "0.3"},
-    ("contact_angle", "rolled_distance"),
-)
-"""The conditions of a wheel on a rail."""
+    normal_force: Annotated[wl.QuantityLike, wl.Unit("kN")]
+    """Normal force, N [N]."""
+    max_pressure: Annotated[wl.QuantityLike, wl.Unit("MPa")]
+    """Hertz's maximum pressure, p0 [Pa]."""
+    longitudinal_creepage: Required[wl.Creepage]
+    """Longitudinal creepage, ξ [-], of magnitude at most 1; positive if the wheel is braked."""
+    lateral_creepage: wl.Creepage
+    """Lateral creepage, η [-], of magnitude at most 1; zero if not given."""
+    spin: Annotated[wl.QuantityLike, wl.Unit("1/m", positive=False)]
+    """Spin, φ [1/m]; that of the contact angle, sin δ / r, if not given."""
+    contact_angle: Annotated[wl.QuantityLike, wl.Unit("deg", positive=False)]
+    """Contact angle, δ [rad], between -90 and 90 deg; that of the rig if not given."""
+    rolled_distance: Annotated[wl.QuantityLike, wl.Unit("km", positive=False, negative=False)]
+    """Distance that the bodies have rolled since they were new [m], for laws of running-in."""
+    friction_coefficient: Required[wl.Friction]
+    """Friction coefficient, μ [-]."""
 
 
 class _Patch(NamedTuple):
@@ -93,7 +64,7 @@ class _Constants(NamedTuple):
     rolling_speed: float
 
 
-class WheelRail(Rig):
+class WheelRail(wl.Rig):
     """A wheel that rolls on a straight rail and touches it in a point, which the load widens to an ellipse.
 
     Radii of curvature are positive for a convex body, infinite for a flat one and negative for a concave one. The
@@ -107,8 +78,9 @@ class WheelRail(Rig):
 
     name: ClassVar[str] = "wheel_rail"
     source: ClassVar[str] = "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(b)"
-    patch_geometry: ClassVar[Geometry | None] = "ellipse"
-    creepage: ClassVar[str] = "longitudinal_creepage"
+    patch_geometry: ClassVar[wl.Geometry | None] = "ellipse"
+    creepage: ClassVar = "longitudinal_creepage"
+    choices: ClassVar = [("normal_force", "max_pressure")]
     example: ClassVar[Mapping[str, Any]] = {
         "normal_force": "80 kN",
         "longitudinal_creepage": "0.2 %",
@@ -123,7 +95,7 @@ class WheelRail(Rig):
         "rolling_speed": "30 m/s",
     }
 
-    wheel_radius: Length
+    wheel_radius: wl.Length
     """Rolling radius of the wheel at the contact point, from the axle, r [m]."""
     rail_head_radius: Radius
     """Lateral radius of the rail head at the contact point [m]."""
@@ -132,11 +104,11 @@ class WheelRail(Rig):
     contact_angle: Angle = Field(default="0 deg", validate_default=True)
     """Contact angle, δ [rad], between -90 and 90 deg, positive where the surface falls towards y; the condition of the
     same name replaces it."""
-    material: MaterialField
+    material: wl.MaterialField
     """Material of wheel and rail; a file may also give the name of an installed material."""
-    rail_material: MaterialField | None = None
+    rail_material: wl.MaterialField | None = None
     """Material of the rail, if it differs from the wheel's."""
-    rolling_speed: Speed
+    rolling_speed: wl.Speed
     """Rolling speed, V [m/s]."""
 
     if TYPE_CHECKING:
@@ -144,25 +116,25 @@ class WheelRail(Rig):
         def __init__(
             self,
             *,
-            wheel_radius: QuantityLike,
-            rail_head_radius: QuantityLike,
-            wheel_profile_radius: QuantityLike = "inf mm",
-            contact_angle: QuantityLike = "0 deg",
-            material: Material,
-            rail_material: Material | None = None,
-            rolling_speed: QuantityLike,
+            wheel_radius: wl.QuantityLike,
+            rail_head_radius: wl.QuantityLike,
+            wheel_profile_radius: wl.QuantityLike = "inf mm",
+            contact_angle: wl.QuantityLike = "0 deg",
+            material: wl.Material,
+            rail_material: wl.Material | None = None,
+            rolling_speed: wl.QuantityLike,
         ) -> None: ...
 
     @field_validator("contact_angle")
     @classmethod
-    def _not_upright(cls, angle: Quantity) -> Quantity:
-        _check_angle(scalar_si(angle, "rad"))
+    def _not_upright(cls, angle: wl.Quantity) -> wl.Quantity:
+        _check_angle(wl.scalar_si(angle, "rad"))
         return angle
 
     @model_validator(mode="after")
     def _touch_in_a_point(self) -> WheelRail:
-        radii = scalar_si(self.rail_head_radius, "m"), scalar_si(self.wheel_profile_radius, "m")
-        if min(map(abs, radii)) < TINY:
+        radii = wl.scalar_si(self.rail_head_radius, "m"), wl.scalar_si(self.wheel_profile_radius, "m")
+        if min(map(abs, radii)) < LEAST_RADIUS:
             raise ValueError('a radius must not be zero or next to it; a flat body has the radius "inf mm"')
         across = 1.0 / radii[0] + 1.0 / radii[1]
         if across <= 0.0:
@@ -174,45 +146,20 @@ class WheelRail(Rig):
         return self
 
     @property
-    def bodies(self) -> Mapping[str, Body]:
+    def bodies(self) -> Mapping[str, wl.Body]:
         """The "wheel" and the "rail"."""
         return self._bodies
 
     @cached_property
-    def _bodies(self) -> dict[str, Body]:
+    def _bodies(self) -> dict[str, wl.Body]:
         return {
-            "wheel": Body(self.material, scalar_si(self.wheel_radius, "m")),
-            "rail": Body(self.rail_material or self.material, np.inf),
+            "wheel": wl.Body(self.material, wl.scalar_si(self.wheel_radius, "m")),
+            "rail": wl.Body(self.rail_material or self.material, np.inf),
         }
 
-    @classmethod
-    def conditions(cls) -> tuple[str, ...]:
-        """Return the names of the conditions, some of which exclude each other."""
-        return WHEEL_RAIL.names
-
-    @classmethod
-    def needed(cls) -> tuple[str, ...]:
-        """Return the names of the required conditions, besides one of the loads."""
-        return tuple(WHEEL_RAIL.examples)
-
-    @np.errstate(all="ignore")  # `check_sizes` rejects what overflows
-    def problem(self, /, **conditions: Unpack[WheelRailConditions]) -> Problem:
+    @np.errstate(all="ignore")  # `checked` rejects what overflows
+    def problem(self, /, **conditions: Unpack[WheelRailConditions]) -> wl.Problem:
         """Return the contact problem that the conditions pose.
-
-        Parameters
-        ----------
-        normal_force, max_pressure : Quantity or str
-            The load, exactly one of them: N [N] or p0 [Pa].
-        longitudinal_creepage, lateral_creepage : Quantity or str
-            ξ and η, ratios or in percent, of magnitude at most 1; η is zero if not given.
-        spin : Quantity or str
-            φ [1/m]; sin δ / r if not given.
-        contact_angle : Quantity or str
-            δ [rad], between -90 and 90 deg; that of the rig if not given.
-        friction_coefficient : array_like of float, Quantity, str or FallingFriction
-            μ [-].
-        rolled_distance : Quantity or str, optional
-            Distance rolled since the bodies were new [m], for laws of running-in.
 
         Raises
         ------
@@ -222,10 +169,11 @@ class WheelRail(Rig):
             If a condition lacks its unit or is out of bounds.
         """
         constants = self._constants
-        arrays = condition_arrays(
+        arrays = self.in_si(
             conditions,
-            WHEEL_RAIL,
             lambda a: constants.rolling_speed * np.hypot(a["longitudinal_creepage"], a["lateral_creepage"]),
+            lateral_creepage=0.0,
+            spin=0.0,
         )
         shape = arrays["longitudinal_creepage"].shape
         patch, angle = self._patch, arrays.get("contact_angle")
@@ -242,17 +190,14 @@ class WheelRail(Rig):
             arrays["normal_force"] = (pressure / patch.max_pressure) ** 3
         scale = np.cbrt(arrays["normal_force"])
         a, b = patch.a * scale, patch.b * scale
-        max_pressure = hertz_ellipse.max_pressure(arrays["normal_force"], a, b)
-        sizes = {"longer semi-axis": np.maximum(a, b), "shorter semi-axis": np.minimum(a, b)}
-        check_sizes({**sizes, "max pressure": max_pressure, "normal force": arrays["normal_force"]}, arrays)
         same: dict[str, Any] = constants._asdict()
         same = {name: np.broadcast_to(value, shape) if shape else np.float64(value) for name, value in same.items()}
-        return Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **same)
+        return wl.Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **same).checked()
 
     @cached_property
     def _angle(self) -> Array:
         """The contact angle of the rig [rad]."""
-        return np.asarray(scalar_si(self.contact_angle, "rad"))
+        return np.asarray(wl.scalar_si(self.contact_angle, "rad"))
 
     @cached_property
     def _patch(self) -> _Patch:
@@ -261,29 +206,34 @@ class WheelRail(Rig):
 
     def _patch_at(self, angle: Array) -> _Patch:
         """Return the patch at contact angles [rad], of their shape."""
-        modulus = hertz.effective_modulus(*(value for pair in self._elastic for value in pair))
+        modulus = wl.hertz.effective_modulus(*(value for pair in self._elastic for value in pair))
         radii = (self.wheel_radius, self.wheel_profile_radius, self.rail_head_radius)
-        wheel, profile, head = (np.asarray(scalar_si(radius, "m")) for radius in radii)
+        wheel, profile, head = (np.asarray(wl.scalar_si(radius, "m")) for radius in radii)
         load, straight = np.asarray(1.0), np.asarray(np.inf)
-        curvatures = hertz_ellipse.curvature(wheel / np.cos(angle), straight), hertz_ellipse.curvature(profile, head)
-        a, b = hertz_ellipse.semi_axes(load, *curvatures, modulus)
-        return _Patch(a, b, hertz_ellipse.max_pressure(load, a, b), np.sin(angle) / wheel)
+        curvatures = (
+            wl.hertz_ellipse.curvature(wheel / np.cos(angle), straight),
+            wl.hertz_ellipse.curvature(profile, head),
+        )
+        a, b = wl.hertz_ellipse.semi_axes(load, *curvatures, modulus)
+        return _Patch(a, b, wl.hertz_ellipse.max_pressure(load, a, b), np.sin(angle) / wheel)
 
     @cached_property
     def _constants(self) -> _Constants:
         (wheel, wheel_ratio), (rail, rail_ratio) = self._elastic
         return _Constants(
-            shear_modulus=hertz.mean_shear_modulus(0.5 * wheel / (1.0 + wheel_ratio), 0.5 * rail / (1.0 + rail_ratio)),
-            poisson_ratio=hertz.mean_poisson_ratio(wheel, wheel_ratio, rail, rail_ratio),
-            density=scalar_si(self.material.density, "kg/m^3"),
-            rolling_speed=scalar_si(self.rolling_speed, "m/s"),
+            shear_modulus=wl.hertz.mean_shear_modulus(
+                0.5 * wheel / (1.0 + wheel_ratio), 0.5 * rail / (1.0 + rail_ratio)
+            ),
+            poisson_ratio=wl.hertz.mean_poisson_ratio(wheel, wheel_ratio, rail, rail_ratio),
+            density=wl.scalar_si(self.material.density, "kg/m^3"),
+            rolling_speed=wl.scalar_si(self.rolling_speed, "m/s"),
         )
 
     @cached_property
     def _elastic(self) -> tuple[tuple[float, float], ...]:
         """E [Pa] and ν of the wheel and of the rail."""
         materials = (body.material for body in self._bodies.values())
-        return tuple((scalar_si(material.youngs_modulus, "Pa"), material.poisson_ratio) for material in materials)
+        return tuple((wl.scalar_si(material.youngs_modulus, "Pa"), material.poisson_ratio) for material in materials)
 
 
 def _check_angle(angle: Array | float, subject: str = "") -> None:
@@ -291,19 +241,19 @@ def _check_angle(angle: Array | float, subject: str = "") -> None:
     upright = np.abs(angle) >= 0.5 * np.pi
     if upright.any():
         first = float(np.asarray(angle)[upright].flat[0])
-        raise UnitError(
-            f"{subject}must lie between -90 and 90 deg, got {from_si(first, 'deg')!r}; give the angle of the surface to"
-            ' the axle, such as "70 deg" on a flange'
+        raise wl.UnitError(
+            f"{subject}must lie between -90 and 90 deg, got {wl.Q(np.degrees(first), 'deg')!r}; give the angle of the"
+            ' surface to the axle, such as "70 deg" on a flange'
         )
 
 
-@hookimpl
-def wearlaw_models() -> list[type[Rig]]:
+@wl.hookimpl
+def wearlaw_models() -> list[type[wl.Rig]]:
     """Return the rig of this plugin."""
     return [WheelRail]
 
 
-@hookimpl
+@wl.hookimpl
 def wearlaw_resources() -> dict[str, dict[str, str]]:
     """Return the study of a wheel on a rail."""
     return {"case": {"wheel_on_rail": Path(__file__).with_name("wheel_on_rail.toml").read_text(encoding="utf-8")}}

@@ -153,7 +153,7 @@ class Task:
     def friction_of(self, point: NDArray[np.intp], flange: NDArray[np.bool_], creep_speed: Array) -> Array:
         """Return the friction coefficients of patches [-] at creep speeds [m/s]."""
         tread, on_flange = (
-            one.coefficient(creep_speed) if isinstance(one, wl.FallingFriction) else one[point] for one in self.friction
+            one[point] if isinstance(one, np.ndarray) else one.coefficient(creep_speed) for one in self.friction
         )
         return np.where(flange, on_flange, tread)
 

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Required, Self, TypedDict, Unpack
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -24,7 +24,7 @@ from wearlaw_wheelset._search import Section, Touching, both_sides, searched, se
 from wearlaw_wheelset._search_loops import PATCHES
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
 DIMS: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2, 3)}
 """The axes of patches."""
@@ -32,19 +32,39 @@ DIMS: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch":
 HUGE = 1e12
 """Greatest value of a condition in its unit, whatever it is: products of several are floats."""
 
-UNITS = {
-    "lateral_displacement": wl.Unit("mm", positive=False, limit=HUGE),
-    "yaw": wl.Unit("mrad", positive=False, limit=HUGE),
-    "roll": wl.Unit("mrad", positive=False, limit=HUGE),
-    "vertical_load": wl.Unit("kN", limit=HUGE),
-    "axle_torque": wl.Unit("N*m", positive=False, limit=HUGE),
-    "angular_speed": wl.Unit("rad/s", limit=HUGE),
-    "lateral_velocity": wl.Unit("m/s", positive=False, limit=HUGE),
-    "yaw_velocity": wl.Unit("rad/s", positive=False, limit=HUGE),
-    "curve_radius": wl.Unit("m", positive=False, infinite=True),
-    "rolled_distance": wl.Unit("km", positive=False, limit=HUGE),
-}
-"""Units of the conditions."""
+DISPLACEMENT, ANGLE = (wl.Unit(unit, positive=False, limit=HUGE) for unit in ("mm", "mrad"))
+
+
+class WheelsetConditions(TypedDict, total=False):
+    """The conditions of a wheelset on two rails; arrays broadcast against each other."""
+
+    lateral_displacement: Required[Annotated[wl.QuantityLike, DISPLACEMENT]]
+    """Lateral displacement of the wheelset in the track, positive to the right [m]."""
+    vertical_load: Required[Annotated[wl.QuantityLike, wl.Unit("kN", limit=HUGE)]]
+    """Vertical load of each wheel, Q [N]."""
+    friction_coefficient: Required[wl.Friction]
+    """Friction coefficient, μ [-]."""
+    yaw: Annotated[wl.QuantityLike, ANGLE]
+    """Yaw, positive clockwise from above, ψ [rad]; zero if not given."""
+    roll: Annotated[wl.QuantityLike, ANGLE]
+    """Roll, positive if it lowers the right wheel, ρ [rad]. By default the one at which both wheels sink together under
+    their loads: gap plus penetration are equal."""
+    flange_friction_coefficient: wl.Friction
+    """Friction coefficient where the contact angle exceeds `flange_angle`, as on a lubricated flange [-]."""
+    axle_torque: Annotated[wl.QuantityLike, wl.Unit("N*m", positive=False, limit=HUGE)]
+    """Torque on the axle, positive if it drives, M [N m]. By default zero, a free axle."""
+    angular_speed: Annotated[wl.QuantityLike, wl.Unit("rad/s", limit=HUGE)]
+    """Speed of rotation instead of a torque, Ω [rad/s]."""
+    lateral_velocity: Annotated[wl.QuantityLike, wl.Unit("m/s", positive=False, limit=HUGE)]
+    """Velocity of the lateral displacement [m/s]."""
+    yaw_velocity: Annotated[wl.QuantityLike, wl.Unit("rad/s", positive=False, limit=HUGE)]
+    """Velocity of the yaw [rad/s]. Where no roll is given, the wheelset rolls with both velocities, so that both wheels
+    stay on their rails."""
+    curve_radius: Annotated[wl.QuantityLike, wl.Unit("m", positive=False, infinite=True)]
+    """Radius of the curve, positive to the right [m]. Infinite on straight track."""
+    rolled_distance: Annotated[wl.QuantityLike, wl.Unit("km", positive=False, negative=False, limit=HUGE)]
+    """Distance rolled since the bodies were new [m], for laws of running-in."""
+
 
 FLANGE_DEPTH = 10e-3
 """Depth below the taping line at which the thickness of a flange is measured (EN 15313) [m]."""
@@ -94,7 +114,6 @@ def _cant(value: object) -> object:
 
 Cant = Annotated[wl.Quantity, wl.Unit("rad", positive=False, limit=0.2), BeforeValidator(_cant)]
 Place = Annotated[wl.Quantity, wl.Unit("mm", positive=False)]
-Angle = Annotated[wl.Quantity, wl.Unit("deg")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -191,7 +210,7 @@ class Wheelset(wl.Rig):
     """Depth below the rail's highest point at which the gauge is measured [m]."""
     rail_cant: Cant = Field(default="0 rad", validate_default=True)
     """Angle by which the rails lean inwards, such as "1:40" [rad]."""
-    flange_angle: Angle = Field(default="30 deg", validate_default=True)
+    flange_angle: Annotated[wl.Quantity, wl.Unit("deg")] = Field(default="30 deg", validate_default=True)
     """Contact angle beyond which a patch takes `flange_friction_coefficient` [rad]."""
     pressure: Pressure = "kpec"
     """Normal problem. "kpec": strips by the method of Kik and Piotrowski with elliptic correction, for any profile.
@@ -248,10 +267,10 @@ class Wheelset(wl.Rig):
                 f" {'give them the other way round' if swapped else 'give one of each'}, or make the profile with the"
                 " other kind"
             )
-        lean = scalar(self.rail.apparent_cant)
-        if abs(lean) > 0.5 * scalar(self.rail_cant) > 0.0:
+        lean, cant = (wl.scalar_si(angle, "rad") for angle in (self.rail.apparent_cant, self.rail_cant))
+        if abs(lean) > 0.5 * cant > 0.0:
             raise ValueError(
-                f"rail_cant: is {np.degrees(scalar(self.rail_cant)):.3g} deg, but the head of the rail's profile"
+                f"rail_cant: is {np.degrees(cant):.3g} deg, but the head of the rail's profile"
                 f" leans by {np.degrees(lean):.3g} deg already; leave rail_cant out, or give a profile without cant"
             )
         play = self._flange_play
@@ -269,7 +288,7 @@ class Wheelset(wl.Rig):
                 f" inner faces do not fit rails {self.gauge!r} apart"
             )
         angle = patches(self._section, both_sides(straight, roll, straight), found).contact_angle[0, :, 0]
-        if np.abs(angle).max() > scalar(self.flange_angle):
+        if np.abs(angle).max() > wl.scalar_si(self.flange_angle, "rad"):
             raise ValueError(
                 f"gauge: in the middle of the track the wheels stand on their flanges, at a contact angle of"
                 f" {np.degrees(np.abs(angle).max()):.3g} deg; wheels {self.flange_back_distance!r} apart between their"
@@ -281,7 +300,7 @@ class Wheelset(wl.Rig):
     def bodies(self) -> Mapping[str, wl.Body]:
         """The "wheel" and the "rail"; the radius is the nominal one, and problems have those of their patches."""
         return {
-            "wheel": wl.Body(self.material, scalar(self.nominal_radius)),
+            "wheel": wl.Body(self.material, wl.scalar_si(self.nominal_radius, "m")),
             "rail": wl.Body(self.rail_material or self.material, np.inf),
         }
 
@@ -315,13 +334,16 @@ class Wheelset(wl.Rig):
             If an argument lacks its unit, is out of bounds or has too many values.
         """
         given = {"lateral_displacement": lateral_displacement, "yaw": yaw}
-        arrays = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
+        arrays = {
+            "lateral_displacement": DISPLACEMENT.si(lateral_displacement, "lateral_displacement"),
+            "yaw": ANGLE.si(yaw, "yaw"),
+        }
         for name, array in arrays.items():
             if array.ndim > 1:
                 raise wl.InputError(f"{name}: must have at most one axis, got an array of shape {array.shape}")
         axes = {name: wl.parse(value) if isinstance(value, str) else value for name, value in given.items()}
         displacement, turned = (array.ravel() for array in np.meshgrid(*arrays.values(), indexing="ij"))
-        fixed = None if roll is None else np.full(displacement.shape, _one(UNITS["roll"], roll, "roll"))
+        fixed = None if roll is None else np.full(displacement.shape, _one(ANGLE, roll, "roll"))
         most = _one(wl.Unit("mm", positive=False), within, "within")
         if most < 0.0:
             raise wl.UnitError(f"within: must not be negative, got {1e3 * most:.4g} mm")
@@ -329,7 +351,7 @@ class Wheelset(wl.Rig):
         rolls, found = searched(self._section, displacement, turned, fixed)
         self._check_contact(displacement, found)
         position = both_sides(displacement, rolls, turned)
-        return geometry(self._section, axes, rolls, found, position, most, scalar(self.nominal_radius))
+        return geometry(self._section, axes, rolls, found, position, most, wl.scalar_si(self.nominal_radius, "m"))
 
     def on_rails(self, displacement: Array) -> NDArray[np.bool_]:
         """Return whether both wheels touch their rails at lateral displacements [m], without yaw."""
@@ -338,7 +360,7 @@ class Wheelset(wl.Rig):
 
     def profiles_in_track(self) -> Profiles:
         """Return the right wheel and its rail in the middle of the track, as SI arrays."""
-        return profiles(self._section, scalar(self.nominal_radius))
+        return profiles(self._section, wl.scalar_si(self.nominal_radius, "m"))
 
     @steady
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
@@ -351,54 +373,10 @@ class Wheelset(wl.Rig):
         radius = patches(self._section, position, found).rolling_radius[..., 0]
         return wl.Q(equivalent_conicity(displacement, radius[:, 1] - radius[:, 0], most), "")
 
-    def problem(
-        self,
-        *,
-        lateral_displacement: wl.QuantityLike,
-        vertical_load: wl.QuantityLike,
-        friction_coefficient: ArrayLike | wl.FallingFriction,
-        yaw: wl.QuantityLike = "0 mrad",
-        roll: wl.QuantityLike | None = None,
-        flange_friction_coefficient: ArrayLike | wl.FallingFriction | None = None,
-        axle_torque: wl.QuantityLike | None = None,
-        angular_speed: wl.QuantityLike | None = None,
-        lateral_velocity: wl.QuantityLike = "0 m/s",
-        yaw_velocity: wl.QuantityLike = "0 rad/s",
-        curve_radius: wl.QuantityLike = "inf m",
-        rolled_distance: wl.QuantityLike | None = None,
-    ) -> wl.Problem:
+    def problem(self, **conditions: Unpack[WheelsetConditions]) -> wl.Problem:
         """Return the contact problem that the conditions pose; arrays broadcast against each other.
 
         The loads do not balance the creep forces yet; `balanced` does that, and a pipeline calls it.
-
-        Parameters
-        ----------
-        lateral_displacement : Quantity or str
-            Lateral displacement of the wheelset in the track, positive to the right [m].
-        vertical_load : Quantity or str
-            Vertical load of each wheel, Q [N].
-        friction_coefficient : array_like of float, Quantity, str or FallingFriction
-            Friction coefficient, μ [-].
-        yaw : Quantity or str
-            Yaw, positive clockwise from above, ψ [rad].
-        roll : Quantity or str, optional
-            Roll, positive if it lowers the right wheel, ρ [rad]. By default the one at which both wheels sink
-            together under their loads: gap plus penetration are equal.
-        flange_friction_coefficient : array_like of float, Quantity, str or FallingFriction, optional
-            Friction coefficient where the contact angle exceeds `flange_angle`, as on a lubricated flange [-].
-        axle_torque : Quantity or str, optional
-            Torque on the axle, positive if it drives, M [N m]. By default zero, a free axle.
-        angular_speed : Quantity or str, optional
-            Speed of rotation instead of a torque, Ω [rad/s].
-        lateral_velocity : Quantity or str
-            Velocity of the lateral displacement [m/s].
-        yaw_velocity : Quantity or str
-            Velocity of the yaw [rad/s]. Where no roll is given, the wheelset rolls with both velocities, so that both
-            wheels stay on their rails.
-        curve_radius : Quantity or str
-            Radius of the curve, positive to the right [m]. Infinite on straight track.
-        rolled_distance : Quantity or str, optional
-            Distance rolled since the bodies were new [m], for laws of running-in.
 
         Raises
         ------
@@ -408,19 +386,16 @@ class Wheelset(wl.Rig):
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
-        given = {name: value for name, value in locals().items() if name in UNITS and value is not None}
-        if axle_torque is not None and angular_speed is not None:
+        if conditions.get("axle_torque") is not None and conditions.get("angular_speed") is not None:
             raise wl.ConditionsError("give axle_torque or angular_speed, not both")
-        arrays = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
-        flange = friction_coefficient if flange_friction_coefficient is None else flange_friction_coefficient
-        friction = {"friction_coefficient": friction_coefficient, "flange_friction_coefficient": flange}
-        falling = {name: value for name, value in friction.items() if isinstance(value, wl.FallingFriction)}
-        arrays |= {name: wl.coefficient(value, name) for name, value in friction.items() if name not in falling}
+        arrays = self.in_si(conditions, yaw=0.0, lateral_velocity=0.0, yaw_velocity=0.0, curve_radius=np.inf)
         _check_given(arrays)
-        shape = _shape(arrays)
-        flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
-        tread, on_flange = (falling[name] if name in falling else flat[name] for name in friction)
-        balance = self._balance(flat, (tread, on_flange))
+        shape = arrays["yaw"].shape
+        flat = {name: array.reshape(-1) for name, array in arrays.items()}
+        # Laws of friction stay as they are given: each patch has a creep speed of its own.
+        friction: Mapping[str, Any] = {**conditions, **flat}
+        tread, on_flange = friction["friction_coefficient"], friction.get("flange_friction_coefficient")
+        balance = self._balance(flat, (tread, tread if on_flange is None else on_flange))
         return self._whole(balance, shape, flat.get("rolled_distance"))
 
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
@@ -454,11 +429,11 @@ class Wheelset(wl.Rig):
         self._check_contact(single[0], found)
         which = which.reshape(-1)
         rolls, found = rolls[which], Touching(*(array[which] for array in found))
-        speed = np.full(displacement.shape, scalar(self.rolling_speed))
+        speed = np.full(displacement.shape, wl.scalar_si(self.rolling_speed, "m/s"))
         turn_rate = given["yaw_velocity"] + speed / given["curve_radius"]
         task = Task(
             displacement, yaw, speed, given["lateral_velocity"], given["yaw_velocity"], turn_rate,
-            given["vertical_load"], friction, scalar(self.flange_angle),
+            given["vertical_load"], friction, wl.scalar_si(self.flange_angle, "rad"),
             given.get("axle_torque", np.zeros(displacement.shape)), given.get("angular_speed"), roll is None,
         )  # fmt: skip
         balance = Balance.begun(self._section, self._elastic, task, rolls, found, self.pressure, self.strips)
@@ -572,10 +547,10 @@ class Wheelset(wl.Rig):
         It is that of the right wheel.
         """
         across, radius = self._section.wheel_y.value, self._section.wheel_radius.value
-        deep = np.flatnonzero(radius > scalar(self.nominal_radius) + FLANGE_DEPTH)
+        deep = np.flatnonzero(radius > wl.scalar_si(self.nominal_radius, "m") + FLANGE_DEPTH)
         if not deep.size or self.wheel.curve.angle.min() > -FLANGE_SLOPE:
             return None
-        return 0.5 * scalar(self.gauge) - float(across[deep[-1]])
+        return 0.5 * wl.scalar_si(self.gauge, "m") - float(across[deep[-1]])
 
     @cached_property
     def _section(self) -> Section:
@@ -583,11 +558,12 @@ class Wheelset(wl.Rig):
             return section(
                 wheel.curve,
                 rail.curve,
-                nominal_radius=scalar(self.nominal_radius),
-                wheel_offset=0.5 * scalar(self.flange_back_distance) - scalar(self.flange_back_position),
-                cant=scalar(self.rail_cant),
-                gauge=scalar(self.gauge),
-                depth=scalar(self.gauge_depth),
+                nominal_radius=wl.scalar_si(self.nominal_radius, "m"),
+                wheel_offset=0.5 * wl.scalar_si(self.flange_back_distance, "m")
+                - wl.scalar_si(self.flange_back_position, "m"),
+                cant=wl.scalar_si(self.rail_cant, "rad"),
+                gauge=wl.scalar_si(self.gauge, "m"),
+                depth=wl.scalar_si(self.gauge_depth, "m"),
             )
 
         right = of(self.wheel, self.rail)
@@ -598,12 +574,12 @@ class Wheelset(wl.Rig):
     @cached_property
     def _elastic(self) -> Elastic:
         pair = [body.material for body in self.bodies.values()]
-        (e1, n1), (e2, n2) = ((scalar(one.youngs_modulus), one.poisson_ratio) for one in pair)
+        (e1, n1), (e2, n2) = ((wl.scalar_si(one.youngs_modulus, "Pa"), one.poisson_ratio) for one in pair)
         return Elastic(
             wl.hertz.effective_modulus(e1, n1, e2, n2),
             wl.hertz.mean_shear_modulus(0.5 * e1 / (1.0 + n1), 0.5 * e2 / (1.0 + n2)),
             wl.hertz.mean_poisson_ratio(e1, n1, e2, n2),
-            scalar(self.material.density),
+            wl.scalar_si(self.material.density, "kg/m^3"),
         )
 
 
@@ -611,11 +587,6 @@ def _climbing(balance: Balance) -> NDArray[np.bool_]:
     """Return which places are the first of a wheel and on its flange beyond the steepest place."""
     steepest = np.array([one.steepest for one in balance.section.sides])
     return np.asarray((balance.found.number == 0) & (balance.found.arc < steepest[balance.found.side]))
-
-
-def scalar(value: Any) -> float:
-    """Return a quantity with one value in SI."""
-    return float(value.to_base_units().magnitude if isinstance(value, wl.Quantity) else value)
 
 
 def _one(unit: wl.Unit, value: wl.QuantityLike, name: str) -> float:
@@ -631,10 +602,8 @@ LEAST_RADIUS, LEAST_LOAD, LEAST_FRICTION = 1e-3, 1e-6, 1e-12
 
 
 def _check_given(arrays: Mapping[str, Array]) -> None:
-    """Raise an error for a distance below zero, a curve without a radius, or a load or friction of nothing."""
-    distance, radius, load = arrays.get("rolled_distance"), arrays["curve_radius"], arrays["vertical_load"]
-    if distance is not None and (distance < 0.0).any():
-        raise wl.UnitError(f"rolled_distance: must not be negative, got {1e-3 * distance.min():.4g} km")
+    """Raise an error for a curve without a radius, or a load or friction of nothing."""
+    radius, load = arrays["curve_radius"], arrays["vertical_load"]
     if (radius == 0.0).any():
         raise wl.ConditionsError("curve_radius: must not be zero; straight track has an infinite radius, 'inf m'")
     if (np.abs(radius) < LEAST_RADIUS).any():
@@ -644,11 +613,3 @@ def _check_given(arrays: Mapping[str, Array]) -> None:
     for name in ("friction_coefficient", "flange_friction_coefficient"):
         if name in arrays and (arrays[name] < LEAST_FRICTION).any():
             raise wl.ConditionsError(f"{name}: must be {LEAST_FRICTION:g} or more, got {arrays[name].min():g}")
-
-
-def _shape(arrays: Mapping[str, Array]) -> tuple[int, ...]:
-    try:
-        return np.broadcast_shapes(*(array.shape for array in arrays.values()))
-    except ValueError:
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
-        raise wl.ConditionsError(f"the conditions do not broadcast against each other: {shapes}") from None

@@ -15,8 +15,6 @@ from tests.benchmarks.memory import in_fresh_process, peak_mib
 from tests.benchmarks.points import DEFAULT_FORCE, DEFAULT_FRICTION, Predict, pipeline, workload
 from tests.benchmarks.timing import Times, cpu_time, in_mode, side_by_side
 from wearlaw import Q, RangeWarning
-from wearlaw.contact.conditions import condition_arrays
-from wearlaw_twin_disc import TWIN_DISC
 
 DECADES = (10**3, 10**4, 10**5, 10**6, 10**7)
 SWEEP = 10**5
@@ -51,7 +49,7 @@ def rim(on: bool, rounds: int) -> Times:
     predict, conditions = pipeline(), workload(SWEEP).conditions()
     works = {
         "sweep": in_mode(on, lambda: predict(**conditions).wear_rate),
-        "conditions": lambda: condition_arrays(conditions, TWIN_DISC, lambda arrays: arrays["creepage"]),
+        "conditions": lambda: wl.TwinDisc.in_si(conditions, lambda arrays: arrays["creepage"]),
     }
     return side_by_side(works, rounds)
 

@@ -36,14 +36,9 @@ class Axle(wl.Rig):
     dims: ClassVar[Mapping[str, tuple[str | int, ...]]] = PATCHES
 
     @classmethod
-    def conditions(cls) -> tuple[str, ...]:
-        """Return the names of all conditions."""
-        return tuple(cls.example)
-
-    @classmethod
-    def needed(cls) -> tuple[str, ...]:
-        """Return the names of all conditions."""
-        return cls.conditions()
+    def conditions(cls) -> Mapping[str, wl.Condition]:
+        """Return the conditions of the example."""
+        return {name: wl.Condition(name, required=True) for name in cls.example}
 
     @property
     def bodies(self) -> Mapping[str, wl.Body]:

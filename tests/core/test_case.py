@@ -16,7 +16,6 @@ from tests.core import cases
 from tests.core.cases import OWN_TESTS, STEEL, InstallModel, case, changed, load, table
 from wearlaw.models.labels import labels
 from wearlaw.plugins import loader
-from wearlaw.units.variables import VARIABLES
 from wearlaw_studies.case import Case, case_schema, case_text, load_case, written
 
 
@@ -153,7 +152,12 @@ def test_the_schema_accepts_what_the_loader_accepts(validator: Any, content: cas
 def test_the_schema_describes_each_condition_by_its_meaning() -> None:
     discs, *_ = case_schema()["allOf"]
     conditions = discs["then"]["properties"]["sweeps"]["additionalProperties"]["properties"]
-    assert conditions["max_pressure"]["description"] == VARIABLES["max_pressure"].meaning == "Hertz's maximum pressure"
+    assert conditions["max_pressure"]["description"] == "Hertz's maximum pressure, p0 [Pa]."
+
+
+def test_the_schema_knows_that_one_load_is_given(validator: Any) -> None:
+    assert not validator.is_valid(changed("sweeps.creepage.normal_force", "1 kN"))
+    assert not validator.is_valid(changed("sweeps.creepage.max_pressure", None))
 
 
 def test_the_shipped_case_keeps_the_schema_and_reads_back_the_same(tmp_path: Path, validator: Any) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -113,7 +113,7 @@ def test_results_have_the_creepages_and_the_angle_of_each_patch(install_model: I
             return found.replaced(contact_angle=angle, spin=np.sin(angle) / 0.46)
 
         @classmethod
-        def conditions(cls) -> tuple[str, ...]:
+        def conditions(cls) -> Mapping[str, wl.Condition]:
             return Axle.conditions()
 
     install_model(Inclined)
@@ -361,7 +361,7 @@ def test_an_axis_of_patches_cannot_have_the_name_of_another_column(install_model
             return super().problem(**conditions).replaced(dims={self.axis: SIDES, "patch": PATCHES})
 
         @classmethod
-        def conditions(cls) -> tuple[str, ...]:
+        def conditions(cls) -> Mapping[str, wl.Condition]:
             return Axle.conditions()
 
     install_model(Misnamed)

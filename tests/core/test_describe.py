@@ -279,7 +279,14 @@ def test_the_example_of_a_rig_is_a_script_that_runs(name: str, monkeypatch: pyte
     assert made["rig"] == wl.rig(name, **rig.example_fields)
     assert made["found"].problem.normal_force == made["rig"].problem(**rig.example).normal_force
     monkeypatch.setattr(rig, "example", {})
-    assert describe(rig).endswith(f"\n  {rig.conditions()[-1]}")
+    assert "example:" not in describe(rig)
+
+
+def test_a_rig_shows_its_conditions_with_units_and_choices() -> None:
+    shown = said(wl.WheelRail)
+    assert "normal_force [kN] Normal force, N [N]." in shown
+    assert "friction_coefficient (must be given) Friction coefficient, μ [-]." in shown
+    assert "exactly one of normal_force, max_pressure must be given" in shown
 
 
 class Exempt(wl.WearLaw):

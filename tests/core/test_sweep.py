@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 from pathlib import Path
@@ -56,6 +57,7 @@ def test_a_sweep_solves_each_point_once(monkeypatch: pytest.MonkeyPatch) -> None
         solved.append(contact.size)
         return solve_ellipse(self, contact)
 
+    @functools.wraps(problem)
     def counted_problem(self: Any, **conditions: Any) -> wl.Problem:
         made.append(conditions)
         return problem(self, **conditions)

@@ -79,14 +79,14 @@ def test_a_wheelset_that_cannot_be_is_refused(changed: dict[str, Any], message: 
         (
             {"lateral_displacement": Q([1.0, 2.0, 3.0], "mm"), "friction_coefficient": [0.2, 0.3]},
             wl.ConditionsError,
-            r"do not broadcast .*lateral_displacement \(3,\), friction_coefficient \(2,\)",
+            r"do not broadcast: lateral_displacement \(3,\), friction_coefficient \(2,\)",
         ),
         ({"axle_torque": "20 kN*m"}, wl.ConditionsError, "axle_torque: .* is more than friction can transmit"),
         ({"axle_torque": "1 N*m", "angular_speed": "43 rad/s"}, wl.ConditionsError, "not both"),
         ({"curve_radius": "0 m"}, wl.ConditionsError, "curve_radius: must not be zero; straight track has"),
         ({"curve_radius": "-5e-10 m"}, wl.ConditionsError, "curve_radius: must be 0.001 m or more, got 5e-10 m"),
         ({"vertical_load": "1e-30 kN"}, wl.ConditionsError, "vertical_load: must be 1e-06 N or more, got 1e-27 N"),
-        ({"rolled_distance": "-2 km"}, wl.UnitError, "rolled_distance: must not be negative, got -2 km"),
+        ({"rolled_distance": "-2 km"}, wl.UnitError, "rolled_distance: must not be negative, got -2.000 km"),
         ({"displacement": "1 mm"}, wl.ConditionsError, "displacement: unknown condition"),
         ({"vertical_load": None}, wl.WearlawError, "vertical_load"),
     ],
@@ -104,6 +104,20 @@ def test_friction_in_percent_is_a_ratio() -> None:
     one, other = (pair().problem(**values).friction_coefficient for values in (given, {**given, **in_percent}))
     assert {*one[np.isfinite(one)]} == {0.25, 0.125}
     np.testing.assert_allclose(other, one, rtol=2 * np.finfo(float).eps)  # the factor and the product round
+
+
+def test_friction_of_a_users_own_law_is_that_of_its_numbers() -> None:
+    class Wet:
+        """Friction that does not fall."""
+
+        def coefficient(self, creep_speed: wl.Array) -> wl.Array:
+            return np.full(creep_speed.shape, 0.3)
+
+    predict = pair() | wl.contact_model("fastsim")
+    found, expected = (
+        predict(**{**GIVEN, "friction_coefficient": one}).longitudinal_force.magnitude for one in (Wet(), 0.3)
+    )
+    np.testing.assert_array_equal(found, expected)
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar, NotRequired, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -51,7 +51,7 @@ class Delegating(wl.Rig):
     creepage: ClassVar[str] = "longitudinal_creepage"
 
     @classmethod
-    def conditions(cls) -> tuple[str, ...]:
+    def conditions(cls) -> Mapping[str, wl.Condition]:
         return wl.WheelRail.conditions()
 
     def problem(self, **conditions: Any) -> wl.Problem:
@@ -67,11 +67,8 @@ class Changed(Weight):
         return dataclasses.replace(problem, **self.changed(problem))
 
     @classmethod
-    def conditions(cls) -> tuple[str, ...]:
+    def conditions(cls) -> Mapping[str, wl.Condition]:
         return Weight.conditions()
-
-    def check_names(self, conditions: Mapping[str, Any]) -> None:
-        Weight().check_names(conditions)
 
     def changed(self, problem: Any) -> dict[str, Any]:
         raise NotImplementedError
@@ -171,6 +168,27 @@ class TakesBareNumbers(Weight):
         return super().problem(mass=given, creepage=creepage, friction_coefficient=friction_coefficient)
 
 
+class WeightConditions(TypedDict):
+    """Conditions of the right one, and one that it may leave out."""
+
+    mass: Annotated[wl.QuantityLike, wl.Unit("kg")]
+    creepage: wl.Creepage
+    friction_coefficient: wl.Coefficient
+    preload: NotRequired[Annotated[wl.QuantityLike, wl.Unit("N")]]
+
+
+class TakesBarePreloads(Weight):
+    """Declares a condition that its example leaves out, and takes it without its unit."""
+
+    def problem(self, **conditions: Unpack[WeightConditions]) -> wl.Problem:
+        given = self.in_si({name: value for name, value in conditions.items() if name != "preload"})
+        return DISCS.problem(
+            normal_force=wl.Q(given["mass"] * 9.81 * float((self.arm / wl.Q(0.25, "m")).m_as("")), "N"),
+            creepage=wl.Q(given["creepage"], ""),
+            friction_coefficient=given["friction_coefficient"],
+        )
+
+
 class NumberWithoutUnit(Weight):
     """Reads the number of a mass whatever its unit."""
 
@@ -220,7 +238,7 @@ class OnStrips(wl.Rig):
     example: ClassVar[Mapping[str, Any]] = Axle.example
 
     @classmethod
-    def conditions(cls) -> tuple[str, ...]:
+    def conditions(cls) -> Mapping[str, wl.Condition]:
         return Axle.conditions()
 
     def problem(self, **conditions: Any) -> wl.Problem:
@@ -254,6 +272,7 @@ CAUGHT: dict[type[wl.Rig], str] = {
     CreepageFromZero: "creepage_is_proportional_to_its_condition",
     MagnitudeOfCreepage: "only_creepage_turns_with_its_sign",
     TakesBareNumbers: "units_of_conditions_are_checked",
+    TakesBarePreloads: "units_of_conditions_are_checked",
     NumberWithoutUnit: "units_of_conditions_do_not_matter",
     TakesUnknownConditions: "unknown_and_missing_conditions_are_refused",
     NaNIsNoLoad: "values_that_are_no_numbers_are_refused",

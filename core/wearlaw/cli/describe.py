@@ -35,7 +35,7 @@ def describe(model: type[Model], parameter_set: str | None = None) -> str:
     lines = [*_headline(model, parameter_set), "", inspect.getdoc(model) or ""]
     lines += ["", *wrapped("source: ", model.source), "", "fields:", *fields_of(model, default)]
     if issubclass(model, Rig):
-        conditions = ["", "conditions:", *(f"  {name}" for name in model.conditions())]
+        conditions = ["", "conditions:", *_conditions(model)]
         declared = ["", "declares:", *(f"  {text}" for text in _not_kept(default))]
         return "\n".join([*lines, *conditions, *_example(model), *(declared if len(declared) > 2 else [])])
     if issubclass(model, Reader):
@@ -76,6 +76,15 @@ def _headline(model: type[Model], parameter_set: str | None) -> Iterator[str]:
     if parameter_set is not None:
         yield f"{parameter_set}: a parameter set of {found.parameter_sets.origin(parameter_set)}, for"
     yield f"{model.name}: a {model.kind} of {found.of_kind(model.kind).origin(model.name)}"
+
+
+def _conditions(rig: type[Rig]) -> Iterator[str]:
+    """Yield lines about each condition."""
+    for name, condition in rig.conditions().items():
+        unit = condition.unit and (symbol(Q(1.0, condition.unit.unit).units, "~P") or "-")
+        yield f"  {name}{f' [{unit}]' if unit else ''}{' (must be given)' if condition.required else ''}"
+        yield from wrapped("      ", condition.meaning)
+    yield from (f"  exactly one of {', '.join(names)} must be given" for names in rig.choices)
 
 
 def _example(rig: type[Rig]) -> Iterator[str]:

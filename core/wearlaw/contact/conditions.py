@@ -1,23 +1,25 @@
-"""The conditions of a test: check the user's values and units, and broadcast them against each other."""
+"""The conditions of a rig: read from their declaration, checked, and broadcast against each other."""
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeGuard
+from functools import cache
+from types import SimpleNamespace
+from typing import Annotated, Any, NotRequired, Protocol, Required, TypeAlias, TypeGuard, Unpack, get_args, get_origin
+from typing import get_type_hints as hints_of
 
 import numpy as np
 import pint
+from numpy.typing import ArrayLike
 
 from wearlaw.arrays.array import Array, extremes, read_only
-from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described, did_you_mean
-from wearlaw.units.quantities import Q, Unit, coefficient, parse, real_array
+from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described
+from wearlaw.settings.docstrings import item_docstrings
+from wearlaw.units.quantities import Q, QuantityLike, Unit, coefficient, parse, real_array
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import VARIABLES, expected
-
-if TYPE_CHECKING:
-    pass
+from wearlaw.units.variables import meaning_of
 
 Arrays: TypeAlias = dict[str, Array]
 """SI arrays of the conditions, by name."""
@@ -31,112 +33,106 @@ class FrictionLaw(Protocol):
         ...
 
 
+Coefficient: TypeAlias = Annotated[ArrayLike, coefficient]
+"""A condition that is a positive number without a unit, checked by `wearlaw.coefficient`."""
+
+Friction: TypeAlias = Annotated[ArrayLike | FrictionLaw, coefficient]
+"""A coefficient of friction, or a law that gives it for the speed of sliding, such as `FallingFriction`."""
+
+Creepage: TypeAlias = Annotated[QuantityLike, Unit("", positive=False, limit=1.0)]
+"""A creepage: a ratio or in percent, of magnitude at most 1."""
+
 LOADS = ("normal_force", "normal_force_per_width", "max_pressure")
 """The conditions that give the load of a line."""
 
-COEFFICIENTS = ("friction_coefficient", "traction_coefficient")
-"""The conditions that are plain numbers."""
-
 
 @dataclass(frozen=True)
-class ConditionTable:
-    """The conditions of a rig.
+class Condition:
+    """A condition that a rig takes.
 
     Attributes
     ----------
-    loads, creepages : tuple of str
-        Exactly one load and the first creepage are required; other creepages are zero if not given.
-    others : tuple of str
-        Further conditions with a unit, left out of the arrays if not given.
-    coefficients : tuple of str
-        Plain numbers; the first is required.
-    examples : mapping of str to str
-        Example values of the required conditions, for messages.
+    name : str
+        Its name.
+    required : bool
+        Whether it must always be given.
+    unit : Unit or None
+        Its unit and bounds; None for a plain number, or if the rig does not declare it.
+    check : callable or None
+        Takes its value and its name, and returns an SI array; None if the rig checks it itself.
+    law : bool
+        Whether it may be a friction law.
+    table : type or None
+        The `TypedDict` that declares it.
     """
 
-    loads: tuple[str, ...]
-    creepages: tuple[str, ...]
-    coefficients: tuple[str, ...]
-    examples: Mapping[str, str]
-    others: tuple[str, ...] = ()
+    name: str
+    required: bool
+    unit: Unit | None = None
+    check: Callable[[object, str], Array] | None = None
+    law: bool = False
+    table: type | None = None
 
-    @cached_property
-    def units(self) -> dict[str, Unit]:
-        """The conditions that have a unit."""
-        return expected(*self.loads, *self.creepages, *self.others)
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """All conditions."""
-        return (*self.units, *self.coefficients)
-
-    def si(self, name: str, value: object) -> Array:
-        """Return the value of a condition in SI, or raise a `UnitError` that names the condition."""
-        unit = self.units.get(name)
-        return coefficient(value, name) if unit is None else unit.si(value, name)
-
-    def unknown(self, name: str) -> ConditionsError:
-        """Return the error for a condition that the rig does not take."""
-        names = self.names
-        return ConditionsError(
-            f"{name}: unknown condition{did_you_mean(name, names)} The conditions are: {', '.join(names)}"
-        )
+    @property
+    def meaning(self) -> str:
+        """What it is: the docstring below it in its `TypedDict`, if it has one."""
+        own = item_docstrings(self.table).get(self.name) if self.table is not None else None
+        return own or meaning_of(self.name)
 
 
-def condition_arrays(
-    conditions: Mapping[str, Any], table: ConditionTable, creep_speed: Callable[[Arrays], Array]
-) -> Arrays:
-    """Return all conditions as SI arrays of one shape.
+@cache
+def declared(problem: Callable[..., object]) -> Mapping[str, Condition]:
+    """Return the conditions that a method `problem` takes, by name.
 
-    `creep_speed` computes the speed that friction can depend on [m/s] from the other conditions.
+    They are those of the `TypedDict` by which its `**conditions` are annotated, or else its arguments; {} if it takes
+    any conditions.
     """
-    given = {name: value for name, value in conditions.items() if value is not None}
-    friction = given.get("friction_coefficient")
-    if is_friction_law(friction):
-        given["friction_coefficient"] = 1.0
-    units = table.units
-    arrays: Arrays = {}
-    for name, value in given.items():  # not by `table.si`, because its calls take a hundredth of a prediction
-        if name in units:
-            arrays[name] = units[name].si(value, name)
-        elif name in table.coefficients:
-            arrays[name] = coefficient(value, name)
-    _check_names(conditions, arrays, table)
-    for name in table.others:
-        if name in arrays and VARIABLES[name].sign == "not negative" and arrays[name].min() < 0.0:
-            raise UnitError(f"{name}: must not be negative, got {given[name]!r}")
-    for name in table.creepages:
-        if name not in arrays:
-            arrays[name] = np.float64(0.0)  # type: ignore[assignment]
-    arrays = broadcast(arrays)
-    if is_friction_law(friction):
-        arrays["friction_coefficient"] = _of_friction_law(
-            friction, creep_speed(arrays), arrays[table.creepages[0]].shape
-        )
-    return arrays
+    signature = inspect.signature(problem)
+    _, *parameters = signature.parameters.values()
+    any_name = [one for one in parameters if one.kind is one.VAR_KEYWORD]
+    if not any_name:
+        return {one.name: Condition(one.name, one.default is one.empty) for one in parameters}
+    of = SimpleNamespace(__annotations__={"conditions": any_name[0].annotation})
+    hint = hints_of(of, getattr(inspect.unwrap(problem), "__globals__", {}), include_extras=True)["conditions"]
+    return _of_table(get_args(hint)[0]) if get_origin(hint) is Unpack else {}
 
 
-def _of_friction_law(friction: FrictionLaw, creep_speed: Array, shape: tuple[int, ...]) -> Array:
-    """Return μ [-] of a friction law in the shape of the conditions, checked, since the law may come from anyone."""
-    law = f"friction_coefficient: friction law {type(friction).__name__}"
+def _of_table(table: Any) -> Mapping[str, Condition]:
+    """Return the conditions of a `TypedDict`."""
+    found = {}
+    for name, hint in hints_of(table, include_extras=True).items():
+        # `__required_keys__` does not see `Required` and `NotRequired` in postponed annotations before Python 3.13.
+        wrapper = get_origin(hint) if get_origin(hint) in (Required, NotRequired) else None
+        required = wrapper is Required or (wrapper is None and name in table.__required_keys__)
+        value = get_args(hint)[0] if wrapper else hint
+        checks = getattr(value, "__metadata__", ())
+        unit = next((one for one in checks if isinstance(one, Unit)), None)
+        check = coefficient if coefficient in checks else None if unit is None else unit.si
+        found[name] = Condition(name, required, unit, check, value == Friction, table)
+    return found
+
+
+def friction_at(law: FrictionLaw, name: str, creep_speed: Array) -> Array:
+    """Return μ [-] of a friction law in the shape of the creep speed, checked, since the law may come from anyone."""
+    subject, shape = f"{name}: friction law {type(law).__name__}", creep_speed.shape
     try:
-        given = friction.coefficient(creep_speed)
+        given = law.coefficient(creep_speed)
     except (WearlawError, KeyboardInterrupt, MemoryError):
         raise
     except Exception as error:
-        raise ModelError(f"{law} failed: {described(error)}") from error
+        raise ModelError(f"{subject} failed: {described(error)}") from error
     try:
         found = coefficient(given, "its result")
     except UnitError as error:
-        raise ModelError(f"{law} is wrong at creep speeds of {_spread(creep_speed)}: {error}") from None
+        raise ModelError(f"{subject} is wrong at creep speeds of {_spread(creep_speed)}: {error}") from None
     if found.shape == shape:
         return found
     try:
         return np.broadcast_to(found, shape)
     except ValueError:
         raise ModelError(
-            f"{law} returned an array of shape {found.shape} for creep speeds of shape {shape}; return one coefficient"
-            " for each of them"
+            f"{subject} returned an array of shape {found.shape} for creep speeds of shape {shape}; return one"
+            " coefficient for each of them"
         ) from None
 
 
@@ -151,22 +147,6 @@ def is_friction_law(friction: object) -> TypeGuard[FrictionLaw]:
     return callable(getattr(friction, "coefficient", None)) and not isinstance(friction, type)
 
 
-def _check_names(conditions: Mapping[str, Any], arrays: Arrays, table: ConditionTable) -> None:
-    """Raise an error for an unknown or missing condition, or for several loads."""
-    names = table.names
-    for name in conditions:
-        if name not in names:
-            raise table.unknown(name)
-    loads = [name for name in table.loads if name in arrays]
-    if len(loads) != 1:
-        raise ConditionsError(
-            f"give exactly one of {', '.join(table.loads)}; got {' and '.join(loads) if loads else 'none of them'}"
-        )
-    for name, example in table.examples.items():
-        if name not in arrays:
-            raise ConditionsError(f"{name}: is missing; give {name}={example}")
-
-
 def broadcast(arrays: Arrays) -> Arrays:
     """Return the arrays in one shape, as read-only views."""
     shapes = {array.shape for array in arrays.values()}
@@ -175,7 +155,7 @@ def broadcast(arrays: Arrays) -> Arrays:
     try:
         (shape,) = shapes if len(shapes) == 1 else (np.broadcast_shapes(*shapes),)
     except ValueError:
-        shown = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        shown = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
         raise ConditionsError(f"the shapes of the conditions do not broadcast: {shown}") from None
     if 0 in shape:
         empty = next(name for name, array in arrays.items() if array.size == 0)

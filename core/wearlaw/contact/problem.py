@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays.array import Array, freeze, steady
+from wearlaw.arrays.array import Array, extremes, freeze, steady
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
@@ -36,6 +36,18 @@ PATCHES: Mapping[Geometry, str] = {
     "strips": "patches of strips",
 }
 """Words for the contacts of a geometry in messages."""
+
+TINY = float(np.sqrt(np.finfo(np.float64).tiny))
+"""Smallest length, pressure or force in SI whose square is a float of full precision."""
+
+LEAST_FRICTION = 1e-12
+"""The smallest coefficient of friction or traction.
+
+Below it formulas of fourth order in creepage over full-slip creepage overflow.
+"""
+
+MOST_FRICTION = 1.0 / LEAST_FRICTION
+"""The largest coefficient of friction or traction; above it tractions and energies soon overflow."""
 
 
 @dataclass(frozen=True)
@@ -253,7 +265,7 @@ class Problem:
             freeze(self, ARRAYS)
 
     @classmethod
-    @np.errstate(all="ignore")  # `_checked_size` rejects what overflows
+    @np.errstate(all="ignore")  # `checked` rejects what overflows
     def line(
         cls,
         *,
@@ -307,13 +319,37 @@ class Problem:
         si = _si(given, friction_coefficient, poisson_ratio)
         modulus = si.pop("shear_modulus") / (1.0 - si["poisson_ratio"])
         per_width = si.pop("normal_force") / si["track_width"]
-        return cls.line_from_si(normal_force_per_width=per_width, effective_modulus=modulus, **si)._checked_size()
+        return cls.line_from_si(normal_force_per_width=per_width, effective_modulus=modulus, **si).checked()
 
-    def _checked_size(self) -> Self:
-        """Return the problem, or raise an error if floats have overflowed or underflowed on the way to it."""
-        for name, value in {"half length": self.a, "max pressure": self.max_pressure}.items():
-            if not ((value > 0.0) & (value < np.inf)).all():
-                raise ConditionsError(f"these arguments give a {name} that no float can hold; check their units")
+    def checked(self) -> Self:
+        """Return the problem, or raise an error if its load or its coefficients are such as no contact has.
+
+        A rig returns ``problem.checked()``, so that a load in a wrong unit is not taken for a fault of a model.
+
+        Raises
+        ------
+        ConditionsError
+            If sizes or coefficients are so extreme that floats overflow or lose their precision.
+        """
+        if self.geometry == "line":
+            sizes = {"half width": self.a}
+        else:
+            sizes = {"longer semi-axis": np.maximum(self.a, self.b), "shorter semi-axis": np.minimum(self.a, self.b)}
+        for name, value in {**sizes, "max pressure": self.max_pressure, "normal force": self.normal_force}.items():
+            low, high = extremes(value)
+            if not (low > TINY and high < 1.0 / TINY):
+                spread = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+                raise ConditionsError(
+                    f"the load gives a {name} of {spread} in SI units,"
+                    " which no contact has; check the units of the load and of the rig"
+                )
+        for name in ("friction_coefficient", "traction_coefficient"):
+            if (value := getattr(self, name)) is None:
+                continue
+            low, high = extremes(value)
+            if low < LEAST_FRICTION or high > MOST_FRICTION:
+                bound, limit = ("at least", LEAST_FRICTION) if low < LEAST_FRICTION else ("at most", MOST_FRICTION)
+                raise ConditionsError(f"{name}: must be {bound} {limit:g}, which no contact comes near")
         return self
 
     @classmethod
@@ -342,7 +378,7 @@ class Problem:
         )
 
     @classmethod
-    @np.errstate(all="ignore")  # `_checked_size` rejects what overflows
+    @np.errstate(all="ignore")  # `checked` rejects what overflows
     def ellipse(
         cls,
         *,
@@ -397,7 +433,7 @@ class Problem:
             "rolling_speed": rolling_speed,
             "density": density,
         }
-        return cls.ellipse_from_si(**_si(given, friction_coefficient, poisson_ratio))._checked_size()
+        return cls.ellipse_from_si(**_si(given, friction_coefficient, poisson_ratio)).checked()
 
     @classmethod
     def ellipse_from_si(cls, *, shear_modulus: Array, poisson_ratio: Array, **fields: Any) -> Self:

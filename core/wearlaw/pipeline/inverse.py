@@ -116,6 +116,10 @@ def _at_rest(predict: Pipeline[...], conditions: Mapping[str, Any]) -> Problem:
     """Return the problem at zero longitudinal creepage."""
     rig = predict.rig
     known = rig.conditions()
+    if rig.creepage is None:
+        raise CompositionError(
+            f"creepage_for: no single condition of rig '{rig.name}' sets the creepage; sweep its conditions instead"
+        )
     if known and rig.creepage not in known:
         raise CompositionError(
             f"creepage_for: rig '{rig.name}' has no condition '{rig.creepage}', only {', '.join(known)}; its class"

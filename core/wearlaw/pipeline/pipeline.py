@@ -6,9 +6,8 @@ The order is rig | contact model | stages, if any, | laws.
 from __future__ import annotations
 
 import dataclasses
-import inspect
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast
 
@@ -16,8 +15,8 @@ import numpy as np
 import pint
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array, extremes, read_only, steadily, steady, type_name
-from wearlaw.contact.conditions import COEFFICIENTS
+from wearlaw.arrays.array import Array, read_only, steadily, steady, type_name
+from wearlaw.contact.conditions import Condition, FrictionLaw, broadcast, declared, friction_at, is_friction_law
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, shown
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, fault, with_origin
@@ -50,18 +49,6 @@ TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; chec
 
 P = ParamSpec("P")
 
-TINY = float(np.sqrt(np.finfo(np.float64).tiny))
-"""Smallest length, pressure or force in SI whose square is a float of full precision."""
-
-LEAST_FRICTION = 1e-12
-"""The smallest coefficient of friction or traction.
-
-Below it formulas of fourth order in creepage over full-slip creepage overflow.
-"""
-
-MOST_FRICTION = 1.0 / LEAST_FRICTION
-"""The largest coefficient of friction or traction; above it tractions and energies soon overflow."""
-
 
 class Poses(Protocol[P]):
     """A rig as type checkers see it: the conditions that it takes."""
@@ -84,9 +71,12 @@ class Rig(Model):
     """The shape of the patch. A contact model that cannot solve it raises an error at once. None if the shape is known
     only from the problem. A rig with a field that chooses the shape can make it a property."""
 
-    creepage: ClassVar[str] = "creepage"
+    choices: ClassVar[Sequence[tuple[str, ...]]] = ()
+    """Names of conditions of which exactly one is given, such as [("normal_force", "max_pressure")]."""
+
+    creepage: ClassVar[str | None] = "creepage"
     """Name of the condition that sets the creepage: `creepage_for` solves for it, and the tables of a case run along
-    it."""
+    it. None if no single condition does, as on a rig with two speeds."""
 
     example: ClassVar[Mapping[str, Any]] = {}
     """Conditions of one test to try the rig with, such as {"mass": "20 kg", "creepage": "1 %"}."""
@@ -124,21 +114,61 @@ class Rig(Model):
         return {}
 
     @classmethod
-    def conditions(cls) -> tuple[str, ...]:
-        """Return the names of the conditions that `problem` takes.
+    def conditions(cls) -> Mapping[str, Condition]:
+        """Return the conditions that `problem` takes, by name.
 
-        If `problem` takes `**conditions`, their names are not known, and the result is (); override this method to name
-        them.
+        They come from the `TypedDict` of its ``**conditions: Unpack[...]``, or else from its arguments. If it takes
+        ``**conditions`` of any names, the result is {}; override this method to name them.
         """
-        parameters = list(inspect.signature(cls.problem).parameters.values())[1:]
-        return () if any(one.kind is one.VAR_KEYWORD for one in parameters) else tuple(one.name for one in parameters)
+        return declared(cls.problem)
 
     @classmethod
-    def needed(cls) -> tuple[str, ...]:
-        """Return the names of the required conditions: the arguments of `problem` without a default."""
-        known = cls.conditions()
-        parameters = inspect.signature(cls.problem).parameters.values()
-        return tuple(one.name for one in parameters if one.default is one.empty and one.name in known)
+    def in_si(
+        cls,
+        conditions: Mapping[str, object],
+        creep_speed: Callable[[dict[str, Array]], Array] | None = None,
+        **otherwise: float,
+    ) -> dict[str, Array]:
+        """Return the conditions as SI arrays of one shape; call it in `problem`.
+
+        Parameters
+        ----------
+        conditions : mapping
+            The conditions as given; None counts as not given.
+        creep_speed : callable, optional
+            Computes the speed that friction can depend on [m/s] from the other conditions. Without it, friction laws
+            are left out, for the rig to evaluate.
+        **otherwise : float
+            Values of conditions that are not given [SI]; others are left out of the result.
+
+        Raises
+        ------
+        ConditionsError
+            If conditions are missing, unknown or contradictory, or do not broadcast.
+        UnitError
+            If a condition lacks its unit or is out of bounds.
+        """
+        # A subclass may hand its conditions on: those of the nearest `problem` with a table count.
+        tables = (declared(base.problem) for base in cls.__mro__ if issubclass(base, Rig))
+        known = next((one for one in tables if any(condition.table for condition in one.values())), {})
+        arrays: dict[str, Array] = {}
+        laws: dict[str, FrictionLaw] = {}
+        for name, value in conditions.items():
+            check = known[name].check if name in known else None
+            if value is None or check is None:
+                continue
+            if known[name].law and is_friction_law(value):
+                laws[name] = value
+            else:
+                arrays[name] = check(value, name)
+        cls._check_names(known, conditions)
+        for name, si in otherwise.items():
+            arrays.setdefault(name, np.float64(si))  # type: ignore[arg-type]
+        arrays = broadcast(arrays)
+        if creep_speed is None or not laws:
+            return arrays
+        speed = creep_speed(arrays)
+        return {**arrays, **{name: friction_at(law, name, speed) for name, law in laws.items()}}
 
     @classmethod
     def presets(cls) -> Mapping[str, Callable[..., Rig]]:
@@ -251,23 +281,45 @@ class Rig(Model):
         )
         return masked.replaced(exists=exists)
 
-    def check_names(self, conditions: Mapping[str, Any]) -> None:
+    @classmethod
+    def check_names(cls, conditions: Mapping[str, object]) -> None:
         """Check the names of conditions; a rig whose `conditions` are not known takes any name.
 
         Raises
         ------
         ConditionsError
-            If a condition is missing or unknown.
+            If a condition is missing or unknown, or several of one choice are given.
         """
-        known = self.conditions()
-        for name in conditions if known else ():
+        cls._check_names(cls.conditions(), conditions)
+
+    @classmethod
+    def _check_names(cls, known: Mapping[str, Condition], conditions: Mapping[str, object]) -> None:
+        if not known:
+            return
+        for name in conditions:
             if name not in known:
                 raise ConditionsError(
                     f"{name}: unknown condition{did_you_mean(name, known)} The conditions are: {', '.join(known)}"
                 )
-        for name in self.needed():
-            if name not in conditions:
-                raise ConditionsError(f"{name}: is missing; rig '{self.name}' takes {', '.join(known)}")
+        for names in cls.choices:
+            given = [name for name in names if conditions.get(name) is not None]
+            if len(given) != 1:
+                raise ConditionsError(
+                    f"give exactly one of {', '.join(names)}; got {' and '.join(given) or 'none of them'}"
+                )
+        for name, condition in known.items():
+            if condition.required and conditions.get(name) is None:
+                raise ConditionsError(f"{name}: is missing; {cls._fix(name, known)}")
+
+    @classmethod
+    def _fix(cls, name: str, known: Iterable[str]) -> str:
+        """Return what to do about a missing condition."""
+        example = cls.example.get(name)
+        if example is None:
+            return f"rig '{cls.name}' takes {', '.join(known)}"
+        if isinstance(example, str) and " " in example:
+            example = 'Q({}, "{}")'.format(*example.split(" ", 1))
+        return f"give {name}={example}"
 
     def __or__(self: Poses[P], model: ContactModel) -> Pipeline[P]:
         """Return the pipeline that solves this rig's contact with a contact model."""
@@ -297,33 +349,6 @@ def _read_only(value: Any) -> Any:
 
 RigField = Annotated[Rig, *RIG]
 """A field that takes a rig, its name, or a table of its fields with its name as `type` or the name of a `preset`."""
-
-
-def check_sizes(sizes: dict[str, Array], conditions: Mapping[str, Array]) -> None:
-    """Raise an error for sizes and coefficients so extreme that floats overflow or lose their precision.
-
-    Parameters
-    ----------
-    sizes : dict of str to ndarray
-        Lengths, pressures and forces that follow from the load, by their names in the message [SI].
-    conditions : mapping of str to ndarray
-        All conditions, of which the coefficients of friction and traction are checked [SI].
-    """
-    for name, value in sizes.items():
-        low, high = extremes(value)
-        if not (low > TINY and high < 1.0 / TINY):
-            spread = f"{low:g}" if low == high else f"{low:g} to {high:g}"
-            raise ConditionsError(
-                f"the load gives a {name} of {spread} in SI units,"
-                " which no contact has; check the units of the load and of the rig"
-            )
-    for name in COEFFICIENTS:
-        if name not in conditions:
-            continue
-        low, high = extremes(conditions[name])
-        if low < LEAST_FRICTION or high > MOST_FRICTION:
-            bound, limit = ("at least", LEAST_FRICTION) if low < LEAST_FRICTION else ("at most", MOST_FRICTION)
-            raise ConditionsError(f"{name}: must be {bound} {limit:g}, which no contact comes near")
 
 
 class Pipeline(Configuration, Generic[P]):

@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import inspect
 import linecache
+import textwrap
 from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -37,6 +38,16 @@ def field_docstrings(model: type[BaseModel]) -> dict[str, str]:
     """
     found = {name: text for base in reversed(model.__mro__) for name, text in _literals(base)}
     return {name: field.description or found.get(name, "") for name, field in model.model_fields.items()}
+
+
+@cache
+def item_docstrings(table: type) -> dict[str, str]:
+    """Return the string literals below the items of a `TypedDict`; {} if the source is missing."""
+    try:
+        (statement,) = ast.parse(textwrap.dedent(inspect.getsource(table))).body
+    except (OSError, SyntaxError):
+        return {}
+    return dict(_of_body(statement.body)) if isinstance(statement, ast.ClassDef) else {}
 
 
 def _literals(cls: type) -> tuple[tuple[str, str], ...]:

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 else:
     Quantity = pint.Quantity
 
-QuantityLike: TypeAlias = "Quantity | str"
+QuantityLike: TypeAlias = Quantity | str
 """A quantity, or its text such as "47 mm"."""
 
 
@@ -123,12 +123,15 @@ class Unit:
         The largest magnitude allowed, in `unit`.
     infinite : bool
         Whether infinity is allowed, as for the diameter of a flat body.
+    negative : bool
+        Whether a value that need not be positive may be negative.
     """
 
     unit: str
     positive: bool = True
     limit: float = np.inf
     infinite: bool = False
+    negative: bool = True
 
     def si(self, value: object, name: str) -> NDArray[np.float64]:
         """Return `value` as SI floats, or raise a `UnitError` that names the argument.
@@ -178,7 +181,7 @@ class Unit:
         if in_si.size == 0:
             return False
         (low, high), limit = extremes(in_si), self._limit_in_si
-        above = low > 0.0 if self.positive else low >= -limit
+        above = low > 0.0 if self.positive else low >= (-limit if self.negative else 0.0)
         return above and high <= limit and (self.infinite or (low > -np.inf and high < np.inf))
 
     @property
@@ -192,6 +195,8 @@ class Unit:
             yield np.isinf(in_si), "must be finite"
         if self.positive:
             yield in_si <= 0, "must be greater than zero"
+        if not self.negative:
+            yield in_si < 0, "must not be negative"
         yield (
             np.abs(in_si) > self._limit_in_si,
             f"must not exceed {self.limit:g} {self.unit}".rstrip() + " in magnitude",

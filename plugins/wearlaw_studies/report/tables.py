@@ -93,7 +93,7 @@ def _marks(outside: Any, beyond: Mapping[str, xarray.DataArray], model: str) -> 
     return [str(mark) for mark in np.char.add(np.where(outside, "†", ""), last)]
 
 
-def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
+def _fixed(sweep: xarray.Dataset, creepage: str | None) -> str:
     """Return the values of the other axes at which a sweep is shown, in words."""
     main = main_axis(sweep, creepage)
     line = along_main_axis(sweep, creepage)
@@ -102,7 +102,7 @@ def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
     return f" at {', '.join(at)}" if others else ""
 
 
-def summary(sweep: xarray.Dataset, creepage: str, outcome: str, pairs: list[str]) -> pd.DataFrame:
+def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: list[str]) -> pd.DataFrame:
     """Return an outcome at a few values of the main axis, with a row for each pair and for the ends of its band.
 
     If the rig makes several patches, there is a row for each of them, or one for the sum of `MASS` over all.

@@ -1,13 +1,22 @@
 """A weight on two rollers."""
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
-
-from numpy.typing import ArrayLike
+from typing import Annotated, Any, ClassVar, TypedDict, Unpack
 
 import wearlaw as wl
 
 GRAVITY = 9.81  # [m/s²]
+
+
+class WeightedConditions(TypedDict):
+    """The conditions of a test."""
+
+    mass: Annotated[wl.QuantityLike, wl.Unit("kg")]
+    """Mass of the weight [kg]."""
+    creepage: wl.Creepage
+    """Creepage, ξ [-]."""
+    friction_coefficient: wl.Coefficient
+    """Friction coefficient, μ [-]."""
 
 
 class Weighted(wl.Rig):
@@ -22,12 +31,14 @@ class Weighted(wl.Rig):
     material: wl.MaterialField
     """Material of both rollers."""
 
-    def problem(
-        self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike, friction_coefficient: ArrayLike
-    ) -> wl.Problem:
-        """Return the contact problem of the mass of the weight, the creepage ξ and the friction coefficient μ."""
-        load = wl.Q(wl.Unit("kg").si(mass, "mass") * GRAVITY, "N")
-        return self.rollers.problem(normal_force=load, creepage=creepage, friction_coefficient=friction_coefficient)
+    def problem(self, **conditions: Unpack[WeightedConditions]) -> wl.Problem:
+        """Return the contact problem of the conditions; arrays broadcast against each other."""
+        given = self.in_si(conditions)
+        return self.rollers.problem(
+            normal_force=wl.Q(given["mass"] * GRAVITY, "N"),
+            creepage=wl.Q(given["creepage"], ""),
+            friction_coefficient=given["friction_coefficient"],
+        )
 
     @property
     def bodies(self) -> Mapping[str, wl.Body]:

@@ -1,0 +1,178 @@
+"""The conditions of a rig, as its TypedDict declares them: names, units, which must be given, and laws of friction."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, NotRequired, Required, TypedDict, Unpack
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.core import cases
+from wearlaw import Q
+from wearlaw_kit import Check, conformance
+from wearlaw_studies.case import Case
+from wearlaw_studies.report.tables import summaries
+from wearlaw_studies.study import run
+
+DISCS = wl.TwinDisc.suros(rolling_speed="1 m/s")
+
+
+class Loads(TypedDict, total=False):
+    """Conditions that a rig may leave out, but for the friction."""
+
+    mass: Annotated[wl.QuantityLike, wl.Unit("kg")]
+    """Mass of the weight [kg]."""
+    normal_force: Annotated[wl.QuantityLike, wl.Unit("N")]
+    friction_coefficient: Required[wl.Friction]
+
+
+class Speeds(Loads):
+    """Conditions that must be given, but for the state of the surface."""
+
+    upper_speed: Annotated[wl.QuantityLike, wl.Unit("m/s")]
+    """Surface speed of the upper disc, v1 [m/s]."""
+    lower_speed: Annotated[wl.QuantityLike, wl.Unit("m/s")]
+    traction_coefficient: NotRequired[wl.Coefficient]
+    surface: NotRequired[str]
+
+
+class TwoSpeeds(wl.Rig):
+    """Two discs with drives of their own, pressed together by a weight or a cylinder."""
+
+    name: ClassVar[str] = "two_speeds"
+    source: ClassVar[str] = "a test"
+    patch_geometry: ClassVar[wl.Geometry | None] = "line"
+    creepage: ClassVar[str | None] = None
+    choices: ClassVar = [("mass", "normal_force")]
+    example: ClassVar[Mapping[str, Any]] = {
+        "mass": "200 kg",
+        "upper_speed": "1.01 m/s",
+        "lower_speed": "1 m/s",
+        "friction_coefficient": 0.4,
+    }
+
+    @property
+    def bodies(self) -> Mapping[str, wl.Body]:
+        """The discs."""
+        return DISCS.bodies
+
+    def problem(self, **conditions: Unpack[Speeds]) -> wl.Problem:
+        """Return the problem of discs with these speeds."""
+        given = self.in_si(conditions, lambda a: np.abs(a["upper_speed"] - a["lower_speed"]))
+        mean = 0.5 * (given["upper_speed"] + given["lower_speed"])
+        load = given["normal_force"] if "normal_force" in given else 9.81 * given["mass"]
+        problem = DISCS.problem(
+            normal_force=Q(load, "N"),
+            creepage=Q((given["upper_speed"] - given["lower_speed"]) / mean, ""),
+            friction_coefficient=given["friction_coefficient"],
+        )
+        return problem.replaced(rolling_speed=mean)
+
+
+GIVEN: Any = TwoSpeeds.example
+FALLING = wl.FallingFriction(static_coefficient=0.5, limit_ratio=0.4, decay="0.6 s/m")
+
+
+def test_what_must_be_given_is_read_from_postponed_annotations_of_a_table_and_its_base() -> None:
+    conditions = TwoSpeeds.conditions()
+    assert list(conditions) == [*Loads.__annotations__, "upper_speed", "lower_speed", "traction_coefficient", "surface"]
+    required = [name for name, one in conditions.items() if one.required]
+    assert required == ["friction_coefficient", "upper_speed", "lower_speed"]
+    assert conditions["upper_speed"].unit == wl.Unit("m/s")
+    assert conditions["upper_speed"].meaning == "Surface speed of the upper disc, v1 [m/s]."
+    assert conditions["lower_speed"].meaning == "lower speed"
+    assert conditions["traction_coefficient"].unit is conditions["surface"].unit is None
+
+
+def test_arguments_of_a_rig_without_a_table_are_its_conditions() -> None:
+    class Plain(wl.Rig):
+        """A rig whose conditions are arguments."""
+
+        name: ClassVar[str] = "plain"
+        source: ClassVar[str] = "a test"
+
+        def problem(self, *, mass: wl.QuantityLike, surface: str = "dry") -> Any:
+            """Return nothing."""
+
+    assert {name: one.required for name, one in Plain.conditions().items()} == {"mass": True, "surface": False}
+
+
+def test_conditions_are_si_arrays_of_one_shape() -> None:
+    found = TwoSpeeds.in_si({**GIVEN, "mass": Q([1.0, 2.0], "t"), "surface": "wet"}, traction_coefficient=0.1)
+    assert found.keys() == {"mass", "upper_speed", "lower_speed", "friction_coefficient", "traction_coefficient"}
+    np.testing.assert_array_equal(found["mass"], [1000.0, 2000.0])
+    np.testing.assert_array_equal(found["traction_coefficient"], [0.1, 0.1])
+
+
+def test_a_law_of_friction_is_evaluated_at_the_creep_speed_or_left_to_the_rig() -> None:
+    given = {**GIVEN, "friction_coefficient": FALLING, "upper_speed": Q([1.0, 1.5], "m/s")}
+    assert "friction_coefficient" not in TwoSpeeds.in_si(given)
+    friction = TwoSpeeds().problem(**given).friction_coefficient
+    np.testing.assert_array_equal(friction, FALLING.coefficient(np.array([0.0, 0.5])))
+
+
+class Heavier(TwoSpeeds):
+    """Hands its conditions on, with a greater mass."""
+
+    name: ClassVar[str] = "heavier"
+
+    def problem(self, *, more: wl.QuantityLike = "1 kg", **conditions: Any) -> wl.Problem:
+        """Return the problem with another weight."""
+        unit = wl.Unit("kg")
+        load = Q(unit.si(conditions["mass"], "mass") + unit.si(more, "more"), "kg")
+        return super().problem(**{**conditions, "mass": load})
+
+
+def test_a_rig_may_hand_its_conditions_on_to_its_base() -> None:
+    found = (Heavier() | wl.contact_model("exact"))(**GIVEN, more="100 kg")
+    assert found.problem.normal_force == TwoSpeeds().problem(**{**GIVEN, "mass": "300 kg"}).normal_force
+
+
+WRONG: list[tuple[dict[str, Any], type[Exception], str]] = [
+    ({"mass": None}, wl.ConditionsError, "give exactly one of mass, normal_force; got none of them"),
+    ({"normal_force": "1 kN"}, wl.ConditionsError, "got mass and normal_force"),
+    ({"upper_speed": None}, wl.ConditionsError, r'^upper_speed: is missing; give upper_speed=Q\(1.01, "m/s"\)$'),
+    ({"friction_coefficient": None}, wl.ConditionsError, "friction_coefficient: is missing; give .*=0.4$"),
+    ({"uper_speed": "1 m/s"}, wl.ConditionsError, "uper_speed: unknown condition; did you mean 'upper_speed'"),
+    ({"lower_speed": 1.0}, wl.UnitError, "^lower_speed: got the bare number 1.0"),
+    ({"traction_coefficient": FALLING}, wl.UnitError, "^traction_coefficient: .* is not a real number"),
+    ({"mass": Q([1, 2], "t"), "lower_speed": Q([1, 1, 1], "m/s")}, wl.ConditionsError, r"mass \(2,\), lower_speed"),
+]
+
+
+@pytest.mark.parametrize(("changes", "error", "message"), WRONG)
+def test_wrong_conditions_are_named(changes: dict[str, Any], error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        TwoSpeeds().problem(**{**GIVEN, **changes})
+
+
+def test_a_value_that_must_not_be_negative_may_be_zero() -> None:
+    distance = wl.Unit("km", positive=False, negative=False)
+    assert distance.si("0 km", "distance") == 0.0
+    with pytest.raises(wl.UnitError, match=r"^distance: must not be negative, got -1\.000 m at index \[1\]; give "):
+        distance.si(Q([1.0, -1.0], "m"), "distance")
+
+
+@conformance(TwoSpeeds(), expected_failures={})
+def test_a_rig_with_two_speeds_passes_the_kit(check: Check) -> None:
+    assert "creepage" not in check.name
+    check()
+
+
+def test_no_creepage_is_sought_on_a_rig_with_two_speeds() -> None:
+    with pytest.raises(wl.CompositionError, match="no single condition of rig 'two_speeds' sets the creepage"):
+        wl.creepage_for(TwoSpeeds() | wl.contact_model("exact"), traction_coefficient=0.1, mass="200 kg")
+
+
+def test_tables_and_figures_of_a_rig_with_two_speeds_run_along_the_longest_axis(
+    install_model: cases.InstallModel,
+) -> None:
+    install_model(TwoSpeeds)
+    sweep = {**GIVEN, "upper_speed": ["1.01 m/s", "1.02 m/s", "1.03 m/s"], "mass": ["100 kg", "200 kg"]}
+    with warnings.catch_warnings(action="ignore", category=wl.WearlawWarning):
+        study = run(Case(**cases.table(rig={"type": "two_speeds"}, sweeps={"speeds": sweep}, profiles={"one": GIVEN})))
+    assert "wear_rate_over_upper_speed" in " ".join(figure.name for figure in study.figures)
+    assert summaries(study)[0].frame.columns[0] == "wear rate [µg/m/mm²] by upper speed [m/s]"
