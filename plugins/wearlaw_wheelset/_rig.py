@@ -17,6 +17,7 @@ from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
 from wearlaw_wheelset._curve import steady
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
+from wearlaw_wheelset._guidance import guided
 from wearlaw_wheelset._loads import Balance, Elastic, Friction, Pressure, Task
 from wearlaw_wheelset._pictures import Profiles
 from wearlaw_wheelset._profile import Profile
@@ -36,7 +37,10 @@ UNITS = {
     "lateral_displacement": wl.Unit("mm", positive=False, limit=HUGE),
     "yaw": wl.Unit("mrad", positive=False, limit=HUGE),
     "roll": wl.Unit("mrad", positive=False, limit=HUGE),
+    "lateral_force": wl.Unit("kN", positive=False, limit=HUGE),
     "vertical_load": wl.Unit("kN", limit=HUGE),
+    "vertical_load_left": wl.Unit("kN", limit=HUGE),
+    "vertical_load_right": wl.Unit("kN", limit=HUGE),
     "axle_torque": wl.Unit("N*m", positive=False, limit=HUGE),
     "angular_speed": wl.Unit("rad/s", limit=HUGE),
     "lateral_velocity": wl.Unit("m/s", positive=False, limit=HUGE),
@@ -45,6 +49,14 @@ UNITS = {
     "rolled_distance": wl.Unit("km", positive=False, limit=HUGE),
 }
 """Units of the conditions."""
+
+RESULTS: Mapping[str, str] = {
+    "lateral_displacement": "mm",
+    "guiding_force": "kN",
+    "wheel_load": "kN",
+    "derailment_quotient": "",
+}
+"""Units of the results for a wheelset and its wheels."""
 
 FLANGE_DEPTH = 10e-3
 """Depth below the taping line at which the thickness of a flange is measured (EN 15313) [m]."""
@@ -109,19 +121,36 @@ class WheelsetProblem(wl.Problem):
         Vertical approach of wheel and rail from first touching, at each patch [m].
     imbalance : ndarray
         What the balance leaves over, the greatest of these shares [-]: of the vertical load of a wheel, of the torque
-        of full slip, and of the load that the rails would move from wheel to wheel to sink equally.
+        of full slip, of the load that the rails would move from wheel to wheel to sink equally, and of the axle load as
+        a lateral force.
+    lateral_displacement : ndarray
+        Lateral displacement of the wheelset, positive to the right [m].
+    guiding_force, wheel_load : ndarray
+        Lateral force of the wheel on its rail, positive to the right, Y [N], and its vertical force, Q [N].
+    derailment_quotient : ndarray
+        Y/Q [-], with the sign of Y.
     """
 
     roll: Array
     penetration: Array
     imbalance: Array
+    lateral_displacement: Array
+    guiding_force: Array
+    wheel_load: Array
+    derailment_quotient: Array
     balance: Balance
     shape: tuple[int, ...]
+
+    @property
+    def results(self) -> Mapping[str, str]:
+        """Units of displacement and forces."""
+        return RESULTS
 
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
         mapped = super(WheelsetProblem, self).mapped(function, of_strips)  # a class with slots has no plain super()
-        return mapped.replaced(**{name: function(getattr(self, name)) for name in ("roll", "penetration", "imbalance")})
+        names = ("roll", "penetration", "imbalance", *self.results)
+        return mapped.replaced(**{name: function(getattr(self, name)) for name in names})
 
 
 class Wheelset(wl.Rig):
@@ -132,8 +161,8 @@ class Wheelset(wl.Rig):
     a wheel, and the wheelset turns at the speed at which the creep forces balance the torque on the axle.
 
     Prefer this rig to `WheelRail` where you have profiles, or where a wheel touches in several places. It has no
-    dynamics: lateral displacement, yaw and loads come from a program for vehicle dynamics. Both wheels have the same
-    profile and load, and so do both rails.
+    dynamics: lateral displacement or force, yaw and loads come from a program for vehicle dynamics. Both wheels have
+    the same profile, and so do both rails.
 
     Axes are those of the track: x forwards, y to the right, z down. Results have the axes "side" and "patch". Patch 1
     is the place where rigid bodies touch first; missing patches are NaN.
@@ -337,8 +366,11 @@ class Wheelset(wl.Rig):
     def problem(
         self,
         *,
-        lateral_displacement: wl.QuantityLike,
-        vertical_load: wl.QuantityLike,
+        lateral_displacement: wl.QuantityLike | None = None,
+        lateral_force: wl.QuantityLike | None = None,
+        vertical_load: wl.QuantityLike | None = None,
+        vertical_load_left: wl.QuantityLike | None = None,
+        vertical_load_right: wl.QuantityLike | None = None,
         friction_coefficient: ArrayLike | wl.FallingFriction,
         yaw: wl.QuantityLike = "0 mrad",
         roll: wl.QuantityLike | None = None,
@@ -358,8 +390,13 @@ class Wheelset(wl.Rig):
         ----------
         lateral_displacement : Quantity or str
             Lateral displacement of the wheelset in the track, positive to the right [m].
+        lateral_force : Quantity or str
+            Lateral force on the wheelset in place of a displacement, positive to the right, ∑ Y [N]. The wheelset then
+            stands at the nearest stable place to the middle of the track at which the rails bear it.
         vertical_load : Quantity or str
             Vertical load of each wheel, Q [N].
+        vertical_load_left, vertical_load_right : Quantity or str
+            Vertical loads of wheels that differ, Q [N], in place of `vertical_load`.
         friction_coefficient : array_like of float, Quantity, str or FallingFriction
             Friction coefficient, μ [-].
         yaw : Quantity or str
@@ -386,14 +423,19 @@ class Wheelset(wl.Rig):
         Raises
         ------
         ConditionsError
-            If conditions contradict each other or do not broadcast, a wheel does not touch its rail, or the torque is
-            greater than friction can transmit.
+            If conditions are missing, contradict each other or do not broadcast, a wheel does not touch its rail, or
+            the torque is greater than friction can transmit.
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
         given = {name: value for name, value in locals().items() if name in UNITS and value is not None}
         if axle_torque is not None and angular_speed is not None:
             raise wl.ConditionsError("give axle_torque or angular_speed, not both")
+        if (lateral_displacement is None) == (lateral_force is None):
+            raise wl.ConditionsError("give lateral_displacement or lateral_force, and not both")
+        sides = vertical_load_left is None, vertical_load_right is None
+        if sides[0] != sides[1] or sides[0] == (vertical_load is None):
+            raise wl.ConditionsError("give vertical_load, or vertical_load_left and vertical_load_right")
         arrays = {name: np.asarray(UNITS[name].si(value, name)) for name, value in given.items()}
         flange = friction_coefficient if flange_friction_coefficient is None else flange_friction_coefficient
         friction = {"friction_coefficient": friction_coefficient, "flange_friction_coefficient": flange}
@@ -403,18 +445,25 @@ class Wheelset(wl.Rig):
         shape = _shape(arrays)
         flat = {name: np.broadcast_to(array, shape).reshape(-1) for name, array in arrays.items()}
         tread, on_flange = (falling[name] if name in falling else flat[name] for name in friction)
-        balance = self._balance(flat, (tread, on_flange))
+        self._check_yaw(flat["yaw"])
+        task = self._task(flat, (tread, on_flange))
+        balance = self._balance(task, flat.get("roll"))
+        balance.check_torque()
         return self._whole(balance, shape, flat.get("rolled_distance"))
 
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, WheelsetProblem)
         distance = problem.rolled_distance
-        balance = problem.balance.solved(forces)
+        if problem.balance.task.lateral_force is None:
+            balance, climbs = problem.balance.solved(forces), np.zeros(problem.balance.roll.shape, dtype=np.bool_)
+        else:
+            balance, climbs = self._guided(problem.balance, forces)
         self._warn_of_climbing(balance)
         if not balance.balanced.all():
             self._warn_of_jams(balance)
         self._warn_of_humps(balance)
+        balance.balanced &= ~climbs
         left = np.where(balance.balanced, balance.imbalance, 0.0)
         if (left > IMBALANCE).any():
             point = int(left.argmax())
@@ -427,32 +476,70 @@ class Wheelset(wl.Rig):
             )
         return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
 
-    def _balance(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Balance:
-        """Return the loads at positions, SI arrays with one axis, without creep forces."""
-        displacement, yaw, roll = given["lateral_displacement"], given["yaw"], given.get("roll")
-        self._check_yaw(yaw)
+    def _task(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
+        """Return what is asked at positions, SI arrays with one axis; in the middle of the track if a force is given."""
+        speed = np.full(given["yaw"].shape, scalar(self.rolling_speed))
+        none, one = np.zeros(speed.shape), given.get("vertical_load")
+        loads = [given[f"vertical_load_{side}"] if one is None else one for side in DIMS["side"]]
+        return Task(
+            given.get("lateral_displacement", none), given["yaw"], speed, given["lateral_velocity"],
+            given["yaw_velocity"], given["yaw_velocity"] + speed / given["curve_radius"], np.stack(loads, axis=-1),
+            friction, scalar(self.flange_angle), given.get("axle_torque", none), given.get("angular_speed"),
+            "roll" not in given, given.get("lateral_force"),
+        )  # fmt: skip
+
+    def _rigid(self, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
+        """Return the rolls of rigid wheelsets and where they touch; equal positions are searched once."""
         places = np.stack([displacement, yaw] if roll is None else [displacement, yaw, roll])
         single, which = np.unique(places, axis=1, return_inverse=True)
         rolls, found = searched(self._section, single[0], single[1], None if roll is None else single[2])
-        self._check_contact(single[0], found)
         which = which.reshape(-1)
-        rolls, found = rolls[which], Touching(*(array[which] for array in found))
-        speed = np.full(displacement.shape, scalar(self.rolling_speed))
-        turn_rate = given["yaw_velocity"] + speed / given["curve_radius"]
-        task = Task(
-            displacement, yaw, speed, given["lateral_velocity"], given["yaw_velocity"], turn_rate,
-            given["vertical_load"], friction, scalar(self.flange_angle),
-            given.get("axle_torque", np.zeros(displacement.shape)), given.get("angular_speed"), roll is None,
-        )  # fmt: skip
-        balance = Balance.begun(self._section, self._elastic, task, rolls, found, self.pressure, self.strips)
-        balance.check_torque()
-        return balance
+        return rolls[which], Touching(*(array[which] for array in found))
+
+    def _balance(self, task: Task, roll: Array | None) -> Balance:
+        """Return the loads of a task without creep forces."""
+        rolls, found = self._rigid(task.displacement, task.yaw, roll)
+        self._check_contact(task.displacement, found)
+        return Balance.begun(self._section, self._elastic, task, rolls, found, self.pressure, self.strips)
+
+    def _guided(
+        self, balance: Balance, forces: Callable[[wl.Problem], wl.CreepForces]
+    ) -> tuple[Balance, NDArray[np.bool_]]:
+        """Return the loads of wheelsets where the rails bear their lateral forces, and whether a wheel climbs."""
+        task = balance.task
+        assert task.lateral_force is not None
+        roll = None if task.free else balance.roll
+
+        def solved(part: Task, rows: NDArray[np.intp]) -> Balance:
+            return self._balance(part, None if roll is None else roll[rows]).solved(forces)
+
+        def stands(displacement: Array, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+            _, found = self._rigid(displacement, task.yaw[rows], None if roll is None else roll[rows])
+            return np.asarray((found.arc[..., 0] >= self._steepest).all(axis=-1))
+
+        place, climbs, greatest = guided(task, solved, stands)
+        every = np.arange(place.size)
+        balance = solved(task.part(every, place), every)
+        left = np.abs(balance.lateral.sum(axis=-1) - task.lateral_force) / task.load.sum(axis=-1)
+        balance.imbalance = np.maximum(balance.imbalance, left)
+        if climbs.any():
+            point = int(np.argmax(climbs))
+            side = DIMS["side"][int(place[point] > 0.0)]
+            warnings.warn(
+                f"lateral_force: {np.count_nonzero(climbs)} of {climbs.size} positions have no result, the first with"
+                f" {1e-3 * task.lateral_force[point]:.4g} kN: the greatest force found is"
+                f" {1e-3 * greatest[point]:.4g} kN, and beyond {1e3 * place[point]:.4g} mm the {side} wheel climbs its"
+                " rail or leaves it",
+                wl.RangeWarning,
+                stacklevel=5,
+            )
+        return balance, climbs
 
     def _whole(self, balance: Balance, shape: tuple[int, ...], distance: Array | None) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
         found = balance.found
         flat, patch = balance.posed()
-        size = balance.task.load.size
+        size = balance.roll.size
         exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
         place = found.point, found.side, found.number
         exists[place] = patch.touch & balance.balanced[found.point]
@@ -485,6 +572,10 @@ class Wheelset(wl.Rig):
             "roll": wide(balance.roll[found.point]),
             "penetration": wide(balance.penetration[found.wheel] - found.gap),
             "imbalance": wide(balance.imbalance[found.point]),
+            "lateral_displacement": wide(balance.task.displacement[found.point]),
+            "guiding_force": wide(balance.lateral[found.point, found.side]),
+            "wheel_load": wide(balance.vertical[found.point, found.side]),
+            "derailment_quotient": wide((balance.lateral / balance.vertical)[found.point, found.side]),
         }
         return WheelsetProblem(**fields, balance=balance, shape=shape)
 
@@ -611,15 +702,16 @@ LEAST_RADIUS, LEAST_LOAD, LEAST_FRICTION = 1e-3, 1e-6, 1e-12
 
 def _check_given(arrays: Mapping[str, Array]) -> None:
     """Raise an error for a distance below zero, a curve without a radius, or a load or friction of nothing."""
-    distance, radius, load = arrays.get("rolled_distance"), arrays["curve_radius"], arrays["vertical_load"]
+    distance, radius = arrays.get("rolled_distance"), arrays["curve_radius"]
     if distance is not None and (distance < 0.0).any():
         raise wl.UnitError(f"rolled_distance: must not be negative, got {1e-3 * distance.min():.4g} km")
     if (radius == 0.0).any():
         raise wl.ConditionsError("curve_radius: must not be zero; straight track has an infinite radius, 'inf m'")
     if (np.abs(radius) < LEAST_RADIUS).any():
         raise wl.ConditionsError(f"curve_radius: must be {LEAST_RADIUS:g} m or more, got {np.abs(radius).min():g} m")
-    if (load < LEAST_LOAD).any():
-        raise wl.ConditionsError(f"vertical_load: must be {LEAST_LOAD:g} N or more, got {load.min():g} N")
+    for name in ("vertical_load", "vertical_load_left", "vertical_load_right"):
+        if name in arrays and (arrays[name] < LEAST_LOAD).any():
+            raise wl.ConditionsError(f"{name}: must be {LEAST_LOAD:g} N or more, got {arrays[name].min():g} N")
     for name in ("friction_coefficient", "flange_friction_coefficient"):
         if name in arrays and (arrays[name] < LEAST_FRICTION).any():
             raise wl.ConditionsError(f"{name}: must be {LEAST_FRICTION:g} or more, got {arrays[name].min():g}")
