@@ -165,7 +165,7 @@ class Task:
 
 
 @dataclass
-class Root:
+class _Root:
     """Roots of functions that grow, by the secant method within the bounds found so far; arrays of one shape."""
 
     x: Array
@@ -178,7 +178,7 @@ class Root:
     value: Array
 
     @classmethod
-    def begun(cls, x: Array, slope: float, most: Array | float) -> Root:
+    def begun(cls, x: Array, slope: float, most: Array | float) -> _Root:
         """Return the search from first guesses of the roots and of the slope."""
         infinite, none = np.full(x.shape, np.inf), np.full(x.shape, np.nan)
         return cls(x, np.full(x.shape, slope), most, -infinite, infinite, none, none)
@@ -526,7 +526,7 @@ class Balance:
     def _rolled(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> None:
         """Find the rolls of some positions within bounds, in place, with the loads balanced at each roll."""
         going = open_.copy()
-        rolls = Root.begun(self.roll, np.nan, WIDEST_ROLL)
+        rolls = _Root.begun(self.roll, np.nan, WIDEST_ROLL)
         for _ in range(STEPS):
             self.scale[going.repeat(2)], self.balanced[going] = 1.0, True
             self._newton(forces, going, False)
@@ -564,7 +564,7 @@ class Balance:
         """
         start, going = self.penetration.copy(), open_.copy()
         self.penetration = np.where(open_.repeat(2), self.whole, start)
-        turns = Root.begun(self.rotation, np.nan, MOST_TURN * self.rotation)
+        turns = _Root.begun(self.rotation, np.nan, MOST_TURN * self.rotation)
         for _ in range(STEPS):
             state = self._carried(forces, going)
             lost = (np.abs(state.miss[:, :2]) > ROUGH).any(axis=-1)
@@ -583,7 +583,7 @@ class Balance:
 
     def _carried(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
         """Balance the vertical loads of some positions at their speed of rotation, in place."""
-        depths, going = Root.begun(np.log(self.penetration), 1.5, WIDEST_STEP), open_.copy()
+        depths, going = _Root.begun(np.log(self.penetration), 1.5, WIDEST_STEP), open_.copy()
         self.scale = np.where(open_.repeat(2), 1.0, self.scale)
         for _ in range(STEPS):
             state = self._state(forces, going)

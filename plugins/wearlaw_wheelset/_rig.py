@@ -457,9 +457,9 @@ class Wheelset(wl.Rig):
         distance = problem.rolled_distance
         if problem.balance.task.lateral_force is None:
             balance, climbs = problem.balance.solved(forces), np.zeros(problem.balance.roll.shape, dtype=np.bool_)
+            self._warn_of_climbing(balance)
         else:
             balance, climbs = self._guided(problem.balance, forces)
-        self._warn_of_climbing(balance)
         if not balance.balanced.all():
             self._warn_of_jams(balance)
         self._warn_of_humps(balance)
@@ -513,9 +513,9 @@ class Wheelset(wl.Rig):
         def solved(part: Task, rows: NDArray[np.intp]) -> Balance:
             return self._balance(part, None if roll is None else roll[rows]).solved(forces)
 
-        def stands(displacement: Array, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+        def stands(displacement: Array, rows: NDArray[np.intp], below: bool) -> NDArray[np.bool_]:
             _, found = self._rigid(displacement, task.yaw[rows], None if roll is None else roll[rows])
-            return np.asarray((found.arc[..., 0] >= self._steepest).all(axis=-1))
+            return np.asarray((found.arc[..., 0] >= (self._steepest if below else -np.inf)).all(axis=-1))
 
         place, climbs, greatest = guided(task, solved, stands)
         every = np.arange(place.size)
@@ -528,8 +528,8 @@ class Wheelset(wl.Rig):
             warnings.warn(
                 f"lateral_force: {np.count_nonzero(climbs)} of {climbs.size} positions have no result, the first with"
                 f" {1e-3 * task.lateral_force[point]:.4g} kN: the greatest force found is"
-                f" {1e-3 * greatest[point]:.4g} kN, and beyond {1e3 * place[point]:.4g} mm the {side} wheel climbs its"
-                " rail or leaves it",
+                f" {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm, beyond which the {side} wheel climbs"
+                " its rail or leaves it",
                 wl.RangeWarning,
                 stacklevel=5,
             )
