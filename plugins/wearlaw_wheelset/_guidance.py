@@ -4,13 +4,13 @@ The rails guide a wheelset by the lateral forces Y of its wheels. The sum over b
 
     ∑ Y = ∑ (Fy cos δ - N sin δ),
 
-is the lateral force H of the vehicle on the wheelset. As the wheelset moves outwards, ∑ Y grows slowly on the treads and
-steeply on a flange, jumps where contact jumps, and falls where the flange climbs. Of several displacements with this
-force, the wheelset takes the one nearest to the middle of the track at which ∑ Y grows: there it is stable.
+is the lateral force H of the vehicle on the wheelset. As the wheelset moves outwards, ∑ Y grows slowly on the treads
+and steeply on a flange, jumps where contact jumps, and falls where the flange climbs. Of several displacements with
+this force, the wheelset takes the one nearest to the middle of the track at which ∑ Y grows: there it is stable.
 
-The search goes outwards in steps, from the middle to shortly beyond where a rigid wheel passes the steepest point of its
-flange. Within the first step over which ∑ Y passes H, interpolation within bounds finds the place. If there is none,
-the search repeats the last steps in finer ones, since ∑ Y is greatest there.
+The search goes outwards in steps, from the middle to shortly beyond where a rigid wheel passes the steepest point of
+its flange. Within the first step over which ∑ Y passes H, interpolation within bounds finds the place. If there is
+none, the search repeats the last steps in finer ones, since ∑ Y is greatest there.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ BORNE = 1e-5
 """Lateral force that may be left over, as a share of the axle load. On a flange, ∑ Y grows by the axle load in some
 50 µm, and the level of both wheels is found to 1e-10 m."""
 
-CLOSE = 1e-10
+CLOSE = 1e-9
 """Distance of the bounds at which the force jumps between them [m]."""
 
 STEPS = 60
@@ -155,33 +155,56 @@ def _root(
     at_high: Array,
     left_over: Array,
 ) -> Array:
-    """Return distances between bounds at which the excess vanishes or jumps; where there are no bounds, the low ones.
+    """Return distances between bounds at which the excess vanishes; where there are no bounds, the low ones.
 
-    By inverse quadratic interpolation and bisection, after T. R. Chandrupatla, Advances in Engineering Software 28
-    (1997) 145-149. The excess bends sharply where a flange begins to bear.
+    Where no loads balance on some part of the way, as between two humps of a patch, the root is sought below it, and
+    then above it. If it is in neither, the result is the last place below.
     """
-    last, at_last = low.copy(), at_low.copy()  # the last place, and one with the other sign
-    other, at_other = high.copy(), at_high.copy()
-    share = np.full(low.shape, 0.5)
-    going = np.isfinite(at_low) & np.isfinite(high) & (np.abs(at_low) > left_over)
+    found = low.copy()
+    rows = np.flatnonzero(np.isfinite(at_low) & np.isfinite(high) & (np.abs(at_low) > left_over))
+    for unknown in (np.inf, -np.inf):
+        bounds = (array[rows] for array in (low, at_low, high, at_high, left_over))
+        x, missed = _bracketed(excess, rows, *bounds, unknown)
+        found[rows] = np.where(~missed | (unknown > 0.0), x, found[rows])
+        rows = rows[missed]
+    return found
+
+
+def _bracketed(
+    excess: Callable[[NDArray[np.intp], Array], Array],
+    rows: NDArray[np.intp],
+    low: Array,
+    at_low: Array,
+    high: Array,
+    at_high: Array,
+    left_over: Array,
+    unknown: float,
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Return roots between bounds, and whether there is none, by inverse quadratic interpolation and bisection.
+
+    After T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145-149. The excess bends sharply where a
+    flange begins to bear. `unknown` is taken for an excess that is NaN.
+    """
+    last, at_last, other, at_other = low.copy(), at_low.copy(), high.copy(), at_high.copy()  # of opposite signs
+    share, going = np.full(low.shape, 0.5), np.arange(low.size)
     for _ in range(STEPS):
-        rows = np.flatnonzero(going)
-        if not rows.size:
+        if not going.size:
             break
-        x1, f1, x2, f2 = last[rows], at_last[rows], other[rows], at_other[rows]
-        x = x1 + share[rows] * (x2 - x1)
-        f = excess(rows, x)
-        f = np.where(np.isnan(f), np.inf, f)
+        x1, f1, x2, f2 = last[going], at_last[going], other[going], at_other[going]
+        x = x1 + share[going] * (x2 - x1)
+        f = excess(rows[going], x)
+        f = np.where(np.isnan(f), unknown, f)
         same = (f < 0.0) == (f1 < 0.0)
         x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
         x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
-        last[rows], at_last[rows], other[rows], at_other[rows] = x, f, x2, f2
-        with np.errstate(invalid="ignore", divide="ignore"):  # an infinite excess bisects
+        last[going], at_last[going], other[going], at_other[going] = x, f, x2, f2
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):  # an infinite excess bisects
             place, height = (x - x2) / (x3 - x2), (f - f2) / (f3 - f2)
             smooth = (height**2 < place) & ((1.0 - height) ** 2 < 1.0 - place)
             ahead = f / (f2 - f) * f3 / (f2 - f3) + (x3 - x) / (x2 - x) * f / (f3 - f) * f2 / (f3 - f2)
         width = np.abs(x2 - x)
         least = np.minimum(0.5 * CLOSE / width, 0.5)
-        share[rows] = np.where(smooth, np.clip(ahead, least, 1.0 - least), 0.5)
-        going[rows] = (np.abs(f) > left_over[rows]) & (width > CLOSE)
-    return np.where(np.abs(at_other) < np.abs(at_last), other, last)
+        share[going] = np.where(smooth & np.isfinite(ahead), np.clip(ahead, least, 1.0 - least), 0.5)
+        going = going[(np.abs(f) > left_over[going]) & (width > CLOSE)]
+    nearer = np.abs(at_other) < np.abs(at_last)
+    return np.where(nearer, other, last), np.minimum(np.abs(at_other), np.abs(at_last)) > left_over

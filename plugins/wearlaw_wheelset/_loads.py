@@ -397,7 +397,8 @@ class Balance:
             part = found.part(rows[open_])
             patch = _normal.loaded(
                 part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
-                self.task.load[part.point, part.side] / part.cosine, 5, guess if guess is None else guess[open_] * part.cosine,
+                self.task.load[part.point, part.side] / part.cosine, 5,
+                guess if guess is None else guess[open_] * part.cosine,
             )  # fmt: skip
             penetration[open_] = patch.penetration / part.cosine
             open_ = open_[patch.narrow]
@@ -406,7 +407,7 @@ class Balance:
             sample(self.section, found, rows[open_], self._spacing * 2.0 ** (widening + 1))
         return penetration
 
-    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> Balance:
+    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, bounds: bool = True) -> Balance:
         """Return the loads with penetrations and speeds of rotation that balance the creep forces.
 
         Parameters
@@ -414,6 +415,9 @@ class Balance:
         forces : callable or None
             Returns the creep forces of a problem with one entry for each patch. None leaves out the creep forces; the
             speed of rotation then stays as it is.
+        bounds : bool
+            Whether to search within bounds where Newton's method fails, which takes a hundred times as long. Otherwise
+            these positions are marked as unbalanced.
         """
         names = (
             "roll",
@@ -445,7 +449,7 @@ class Balance:
         found._newton(forces, every, rolls)
         left = found.imbalance > STALLED
         if rolls:
-            if left.any():
+            if left.any() and bounds:
                 found._rolled(forces, left)
                 left &= found.imbalance > ROUGH
             if left.any():  # one of two humps of a patch takes over from the other; let them share the load
@@ -454,10 +458,12 @@ class Balance:
                 found._turn(rows, found.roll[rows])
                 found._newton(forces, left, rolls)
                 left &= found.imbalance > ROUGH
-            if left.any():
+            if left.any() and bounds:
                 found._rolled(forces, left)
-        elif left.any():
+        elif left.any() and bounds:
             found._bracketed(forces, left)
+        if not bounds:
+            found.balanced = found.imbalance <= ROUGH
         return found
 
     def _newton(
@@ -628,8 +634,7 @@ class Balance:
     def _sums(
         self, part: Candidates, patch: Patches, problem: wl.Problem, force: wl.CreepForces | None
     ) -> tuple[Array, Array, Array, Array]:
-        """Return the vertical and lateral load of each wheel [N], the torque of each axle and that of full slip [N m].
-        """
+        """Return vertical and lateral loads of wheels [N], torques of axles and those of full slip [N m]."""
         count = self.roll.size
         side = np.where(part.side == 1, 1.0, -1.0)
         cos, sin = np.cos(patch.place.angle), side * np.sin(patch.place.angle)

@@ -477,7 +477,7 @@ class Wheelset(wl.Rig):
         return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
 
     def _task(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
-        """Return what is asked at positions, SI arrays with one axis; in the middle of the track if a force is given."""
+        """Return what is asked at positions; with a lateral force, they are in the middle of the track at first."""
         speed = np.full(given["yaw"].shape, scalar(self.rolling_speed))
         none, one = np.zeros(speed.shape), given.get("vertical_load")
         loads = [given[f"vertical_load_{side}"] if one is None else one for side in DIMS["side"]]
@@ -511,7 +511,7 @@ class Wheelset(wl.Rig):
         roll = None if task.free else balance.roll
 
         def solved(part: Task, rows: NDArray[np.intp]) -> Balance:
-            return self._balance(part, None if roll is None else roll[rows]).solved(forces)
+            return self._balance(part, None if roll is None else roll[rows]).solved(forces, bounds=False)
 
         def stands(displacement: Array, rows: NDArray[np.intp], below: bool) -> NDArray[np.bool_]:
             _, found = self._rigid(displacement, task.yaw[rows], None if roll is None else roll[rows])
@@ -528,7 +528,7 @@ class Wheelset(wl.Rig):
             warnings.warn(
                 f"lateral_force: {np.count_nonzero(climbs)} of {climbs.size} positions have no result, the first with"
                 f" {1e-3 * task.lateral_force[point]:.4g} kN: the greatest force found is"
-                f" {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm, beyond which the {side} wheel climbs"
+                f" {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm; beyond it the {side} wheel climbs"
                 " its rail or leaves it",
                 wl.RangeWarning,
                 stacklevel=5,
