@@ -146,7 +146,7 @@ def check_matlab(example: Example) -> None:
 
 def read_tables(example: Example) -> None:
     """Read tables of a case file below those of the shipped case."""
-    from wearlaw.study.case import case_text, load_case
+    from wearlaw_studies.case import case_text, load_case
 
     Path("_tables.toml").write_text(f"{case_text('tassini2010')}\n{example.parsed}", encoding="utf-8")
     load_case("_tables.toml")

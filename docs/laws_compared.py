@@ -22,8 +22,8 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from wearlaw import Array, Q
-from wearlaw.figures.drawing import PALETTE, STYLE, WIDTH
 from wearlaw.plugins.loader import installed
+from wearlaw_output.drawing import PALETTE, STYLE, WIDTH
 
 DPI = 110
 TABLE = Path(__file__).parent / "laws-compared.csv"

@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 import wearlaw as wl
 import wearlaw_wheelset as ws
 from wearlaw.plugins.loader import installed
-from wearlaw.rigs.twin_disc import TwinDiscConditions
-from wearlaw.rigs.wheel_rail import WheelRailConditions
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.settings.parameters import numbers
 from wearlaw.units.variables import UNITS, VARIABLES, label
+from wearlaw_twin_disc import TwinDiscConditions
+from wearlaw_wheel_rail import WheelRailConditions
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")

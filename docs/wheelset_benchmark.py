@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 import wearlaw as wl
 import wearlaw_wheelset as ws
 from wearlaw import Array, Q
-from wearlaw.figures.drawing import PALETTE, STYLE, WIDTH
+from wearlaw_output.drawing import PALETTE, STYLE, WIDTH
 
 FOLDER = Path(__file__).parent / "wheelset-benchmark"
 DATA = Path(__file__).parents[1] / "tests" / "data"

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import wearlaw
-import wearlaw.testing
+import wearlaw_kit
 from wearlaw import hookspecs
 
 AGREED = Path(__file__).with_suffix(".txt")
@@ -24,7 +24,7 @@ def interface() -> list[str]:
     hooks = (name + arguments(hook) for name, hook in vars(hookspecs).items() if name.startswith("wearlaw_"))
     names = (line for name in wearlaw.__all__ for line in described(name, getattr(wearlaw, name)))
     kit = (
-        line for name in wearlaw.testing.__all__ for line in described(f"testing.{name}", vars(wearlaw.testing)[name])
+        line for name in wearlaw_kit.__all__ for line in described(f"wearlaw_kit.{name}", getattr(wearlaw_kit, name))
     )
     return [FIRST, *sorted({*hooks, *names, *kit} - {"INTERFACE_VERSION"})]
 
@@ -62,7 +62,7 @@ def member(cls: type, name: str) -> str:
 
 def is_ours(cls: type) -> bool:
     """Return whether a class is defined in wearlaw."""
-    return cls.__module__.partition(".")[0] == "wearlaw"
+    return cls.__module__.startswith("wearlaw")
 
 
 def arguments(function: Callable[..., Any]) -> str:

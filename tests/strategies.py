@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import wearlaw as wl
-from wearlaw.testing.problems import saturation, with_creepage
-from wearlaw.testing.sampling import EPS
-from wearlaw.testing.strategies import line_problems, log_uniform
+from wearlaw_kit.reduced import saturation, with_creepage
+from wearlaw_kit.sampling import EPS
+from wearlaw_kit.strategies import line_problems, log_uniform
 
 __all__ = [
     "EPS",

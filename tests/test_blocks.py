@@ -45,11 +45,11 @@ NOX = "makes environments from an index; that there is such a session is tested 
 MATLAB = "there is no MATLAB to run; the variables that are read are looked up in the files"
 TESTS = 'python3 -m venv .venv && .venv/bin/python -m pip install --quiet --editable ".[test]" '
 TESTS += "&& .venv/bin/python -m pytest -n auto"
-STUDY = "python3 -m venv .venv && .venv/bin/python -m pip install --quiet . "
+STUDY = 'python3 -m venv .venv && .venv/bin/python -m pip install --quiet ".[studies]" '
 STUDY += "&& .venv/bin/wearlaw run tassini2010 -o out"
-INSTALL = "python3 -m venv .venv && .venv/bin/python -m pip install --quiet . && .venv/bin/wearlaw plugins"
+INSTALL = 'python3 -m venv .venv && .venv/bin/python -m pip install --quiet ".[studies]" && .venv/bin/wearlaw plugins'
 STEEP = 'wearlaw check steep --expect-failure "rate_jumps_only_where_declared=the jump is still to be declared"'
-ROOMS = "cli            The command line: it parses, calls the rest of the package, and prints."
+HOUSE = "applications    wearlaw_life -> wearlaw_studies -> wearlaw_fits -> wearlaw_sweeps -> wearlaw_output"
 
 NOT_RUN = {
     ("README.md", STUDY): "installs from an index; .ci/run runs it",
@@ -70,7 +70,7 @@ NOT_RUN = {
         "CONTRIBUTING.md",
         ".venv/bin/python -m tests.fuzz --seconds 3600",
     ): "takes an hour; tests/test_fuzz.py runs the fuzzer",
-    ("CONTRIBUTING.md", ROOMS): "no code; tests/test_contributing.py compares it with the code",
+    ("CONTRIBUTING.md", HOUSE): "no code; tests/test_contributing.py compares it with the code",
     ("docs/accuracy.md", "nox -s bench"): NOX,
     ("docs/results.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
     ("docs/results.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
@@ -229,7 +229,8 @@ def test_extras_and_groups_that_pages_install_are_there() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     extras = re.findall(r'pip install [^`\n]*"(?:wearlaw|\.)\[(\w+)\]"', TEXT)
     groups = re.findall(r"--group (\w+)", TEXT)
-    assert {*extras} == project["project"]["optional-dependencies"].keys()
+    listed = re.findall(r"^\| `(\w+)` \|", (ROOT / "docs/install.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert {*extras} <= {*listed} == project["project"]["optional-dependencies"].keys()
     assert {*groups} == project["dependency-groups"].keys()
 
 

@@ -21,7 +21,7 @@ from tests.testing.wrong_law_nodes import Severe
 from tests.testing.wrong_laws import Linear
 from tests.testing.wrong_rigs import Delegating, Weight
 from wearlaw.models.contact_model import Model
-from wearlaw.testing import Check, checks
+from wearlaw_kit import Check, checks
 from wearlaw_kth import PUBLISHED
 from wearlaw_wheelset import Wheelset
 

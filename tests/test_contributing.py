@@ -50,19 +50,28 @@ def test_the_files_that_contributing_and_security_link_to_are_there() -> None:
     assert [link for link in links if not (ROOT / link).exists()] == []
 
 
-def test_the_rooms_of_the_core_are_those_of_the_code_in_the_order_of_imports() -> None:
+def first_line(package: str) -> str:
+    return (ast.get_docstring(ast.parse(text_of(f"{package}/__init__.py"))) or "").splitlines()[0]
+
+
+def house() -> str:
+    """Return the picture of the house: models and applications, and the rooms of the core in the order of imports."""
     contracts = tomllib.loads(text_of("pyproject.toml"))["tool"]["importlinter"]["contracts"]
-    layers = next(one["layers"] for one in contracts if one["type"] == "layers")
+    models, applications = contracts[1]["modules"], contracts[2]["forbidden_modules"]
+    arrow, layers = (one["layers"] for one in contracts if one["type"] == "layers")
     rooms = [name for layer in layers for name in re.split(r" [|:] ", layer) if (ROOT / "core/wearlaw" / name).is_dir()]
-    modules = {name: ast.parse(text_of(f"core/wearlaw/{name}/__init__.py")) for name in rooms}
-    lines = [f"{name:14} {(ast.get_docstring(module) or '').splitlines()[0]}" for name, module in modules.items()]
-    assert "```text\n" + "\n".join(lines) + "\n```" in TEXT
+    apart = [name for name in applications if name not in arrow]
+    return "\n".join(
+        [
+            f"applications    {' -> '.join([*arrow])}",
+            *(f"  {name:22} {first_line(f'plugins/{name}')}" for name in [*arrow, *apart]),
+            "models",
+            *(f"  {name:22} {first_line(f'plugins/{name}')}" for name in models),
+            "core",
+            *(f"  {name:22} {first_line(f'core/wearlaw/{name}')}" for name in rooms),
+        ]
+    )
 
 
-def test_no_room_but_that_of_the_rigs_and_the_kit_imports_a_rig() -> None:
-    found = {
-        path.relative_to(ROOT / "core/wearlaw").parts[0]
-        for path in (ROOT / "core/wearlaw").rglob("*.py")
-        if re.search(r"^\s*(?:from|import) wearlaw\.rigs\b", path.read_text(encoding="utf-8"), re.MULTILINE)
-    }
-    assert found <= {"__init__.py", "rigs", "testing"}, "the kit tries models on rigs that ship; take a rig by its name"
+def test_the_picture_of_the_house_is_that_of_the_code() -> None:
+    assert f"```text\n{house()}\n```" in TEXT

@@ -42,24 +42,62 @@ def test_pyproject_names_every_package_wherever_packages_are_named() -> None:
     assert [
         Path(path).name for path in tools["hatch"]["build"]["targets"]["wheel"]["packages"] if path[-3:] != ".py"
     ] == names
-    assert sorted(PYPROJECT["project"]["entry-points"]["wearlaw"].values()) == ["wearlaw.rigs", *names[1:]]
+    without_hooks = {"wearlaw_output", "wearlaw_sweeps"}
+    found = PYPROJECT["project"]["entry-points"]["wearlaw"].values()
+    assert sorted(found) == [name for name in names[1:] if name not in without_hooks]
     assert tools["importlinter"]["root_packages"] == names
-    assert [one.get("modules") or one["forbidden_modules"] for one in contracts[:2]] == [names[1:]] * 2
-    assert contracts[2]["source_modules"] == names[1:]
+    assert contracts[0]["forbidden_modules"] == names[1:]
+    models, applications = contracts[1]["modules"], contracts[2]["forbidden_modules"]
+    assert sorted([*models, *applications]) == names[1:]
+    assert contracts[2]["source_modules"] == contracts[3]["source_modules"] == models
 
 
-def test_the_small_extra_for_checks_needs_hypothesis_and_pytest_only() -> None:
+HEAVY = [
+    "pandas",
+    "xarray",
+    "matplotlib",
+    "rich",
+    "zarr",
+    "filelock",
+    "loky",
+    "jinja2",
+    "plotly",
+    "h5netcdf",
+    "h5py",
+    "tomli_w",
+]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "predict = wl.TwinDisc.suros() | wl.contact_model('global') | wl.wear_law('usfd')\n"
+        "print(predict(normal_force='2.7 kN', creepage=wl.Q([1.0, 2.0], '%'), friction_coefficient=0.4).wear_rate)",
+        "from wearlaw_kit import checks; print(sum(check() is None for check in checks(wl.wear_law('kth'))))",
+        "from wearlaw.cli import main; main(['plugins'])",
+        "from wearlaw.cli import main; main(['show', 'usfd'])",
+    ],
+    ids=["arrays", "kit", "plugins", "show"],
+)
+def test_the_core_and_the_kit_need_no_extra(code: str) -> None:
     extras = PYPROJECT["project"]["optional-dependencies"]
     assert [line.split(">=")[0] for line in extras["check"]] == ["hypothesis", "pytest"]
-    assert {*extras["check"]} <= {*extras["test"]}
-    others = {line.split(">=")[0] for name in extras for line in extras[name]} - {"hypothesis", "pytest"}
-    blocked = [name.replace("-", "_").replace("pytest_xdist", "xdist") for name in sorted(others)]
-    code = (
-        f"import sys; sys.modules.update(dict.fromkeys({blocked}))\n"
-        "import wearlaw; from wearlaw.testing import checks, conformance\n"
-        "law = wearlaw.wear_law('kth'); conformance(law)\n"
-        "print(sum(check() is None for check in checks(law)))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    without = [*HEAVY, "hypothesis", "pytest", "numba"]
+    code = f"import sys; sys.modules.update(dict.fromkeys({without}))\nimport wearlaw as wl\n{code}"
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    assert int(done.stdout) > 10
+
+
+@pytest.mark.parametrize(
+    ("code", "needs"),
+    [
+        ("wl.sweep", 'wearlaw.sweep needs xarray; install it with: python -m pip install "wearlaw[sweeps]"'),
+        ("wl.fit", 'wearlaw.fit needs pandas; install it with: python -m pip install "wearlaw[fits]"'),
+        ("from wearlaw.cli import main; main(['run', 'tassini2010'])", 'pip install "wearlaw[studies]"'),
+    ],
+)
+def test_a_missing_package_is_an_error_that_names_its_extra(code: str, needs: str) -> None:
+    code = f"import sys; sys.modules.update(dict.fromkeys({HEAVY}))\nimport wearlaw as wl\n{code}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert needs in done.stderr

@@ -10,7 +10,7 @@ import wearlaw as wl
 from tests.strategies import EPS, MODELS
 from wearlaw import Q
 from wearlaw.models.contact_model import Claim
-from wearlaw.testing.kit import CLAIMS
+from wearlaw_kit.kit import CLAIMS
 
 
 def exempt(claim: Claim) -> list[str]:

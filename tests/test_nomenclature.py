@@ -16,9 +16,9 @@ import wearlaw_wheelset as ws
 from docs import nomenclature
 from docs.nomenclature import Documented, read
 from tests.environments import ROOT
-from wearlaw.rigs.twin_disc import TWIN_DISC
-from wearlaw.rigs.wheel_rail import WHEEL_RAIL
 from wearlaw.units.variables import VARIABLES
+from wearlaw_twin_disc import TWIN_DISC
+from wearlaw_wheel_rail import WHEEL_RAIL
 
 SYMBOLS_OF_SEVERAL_NAMES = {
     "k": "KTH's map has a wear coefficient in each of its four fields",

@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw.models.contact_model import Model
-from wearlaw.testing import checks
+from wearlaw_kit import checks
 
 NEEDED: dict[str, dict[str, Any]] = {
     "archard": {"coefficient": 1e-4},

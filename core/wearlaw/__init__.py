@@ -8,10 +8,8 @@
 """
 
 import sys as _sys
-from importlib import import_module as _import_module
-from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import TYPE_CHECKING
 
-import wearlaw.rigs as _rigs  # noqa: F401  importing it later would overwrite the function `rigs` with the package
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop
 from wearlaw.contact import elastic_limit, half_space, hertz, hertz_ellipse, kalker
@@ -45,8 +43,8 @@ from wearlaw.errors import (
     WorkerWarning,
     shown,
 )
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.hookspecs import INTERFACE_VERSION, Command, hookimpl
+from wearlaw.extras import load as _load
+from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
 from wearlaw.models.contact_model import Claim, ContactModel, Scale
 from wearlaw.models.creep_force_model import CreepForceModel
 from wearlaw.models.functions import as_wear_law
@@ -76,13 +74,9 @@ from wearlaw.plugins.loader import (
     wear_law,
     wear_laws,
 )
-from wearlaw.rigs.twin_disc import Disc, TwinDisc
-from wearlaw.rigs.wheel_rail import WheelRail
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.text_files import beside, read_file
-from wearlaw.study.sections import CheckedClaim, Section, Verdict
 from wearlaw.tables import Table, read_table
-from wearlaw.uncertainties.distributions import lognormal, normal, published_range, uniform
 from wearlaw.units.quantities import (
     Density,
     Length,
@@ -98,8 +92,6 @@ from wearlaw.units.quantities import (
 )
 from wearlaw.units.wear_coefficients import wear_coefficient
 from wearlaw.version import __version__
-from wearlaw.wear_tests.reader import read_tests
-from wearlaw.wear_tests.tests import WearTests
 
 __all__ = [
     "INTERFACE_VERSION",
@@ -164,6 +156,7 @@ __all__ = [
     "QuantityLike",
     "RangeWarning",
     "Reader",
+    "ResourceKind",
     "ResumeWarning",
     "Rig",
     "Scale",
@@ -243,45 +236,65 @@ __all__ = [
     "wear_out",
 ]
 
-if _TYPE_CHECKING:
-    from wearlaw import testing as testing
-    from wearlaw.fitting.comparison import Comparison, compare
-    from wearlaw.fitting.fit import fit
-    from wearlaw.fitting.law_files import read_law, read_wear_law
-    from wearlaw.fitting.result import Fit
+if TYPE_CHECKING:
     from wearlaw.pipeline.inverse import creepage_for
-    from wearlaw.study.case import Case, load_case
-    from wearlaw.study.study import Study, run
-    from wearlaw.sweeping.sweep import sweep
-    from wearlaw.uncertainties.result import Uncertainty, uncertainty
+    from wearlaw.plugins.law_files import read_law, read_wear_law
+    from wearlaw_fits.comparison import Comparison, compare
+    from wearlaw_fits.fit import fit
+    from wearlaw_fits.result import Fit
+    from wearlaw_fits.uncertainties.distributions import lognormal, normal, published_range, uniform
+    from wearlaw_fits.uncertainties.result import Uncertainty, uncertainty
+    from wearlaw_fits.wear_tests.reader import read_tests
+    from wearlaw_fits.wear_tests.tests import WearTests
     from wearlaw_life import wear_out
+    from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis
+    from wearlaw_studies.case import Case, load_case
+    from wearlaw_studies.sections import CheckedClaim, Section, Verdict
+    from wearlaw_studies.study import Study, run
+    from wearlaw_sweeps.sweep import sweep
+    from wearlaw_twin_disc import Disc, TwinDisc
+    from wearlaw_wheel_rail import WheelRail
 
-_LATER = {
-    "Case": "wearlaw.study.case",
-    "load_case": "wearlaw.study.case",
-    "Study": "wearlaw.study.study",
-    "run": "wearlaw.study.study",
-    "Uncertainty": "wearlaw.uncertainties.result",
-    "uncertainty": "wearlaw.uncertainties.result",
-    "sweep": "wearlaw.sweeping.sweep",
+_LATE = {
     "creepage_for": "wearlaw.pipeline.inverse",
-    "Comparison": "wearlaw.fitting.comparison",
-    "compare": "wearlaw.fitting.comparison",
-    "Fit": "wearlaw.fitting.result",
-    "fit": "wearlaw.fitting.fit",
-    "read_law": "wearlaw.fitting.law_files",
-    "read_wear_law": "wearlaw.fitting.law_files",
+    "read_law": "wearlaw.plugins.law_files",
+    "read_wear_law": "wearlaw.plugins.law_files",
+    "Comparison": "wearlaw_fits.comparison",
+    "compare": "wearlaw_fits.comparison",
+    "fit": "wearlaw_fits.fit",
+    "Fit": "wearlaw_fits.result",
+    "lognormal": "wearlaw_fits.uncertainties.distributions",
+    "normal": "wearlaw_fits.uncertainties.distributions",
+    "published_range": "wearlaw_fits.uncertainties.distributions",
+    "uniform": "wearlaw_fits.uncertainties.distributions",
+    "Uncertainty": "wearlaw_fits.uncertainties.result",
+    "uncertainty": "wearlaw_fits.uncertainties.result",
+    "read_tests": "wearlaw_fits.wear_tests.reader",
+    "WearTests": "wearlaw_fits.wear_tests.tests",
     "wear_out": "wearlaw_life",
+    "Curve": "wearlaw_output.curves",
+    "FigureData": "wearlaw_output.curves",
+    "Panel": "wearlaw_output.curves",
+    "PlotAxis": "wearlaw_output.curves",
+    "Case": "wearlaw_studies.case",
+    "load_case": "wearlaw_studies.case",
+    "CheckedClaim": "wearlaw_studies.sections",
+    "Section": "wearlaw_studies.sections",
+    "Verdict": "wearlaw_studies.sections",
+    "Study": "wearlaw_studies.study",
+    "run": "wearlaw_studies.study",
+    "sweep": "wearlaw_sweeps.sweep",
+    "Disc": "wearlaw_twin_disc",
+    "TwinDisc": "wearlaw_twin_disc",
+    "WheelRail": "wearlaw_wheel_rail",
 }
-"""Names loaded at their first use: they take a tenth of the time of `import wearlaw`, and few scripts need them."""
+"""Public names that come from plugins, or that few scripts need: their modules are imported at their first use."""
 
 
 def __getattr__(name: str) -> object:
-    if name == "testing":
-        return _import_module("wearlaw.testing")
-    if name not in _LATER:
+    if name not in _LATE:
         raise AttributeError(f"module 'wearlaw' has no attribute {name!r}")
-    return getattr(_import_module(_LATER[name]), name)
+    return _load(_LATE[name], name, f"wearlaw.{name}")
 
 
 def __dir__() -> list[str]:

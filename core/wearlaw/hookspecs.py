@@ -39,6 +39,16 @@ class Command(NamedTuple):
     """Its line in `wearlaw --help`."""
 
 
+class ResourceKind(NamedTuple):
+    """A kind of what plugins provide by name for an application, such as its case files."""
+
+    type: type[Any]
+    """What each must be, such as `str` for texts."""
+    explanation: str
+    """The place of a function, "package.module:name", that takes a name and what goes by it, and returns the lines of
+    `wearlaw show`. It is imported when a user asks."""
+
+
 if TYPE_CHECKING:
     Provided = (
         Iterable[type[Model]]
@@ -80,8 +90,9 @@ def wearlaw_named() -> Mapping[str, WearLaw | Material | type[Material]]:  # typ
 def wearlaw_resources() -> Mapping[str, Mapping[str, Any]]:  # type: ignore[empty-body]
     """Return what applications look up, by kind and name.
 
-    Kinds are "case", the text of a case file; "test set", the text of a CSV file with wear tests; and "section", a
-    function that takes a `wearlaw.Study` and returns a `wearlaw.Section` of its report.
+    Kinds that come with wearlaw are "case", the text of a case file; "test set", the text of a CSV file with wear
+    tests; and "section", a function that takes a `wearlaw.Study` and returns a `wearlaw.Section` of its report. An
+    application brings a kind of its own as ``{"kind": {"case": wearlaw.ResourceKind(str, "my_package:explain")}}``.
     """
 
 

@@ -24,6 +24,7 @@ import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import DataError, UnitError, did_you_mean, shown
+from wearlaw.extras import needed_for
 from wearlaw.units.quantities import HEAD, Q, Quantity
 from wearlaw.units.registry import symbol
 
@@ -540,7 +541,8 @@ class XarrayTable(Table):
     def _opened(self) -> Any:
         if self._in_memory:
             return nullcontext(self._source)
-        import xarray
+        with needed_for("reading a netCDF file or a zarr store", "sweeps"):
+            import xarray
 
         try:
             if self._source.is_dir():
@@ -597,7 +599,8 @@ class FrameTable(Table):
 
 
 def _pandas() -> Any:
-    import pandas
+    with needed_for("reading a table", "sweeps"):
+        import pandas
 
     return pandas
 

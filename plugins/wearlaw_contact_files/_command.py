@@ -16,17 +16,18 @@ from wearlaw.cli.shared import (
     law_of,
     print_notes,
     print_results,
-    written_formats,
 )
 from wearlaw.contact.contact import Contact
-from wearlaw.figures.curves import FigureFormat
-from wearlaw.figures.worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
 from wearlaw.models.law import Law
-from wearlaw.output.analyses import WEAR, write_wear
-from wearlaw.output.folder import results_folder
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.reading import read_contact
+from wearlaw.plugins.fields import specification
+from wearlaw.version import __version__
+from wearlaw_contact_files._worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
+from wearlaw_output.curves import FigureFormat
+from wearlaw_output.files import named, write_files, written_formats
+from wearlaw_output.folder import results_folder
 
 NUMBER = 10
 """Most characters of a printed number."""
@@ -36,6 +37,9 @@ BLOCKS = 3
 
 APART = 0.01
 """Share by which the two powers may differ without a note."""
+
+
+WEAR = "wear.json"
 
 
 @click.command()
@@ -97,7 +101,12 @@ def wear(
             tables = {"wear": table, **profile_tables(found, labels)}
         _note_powers(table, notes)
         with notes.of("figure"):
-            names = write_wear(tables, figure, chosen, notes.texts, fresh, figure_formats, latex)
+            record = {
+                "wearlaw": __version__,
+                "laws": [specification(law) for law in chosen],
+                "notes": list(notes.texts),
+            }
+            names = write_files(fresh, WEAR, record, tables, named(figure), figure_formats, latex)
     print_notes(notes.texts)
     _print(table)
     print_results(folder, names)

@@ -13,13 +13,13 @@ import click
 import pandas as pd
 
 import wearlaw as wl
-from wearlaw.cli.shared import echo, fields, folder_for, print_notes, print_results, written_formats
-from wearlaw.figures.curves import FigureFormat
-from wearlaw.output.folder import results_folder
-from wearlaw.output.results import save_figure, save_table, writing
+from wearlaw.cli.shared import echo, fields, folder_for, print_notes, print_results
 from wearlaw.pipeline.notes import Notes
-from wearlaw.study.case import load_case
 from wearlaw_life._life import Life
+from wearlaw_output.curves import FigureFormat
+from wearlaw_output.files import save_figure, save_table, writing, written_formats
+from wearlaw_output.folder import results_folder
+from wearlaw_studies.case import load_case
 
 LIFE = "life.json"
 """The file with the models and notes of a life, which tells its folder from others."""

@@ -11,8 +11,8 @@ import xarray
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw.figures.plot import plot
 from wearlaw_life._removal import Profile, normal_depth
+from wearlaw_output.plot import plot
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw.settings.caught_warnings import caught_warnings
-from wearlaw.sweeping.points import Points
-from wearlaw.sweeping.sweep import weight
-from wearlaw.sweeping.tables import from_table
 from wearlaw_life._removal import Profile
+from wearlaw_sweeps.points import Points
+from wearlaw_sweeps.sweep import weight
+from wearlaw_sweeps.tables import from_table
 
 SUM = 1e-6
 """Deviation of the sum of the shares from one that is rounding of the numbers in a table."""

@@ -17,10 +17,10 @@ import zarr
 from zarr.codecs import Crc32cCodec
 
 import wearlaw as wl
-from wearlaw.sweeping.evaluation import Job
-from wearlaw.sweeping.provenance import check_same, provenance_of
 from wearlaw_life._line import Line, Wear
 from wearlaw_life._state import Plan, State
+from wearlaw_sweeps.evaluation import Job
+from wearlaw_sweeps.provenance import check_same, provenance_of
 
 PROVENANCE = "provenance"
 """Attribute of the group with what determines the life."""

@@ -15,12 +15,12 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw.pipeline.pipeline import expect_pipeline
-from wearlaw.sweeping.progress import Bar
 from wearlaw_life._life import UNITS, Life
 from wearlaw_life._line import Line, Wear, first_state, flank_of, read_line, wear_of, weighted
 from wearlaw_life._measures import NAMES, flange, hollow
 from wearlaw_life._removal import Profile, conserving, even, normal_depth, positions, smoothed, swept
 from wearlaw_life._state import Plan, Side, State
+from wearlaw_sweeps.progress import Bar
 
 if TYPE_CHECKING:
     from wearlaw_life._store import Store

@@ -66,6 +66,9 @@ MOST = 100.0
 NEWTON_STEPS, STEPS = 20, 100
 """Greatest number of steps by Newton's method, of which three or four are usual, and within bounds."""
 
+PATIENCE = 5
+"""Steps beyond `NEWTON_STEPS` that Newton's method is given to halve the imbalance once more, as near a jump."""
+
 WIDEST_STEP, MOST_TURN, WIDEST_ROLL = 1.0, 0.01, 1e-3
 """Greatest step of the logarithm of the penetration, of the speed of rotation as a share of it, and of the roll [rad].
 """
@@ -477,15 +480,19 @@ class Balance:
         count = self.roll.size
         open_, unit = chosen.copy(), np.ones((count, 1, 4))
         step, before = np.zeros((2, count, 4))
-        for iteration in range(NEWTON_STEPS):
+        least, halved = np.full(count, np.inf), np.zeros(count)
+        for iteration in range(STEPS):
             state = self._state(forces, open_)
             if not rolls:
                 state.miss[:, 3] = 0.0
             self._note(state, open_)
             worst, tilt = np.abs(state.miss[:, :3]).max(axis=-1), np.abs(state.miss[:, 3]) * self._depths()
             open_ &= (worst > BALANCED) | (tilt > LEVEL)
+            better = self.imbalance < 0.5 * least
+            least, halved = np.where(better, self.imbalance, least), np.where(better, iteration, halved)
+            open_ &= (iteration < NEWTON_STEPS - 1) | (iteration - halved < PATIENCE)
             rows = np.flatnonzero(open_)
-            if not rows.size or iteration == NEWTON_STEPS - 1:
+            if not rows.size:
                 break
             rates, miss = self._rates(state)[rows], state.miss[rows]
             near = (tilt > 0.5 * LEVEL) | (worst * self._depths() > 0.5 * LEVEL)

@@ -6,7 +6,7 @@ import sys
 import time
 
 import wearlaw as wl
-from wearlaw.testing import checks
+from wearlaw_kit import checks
 
 BUDGET_S = 20.0
 """For one law on two cores."""

@@ -16,7 +16,7 @@ from tests.benchmarks.points import DEFAULT_FORCE, DEFAULT_FRICTION, Predict, pi
 from tests.benchmarks.timing import Times, cpu_time, in_mode, side_by_side
 from wearlaw import Q, RangeWarning
 from wearlaw.contact.conditions import condition_arrays
-from wearlaw.rigs.twin_disc import TWIN_DISC
+from wearlaw_twin_disc import TWIN_DISC
 
 DECADES = (10**3, 10**4, 10**5, 10**6, 10**7)
 SWEEP = 10**5

@@ -19,7 +19,7 @@ from wearlaw.cli import main
 from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import Origin
-from wearlaw.study.case import Case, load_case
+from wearlaw_studies.case import Case, load_case
 
 Table = dict[str, Any]
 """A case as TOML gives it."""

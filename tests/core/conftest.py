@@ -18,9 +18,9 @@ from tests.core.cases import POINT, InstallModel, case, installer
 from tests.core.distributions import Install, write_distribution
 from wearlaw.arrays import kernels
 from wearlaw.plugins import loader
-from wearlaw.study.case import case_schema
-from wearlaw.study.study import Study, run
-from wearlaw.sweeping import points
+from wearlaw_studies.case import case_schema
+from wearlaw_studies.study import Study, run
+from wearlaw_sweeps import points
 
 
 @pytest.fixture
@@ -75,7 +75,7 @@ def point() -> Study:
 @pytest.fixture
 def blank_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave figures empty, whose drawing takes most of the time of a small run."""
-    monkeypatch.setattr("wearlaw.output.results.draw", lambda _: Figure(figsize=(1.0, 1.0)))
+    monkeypatch.setattr("wearlaw_output.files.draw", lambda _: Figure(figsize=(1.0, 1.0)))
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from tests.core.cases import case
-from wearlaw.figures.curves import Curve, FigureData, Panel
-from wearlaw.study.study import Study, run
+from wearlaw_output.curves import Curve, FigureData, Panel
+from wearlaw_studies.study import Study, run
 
 LOADS = {"from": "500 MPa", "to": "1500 MPa", "points": 3}
 """A range of maximum pressures."""

@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 
 from tests.core.cases import case
-from wearlaw.figures.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw.study.sections import CheckedClaim, Section
-from wearlaw.study.study import Study, run
+from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis
+from wearlaw_studies.sections import CheckedClaim, Section
+from wearlaw_studies.study import Study, run
 
 EVIL = "<script>alert(1)</script> <b>bold</b> $x_1$ %{y} & &amp; </script> {{ 7 * 7 }} \"'"
 """A text that HTML, plotly.js, MathJax or jinja would each make something else of."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tests.core import cases
 from tests.core.cases import case
-from wearlaw.study.study import Study, run
+from wearlaw_studies.study import Study, run
 
 LOADS = ["1000 MPa", "1500 MPa"]
 FRICTIONS = [0.3, 0.4, 0.5]

@@ -89,7 +89,7 @@ def deadly(marker: Path, always: bool = False) -> wl.Pipeline[...]:
 
 def interrupted_after(blocks: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Make as if Ctrl-C was pressed after some blocks, once."""
-    from wearlaw.sweeping.progress import Bar
+    from wearlaw_sweeps.progress import Bar
 
     left = [None] * (blocks + 1)  # the first call is for what was done before
 

@@ -16,8 +16,8 @@ from tests.core import cases
 from tests.core.cases import OWN_TESTS, STEEL, InstallModel, case, changed, load, table
 from wearlaw.models.labels import labels
 from wearlaw.plugins import loader
-from wearlaw.study.case import Case, case_schema, case_text, load_case, written
 from wearlaw.units.variables import VARIABLES
+from wearlaw_studies.case import Case, case_schema, case_text, load_case, written
 
 
 def rewritten(read: Case) -> str:

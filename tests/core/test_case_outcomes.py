@@ -20,11 +20,11 @@ from tests.core.cases import POINT, InstallModel, case, changed, load, table, we
 from tests.core.stages import EXACT, KTH, RIG, predicted, silently
 from tests.core.test_outcomes import Heat, Volume
 from wearlaw.errors import CompositionError
-from wearlaw.output.results import table as csv_table
-from wearlaw.report.page import report
-from wearlaw.report.tables import models, parameters, summaries, tables
-from wearlaw.study.case import case_schema, load_case, written
-from wearlaw.study.study import Study, run
+from wearlaw_studies.case import case_schema, load_case, written
+from wearlaw_studies.report.page import report
+from wearlaw_studies.report.tables import models, parameters, summaries, tables
+from wearlaw_studies.study import Study, run
+from wearlaw_studies.written import table as csv_table
 
 EPS = float(np.finfo(np.float64).eps)
 ON_RAILS: Any = {

@@ -24,14 +24,14 @@ from tests.core.panels import by_label, by_name, one_panel
 from tests.core.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.figures.drawing import draw
-from wearlaw.output.results import table as results_table
-from wearlaw.report.interactive import plotly_figure
-from wearlaw.report.tables import profiles, summaries
-from wearlaw.study.case import Case, case_schema, load_case
-from wearlaw.study.results import axes_of, patch_axes, patches_of
-from wearlaw.study.study import Study, evaluations, numbers, run
-from wearlaw.sweeping import points
+from wearlaw_output.drawing import draw
+from wearlaw_studies.case import Case, case_schema, load_case
+from wearlaw_studies.report.interactive import plotly_figure
+from wearlaw_studies.report.tables import profiles, summaries
+from wearlaw_studies.results import axes_of, patch_axes, patches_of
+from wearlaw_studies.study import Study, evaluations, numbers, run
+from wearlaw_studies.written import table as results_table
+from wearlaw_sweeps import points
 
 THERE: list[dict[str, Any]] = [
     {"side": "left", "patch": 1}, {"side": "left", "patch": 2}, {"side": "right", "patch": 1},
@@ -143,7 +143,7 @@ def test_a_condition_of_all_patches_keeps_its_name_from_their_variable() -> None
 
 
 def test_the_file_has_the_axes_with_their_labels(tmp_path: Path) -> None:
-    from wearlaw.output.results import write_netcdf
+    from wearlaw_studies.written import write_netcdf
 
     study = ran()
     write_netcdf(study, tmp_path / "results.nc")
@@ -592,7 +592,7 @@ def test_blocks_hold_fewer_points_of_several_patches_and_workers_give_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(points, "BLOCK", 8)  # two points of four patches
-    from wearlaw.sweeping import evaluation, workers
+    from wearlaw_sweeps import evaluation, workers
 
     blocks = []
 

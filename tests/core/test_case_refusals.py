@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import OWN_TESTS, STEEL, changed, load, table
-from wearlaw.study.case import load_case
+from wearlaw_studies.case import load_case
 
 WRONG: list[tuple[str, Any, str]] = [
     ("title", None, "title: is missing"),

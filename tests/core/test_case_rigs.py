@@ -22,13 +22,13 @@ from tests.core.panels import by_label, by_name
 from tests.core.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.output.results import table as results_table
-from wearlaw.report.tables import summaries, tables
-from wearlaw.study.case import Case, case_schema, case_text, load_case, written
-from wearlaw.study.results import axes_of, main_axis
-from wearlaw.study.study import Study, run
-from wearlaw.sweeping import points
 from wearlaw.units.variables import UNITS
+from wearlaw_studies.case import Case, case_schema, case_text, load_case, written
+from wearlaw_studies.report.tables import summaries, tables
+from wearlaw_studies.results import axes_of, main_axis
+from wearlaw_studies.study import Study, run
+from wearlaw_studies.written import table as results_table
+from wearlaw_sweeps import points
 
 WHEEL = {
     "type": "wheel_rail",

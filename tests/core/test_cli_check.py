@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Iterator
 
 import pytest
@@ -11,7 +10,7 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import InstallModel, assert_refused, wearlaw
-from wearlaw.testing import checks, kit
+from wearlaw_kit import checks, commands
 
 
 class SaidCheck:
@@ -41,7 +40,7 @@ def said(monkeypatch: pytest.MonkeyPatch) -> tuple[list[SaidCheck], Checked]:
         checked.append(model)
         yield from given
 
-    monkeypatch.setattr(kit, "checks", checks)
+    monkeypatch.setattr(commands, "checks", checks)
     return given, checked
 
 
@@ -135,22 +134,6 @@ def test_a_model_that_cannot_be_checked_is_one_clear_error(
     assert not said[1]
 
 
-def test_without_hypothesis_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.startswith("wearlaw.testing")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "hypothesis", None)
-    assert_refused(wearlaw("check", "usfd"), 'pip install "wearlaw[check]"')
-
-
-def test_another_module_that_is_missing_is_not_laid_to_hypothesis(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.startswith("wearlaw.testing")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "wearlaw.testing.kit", None)
-    result = wearlaw("check", "usfd")
-    assert isinstance(result.exception, ModuleNotFoundError)
-    assert result.exception.name == "wearlaw.testing.kit"
-
-
 @pytest.mark.parametrize("error", [SystemExit(0), GeneratorExit("over")], ids=["SystemExit", "GeneratorExit"])
 def test_a_law_that_ends_the_program_fails_the_checks(
     error: BaseException, monkeypatch: pytest.MonkeyPatch, install_model: InstallModel
@@ -165,7 +148,7 @@ def test_a_law_that_ends_the_program_fails_the_checks(
 
     install_model(Ending)
     name = "no_slip_no_wear"
-    monkeypatch.setattr("wearlaw.testing.kit.checks", lambda law: [one for one in checks(law) if one.name == name])
+    monkeypatch.setattr("wearlaw_kit.commands.checks", lambda law: [one for one in checks(law) if one.name == name])
     result = wearlaw("check", "ending", "--option", "slope=1 m")
     assert result.exit_code == 1
     reason = f"the model raised {type(error).__name__}: {error}"
@@ -184,7 +167,7 @@ def test_a_law_that_breaks_its_contract_fails_the_checks(
     install_model(Negative)
     # Two checks of the kit: hypothesis takes seconds to find the smallest example of each failure.
     chosen = ("rate_is_never_negative", "no_slip_no_wear")
-    monkeypatch.setattr("wearlaw.testing.kit.checks", lambda law: [one for one in checks(law) if one.name in chosen])
+    monkeypatch.setattr("wearlaw_kit.commands.checks", lambda law: [one for one in checks(law) if one.name in chosen])
     result = wearlaw("check", "negative", "--option", "slope=1 m")
     assert result.exit_code == 1
     assert "FAILED rate_is_never_negative: " in result.stdout
@@ -194,7 +177,7 @@ def test_a_law_that_breaks_its_contract_fails_the_checks(
 
 def with_checks(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     """Let `wearlaw check` run some of the checks only."""
-    monkeypatch.setattr("wearlaw.testing.kit.checks", lambda law: [one for one in checks(law) if one.name in names])
+    monkeypatch.setattr("wearlaw_kit.commands.checks", lambda law: [one for one in checks(law) if one.name in names])
 
 
 def test_an_expected_failure_is_counted_apart(monkeypatch: pytest.MonkeyPatch, install_model: InstallModel) -> None:

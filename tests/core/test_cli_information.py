@@ -14,7 +14,7 @@ import wearlaw as wl
 from tests.core.cases import assert_refused, table, wearlaw, write
 from tests.core.distributions import FIRST_PARTY_MODELS, Install
 from wearlaw.plugins import loader
-from wearlaw.study.case import case_schema, case_text
+from wearlaw_studies.case import case_schema, case_text
 
 # case, schema, show, help
 
@@ -77,6 +77,9 @@ def test_help_teaches_by_example(command: str) -> None:
 # plugins
 
 
+COMMANDS = ("case", "check", "compare", "fit", "life", "new-plugin", "run", "schema", "uncertainty", "wear")
+
+
 def test_all_models_are_listed_with_their_distribution_and_version() -> None:
     result = wearlaw("plugins")
     assert result.exit_code == 0
@@ -96,12 +99,11 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
             ["case", name, "wearlaw", wl.__version__]
             for name in ("tassini2010", "wheel_life", "wheel_on_rail", "wheelset")
         ),
-        ["test", "set", "lewis2004", "wearlaw", wl.__version__],
         ["section", "life", "wearlaw", wl.__version__],
         *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4", "tables")),
         ["section", "wheelset", "wearlaw", wl.__version__],
-        ["command", "life", "wearlaw", wl.__version__],
-        ["command", "wear", "wearlaw", wl.__version__],
+        ["test", "set", "lewis2004", "wearlaw", wl.__version__],
+        *(["command", name, "wearlaw", wl.__version__] for name in COMMANDS),
     ]
     assert result.stderr == ""
 

@@ -13,9 +13,9 @@ import xarray
 from click.testing import Result
 
 import wearlaw as wl
+import wearlaw_studies.written as output
 from tests.core import cases
 from tests.core.cases import assert_refused, files, table, wearlaw, write
-from wearlaw.output import results as output
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
@@ -129,11 +129,11 @@ def test_of_two_runs_into_one_folder_the_second_to_end_replaces_the_first_only_w
     winners: list[Result] = []
 
     def late(*arguments: Any) -> list[str]:
-        monkeypatch.setattr("wearlaw.cli.study_commands.write", write_results)
+        monkeypatch.setattr("wearlaw_studies.commands.write", write_results)
         winners.append(wearlaw("run", "kth.toml", *options))
         return write_results(*arguments)
 
-    monkeypatch.setattr("wearlaw.cli.study_commands.write", late)
+    monkeypatch.setattr("wearlaw_studies.commands.write", late)
     last = wearlaw("run", "usfd.toml", *options)
     assert [first.exit_code for first in winners] == [0]
     if not overwrite:

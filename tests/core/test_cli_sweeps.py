@@ -13,10 +13,10 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
+import wearlaw_studies.written as output
 from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
 from tests.core.sweeps import contents, interrupted_after
-from wearlaw.output import results as output
-from wearlaw.sweeping import room
+from wearlaw_sweeps import room
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
@@ -67,7 +67,7 @@ def test_what_is_done_is_not_done_again(folder: Path, monkeypatch: pytest.Monkey
     case = long_case(folder / "big.toml")
     interrupted(case, monkeypatch)
     seen: list[int] = []
-    monkeypatch.setattr("wearlaw.sweeping.progress.Bar.__call__", lambda _, points: seen.append(points))
+    monkeypatch.setattr("wearlaw_sweeps.progress.Bar.__call__", lambda _, points: seen.append(points))
     wearlaw("run", case, "-o", "out", "--resume")
     assert seen[0] == 100
     assert sum(seen) == 300
@@ -102,7 +102,7 @@ def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
     long_case(folder / "big.toml", sweeps={"long": {**LONG, "friction_coefficient": 0.3}})
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "conditions.friction_coefficient: was 0.46, is 0.3")
     long_case(folder / "big.toml")
-    monkeypatch.setattr("wearlaw.sweeping.provenance.__version__", "99.0")
+    monkeypatch.setattr("wearlaw_sweeps.provenance.__version__", "99.0")
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "is 99.0")
     assert contents(folder / "out.partial") == before
 
@@ -131,7 +131,7 @@ def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts
 
 
 def test_a_small_run_keeps_no_blocks(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw.sweeping.store.Store", None)
+    monkeypatch.setattr("wearlaw_sweeps.store.Store", None)
     assert wearlaw("run", long_case(folder / "small.toml"), "--figure-format", "svg").exit_code == 0
 
 
@@ -255,7 +255,7 @@ def test_a_wear_rate_that_does_not_vary_has_no_indices(folder: Path) -> None:
 def test_a_full_disk_is_one_clear_error_and_leaves_nothing_of_the_uncertainty(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw.output.analyses.save_figure", full_disk)  # after tables were written
+    monkeypatch.setattr("wearlaw_output.files.save_figure", full_disk)  # after tables were written
     result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "64", "-o", "out")
     assert_refused(result, "output: cannot write the results: No space left on device")
     assert [path.name for path in folder.iterdir()] == ["case.toml"]

@@ -13,7 +13,7 @@ import wearlaw as wl
 from tests.core.comparisons import EXACT, GLOBAL, SCATTER, by_label, made, scattered, usfd
 from tests.core.fits import sloping
 from wearlaw import Q
-from wearlaw.fitting.cross_validation import folds
+from wearlaw_fits.cross_validation import folds
 
 MARK = "fitted to these tests, which flatters their rank: "
 

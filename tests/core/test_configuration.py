@@ -19,7 +19,7 @@ import wearlaw as wl
 from tests.core.cases import Linear
 from wearlaw import Q
 from wearlaw.settings.configuration import Configuration
-from wearlaw.study.grid import Axis
+from wearlaw_studies.grid import Axis
 
 STEEL = wl.steel()
 IN_MM = 'give it in mm or another unit of that dimension, such as "1.0 mm"'

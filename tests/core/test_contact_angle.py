@@ -14,8 +14,8 @@ import scipy
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.study.case import Case
-from wearlaw.study.study import run
+from wearlaw_studies.case import Case
+from wearlaw_studies.study import run
 
 STEEL = wl.steel()
 FLANGE: dict[str, Any] = {

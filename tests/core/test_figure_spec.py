@@ -11,7 +11,7 @@ import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import Table, case, table
 from tests.core.test_case_rigs import ON_RAIL
-from wearlaw.study.case import Case
+from wearlaw_studies.case import Case
 
 WEAR = {"sweep": "creepage", "x": "wear_index", "y": "wear_rate"}
 PATCH = {"profile": "partial_slip", "y": "slip"}

@@ -17,9 +17,9 @@ from matplotlib.figure import Figure
 
 from tests.core import report_data as data
 from tests.core.report_data import ONE, THREE
-from wearlaw.figures.curves import OUTSIDE, STRIP, Curve, FigureData, Map, Panel, PlotAxis, Shade, in_parts
-from wearlaw.figures.drawing import BAND, LINES, MARKERS, PALE, PALETTE, THIN, draw, line_styles
-from wearlaw.report.interactive import literal, plotly_figure
+from wearlaw_output.curves import OUTSIDE, STRIP, Curve, FigureData, Map, Panel, PlotAxis, Shade, in_parts
+from wearlaw_output.drawing import BAND, LINES, MARKERS, PALE, PALETTE, THIN, draw, line_styles
+from wearlaw_studies.report.interactive import literal, plotly_figure
 
 X = np.array([1.0, 2.0, 4.0])
 SEVEN_DIGITS = 5e-7

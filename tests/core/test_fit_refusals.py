@@ -223,7 +223,7 @@ def test_a_test_that_decides_a_parameter_alone_is_warned_of() -> None:
 
 
 def test_a_fit_that_does_not_converge_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw.fitting.least_squares.ITERATIONS", 0.2)
+    monkeypatch.setattr("wearlaw_fits.least_squares.ITERATIONS", 0.2)
     predict = usfd("exact")
     refused("has not converged", predict, made_up(predict, 0.1), ALL, starts=0, bounds={})
 

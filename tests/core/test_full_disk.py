@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from wearlaw.sweeping.room import set_size
+from wearlaw_sweeps.room import set_size
 
 pytest.importorskip("resource", reason="limits of processes are those of Unix")
 
@@ -73,7 +73,7 @@ def test_a_store_without_room_is_an_error_that_says_how_to_go_on(
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr("wearlaw.sweeping.workers.evaluate", full)
+    monkeypatch.setattr("wearlaw_sweeps.workers.evaluate", full)
     message = "store: cannot write to '.*/map': No space left on device; make room, and add resume=True to go on"
     with pytest.raises(wl.OutputError, match=message):
         sweep(tmp_path / "map")
@@ -93,7 +93,7 @@ def test_a_store_without_room_is_an_error_that_says_how_to_go_on(
 def test_a_store_that_cannot_be_made_is_refused_before_computing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, message: str
 ) -> None:
-    monkeypatch.setattr("wearlaw.sweeping.workers.evaluate", lambda *_: pytest.fail("it computed"))
+    monkeypatch.setattr("wearlaw_sweeps.workers.evaluate", lambda *_: pytest.fail("it computed"))
     (tmp_path / "itself").symlink_to("itself")
     (tmp_path / "broken").symlink_to("gone")
     (tmp_path / "file").touch()

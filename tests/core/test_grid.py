@@ -10,8 +10,8 @@ import pytest
 import wearlaw as wl
 from wearlaw import Q
 from wearlaw.arrays.array import Array
-from wearlaw.study.grid import MOST_POINTS, Axis, Grid
 from wearlaw.units.variables import UNITS
+from wearlaw_studies.grid import MOST_POINTS, Axis, Grid
 
 RIG = wl.TwinDisc.suros()
 

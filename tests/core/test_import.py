@@ -13,7 +13,7 @@ import wearlaw as wl
 
 HEAVY = {
     *("matplotlib", "plotly", "jinja2", "xarray", "pandas", "click", "rich", "h5netcdf", "h5py", "tomli_w", "dask"),
-    *("numba", "distributed", "zarr", "hypothesis", "pytest", "wearlaw.testing", "scipy.optimize", "scipy.stats"),
+    *("numba", "distributed", "zarr", "hypothesis", "pytest", "wearlaw_kit.kit", "scipy.optimize", "scipy.stats"),
 }
 
 
@@ -58,19 +58,15 @@ def test_commands_that_only_print_do_not_load_what_others_need(arguments: list[s
 
 
 def test_a_worker_process_loads_no_labels() -> None:
-    assert not {"xarray", "pandas", "rich", "scipy.optimize"} & loaded("import wearlaw.sweeping.workers")
+    assert not {"xarray", "pandas", "rich", "scipy.optimize"} & loaded("import wearlaw_sweeps.workers")
 
 
 def test_dir_shows_the_public_names_also_those_loaded_later_and_no_room() -> None:
-    code = f"{IMPORT}; import wearlaw.study.study; assert dir(wl) == sorted(wl.__all__), dir(wl)"
-    assert "wearlaw.study.study" in loaded(code)
+    code = f"{IMPORT}; import wearlaw_studies.study; assert dir(wl) == sorted(wl.__all__), dir(wl)"
+    assert "wearlaw_studies.study" in loaded(code)
     modules = [name for name in dir(wl) if inspect.ismodule(getattr(wl, name))]
     assert modules == ["elastic_limit", "half_space", "hertz", "hertz_ellipse", "kalker"]
     assert {"fit", "sweep", "Uncertainty", "load_case"} <= set(dir(wl))
-
-
-def test_the_conformance_kit_is_loaded_when_the_package_is_asked_for_it() -> None:
-    assert "wearlaw.testing" in loaded(f"{IMPORT}; wl.testing.checks")
 
 
 def test_every_public_name_is_there() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from wearlaw.fitting.intervals import (
+from wearlaw_fits.intervals import (
     Replicates,
     covariance,
     leverage,
@@ -18,7 +18,7 @@ from wearlaw.fitting.intervals import (
     student_intervals,
     studentised_intervals,
 )
-from wearlaw.fitting.least_squares import Bounds, Solutions, fit_many
+from wearlaw_fits.least_squares import Bounds, Solutions, fit_many
 
 WIDE = Bounds(np.full(2, -50.0), np.full(2, 50.0))
 X = np.linspace(0.0, 3.0, 12)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-from wearlaw.fitting.least_squares import STEP, TOLERANCE, Bounds, fit_many, jacobian, refine, search
+from wearlaw_fits.least_squares import STEP, TOLERANCE, Bounds, fit_many, jacobian, refine, search
 
 X = np.linspace(0.0, 3.0, 15)
 WIDE = Bounds(np.full(2, -5.0), np.full(2, 5.0))
@@ -152,7 +152,7 @@ def test_a_search_from_many_points_finds_what_one_start_does_not() -> None:
 
 
 def test_a_fit_that_runs_out_of_iterations_has_not_converged(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw.fitting.least_squares.ITERATIONS", 2)
+    monkeypatch.setattr("wearlaw_fits.least_squares.ITERATIONS", 2)
     targets = noisy(decay, [1.5, 0.7], 0.1, 5)
     assert not fit_many(decay, targets, np.tile([4.0, 4.0], (5, 1)), WIDE).converged.any()
 

@@ -14,9 +14,9 @@ from tests.core import cases
 from tests.core.axle_case import AXLES, MOVED, ON_AXLE
 from tests.core.distributions import Install
 from wearlaw.pipeline.variables import MASS
-from wearlaw.report.main_result import MANY_CURVES, main_figure, main_result, main_table, together
-from wearlaw.study.results import LIMITS, beyond_limits
-from wearlaw.study.study import Study, run
+from wearlaw_studies.report.main_result import MANY_CURVES, main_figure, main_result, main_table, together
+from wearlaw_studies.results import LIMITS, beyond_limits
+from wearlaw_studies.study import Study, run
 
 POINT: dict[str, Any] = {"max_pressure": "0.9 GPa", "creepage": "0.3 %", "friction_coefficient": 0.2}
 FINE = {**POINT, "creepage": {"from": "0.1 %", "to": "10 %", "points": 101, "spacing": "log"}}

@@ -15,10 +15,10 @@ from tests.core import cases
 from tests.core.cases import case
 from tests.core.panels import by_label, by_name
 from wearlaw import Q
-from wearlaw.report.page import report
-from wearlaw.report.styled import latex_table
-from wearlaw.report.tables import FOOTNOTES, profiles, summaries
-from wearlaw.study.study import Study, run
+from wearlaw_output.styled import latex_table
+from wearlaw_studies.report.page import report
+from wearlaw_studies.report.tables import FOOTNOTES, profiles, summaries
+from wearlaw_studies.study import Study, run
 
 RIG = wl.TwinDisc.suros()
 BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.34, density="8800 kg/m^3")

@@ -16,9 +16,9 @@ import wearlaw as wl
 from tests.core.cases import POINT, case, load, table, wearlaw
 from tests.core.distributions import Install
 from wearlaw.plugins import loader
-from wearlaw.report.tables import parameters
-from wearlaw.study.case import case_schema, load_case, written
-from wearlaw.study.study import provenance, run
+from wearlaw_studies.case import case_schema, load_case, written
+from wearlaw_studies.report.tables import parameters
+from wearlaw_studies.study import provenance, run
 
 STEELS = """
     from typing import Annotated

@@ -15,8 +15,8 @@ import wearlaw as wl
 from tests.core.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
 from wearlaw.plugins import loader
-from wearlaw.study.case import Case, case_schema, case_text, load_case, written
-from wearlaw.study.study import provenance, run
+from wearlaw_studies.case import Case, case_schema, case_text, load_case, written
+from wearlaw_studies.study import provenance, run
 
 POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
 RIG = wl.TwinDisc.suros()
@@ -25,7 +25,7 @@ RIG = wl.TwinDisc.suros()
 def test_the_steel_and_the_study_come_from_a_plugin_like_any_other() -> None:
     assert wl.material("steel") == wl.steel()
     assert list(wl.materials()) == ["steel"]
-    assert loader.installed().cases.origin("tassini2010").entry_point == "sheffield"
+    assert loader.installed().resources["case"].origin("tassini2010").entry_point == "sheffield"
 
 
 def test_a_parameter_set_is_looked_up_like_a_law_and_takes_options(install: Install) -> None:
@@ -183,7 +183,7 @@ def test_a_run_says_what_it_used(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("wearlaw.output.results.write_figures", lambda *_: [])
+    monkeypatch.setattr("wearlaw_studies.written.write_figures", lambda *_: [])
     install("lab", LAB, version="1.2.3")
     (tmp_path / "own.toml").write_text(LAB_STUDY)
     monkeypatch.chdir(tmp_path)
@@ -259,7 +259,7 @@ def test_a_parameter_set_is_checked_like_a_law(install: Install, monkeypatch: py
         checked.append(model)
         return []
 
-    monkeypatch.setattr("wearlaw.testing.kit.checks", checks)
+    monkeypatch.setattr("wearlaw_kit.commands.checks", checks)
     assert wearlaw("check", "lab_2026").stdout == "0 ok, 0 failed, 0 not claimed\n"
     wearlaw("check", "lab_2026", "--option", "m_c=75 ug/m/N")
     assert checked == [wl.wear_law("lab_2026"), wl.wear_law("lab_2026", m_c="75 ug/m/N")]

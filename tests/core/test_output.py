@@ -16,14 +16,14 @@ from packaging.version import Version
 import wearlaw as wl
 from tests.core import cases, report_data
 from tests.core.cases import case, tree
-from wearlaw.output.results import CSV, RESULTS, table, write
 from wearlaw.pipeline.variables import OF_CONTACT
-from wearlaw.report.main_result import main_figure, main_result
-from wearlaw.report.tables import tables
-from wearlaw.study.case import CASE_FILE, Case, load_case
-from wearlaw.study.sections import Section
-from wearlaw.study.study import Study, run
 from wearlaw.units.variables import UNITS
+from wearlaw_studies.case import CASE_FILE, Case, load_case
+from wearlaw_studies.report.main_result import main_figure, main_result
+from wearlaw_studies.report.tables import tables
+from wearlaw_studies.sections import Section
+from wearlaw_studies.study import Study, run
+from wearlaw_studies.written import CSV, RESULTS, table, write
 
 LATTICE = {**cases.SWEEP, "friction_coefficient": [0.3, 0.4]}
 MEASURED = {**cases.POINT, "traction_coefficient": [0.1, 0.2]}
@@ -40,7 +40,7 @@ def written(study: Study, tmp_path_factory: pytest.TempPathFactory) -> tuple[Pat
     """Write the results, with blank figures, whose drawing takes most of the time."""
     folder = tmp_path_factory.mktemp("results")
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("wearlaw.output.results.draw", lambda _: Figure(figsize=(1.0, 1.0)))
+        patched.setattr("wearlaw_output.files.draw", lambda _: Figure(figsize=(1.0, 1.0)))
         return folder, write(study, folder)
 
 
@@ -127,7 +127,7 @@ def test_a_long_table_is_written_with_progress_to_the_same_bytes(
 ) -> None:
     stages: list[str] = []
     rows = len(table(study))
-    monkeypatch.setattr("wearlaw.output.results.CHUNK", -(-rows // 4))
+    monkeypatch.setattr("wearlaw_studies.written.CHUNK", -(-rows // 4))
     write(study, tmp_path, (), on_stage=stages.append)
     shares = [stage for stage in stages if "results.csv" in stage]
     assert [shares[0].partition(", ")[0], len(shares)] == ["writing results.csv", 3]

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from tests.core.cases import full_disk, tree
-from wearlaw.output.folder import FILES, results_folder
-from wearlaw.output.results import CSV, RESULTS, write
-from wearlaw.study.study import Study
+from wearlaw_output.folder import FILES, results_folder
+from wearlaw_studies.study import Study
+from wearlaw_studies.written import CSV, RESULTS, write
 
 
 def fill(folder: Path, *names: str, overwrite: bool = False) -> None:
@@ -86,7 +86,7 @@ def test_after_an_interruption_everything_is_as_before(
         assert list(tmp_path.rglob(CSV)), "the break must come in the middle of writing"
         raise error
 
-    monkeypatch.setattr("wearlaw.output.results.draw", break_off)
+    monkeypatch.setattr("wearlaw_output.files.draw", break_off)
     expected = wl.OutputError if error is OSError else error
     with pytest.raises(expected), results_folder(tmp_path / "out", True, RESULTS) as fresh:
         write(point, fresh)

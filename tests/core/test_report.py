@@ -17,11 +17,11 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.report_data import CLAIMS, EVIL, ODD, ONE, THREE, small_study
-from wearlaw.report.interactive import plotly_figure
-from wearlaw.report.main_result import main_figure, main_result
-from wearlaw.report.page import counted, paragraphs, report
-from wearlaw.study.sections import Verdict
-from wearlaw.study.study import Study, run
+from wearlaw_studies.report.interactive import plotly_figure
+from wearlaw_studies.report.main_result import main_figure, main_result
+from wearlaw_studies.report.page import counted, paragraphs, report
+from wearlaw_studies.sections import Verdict
+from wearlaw_studies.study import Study, run
 
 VOID = {"meta"}
 """Elements of the page that are never closed."""

@@ -9,7 +9,7 @@ import pytest
 from click.testing import Result
 
 from tests.core.cases import assert_refused, wearlaw
-from wearlaw.cli.scaffold import Kind
+from wearlaw_kit.scaffold import Kind
 
 pytestmark = pytest.mark.usefixtures("folder")
 

@@ -14,8 +14,8 @@ import wearlaw as wl
 from tests.core.cases import SWEEP, assert_refused, case, table, wearlaw, write
 from tests.core.distributions import FIRST_PARTY_LAWS, Install
 from wearlaw.plugins import loader
-from wearlaw.study.case import Case, case_schema
-from wearlaw.study.study import provenance, run, used
+from wearlaw_studies.case import Case, case_schema
+from wearlaw_studies.study import provenance, run, used
 
 LAB = """
     import warnings
@@ -94,8 +94,8 @@ OURS = ["life", "tassini2010_claims", "tassini2010_table_4", "tassini2010_tables
 
 
 def test_the_sections_of_the_study_come_from_a_plugin_like_any_other() -> None:
-    assert list(loader.installed().sections.items()) == OURS
-    assert ("section", OURS[0], loader.installed().sections.origin(OURS[0])) in loader.installed().listing()
+    assert list(loader.installed().resources["section"].items()) == OURS
+    assert ("section", OURS[0], loader.installed().resources["section"].origin(OURS[0])) in loader.installed().listing()
     printed = wearlaw("plugins").stdout.splitlines()
     assert [line.split()[1] for line in printed if line.startswith("section ")] == OURS
 
@@ -247,7 +247,7 @@ def test_a_plugin_whose_hook_is_wrong_is_left_out_and_the_others_work(
     with pytest.warns(wl.PluginWarning, match="left out: broken 1.0"):
         found = loader.installed()
     assert cause in found.broken[0].cause
-    assert {"highest", "warned", *OURS} <= set(found.sections.items())
+    assert {"highest", "warned", *OURS} <= set(found.resources["section"].items())
     assert set(wl.wear_laws()) == FIRST_PARTY_LAWS
 
 

@@ -17,9 +17,9 @@ from tests.core.studies import FRICTIONS, LOADS, MEASURED, lattice_study
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered
-from wearlaw.study.results import along_main_axis, axes_of, main_axis
-from wearlaw.study.study import Study, run
 from wearlaw.units.variables import UNITS
+from wearlaw_studies.results import along_main_axis, axes_of, main_axis
+from wearlaw_studies.study import Study, run
 
 MODELS = {"global": wl.contact_model("global"), "exact": wl.contact_model("exact")}
 LAWS = {"usfd": wl.wear_law("usfd"), "kth": wl.wear_law("kth"), "brr": wl.wear_law("brr")}

@@ -11,9 +11,9 @@ from tests.core import cases
 from tests.core.cases import InstallModel, case
 from tests.core.panels import LOADS, assert_shows, by_label, by_name, one_panel, shown
 from tests.strategies import EPS
-from wearlaw.report.main_result import main_figure, main_result
-from wearlaw.study.figures import spans_of
-from wearlaw.study.study import Study, run
+from wearlaw_studies.figures import spans_of
+from wearlaw_studies.report.main_result import main_figure, main_result
+from wearlaw_studies.study import Study, run
 
 WEAR = {"sweep": "creepage", "x": "wear_index", "y": "wear_rate"}
 AT = {"normal_force": "4 kN", "creepage": "1 %", "friction_coefficient": 0.4}

@@ -13,9 +13,9 @@ from tests.core import cases
 from tests.core.cases import case
 from tests.core.panels import LOADS, by_name, one_panel, shown
 from tests.strategies import EPS
-from wearlaw.figures.curves import Curve
-from wearlaw.figures.drawing import draw
-from wearlaw.study.study import run
+from wearlaw_output.curves import Curve
+from wearlaw_output.drawing import draw
+from wearlaw_studies.study import run
 
 TESTS = """creepage [%],normal_force [kN],tangential_force [N],wear_rate [ug/m/mm^2],wear_rate_uncertainty [ug/m/mm^2]
 1,7,2100,20,2

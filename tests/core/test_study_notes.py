@@ -14,8 +14,8 @@ from tests.core.cases import InstallModel, case
 from tests.core.studies import lattice_study
 from wearlaw import Array
 from wearlaw.pipeline.notes import grouped
-from wearlaw.study.case import Case
-from wearlaw.study.study import evaluations, provenance, run
+from wearlaw_studies.case import Case
+from wearlaw_studies.study import evaluations, provenance, run
 
 STRONG = {"preset": "suros", "material": dict(wl.steel(shear_yield_stress=None))}
 

@@ -9,7 +9,7 @@ import pytest
 from tests.core import cases
 from tests.core.cases import case
 from tests.core.studies import LATTICE, MEASURED
-from wearlaw.study.study import evaluations, run
+from wearlaw_studies.study import evaluations, run
 
 
 @pytest.mark.parametrize(

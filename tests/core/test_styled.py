@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 from tests.core.report_data import EVIL
-from wearlaw.report.styled import Marked, cell, html_table, latex_table
+from wearlaw_output.styled import Marked, cell, html_table, latex_table
 
 TABLE = pd.DataFrame(
     {

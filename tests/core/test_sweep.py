@@ -17,8 +17,8 @@ import wearlaw as wl
 from tests.core.cases import Linear
 from tests.core.sweeps import CONDITIONS, OUTPUTS, predictor
 from wearlaw import Q
-from wearlaw.sweeping import room
-from wearlaw.sweeping.points import BLOCK, Points, Varying
+from wearlaw_sweeps import room
+from wearlaw_sweeps.points import BLOCK, Points, Varying
 
 
 def points(*sizes: int) -> Points:

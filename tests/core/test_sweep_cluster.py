@@ -12,7 +12,7 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.core.sweeps import CONDITIONS, OUTPUTS, deadly, ending, predictor
-from wearlaw.sweeping import workers
+from wearlaw_sweeps import workers
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.usefixtures("small_blocks")

@@ -17,9 +17,9 @@ from tests.core.axles import CREEP, GIVEN, KTH, PATCHES, Axle, Cut, Warns, Worn,
 from tests.core.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.sweeping import sweep as sweeping
-from wearlaw.sweeping.evaluator import Evaluator
-from wearlaw.sweeping.points import Points, Varying
+from wearlaw_sweeps import sweep as sweeping
+from wearlaw_sweeps.evaluator import Evaluator
+from wearlaw_sweeps.points import Points, Varying
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -96,7 +96,7 @@ def test_a_resumed_sweep_has_the_same_bytes(workers: int, tmp_path: Path, monkey
     left = xr.open_zarr(tmp_path / "resumed.zarr", chunks=None, consolidated=False)
     assert left.wear_rate.dims == DIMS
     told: list[int] = []
-    monkeypatch.setattr("wearlaw.sweeping.progress.Bar.__call__", lambda _, points: told.append(points))
+    monkeypatch.setattr("wearlaw_sweeps.progress.Bar.__call__", lambda _, points: told.append(points))
     with pytest.warns(wl.ResumeWarning):
         resumed = wl.sweep(pipeline(), **given, store=tmp_path / "resumed.zarr", workers=workers, resume=True)
     assert told[0] > 0
@@ -107,7 +107,7 @@ def test_a_resumed_sweep_has_the_same_bytes(workers: int, tmp_path: Path, monkey
 @pytest.mark.parametrize("workers", [1, 2])
 def test_progress_counts_operating_points(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[int] = []
-    monkeypatch.setattr("wearlaw.sweeping.progress.Bar.__call__", lambda _, points: told.append(points))
+    monkeypatch.setattr("wearlaw_sweeps.progress.Bar.__call__", lambda _, points: told.append(points))
     wl.sweep(pipeline(), **AXES, workers=workers)
     assert sum(told) == 40
     assert len([points for points in told if points]) > 5

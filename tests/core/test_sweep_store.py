@@ -87,7 +87,7 @@ def test_a_resumed_sweep_gives_the_same_as_an_uninterrupted_one(
 ) -> None:
     interrupted(tmp_path / "map.zarr", monkeypatch, workers)
     advances: list[int] = []
-    monkeypatch.setattr("wearlaw.sweeping.progress.Bar.__call__", lambda _, points: advances.append(points))
+    monkeypatch.setattr("wearlaw_sweeps.progress.Bar.__call__", lambda _, points: advances.append(points))
     with pytest.warns(wl.ResumeWarning, match=r"\d of 10 blocks are kept in '.*map.zarr'; the others are"):
         resumed = wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", workers=workers, resume=True)
     assert advances[0] >= 3 * 24  # not computed again
@@ -167,7 +167,7 @@ def test_another_law_or_version_is_refused(tmp_path: Path, monkeypatch: pytest.M
     with pytest.raises(wl.OutputError, match=r"predict.laws.0.q_s: was .*, is 56"):
         wl.sweep(other, **GIVEN, store=store, resume=True)
     with monkeypatch.context() as patched:
-        patched.setattr("wearlaw.sweeping.provenance.__version__", "99.0")
+        patched.setattr("wearlaw_sweeps.provenance.__version__", "99.0")
         with pytest.raises(wl.OutputError, match=r"wearlaw: was .*, is 99\.0"):
             wl.sweep(predictor(), **GIVEN, store=store, resume=True)
     monkeypatch.setattr("wearlaw.plugins.shelf.Shelf.distribution", lambda *_: "another 1.2.3")
@@ -239,7 +239,7 @@ import signal
 
 import numpy as np
 import wearlaw as wl
-from wearlaw.sweeping import points
+from wearlaw_sweeps import points
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # tests in the background of a shell have it ignored
 points.BLOCK = 200

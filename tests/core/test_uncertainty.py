@@ -13,7 +13,7 @@ from tests.core.fits import GLOBAL, in_microgram
 from tests.core.uncertain import FULL_SLIP, USFD
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.study.uncertain_point import UncertainPoint
+from wearlaw_studies.uncertain_point import UncertainPoint
 
 
 @wl.as_wear_law(

@@ -13,7 +13,7 @@ from tests.core.outcome_laws import Damage, Heat
 from tests.core.test_fit_stages import Balanced, Choosy, Softer
 from tests.core.uncertain import FULL_SLIP, USFD
 from wearlaw import Q
-from wearlaw.uncertainties.inputs import check_samples
+from wearlaw_fits.uncertainties.inputs import check_samples
 
 UNCERTAIN: Any = {"friction_coefficient": wl.uniform(0.3, 0.5), "samples": 4}
 HINT = r"(.|\n)*samples of its distribution"

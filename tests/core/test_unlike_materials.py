@@ -19,8 +19,8 @@ from wearlaw import Q
 from wearlaw.contact import hertz
 from wearlaw.contact.material import dundurs_beta
 from wearlaw.pipeline.composition import COUPLING
-from wearlaw.study.case import Case
-from wearlaw.study.study import run
+from wearlaw_studies.case import Case
+from wearlaw_studies.study import run
 
 STEEL = wl.steel()
 POLYMER = wl.Material(youngs_modulus="3 GPa", poisson_ratio=0.4, density="1200 kg/m^3")

@@ -16,7 +16,7 @@ import wearlaw as wl
 from tests.core.wear_tests import NAN, made
 from tests.strategies import EPS, log_uniform
 from wearlaw import Q
-from wearlaw.wear_tests.reader import parse_tests
+from wearlaw_fits.wear_tests.reader import parse_tests
 
 RIG = wl.TwinDisc.suros()
 GLOBAL, EXACT = wl.contact_model("global"), wl.contact_model("exact")

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.core.cases import TESTS_CSV, TESTS_HEAD
 from tests.strategies import EPS
-from wearlaw.wear_tests.reader import parse_tests
+from wearlaw_fits.wear_tests.reader import parse_tests
 
 # Round trip
 

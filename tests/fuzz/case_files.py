@@ -19,8 +19,8 @@ from tests.environments import ROOT
 from tests.fuzz import mutations
 from tests.fuzz.harness import Broken, Files, check
 from wearlaw.cli import main
-from wearlaw.study.case import case_text
-from wearlaw.study.study import evaluations
+from wearlaw_studies.case import case_text
+from wearlaw_studies.study import evaluations
 
 MOST = 400
 """Evaluations of the largest case that is run."""

@@ -17,7 +17,7 @@ from tests.core.cases import load, table
 from tests.strategies import EPS, LINE_MODELS, line_problems, log_uniform, saturation_creepage, with_creepage
 from tests.testing.cells import Cells
 from wearlaw import Q
-from wearlaw.testing import checks
+from wearlaw_kit import checks
 
 SUROS = wl.TwinDisc.suros()
 CONDITIONS = {"normal_force": Q(7.4143, "kN"), "friction_coefficient": 0.46}

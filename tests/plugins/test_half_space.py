@@ -10,7 +10,7 @@ import wearlaw as wl
 from tests.plugins.contact_files import FILES
 from tests.plugins.full_theory import rows, spheres
 from wearlaw import Array
-from wearlaw.testing.problems import random_ellipses
+from wearlaw_kit.reduced import random_ellipses
 
 CARTER = 0.3 * 972253.0
 """μN [N] of the cylinder that CONTACT solved."""

@@ -12,13 +12,19 @@ import wearlaw_sheffield
 from tests.plugins.sheffield import HEAT, SPEED, mean_speed
 from wearlaw.models.labels import labels
 from wearlaw.plugins import loader
-from wearlaw.study.case import Case, case_text, load_case
-from wearlaw.study.study import run
-from wearlaw.wear_tests.reader import text_of_tests
+from wearlaw_fits.wear_tests.reader import text_of_tests
+from wearlaw_studies.case import Case, case_text, load_case
+from wearlaw_studies.study import run
 
 
 def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    assert list(loader.installed().cases.items()) == ["tassini2010", "wheel_life", "wheel_on_rail", "wheelset"]
+    cases = loader.installed().resources["case"].items()
+    assert list(cases) == [
+        "tassini2010",
+        "wheel_life",
+        "wheel_on_rail",
+        "wheelset",
+    ]
     package = Path(wearlaw_sheffield.__file__).parent
     assert case_text("tassini2010") == (package / "tassini2010.toml").read_text(encoding="utf-8")
 

@@ -40,9 +40,9 @@ from tests.plugins.sheffield import (
     usfd,
     usfd_of,
 )
-from wearlaw.study.study import run
 from wearlaw_sheffield import claims
 from wearlaw_sheffield.bench import Bench
+from wearlaw_studies.study import run
 
 BEGIN, END = GLOBAL[1] / GLOBAL[0] * AREA, GLOBAL[3] * AREA
 """Where severe and where catastrophic wear begin [N]."""

@@ -25,11 +25,11 @@ from tests.plugins.sheffield import (
     usfd,
 )
 from tests.strategies import EPS
-from wearlaw.figures.curves import Curve, FigureData
-from wearlaw.study.case import Case, case_text, load_case
-from wearlaw.study.study import run
+from wearlaw_output.curves import Curve, FigureData
 from wearlaw_sheffield import figures
 from wearlaw_sheffield.bench import Bench
+from wearlaw_studies.case import Case, case_text, load_case
+from wearlaw_studies.study import run
 
 WEAR_INDICES = np.array([50.0, 150.0, 199.9, 200.0001, 700.0])
 

@@ -16,7 +16,7 @@ import wearlaw_wheelset as ws
 from tests.core.cases import wearlaw, write
 from wearlaw import Q
 from wearlaw.plugins import loader
-from wearlaw.study.case import case_text, load_case
+from wearlaw_studies.case import case_text, load_case
 
 RIG = """
 title = "A worn wheel"
@@ -122,7 +122,7 @@ def profiles_of(name: str) -> dict[str, ws.Profile]:
     return {field: value for field, value in rig if isinstance(value, ws.Profile)}
 
 
-@pytest.mark.parametrize("name", [name for name in loader.installed().cases.items() if profiles_of(name)])
+@pytest.mark.parametrize("name", [name for name in loader.installed().resources["case"].items() if profiles_of(name)])
 def test_a_shipped_case_runs_with_profiles_from_files(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy
 import xarray
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import wearlaw as wl
@@ -32,6 +32,8 @@ from wearlaw_wheelset._search_loops import ROLL_ACCURACY, ROUNDING
 SIDE = np.array([-1.0, 1.0])
 STANDARD = wheelset()
 EPS = float(np.finfo(float).eps)
+PRINTED_STEPS = 1.2e-7 + 3.7e-8
+"""Sum of the steps that the printed formulas of S1002 leave [m]."""
 LEVEL = 4.0 * ROLL_ACCURACY
 """Accuracy of a roll [rad]: the least gaps may differ by 2 ROLL_ACCURACY, on levers of about 0.75 m a side and more."""
 
@@ -201,6 +203,7 @@ def test_wheels_touch_where_their_surfaces_in_space_are_nearest(
     displacement=st.floats(-9e-3, 9e-3),
     yaw=st.floats(-30e-3, 30e-3),
 )
+@example(displacement=0.006251691881153521, yaw=0.0)
 def test_wheels_never_enter_their_rails(displacement: float, yaw: float) -> None:
     found = first(STANDARD, displacement, yaw)
     where = standing(displacement, si(found, "roll"), yaw, si(found, "vertical_displacement"))
@@ -210,7 +213,9 @@ def test_wheels_never_enter_their_rails(displacement: float, yaw: float) -> None
         least = float(gap(body, s[:, None], angle, *where).min())
         # A point of the grid is within 0.1 mm and 2.5 mrad of the contact point, where the gap has curvatures along the
         # wheel of up to 1/(13 mm cos³ 70°) = 2000/m, and of r about the axle.
-        assert -1e-9 < least < 0.5 * 2000.0 * 0.1e-3**2 + 0.5 * 0.5 * 2.5e-3**2
+        # The wheel's formula has steps between its pieces, which lie between points that are searched, and in the root,
+        # where the radii of wheel and rail are 13 mm, a wheel may touch beside one.
+        assert -1e-9 - PRINTED_STEPS < least < 0.5 * 2000.0 * 0.1e-3**2 + 0.5 * 0.5 * 2.5e-3**2
 
 
 def test_no_contact_is_lost_where_a_flank_lies_along_its_rail() -> None:

@@ -13,15 +13,15 @@ from hypothesis import given, settings
 
 import wearlaw as wl
 from wearlaw import Contact, Material, Problem, TwinDisc, WheelRail
-from wearlaw.testing import conditions, elliptic_problems, wheel_rails
-from wearlaw.testing.law_contacts import borders, for_each_contact, means_of, on_line, on_strips
-from wearlaw.testing.problems import random_lines, translation, wide_ellipses
-from wearlaw.testing.sampling import aimed, at_nodes
+from wearlaw_kit import conditions, elliptic_problems, wheel_rails
+from wearlaw_kit.law_contacts import borders, for_each_contact, means_of, on_line, on_strips
+from wearlaw_kit.reduced import random_lines, translation, wide_ellipses
+from wearlaw_kit.sampling import aimed, at_nodes
 
 DIGEST = """
 import hashlib, numpy as np, wearlaw as wl
-from wearlaw.testing.law_contacts import for_each_contact
-from wearlaw.testing.shapes import SHAPES
+from wearlaw_kit.law_contacts import for_each_contact
+from wearlaw_kit.shapes import SHAPES
 drawn = []
 for shape in SHAPES:
     for problem in (shape.problems, shape.similar, shape.batch, shape.random(8)):
@@ -169,7 +169,8 @@ def test_types_are_registered_in_either_order_and_hypothesis_does_not_import_wea
 def test_a_missing_hypothesis_is_an_error_that_says_what_to_install() -> None:
     code = (
         "import sys; sys.modules['hypothesis'] = None\n"
-        "try:\n    import wearlaw.testing\n"
+        "from wearlaw_kit import checks\n"
+        "try:\n    from wearlaw_kit import problems\n"
         "except ModuleNotFoundError as error:\n    print(error)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

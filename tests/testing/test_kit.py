@@ -21,13 +21,13 @@ from tests.testing.wrong_law_nodes import PairOfPoints
 from tests.testing.wrong_laws import Linear, Raises, WrongSign
 from tests.testing.wrong_rigs import Weight
 from wearlaw.models.contact_model import Claim
-from wearlaw.testing import Check, checks, conformance
-from wearlaw.testing.kit import CLAIMS, NotRunError
+from wearlaw_kit import Check, checks, conformance
+from wearlaw_kit.kit import CLAIMS, NotRunError
 
 SUITE = """
 from tests.testing.wrong_declarations import HottestNode
 from tests.testing.wrong_laws import Linear, Offset, WrongSign
-from wearlaw.testing import conformance
+from wearlaw_kit import conformance
 
 @conformance(WrongSign(), expected_failures={"rate_is_never_negative": "material grows"})
 def test_known(check):

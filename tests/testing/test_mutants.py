@@ -29,8 +29,8 @@ from tests.testing import (
     wrong_stages,
     wrong_strips,
 )
-from wearlaw.testing import Check, checks, conformance
-from wearlaw.testing.kit import NotRunError
+from wearlaw_kit import Check, checks, conformance
+from wearlaw_kit.kit import NotRunError
 
 WRONG: dict[Any, str] = {
     **wrong_laws.CAUGHT,

@@ -5,28 +5,20 @@ from __future__ import annotations
 import signal
 import sys
 import traceback
-from importlib import import_module
 from io import TextIOWrapper
 from typing import IO, Any
 
 import click
 
 from wearlaw.errors import WearlawError, described, did_you_mean, message_of, shown
+from wearlaw.extras import MissingPackageError, load
 from wearlaw.hookspecs import Command
 from wearlaw.plugins import loader
 from wearlaw.version import __version__
 
 OWN = (
-    Command("case", "wearlaw.cli.case_commands:case", "Print a case file, to edit a copy."),
-    Command("check", "wearlaw.cli.model_commands:check", "Check that a model keeps what wearlaw relies on."),
-    Command("compare", "wearlaw.cli.data_commands:compare", "Rank models by how well they predict your tests."),
-    Command("fit", "wearlaw.cli.data_commands:fit", "Fit the parameters of a wear law to your tests."),
-    Command("new-plugin", "wearlaw.cli.model_commands:new_plugin", "Write a small plugin to start from."),
     Command("plugins", "wearlaw.cli.model_commands:list_plugins", "List what the installed plugins provide."),
-    Command("run", "wearlaw.cli.study_commands:run", "Run a study and write its results and report."),
-    Command("schema", "wearlaw.cli.case_commands:schema", "Print the JSON Schema of case files."),
     Command("show", "wearlaw.cli.model_commands:show", "Explain anything that wearlaw plugins lists."),
-    Command("uncertainty", "wearlaw.cli.study_commands:uncertainty", "Say how uncertain predictions are."),
 )
 """The commands of wearlaw itself. Their modules import pandas, matplotlib and more when a command is called."""
 
@@ -63,7 +55,9 @@ class _Commands(click.Group):
             )
         module, _, function = asked.function.partition(":")
         try:
-            command: click.Command = getattr(import_module(module), function)
+            command: click.Command = load(module, function, f"wearlaw {cmd_name}")
+        except MissingPackageError as error:
+            raise click.ClickException(message_of(error)) from error
         except Exception as error:
             of = "" if cmd_name in own else f" of {loader.installed().commands.origin(cmd_name)}"
             raise click.ClickException(f"command {shown(cmd_name)}{of} cannot be loaded: {described(error)}") from error

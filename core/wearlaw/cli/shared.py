@@ -3,38 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar, get_args
 
 import click
 
 from wearlaw.errors import ConfigurationError, InputError, shown, with_problems
-from wearlaw.figures.curves import FigureFormat
-from wearlaw.fitting.law_files import read_law, read_toml
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
+from wearlaw.plugins.law_files import read_law, read_toml
 from wearlaw.settings.configuration import Configuration
-
-CommandT = TypeVar("CommandT", bound=Callable[..., Any])
-
-
-def written_formats(command: CommandT) -> CommandT:
-    """Add the options `figure_formats` and `latex` to a command."""
-    formats = click.option(
-        "--figure-format",
-        "figure_formats",
-        type=click.Choice(get_args(FigureFormat)),
-        multiple=True,
-        default=["png"],
-        show_default=True,
-        help="Format of the figures; may be repeated.",
-    )
-    latex = click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
-    return formats(latex(command))
 
 
 class _WithRig(Configuration, extra="ignore"):

@@ -14,6 +14,7 @@ import numpy as np
 
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
+from wearlaw.extras import needed_for
 from wearlaw.models.contact_model import Scale
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.datasets import Conditions, Named, dataset
@@ -71,6 +72,8 @@ class Drawn(Named, Protocol):
 
 def draw(prediction: Drawn, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
     """Draw a prediction; see `Prediction.plot`."""
+    with needed_for("a picture", "fits"):
+        import matplotlib  # noqa: F401  xarray would not say how to install it
     problem = prediction.problem
     points = problem.batch_shape[: len(problem.batch_shape) - len(problem.dims)]
     if math.prod(points) == 1 and x is None:

@@ -11,6 +11,7 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Body, Problem
 from wearlaw.errors import InputError, shown
+from wearlaw.extras import needed_for
 from wearlaw.numerics.blocks import blocks
 from wearlaw.numerics.profiles import onto_positions
 from wearlaw.pipeline.selection import axis_names
@@ -118,7 +119,8 @@ def labelled(
     problem: Problem, coordinates: Mapping[str, Any], variables: Mapping[str, Any], without: str = ""
 ) -> xarray.Dataset:
     """Return a dataset with the labels of the rig's own axes as coordinates, but for one axis."""
-    import xarray
+    with needed_for("a dataset", "sweeps"):
+        import xarray
 
     labels = {name: list(labels) for name, labels in problem.dims.items() if name != without}
     return xarray.Dataset(variables, {**labels, **coordinates})

@@ -7,8 +7,9 @@ others go on working. If two models have the same name, an error names both dist
 from __future__ import annotations
 
 import functools
+import re
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib.metadata import Distribution, EntryPoint, distributions
@@ -17,7 +18,6 @@ from threading import RLock
 from typing import Any
 
 import pluggy
-from packaging.utils import canonicalize_name
 
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
@@ -37,9 +37,12 @@ class Installed:
 
     Attributes
     ----------
-    rigs, contact_models, stages, wear_laws, laws, readers, parameter_sets, materials, material_types, cases, test_sets,
-    sections, commands : Shelf
+    rigs, contact_models, stages, wear_laws, laws, readers, parameter_sets, materials, material_types, commands : Shelf
         What the plugins provide, by kind and name.
+    resources : dict of str to Shelf
+        What applications look up, by its kind, such as "case".
+    explanations : dict of str to str
+        The place of the function that explains a resource, by its kind.
     plugins : list of Origin
         All plugins.
     broken : list of Broken
@@ -55,9 +58,8 @@ class Installed:
     parameter_sets: Shelf[WearLaw] = field(default_factory=lambda: Shelf("parameter set", WearLaw))  # type: ignore[type-abstract]
     materials: Shelf[Material] = field(default_factory=lambda: Shelf("material", Material))
     material_types: Shelf[type[Material]] = field(default_factory=lambda: Shelf("material type", type))
-    cases: Shelf[str] = field(default_factory=lambda: Shelf("case", str))
-    test_sets: Shelf[str] = field(default_factory=lambda: Shelf("test set", str))
-    sections: Shelf[Callable[..., Any]] = field(default_factory=lambda: Shelf("section", Callable))  # type: ignore[arg-type]
+    resources: dict[str, Shelf[Any]] = field(default_factory=dict)
+    explanations: dict[str, str] = field(default_factory=dict)
     commands: Shelf[hookspecs.Command] = field(default_factory=lambda: Shelf("command", hookspecs.Command))
     plugins: list[Origin] = field(default_factory=list)
     broken: list[Broken] = field(default_factory=list)
@@ -65,15 +67,12 @@ class Installed:
     def shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind."""
         named = (self.parameter_sets, self.materials, self.material_types)
-        return *self.model_shelves(), *named, *self.resource_shelves(), self.commands
+        resources = (self.resources[kind] for kind in sorted(self.resources))
+        return *self.model_shelves(), *named, *resources, self.commands
 
     def model_shelves(self) -> tuple[Shelf[Any], ...]:
         """Return the shelf of each kind of model."""
         return self.rigs, self.contact_models, self.stages, self.wear_laws, self.laws, self.readers
-
-    def resource_shelves(self) -> tuple[Shelf[Any], ...]:
-        """Return the shelf of each kind of resource."""
-        return self.cases, self.test_sets, self.sections
 
     def of_kind(self, kind: str) -> Shelf[Any]:
         """Return the shelf of a kind, such as "wear law"."""
@@ -120,6 +119,9 @@ def _discover(found: Installed) -> None:
             plugin = _Plugin(manager, _load(manager, entry_point, origin))
             _add_models(plugin, origin, found)
             loaded.append((plugin, origin))
+    for plugin, origin in loaded:
+        with _left_out_if_broken(found, origin):
+            _add_kinds(plugin, found)
     for plugin, origin in loaded:
         with _left_out_if_broken(found, origin):
             _add_named(plugin, origin, found)
@@ -298,7 +300,9 @@ def _entry_points() -> list[tuple[EntryPoint, Origin]]:
         if f"[{hookspecs.PROJECT}]" in (distribution.read_text("entry_points.txt") or ""):  # parse only the few plugins
             name, version = _name_and_version(distribution)
             points = distribution.entry_points.select(group=hookspecs.PROJECT)
-            found.setdefault(canonicalize_name(name), [(point, Origin(point.name, name, version)) for point in points])
+            found.setdefault(
+                re.sub(r"[-_.]+", "-", name).lower(), [(point, Origin(point.name, name, version)) for point in points]
+            )
     return sorted(chain.from_iterable(found.values()), key=lambda pair: (pair[1].distribution, pair[1].entry_point))
 
 
@@ -370,6 +374,13 @@ def _add_models(plugin: _Plugin, origin: Origin, found: Installed) -> None:
         add_model(shelves[kind], model, origin)
 
 
+def _add_kinds(plugin: _Plugin, found: Installed) -> None:
+    for answer in plugin.answers("wearlaw_resources"):
+        for kind, made in answer.get("kind", {}).items():
+            found.resources[kind] = Shelf(kind, made.type)
+            found.explanations[kind] = made.explanation
+
+
 def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:
     """Add parameter sets, materials, resources and commands."""
     for name, item in chain.from_iterable(answer.items() for answer in plugin.answers("wearlaw_named")):
@@ -382,11 +393,12 @@ def _add_named(plugin: _Plugin, origin: Origin, found: Installed) -> None:
         else:
             found.parameter_sets.add(name, known_as(name, item), origin)
     for kind, items in chain.from_iterable(answer.items() for answer in plugin.answers("wearlaw_resources")):
-        shelves = {shelf.kind: shelf for shelf in found.resource_shelves()}
-        if kind not in shelves:
-            raise TypeError(f"wearlaw_resources: there is no kind {shown(kind)}{did_you_mean(kind, shelves)}")
+        if kind == "kind":
+            continue
+        if kind not in found.resources:
+            raise TypeError(f"wearlaw_resources: there is no kind {shown(kind)}{did_you_mean(kind, found.resources)}")
         for name, item in items.items():
-            shelves[kind].add(name, item, origin)
+            found.resources[kind].add(name, item, origin)
     for command in chain.from_iterable(plugin.answers("wearlaw_commands")):
         found.commands.add(command.name, command, origin)
 

@@ -7,7 +7,7 @@ from wearlaw_outside.material import MADE_UP_STEEL
 from wearlaw_outside.rig import Weighted
 from wearlaw_outside.stage import Wet
 
-from wearlaw.testing import Check, conformance
+from wearlaw_kit import Check, conformance
 
 
 @conformance(MadeUp(), expected_failures={})

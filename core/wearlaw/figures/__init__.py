@@ -1,1 +1,0 @@
-"""The contents of figures, and drawing them for print."""

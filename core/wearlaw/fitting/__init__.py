@@ -1,1 +1,0 @@
-"""Fitting the parameters of wear laws to tests."""

@@ -1,1 +1,0 @@
-"""Case files, and running the studies that they describe."""

@@ -1,0 +1,355 @@
+"""Commands about wear tests: fit parameters to them, and compare predictions with them."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from wearlaw.cli.shared import (
+    contact_model,
+    echo,
+    fields,
+    folder_for,
+    law_of,
+    listed,
+    print_notes,
+    print_results,
+    read_rig,
+    stage,
+    value,
+    values,
+)
+from wearlaw.errors import FitError, PlasticityWarning, shown
+from wearlaw.models.law import Law
+from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.pairs import Pair, compose
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.settings.parameters import numbers
+from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named
+from wearlaw_fits.fit import fit as fit_parameters
+from wearlaw_fits.result import Fit
+from wearlaw_fits.wear_tests.reader import read_tests
+from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.written import COMPARISON, FIT, write_comparison, write_fit
+from wearlaw_output.curves import FigureFormat
+from wearlaw_output.files import CommandT, written_formats
+from wearlaw_output.folder import results_folder
+from wearlaw_sweeps.progress import Bar
+
+
+def common(command: CommandT) -> CommandT:
+    """Add the options that both commands share."""
+    for option in (
+        written_formats,
+        click.option(
+            "--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay."
+        ),
+        click.option(
+            "--scatter",
+            type=click.Choice(["relative", "absolute"]),
+            default="relative",
+            show_default=True,
+            help="Scatter of measurements, by a factor or by an amount; ignored if the tests state uncertainties.",
+        ),
+        click.option("--friction", type=float, help="Friction coefficient of tests without a column of it."),
+        click.option("--decimal", default=".", show_default=True, help="Decimal mark of the tests."),
+        click.option("--sep", help="What separates the cells of the tests [default: semicolon, tab or comma]."),
+        click.option(
+            "--rig",
+            type=click.Path(path_type=Path),
+            help="A TOML file with a table [rig], such as a case file [default: SUROS, 47 mm discs, 10 mm track].",
+        ),
+    ):
+        command = option(command)
+    return command
+
+
+bounds_option = click.option(
+    "--bounds",
+    metavar="FIELD=LOW:HIGH",
+    multiple=True,
+    help="Least and greatest value of a free parameter, with units if it has one; may be repeated.",
+)
+stages_option = click.option(
+    "--stage",
+    "stages",
+    metavar="STAGE",
+    multiple=True,
+    help="Stage around the contact model: patch_mean, or NAME:FIELD=VALUE; may be repeated.",
+)
+
+
+@click.command()
+@click.argument("tests")
+@click.option("--contact", required=True, metavar="MODEL", help="Contact model: exact, or NAME:FIELD=VALUE.")
+@stages_option
+@click.option("--law", metavar="LAW", help="Law: usfd, NAME:FIELD=VALUE or a TOML file; none for traction.")
+@click.option(
+    "--free",
+    required=True,
+    metavar="FIELDS",
+    help="Parameters to fit: fields of the law or of a stage, or friction_coefficient.",
+)
+@click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
+@common
+@bounds_option
+@click.option("--bootstrap", type=int, default=1000, show_default=True, help="Replicates; 0 for quick intervals.")
+@click.option("--confidence", type=float, default=0.95, show_default=True, help="Of the intervals.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Of the random numbers.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-fit].")
+def fit(
+    tests: str,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+    **options: Any,
+) -> None:
+    """Fit parameters of a wear law to tests: TESTS is a CSV file with units in its header, such as creepage [%].
+
+    \b
+    wearlaw fit my-tests.csv --contact exact --law usfd --free q_s,m_c,tr_sc -o fit/
+    wearlaw fit my-tests.csv --contact exact --law usfd --free q_s --bounds "q_s=20 ug/m/mm^2:80 ug/m/mm^2"
+    wearlaw fit my-tests.csv --contact exact --free friction_coefficient --bounds friction_coefficient=0.2:0.6
+    wearlaw fit my-tests.csv --contact exact --stage third_body:reduction=0.9 --free reduction -o layer/
+
+    The folder then holds law.toml, the fitted law, to be used wherever a law is asked for; parameters.csv with
+    confidence intervals; residuals.csv; a figure; and fit.json with all that the fit comes from.
+    """  # noqa: D301
+    folder = output if output is not None else folder_for(tests, "fit")
+    notes = Notes()
+    with results_folder(folder, overwrite, FIT) as fresh:
+        fitted = _fit(tests, notes, **options)
+        with notes.of("figure"):
+            names = write_fit(fitted, notes.texts, fresh, figure_formats, latex)
+    print_notes(notes.texts)
+    echo(repr(fitted))
+    print_results(folder, names)
+
+
+def _fit(
+    path: str,
+    notes: Notes,
+    *,
+    contact: str,
+    stages: tuple[str, ...],
+    law: str | None,
+    free: str,
+    fixed: tuple[str, ...],
+    bounds: tuple[str, ...],
+    rig: Path | None,
+    friction: float | None,
+    sep: str | None,
+    decimal: str,
+    bootstrap: int,
+    **settings: Any,
+) -> Fit:
+    """Return the fit for these options."""
+    names, given = listed("--free", free), values("--fixed", fixed)
+    both = [name for name in names if name in given]
+    if both:
+        raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
+    tests = read_tests(path, sep=sep, decimal=decimal)
+    _note_friction(tests, friction, "friction_coefficient" in names, notes)
+    around = _rig(rig, notes) | contact_model(contact)
+    for text in stages:
+        around = around | stage(text)
+    predict = around if law is None else _with_law(around, law, given, names, notes)
+    with notes.of("fit"), Bar(bootstrap) as bar:
+        bar.stage("fitting")
+        return fit_parameters(
+            predict,
+            tests,
+            names,
+            friction_coefficient=friction,
+            bounds=_bounds(bounds),
+            bootstrap=bootstrap,
+            on_progress=bar,
+            **settings,
+        )
+
+
+def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | float]]:
+    """Return the least and greatest values of parameters by name."""
+    found: dict[str, tuple[str | float, str | float]] = {}
+    for field, text in fields("--bounds", settings, "FIELD=LOW:HIGH").items():
+        low, colon, high = text.partition(":")
+        if not colon:
+            raise click.UsageError(f"--bounds: write it as FIELD=LOW:HIGH, got {shown(f'{field}={text}')}")
+        found[field] = value(low.strip()), value(high.strip())
+    return found
+
+
+def _with_law(
+    contact: Pipeline[...], text: str, given: Mapping[str, str | float], free: list[str], notes: Notes
+) -> Pipeline[...]:
+    """Return the pipeline with the law to fit, and note the values of its fixed parameters."""
+    law = law_of(text, given)
+    kept = [
+        f"{name} = {value!r}"
+        for name, value in numbers(law.explicit()).items()
+        if name not in free and f"{law.name}.{name}" not in free
+    ]
+    if kept:
+        notes.add(f"fit: not fitted, {', '.join(kept)}")
+    return contact.with_law(law)
+
+
+@click.command()
+@click.argument("tests")
+@click.option("--contacts", required=True, metavar="MODELS", help="Contact models: global,exact or NAME:FIELD=VALUE.")
+@stages_option
+@click.option("--laws", required=True, metavar="LAWS", help="Laws: usfd,kth or NAME:FIELD=VALUE, or TOML files.")
+@click.option(
+    "--free", metavar="LAW=FIELDS", multiple=True, help="Also fit this one of the laws, on every contact; repeatable."
+)
+@click.option(
+    "--cross-validate",
+    metavar="FOLDS",
+    help="Rank fits by tests that they have not seen: leave-one-out, or a number of folds; needs --free.",
+)
+@common
+@bounds_option
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-comparison]."
+)
+def compare(
+    tests: str,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+    **options: Any,
+) -> None:
+    """Rank contact models and wear laws by how well they predict tests.
+
+    TESTS is a CSV file with units in its header, such as creepage [%]. Every contact model is paired with every law.
+
+    \b
+    wearlaw compare my-tests.csv --contacts global,exact,fastsim --laws usfd,kth,brr -o cmp/
+    wearlaw compare my-tests.csv --contacts exact,fastsim --laws usfd:fitted_for=exact,fit/law.toml -o cmp/
+    wearlaw compare my-tests.csv --contacts global,exact --laws usfd,kth --free usfd=q_s,m_c -o cmp/
+    wearlaw compare my-tests.csv --contacts exact --laws usfd,kth --free usfd=q_s,m_c --cross-validate 5 -o cv/
+    wearlaw compare my-tests.csv --contacts exact,fastsim --stage patch_mean --laws usfd,brr -o cmp/
+
+    A law is taken with its defaults unless options are given; a note says where its parameters were fitted for another
+    contact. The folder then holds ranking.csv, the table that is printed; predictions.csv; a figure of measured against
+    predicted wear rates; and comparison.json with all models.
+    """  # noqa: D301
+    folder = output if output is not None else folder_for(tests, "comparison")
+    notes = Notes()
+    with results_folder(folder, overwrite, COMPARISON) as fresh:
+        comparison = _compare(tests, notes, **options)
+        with notes.of("figure"):
+            names = write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
+    print_notes(notes.texts)
+    echo(repr(comparison))
+    print_results(folder, names)
+
+
+def _compare(
+    path: str,
+    notes: Notes,
+    *,
+    contacts: str,
+    stages: tuple[str, ...],
+    laws: str,
+    free: tuple[str, ...],
+    rig: Path | None,
+    friction: float | None,
+    sep: str | None,
+    decimal: str,
+    bounds: tuple[str, ...],
+    scatter: str,
+    cross_validate: str | None,
+) -> Comparison:
+    """Return the comparison for these options."""
+    parts: Any = int(cross_validate) if cross_validate and cross_validate.isdecimal() else cross_validate
+    if parts and not free:
+        raise click.UsageError("--cross-validate: say which parameters are free, as in --free usfd=q_s,m_c")
+    tests = read_tests(path, sep=sep, decimal=decimal)
+    _note_friction(tests, friction, False, notes)
+    named = {text: law_of(text) for text in listed("--laws", laws)}
+    around = [stage(text) for text in stages]
+    suffix = f" with {' and '.join(stages)}" if stages else ""
+    models = {f"{text}{suffix}": contact_model(text) for text in listed("--contacts", contacts)}
+    pairs = compose(_rig(rig, notes), models, named, notes, stages=around, remedy="add --stage patch_mean")
+    predictors: list[tuple[Names, Predictor]] = [
+        (Names(pair.label, pair.law, pair.contact_model), pair.pipeline) for pair in pairs
+    ]
+    freed, ends = _freed(free, named), _bounds(bounds)
+    for field in ends.keys() - {field for fields_of_law in freed.values() for field in fields_of_law}:
+        raise click.UsageError(f"--bounds: {shown(field)} is not free; add it to --free, as in --free LAW={field}")
+    for law, fields_of_law in freed.items():
+        of_law = [pair for pair in pairs if pair.law == law]
+        own = {field: ends[field] for field in fields_of_law if field in ends}
+        fits = _fits(of_law, fields_of_law, tests, notes, friction_coefficient=friction, scatter=scatter, bounds=own)
+        predictors += [(Names(f"{law} fitted on {contact}", f"{law} fitted", contact), one) for contact, one in fits]
+    comparison = compare_named(predictors, tests, friction, cross_validate=parts, progress=True)
+    for note in comparison.notes:
+        notes.add(note)
+    return comparison
+
+
+def _freed(settings: tuple[str, ...], laws: Mapping[str, Law]) -> dict[str, list[str]]:
+    """Return the fields to fit by law, as --laws writes it; the name alone will do if only one law has it."""
+    names = [law.name for law in laws.values()]
+    texts = {law.name: text for text, law in laws.items() if names.count(law.name) == 1} | {text: text for text in laws}
+    found: dict[str, list[str]] = {}
+    for setting in settings:
+        name, _, freed = setting.rpartition("=")
+        text = texts.get(name)
+        if text is None:
+            raise click.UsageError(
+                f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got {shown(setting)}"
+            )
+        if text in found:
+            raise click.UsageError(
+                f"--free: {shown(name)} is given twice; write all its fields behind one, between commas"
+            )
+        found[text] = listed("--free", freed)
+    return found
+
+
+def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **settings: Any) -> list[tuple[str, Fit]]:
+    """Return the fits of a law by contact model, without those that the tests do not determine.
+
+    Raises
+    ------
+    FitError
+        If there is no fit on any contact.
+    """
+    found, refused = [], []
+    with Bar(len(pairs)) as bar:
+        bar.stage("fitting")
+        for pair in pairs:
+            name = f"{pair.law} fitted on {pair.contact_model}"
+            try:
+                with notes.of(name), warnings.catch_warnings():
+                    warnings.simplefilter("ignore", PlasticityWarning)  # the comparison says it once, of the tests
+                    fitted = fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)
+                found.append((pair.contact_model, fitted))
+            except FitError as error:
+                refused.append(f"{name} is left out: {error}")
+            bar(1)
+    if not found:
+        raise FitError(refused[0])
+    for text in refused:
+        notes.add(text)
+    return found
+
+
+def _rig(path: Path | None, notes: Notes) -> Any:
+    if path is None:
+        notes.add("the rig is taken to be SUROS, 47 mm steel discs and a track of 10 mm; give yours with --rig")
+    return read_rig(path)
+
+
+def _note_friction(tests: WearTests, friction: float | None, fitted: bool, notes: Notes) -> None:
+    """Note an option --friction that the tests do not need."""
+    if friction is not None and not fitted and tests.friction_coefficient is not None:
+        notes.add(f"--friction {friction:g} is not used, since the tests have a column friction_coefficient")

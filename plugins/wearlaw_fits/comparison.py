@@ -1,0 +1,489 @@
+"""Comparing predictors of one outcome on the same tests: `compare`, its ranking, and a figure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+import numpy as np
+import pandas as pd
+
+from wearlaw.arrays.array import Array, steady
+from wearlaw.errors import InputError, did_you_mean, shown
+from wearlaw.models.contact_model import Model
+from wearlaw.models.labels import labels
+from wearlaw.models.law import WEAR, Law, named_outcomes
+from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.settings.arguments import expect
+from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
+from wearlaw.units.variables import label, name_of
+from wearlaw_fits.agreement import Agreement, Information, agreement
+from wearlaw_fits.cross_validation import Folds, cross_validated, folds
+from wearlaw_fits.free_parameters import FRICTION
+from wearlaw_fits.lack_of_fit import repeats
+from wearlaw_fits.result import Fit
+from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_output.curves import BLACK, Curve, FigureData
+from wearlaw_output.parity import parity_panels
+from wearlaw_output.plot import plot
+from wearlaw_sweeps.progress import Bar
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+
+Predictor: TypeAlias = Pipeline[...] | Fit
+"""A pipeline with a law, or a fit of one."""
+
+COLUMNS = {
+    "predictor": "object",
+    "rms_factor": "Float64",
+    "bias": "Float64",
+    "geometric_sd": "Float64",
+    "largest_factor": "Float64",
+    "rms_error": "Float64",
+    "tests": "Int64",
+    "in_sample": "Int64",
+    "without_ratio": "Int64",
+    "fitted": "Int64",
+    "aic": "Float64",
+    "aicc": "Float64",
+}
+"""Columns of a ranking with their types."""
+
+
+class Names(NamedTuple):
+    """The names of a predictor, its law and its contact model."""
+
+    label: str
+    law: str
+    contact: str
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """One predictor in a comparison.
+
+    Attributes
+    ----------
+    names : Names
+        Its names.
+    pipeline : Pipeline
+        The pipeline that predicts.
+    predicted : ndarray, (tests,)
+        Its predictions in SI, for wear rates [kg/m/m²].
+    agreement : Agreement
+        Their errors against the measured ones.
+    in_sample : int
+        Number of the tests to which its law was fitted.
+    information : Information or None
+        Akaike's criterion, if it was fitted to these tests.
+    """
+
+    names: Names
+    pipeline: Pipeline[...]
+    predicted: Array
+    agreement: Agreement
+    in_sample: int = 0
+    information: Information | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison:
+    """Predictors of one outcome on the same tests, made by `compare`.
+
+    Attributes
+    ----------
+    tests : WearTests
+        The tests for the comparison.
+    compared : tuple of Compared
+        The predictors, best first.
+    notes : tuple of str
+        Remarks for the reader, once each.
+    outcome : str
+        Name of the outcome, such as "wear_rate".
+    unit : str
+        Its unit in tables and figures.
+    cross_validated : str
+        How fits were cross-validated, "leave-one-out" or such as "5 folds"; "" if they were not.
+    """
+
+    tests: WearTests
+    compared: tuple[Compared, ...]
+    notes: tuple[str, ...]
+    outcome: str = WEAR
+    unit: str = WEAR_RATE
+    cross_validated: str = ""
+
+    @property
+    def measured(self) -> Array:
+        """The measurements in SI, (tests,)."""
+        return self.tests.measured(self.outcome, self.unit)
+
+    def table(self) -> pd.DataFrame:
+        """Return the ranking, a row for each predictor, best first.
+
+        The measures are those of `Agreement`, with AIC and AICc of `Information`. A measure that does not exist is
+        blank (NA), never infinite. `in_sample` is the number of these tests to which the law was fitted, and `fitted`
+        the number of parameters fitted to them here.
+        """
+        frame = self._ranking()
+        return frame.rename(columns={"rms_error": f"rms_error [{self.unit or '-'}]"})
+
+    def _ranking(self) -> pd.DataFrame:
+        rows = []
+        for one in self.compared:
+            row = {"predictor": one.names.label, **vars(one.agreement), "in_sample": one.in_sample}
+            if one.information is not None:
+                row |= {"fitted": one.information.parameters, "aic": one.information.aic, "aicc": one.information.aicc}
+            row["rms_error"] = float(in_unit(np.asarray(one.agreement.rms_error), self.unit))
+            rows.append(row)
+        return pd.DataFrame(rows, columns=list(COLUMNS)).astype(COLUMNS)
+
+    def predictions(self) -> pd.DataFrame:
+        """Return the tests with the values of each predictor; the heads of the columns hold the units."""
+        predicted = {
+            f"{one.names.label} [{self.unit or '-'}]": in_unit(one.predicted, self.unit) for one in self.compared
+        }
+        return self.tests.to_dataframe().assign(**predicted)
+
+    def figure_data(self) -> FigureData:
+        """Return measured against predicted values, a panel for each contact model, on logarithmic axes.
+
+        Tests in which one of the two is zero are missing there; the caption says how many. If a value is negative, the
+        axes are linear and show all tests.
+        """
+        measured = self.measured
+        values = np.stack([measured, *(one.predicted for one in self.compared)])
+        linear = bool((values < 0.0).any())
+        laws = list(dict.fromkeys(one.names.law for one in self.compared))
+        panels: dict[str, list[Curve]] = {}
+        for one in self.compared:
+            drawn = np.full(measured.shape, linear) | ((one.predicted > 0) & (measured > 0))
+            x, y = (in_unit(some[drawn], self.unit) for some in (one.predicted, measured))
+            curve = Curve(one.names.law, x, y, colour=laws.index(one.names.law) % BLACK, points=True, hollow=True)
+            panels.setdefault(one.names.contact, []).append(curve)
+        zeros = int(((values[1:] == 0.0) | (measured == 0.0)).sum(axis=-1).max())
+        hidden = f" Not shown: {name_of(self.outcome)}s of zero, in up to {zeros} tests." if zeros else ""
+        lines = "The line is equality." if linear else f"The lines are equality and a factor of two.{hidden}"
+        source = f" of {self.tests.source}" if self.tests.source else ""
+        name = label(self.outcome, units={self.outcome: self.unit})
+        return FigureData(
+            name="measured_against_predicted",
+            title=f"Measured against predicted {name_of(self.outcome)}",
+            panels=parity_panels(name, list(panels.items()), in_unit(np.ravel(values), self.unit), linear),
+            caption=f"{len(self.tests)} tests{source}. {lines}",
+        )
+
+    def plot(self) -> Figure:
+        """Return a drawing of `figure_data`."""
+        return plot(self.figure_data())
+
+    def __repr__(self) -> str:
+        frame = self._ranking().drop(columns="tests")
+        frame = frame.loc[:, frame.fillna(0).ne(0).any()]
+        cells = [list(frame.columns), *([_cell(value) for value in row] for row in frame.to_numpy())]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in cells]
+        count = f"{len(frame)} predictor{'s' if len(frame) > 1 else ''} on {len(self.tests)} tests"
+        unit = label(self.outcome, units={self.outcome: self.unit}).rpartition(" [")[2].removesuffix("]")
+        of = "" if self.outcome == WEAR else f" of {name_of(self.outcome)}"
+        head = f"; rms_error in {unit}" if unit != "-" else ""
+        validated = f", fits cross-validated ({self.cross_validated})" if self.cross_validated else ""
+        return "\n  ".join([f"{count}{of}, best first{validated}{head}", *map(str.rstrip, lines)])
+
+
+def _cell(value: Any) -> str:
+    if value is pd.NA:
+        return ""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def compare(
+    predictors: Mapping[str, Predictor] | Sequence[Predictor],
+    tests: WearTests,
+    *,
+    outcome: str | None = None,
+    friction_coefficient: ArrayLike | None = None,
+    cross_validate: Folds | None = None,
+) -> Comparison:
+    """Rank predictors by how well they agree with measured wear rates or another outcome, all on the same tests.
+
+    Parameters
+    ----------
+    predictors : mapping of str to Pipeline or Fit, or sequence of these
+        The predictors of the outcome. In a sequence, each is named after its law and contact model, such as
+        "usfd on exact", or "usfd fitted on exact" for a `Fit`.
+    tests : WearTests
+        Measured tests. Those without the outcome are left out.
+    outcome : str, optional
+        Name of the outcome, such as "rcf_damage"; needed if the predictors share several that the tests measure.
+    friction_coefficient : array_like of float, optional
+        μ [-] for tests without a friction coefficient.
+    cross_validate : int or "leave-one-out", optional
+        Each `Fit` predicts every test from a fit of its free parameters to tests at other operating points: to all
+        others for "leave-one-out", or to those in the other of this number of random folds. Repeated tests, whose
+        conditions agree to 0.1 %, stay together. Pipelines predict as they are.
+
+    Returns
+    -------
+    Comparison
+        The predictors, ranked by: first the number of tests in which either the predicted or the measured value is
+        zero, or negative, which no factor can express; then the root mean square of the logarithmic error,
+        `rms_factor`; then the root mean square error.
+
+    Raises
+    ------
+    InputError
+        If there is no predictor, two have the same name, they share no outcome, or no test has it. For
+        cross-validation, also if no predictor is a `Fit`, or the number of folds is impossible.
+    FitError
+        If the tests outside a fold do not determine the parameters of a fit.
+    ConditionsError
+        If the friction coefficient is unknown, or a predictor's rig does not take the conditions of the tests.
+
+    Notes
+    -----
+    A law fitted to these tests follows their scatter too: the more parameters it has, the better it agrees. AIC (see
+    `Information`) weighs one against the other. It is blank unless a law was fitted to the wear rates of exactly these
+    tests, and if fits assume different kinds of scatter. A note names the laws that were fitted to these tests, and
+    `in_sample` counts the tests; cross-validation ranks fits by tests that they have not seen.
+    """
+    expect(Mapping | Sequence, predictors, "predictors", "a list of pipelines and fits, or a table of these by name")
+    expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
+    given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
+    if not given:
+        raise InputError("give at least one predictor, such as rig | contact_model | law")
+    for one in given:
+        pipeline = one.predict if isinstance(one, Fit) else one
+        if not isinstance(pipeline, Pipeline) or not pipeline.laws:
+            raise InputError(
+                f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {shown(one)}"
+            )
+    outcome = _outcome(given, tests, outcome)
+    names = _names(given, outcome)
+    if isinstance(predictors, Mapping):
+        names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
+    return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, outcome, cross_validate)
+
+
+@steady
+def compare_named(
+    named: Sequence[tuple[Names, Predictor]],
+    tests: WearTests,
+    friction_coefficient: ArrayLike | None,
+    outcome: str | None = None,
+    cross_validate: Folds | None = None,
+    progress: bool = False,
+) -> Comparison:
+    """Compare predictors that have names already; see `compare`. With `progress`, show that of cross-validation."""
+    taken = [names.label for names, _ in named]
+    twice = [name for name in taken if taken.count(name) > 1]
+    if twice:
+        raise InputError(f"two predictors are called {shown(twice[0])}; give a mapping from names of your own to them")
+    given = [predictor for _, predictor in named]
+    outcome = _outcome(given, tests, outcome)
+    units = [_law(one, outcome).outcome.unit for one in given]
+    tests = tests.measuring([name for one in given for name in named_outcomes(_pipeline(one).laws)])
+    for unit in units[1:]:
+        tests.measured(outcome, unit)  # an error if the predictors give it in units of other dimensions
+    notes = Notes()
+    there, name = ~np.isnan(tests.measured(outcome, units[0])), name_of(outcome)
+    if not there.any():
+        raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
+    if not there.all():
+        notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out")
+    task = _Task(tests[there], outcome, friction_coefficient, notes)
+    compared = [task.compared(*one) for one in named]
+    how = ""
+    if cross_validate is not None:
+        compared, how = task.cross_validated(compared, given, cross_validate, progress)
+    if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
+        notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
+        compared = [replace(one, information=None) for one in compared]
+    seen = [f"{one.names.label} ({one.in_sample} of {len(task.tests)})" for one in compared if one.in_sample]
+    if seen:
+        notes.add(
+            f"fitted to these tests, which flatters their rank: {', '.join(seen)}; compare on other tests, or"
+            " cross-validate"
+        )
+    ranked = sorted(compared, key=lambda one: one.agreement.rank)
+    return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, units[0], how)
+
+
+def _outcome(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:
+    """Return the outcome to compare.
+
+    Raises
+    ------
+    InputError
+        If a predictor does not predict it, or if it is not given and the predictors share none or several.
+    """
+    predicted = [list(named_outcomes(_pipeline(one).laws)) for one in given]
+    if outcome is not None:
+        for names in predicted:
+            if outcome not in names:
+                hint = did_you_mean(outcome, names)
+                raise InputError(
+                    f"outcome: a predictor does not predict {shown(outcome)}{hint} It predicts {', '.join(names)}"
+                )
+        return outcome
+    shared = [name for name in predicted[0] if all(name in names for names in predicted)]
+    if not shared:
+        every = ", ".join(dict.fromkeys(name for names in predicted for name in names))
+        raise InputError(f"the predictors have no outcome in common; they predict {every}")
+    tests = tests.measuring(shared)
+    measured = [name for name in shared if not np.isnan(tests.measured(name, _law(given[0], name).outcome.unit)).all()]
+    if len(measured) > 1:
+        raise InputError(
+            f"the predictors share {' and '.join(measured)}, which are all measured; choose one, as in"
+            f' outcome="{measured[0]}"'
+        )
+    return (measured or shared)[0]
+
+
+def _pipeline(predictor: Predictor) -> Pipeline[...]:
+    return predictor.predict if isinstance(predictor, Fit) else predictor
+
+
+def _law(predictor: Predictor, outcome: str) -> Law:
+    """Return the law of a predictor for an outcome by its name in results."""
+    laws = _pipeline(predictor).laws
+    return laws[named_outcomes(laws)[outcome]]
+
+
+def _names(predictors: Sequence[Predictor], outcome: str) -> list[Names]:
+    """Return names of predictors after their models, as in a study."""
+    models = _labels([_pipeline(one).contact_model for one in predictors])
+    stages = iter(_labels([stage for one in predictors for stage in _pipeline(one).stages]))
+    laws = iter(_labels([_law(one, outcome) for one in predictors if isinstance(one, Pipeline)]))
+    names = []
+    for one, model in zip(predictors, models, strict=True):
+        named = [(stage, next(stages)) for stage in _pipeline(one).stages]
+        contact = ", ".join([model, *("patch means" if stage.gives_means else name for stage, name in named)])
+        law = next(laws) if isinstance(one, Pipeline) else f"{_law(one, outcome).name} fitted"
+        names.append(Names(f"{law} on {contact}", law, contact))
+    return names
+
+
+def _labels(models: Sequence[Model]) -> list[str]:
+    """Return a label for each model, the same for equal ones. Models need not be hashable."""
+    distinct: list[Model] = []
+    for model in models:
+        if model not in distinct:
+            distinct.append(model)
+    found = labels(distinct)
+    return [found[distinct.index(model)] for model in models]
+
+
+@dataclass(frozen=True)
+class _Task:
+    """The tests with an outcome, on which predictors are compared; `notes` collects remarks."""
+
+    tests: WearTests
+    outcome: str
+    friction: Any
+    notes: Notes
+
+    def compared(self, names: Names, predictor: Predictor) -> Compared:
+        """Return a predictor with its predictions."""
+        law = _law(predictor, self.outcome)
+        measured = self.tests.measured(self.outcome, law.outcome.unit)
+        predicted = self._predicted(names.label, predictor, self.tests, self.friction, self.notes)
+        errors = agreement(predicted, measured)
+        if errors.without_ratio:
+            sign = "zero or negative" if ((predicted < 0) | (measured < 0)).any() else "zero"
+            self.notes.add(
+                f"{names.label}: either the predicted or the measured {name_of(self.outcome)} is {sign} in"
+                f" {errors.without_ratio} of {len(self.tests)} tests, which no factor can express; these count first in"
+                " the ranking"
+            )
+        information = self._information(names.label, predictor) if isinstance(predictor, Fit) else None
+        return Compared(names, _pipeline(predictor), predicted, errors, self._in_sample(law), information)
+
+    def cross_validated(
+        self, compared: Sequence[Compared], given: Sequence[Predictor], how: Folds, progress: bool
+    ) -> tuple[list[Compared], str]:
+        """Return the predictors, with fits predicting each test from fits to other folds, and how in words."""
+        fits = sum(isinstance(one, Fit) for one in given)
+        if not fits:
+            raise InputError(
+                "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
+                ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
+            )
+        conditions = self._conditions(given[0], self.tests, self.friction)
+        conditions.pop("traction_coefficient", None)  # measured tractions of repeated tests scatter
+        points = repeats(conditions, len(self.tests))
+        parts, distinct = folds(points, how), int(points.max()) + 1
+        if distinct < len(self.tests):
+            self.notes.add(
+                f"the {len(self.tests)} tests are at {distinct} operating points; cross-validation leaves out repeated"
+                " tests together"
+            )
+        with Bar(len(parts) * fits, progress) as bar:
+            bar.stage("cross-validating")
+            found = [
+                self._unseen(old, one, parts, bar) if isinstance(one, Fit) else old
+                for old, one in zip(compared, given, strict=True)
+            ]
+        return found, "leave-one-out" if len(parts) == distinct else f"{len(parts)} folds"
+
+    def _unseen(self, old: Compared, fit: Fit, parts: list[NDArray[np.intp]], bar: Bar) -> Compared:
+        """Return a fit with its predictions of each test by fits to tests of other folds."""
+        name = old.names.label
+
+        def predict(again: Fit, held: NDArray[np.intp]) -> Array:
+            friction = self.friction
+            own = friction if np.ndim(friction) == 0 else coefficient(friction, FRICTION)[held]
+            return self._predicted(name, again, self.tests[held], own, Notes())
+
+        predicted = cross_validated(name, fit, self.tests, parts, predict, bar)
+        measured = self.tests.measured(self.outcome, _law(fit, self.outcome).outcome.unit)
+        return replace(old, predicted=predicted, agreement=agreement(predicted, measured), in_sample=0)
+
+    def _conditions(self, predictor: Predictor, tests: WearTests, friction: Any) -> dict[str, Any]:
+        pipeline = _pipeline(predictor)
+        return tests.conditions(pipeline.contact_model, friction, pipeline.rig)
+
+    def _predicted(self, name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
+        """Return the predicted outcomes of tests in SI."""
+        pipeline, law = _pipeline(predictor), _law(predictor, self.outcome)
+        conditions = self._conditions(predictor, tests, friction)
+        if isinstance(predictor, Fit) and predictor.contact_parameters:
+            conditions.pop("traction_coefficient", None)
+            if FRICTION in predictor.parameters:
+                conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
+                notes.add(f"{name}: takes the friction coefficient that was fitted, {conditions[FRICTION]:.4g}")
+        if "traction_coefficient" in conditions:
+            notes.add(f"{name}: takes the traction that was measured in the tests")
+        with notes.of(name):
+            pipeline = pipeline.without_law() | law  # warns if the parameters were fitted for another contact
+        with notes.of("tests"):
+            prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
+        return np.asarray(prediction[law.outcome.name].to_base_units().magnitude)
+
+    def _in_sample(self, law: Law) -> int:
+        """Return the number of tests to which a law was fitted, by their digests.
+
+        A law without digests counts as fitted to all tests if its calibration names their source.
+        """
+        if law.fitted_to:
+            known = set(law.fitted_to)
+            return sum(digest in known for digest in self.tests.digests(self.outcome, law.outcome.unit))
+        calibration, source = law.calibration, self.tests.source
+        return len(self.tests) if calibration is not None and source and source in calibration.source else 0
+
+    def _information(self, name: str, fit: Fit) -> Information | None:
+        """Return Akaike's criterion of a fit, or None with a note if it was not fitted to exactly these tests."""
+        fitted_to = fit.tests.measuring([self.outcome])
+        there = ~np.isnan(fitted_to.measured(self.outcome, _law(fit, self.outcome).outcome.unit))
+        if [one.observable for one in fit.observations] != [self.outcome] or fitted_to[there] != self.tests:
+            self.notes.add(f"{name}: was fitted to other tests or measurements, so its AIC is left blank")
+            return None
+        free = len(fit.parameters)
+        k = free + (fit.scatter != "uncertainty")
+        spare = len(self.tests) - k - 1
+        return Information(free, fit.aic, fit.aic + 2.0 * k * (k + 1) / spare if spare > 0 else None)

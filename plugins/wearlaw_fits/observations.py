@@ -1,0 +1,273 @@
+"""Measurements beside the predictions of a pipeline, for many parameter sets at once."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import ConfigurationError, FitError, ModelError
+from wearlaw.models.law import WEAR, Law, named_outcomes
+from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
+from wearlaw.pipeline.named_numbers import Place, check_loads_stay, staged_models
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.units.quantities import in_unit
+from wearlaw.units.variables import UNITS, label
+from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
+from wearlaw_fits.wear_tests.tests import WearTests
+
+Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
+"""Scatter of measurements: by a factor, by an amount, or by their stated uncertainties."""
+
+TRACTION = "traction_coefficient"
+"""The measurement that no law predicts."""
+
+FLOOR = 1e-300
+"""Replaces a prediction of zero, whose logarithm is infinite."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Observations:
+    """Measurements of one kind, with the pipeline that predicts them.
+
+    Attributes
+    ----------
+    observable : str
+        "traction_coefficient" [-], or the name of a law's outcome, such as "wear_rate".
+    law : int or None
+        Index of the law that predicts it; None for the traction.
+    pipeline : Pipeline
+        The pipeline that predicts it.
+    places : mapping of str to Place
+        Where the free numbers stand in the pipeline.
+    tests : WearTests
+        The tests with this measurement, each with a label.
+    measured : ndarray, (n,)
+        The measurements in SI.
+    conditions : mapping of str to Quantity or array_like, (n,) or a single value
+        The conditions of the tests, which the rig takes.
+    problem : Problem
+        The contact problems of the tests, with batch shape (n,).
+    scatter : str
+        Kind of scatter.
+    divisor : ndarray, (n,)
+        Divisor of the residuals; 1 for relative scatter.
+    """
+
+    observable: str
+    law: int | None
+    pipeline: Pipeline[...]
+    places: Mapping[str, Place]
+    tests: WearTests
+    measured: Array
+    conditions: Mapping[str, Any]
+    problem: Problem
+    scatter: Scatter
+    divisor: Array
+
+    @property
+    def unit(self) -> str:
+        """Unit of the measurement in tables and figures."""
+        return UNITS[TRACTION] if self.law is None else self.pipeline.laws[self.law].outcome.unit
+
+    @property
+    def head(self) -> str:
+        """Head of a column of the measurement, as in "wear_rate [ug/m/mm^2]"."""
+        return f"{self.observable} [{self.unit}]" if self.unit else self.observable
+
+    @property
+    def label(self) -> str:
+        """Name of the measurement with its unit, for the axis of a figure."""
+        return label(self.observable, units={self.observable: self.unit})
+
+    def predicted(self, values: Mapping[str, Array], problem: Problem | None = None) -> Array:
+        """Return the predictions (sets, n) for parameters in SI, (sets,) each.
+
+        Parameters
+        ----------
+        values : mapping of str to ndarray, (sets,)
+            All free parameters.
+        problem : Problem, optional
+            Other operating points than those of the tests, with batch shape (n,).
+
+        Raises
+        ------
+        FitError
+            If a stage does not accept its numbers.
+        """
+        problem = self.problem if problem is None else problem
+        sets, points = len(next(iter(values.values()))), problem.size
+        found = np.empty((sets, points))
+        at_places = {place: values[name] for name, place in self.places.items()}
+        try:
+            for model, members in staged_models(self.pipeline, at_places, sets):
+                part = problem[np.tile(np.arange(points), members.size)]
+                if FRICTION in values:
+                    part = part.replaced(friction_coefficient=np.repeat(values[FRICTION][members], points))
+                if self.law is None:
+                    one = integrate_forces(model, part).tangential / part.normal_force
+                else:
+                    own = {
+                        place.field: np.repeat(value[members], points)[:, None]
+                        for place, value in at_places.items()
+                        if (place.kind, place.index) == ("law", self.law)
+                    }
+                    law = self.pipeline.laws[self.law]
+                    one = integrate_laws(model, (law,), part, numbers=[{**law.numbers, **own}]).values[0]
+                found[members] = one.reshape(members.size, points)
+        except (ConfigurationError, ModelError) as error:
+            names = [name for name, place in self.places.items() if place.kind == "stage"]
+            if not names:
+                raise
+            raise FitError(
+                f"the search for the best fit has met values of {' and '.join(names)} that the stage or the contact"
+                f" model does not accept; {give_bounds(names[0])}: {error}"
+            ) from error
+        return found
+
+    def residuals(self, values: Mapping[str, Array]) -> Array:
+        """Return the residuals (sets, n) for parameters in SI, (sets,) each."""
+        return self.compare(self.predicted(values))
+
+    def compare(self, predicted: Array) -> Array:
+        """Return the residuals of predictions (..., n)."""
+        if self.scatter == "relative":
+            return np.log(np.maximum(predicted, FLOOR) / self.measured)
+        return (predicted - self.measured) / self.divisor
+
+    def in_shown_unit(self, predicted: Array) -> Array:
+        """Return the residuals (n,) for tables, with absolute scatter in the unit of the measurement."""
+        if self.scatter == "absolute":
+            return in_unit(predicted - self.measured, self.unit)
+        return self.compare(predicted)
+
+
+def wear_index_density(pipeline: Pipeline[...], problem: Problem) -> Array:
+    """Return Tγ/A [N/m²] of the whole patch, of the batch shape."""
+    model = pipeline.staged_model
+    power = problem.power(integrate_forces(model, problem))
+    density: Array = np.abs(power) / patch_area(model, problem)
+    return density
+
+
+def observe(
+    pipeline: Pipeline[...],
+    tests: WearTests,
+    free: FreeParameters,
+    friction: float | None,
+    scatter: Literal["relative", "absolute"],
+) -> list[Observations]:
+    """Return the measurements that depend on the free parameters: outcomes of laws, and tractions.
+
+    An outcome depends on the numbers of its law and on all that changes the contact, the traction on the latter only.
+
+    Raises
+    ------
+    FitError
+        If the tests lack a measurement or condition.
+    """
+    of_contact = free.of_contact
+    check_loads_stay(pipeline, "fit", of_contact)
+    found = [
+        _observe(name, index, pipeline, tests, free, friction, scatter)
+        for name, index in named_outcomes(pipeline.laws).items()
+        if index in free.freed_laws or (of_contact and _is_measured(name, pipeline.laws[index], tests))
+    ]
+    if FRICTION in free.names or (of_contact and _is_measured(TRACTION, None, tests)):
+        found.append(_observe(TRACTION, None, pipeline, tests, free, friction, scatter))
+    if not found:
+        outcomes = [name.replace("_", " ") for name in named_outcomes(pipeline.laws)]
+        raise FitError(
+            f"tests: none of the {len(tests)} tests has a measured {' or '.join([*outcomes, 'traction'])}, to which"
+            f" {' and '.join(of_contact)} could be fitted"
+        )
+    return found
+
+
+def _measured(name: str, law: Law | None, tests: WearTests) -> Array:
+    """Return the measurements of an outcome or of the traction in SI, NaN where there is none."""
+    return tests.measured(name, UNITS[TRACTION] if law is None else law.outcome.unit)
+
+
+def _is_measured(name: str, law: Law | None, tests: WearTests) -> bool:
+    return not np.isnan(_measured(name, law, tests)).all()
+
+
+def _observe(
+    observable: str,
+    index: int | None,
+    pipeline: Pipeline[...],
+    tests: WearTests,
+    free: FreeParameters,
+    friction: float | None,
+    scatter: Literal["relative", "absolute"],
+) -> Observations:
+    law = None if index is None else pipeline.laws[index]
+    values = _measured(observable, law, tests)
+    there = ~np.isnan(values)
+    if not there.any():
+        raise FitError(f"tests: none of the {len(tests)} tests has a {observable.replace('_', ' ')}, which is fitted")
+    labels = tuple(label or f"number {number}" for number, label in enumerate(tests.labels, 1))
+    selected, measured = dataclasses.replace(tests, labels=labels)[there], values[there]
+    stated = observable == WEAR and tests.wear_rate_uncertainty is not None
+    chosen: Scatter = "uncertainty" if stated else scatter
+    if chosen == "relative":
+        _refuse_zeros(observable, selected, measured)
+    conditions = selected.conditions(pipeline.contact_model, friction, pipeline.rig)
+    if FRICTION in free.names:
+        conditions = {**conditions, FRICTION: friction}
+    if free.of_contact:  # else the measured traction would replace the one that follows from the parameters
+        conditions.pop("traction_coefficient", None)
+    problem = pipeline.posed(conditions, of_one_patch="fit")
+    if chosen == "relative" and (law is None or law.zero_in_stick):
+        _refuse_rest(observable, selected, problem)
+    divisor = _divisor(selected, measured, chosen)
+    return Observations(
+        observable, index, pipeline, free.places, selected, measured, conditions, problem, chosen, divisor
+    )
+
+
+def _divisor(tests: WearTests, measured: Array, scatter: Scatter) -> Array:
+    if scatter == "relative":
+        return np.ones_like(measured)
+    if scatter == "absolute":
+        return np.full_like(measured, np.sqrt(np.mean(measured**2)) or 1.0)
+    stated = tests.columns["wear_rate_uncertainty"]
+    if np.isnan(stated).any():
+        raise FitError(
+            f"wear_rate_uncertainty: is missing in {test_names(tests, np.isnan(stated))}; give it for every test with a"
+            " wear rate, or for none"
+        )
+    return stated
+
+
+def _refuse_zeros(observable: str, tests: WearTests, measured: Array) -> None:
+    wrong = measured <= 0.0
+    if wrong.any():
+        raise FitError(
+            f"{observable}: is zero or negative in {test_names(tests, wrong)}, but is taken to scatter by a factor;"
+            ' leave these tests out, or fit with scatter="absolute"'
+        )
+
+
+def _refuse_rest(observable: str, tests: WearTests, problem: Problem) -> None:
+    still = problem.rigid_slip == 0.0
+    if still.any():
+        raise FitError(
+            f"creepage: is zero in {test_names(tests, still)}, where the predicted {observable.replace('_', ' ')} is"
+            " zero, whatever the parameters; leave these tests out"
+        )
+
+
+def test_names(tests: WearTests, which: NDArray[np.bool_]) -> str:
+    """Return the labels of up to five tests, for messages."""
+    numbers = np.flatnonzero(which)
+    labels = [tests.labels[i] or f"number {i + 1}" for i in numbers[:5]]
+    more = f" and {numbers.size - 5} more" if numbers.size > 5 else ""
+    return f"test{'s' if numbers.size > 1 else ''} {', '.join(labels)}{more}"

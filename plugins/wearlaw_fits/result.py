@@ -1,0 +1,338 @@
+"""The result of a fit: parameters with their intervals, residuals, the fitted law, its provenance and its figure."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import pandas as pd
+import pint
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import FitError
+from wearlaw.models.law import WEAR, Law
+from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
+from wearlaw.units.registry import si_factor
+from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw_fits.free_parameters import FRICTION
+from wearlaw_fits.lack_of_fit import SAME, LackOfFit
+from wearlaw_fits.law_files import write_law
+from wearlaw_fits.observations import TRACTION, Observations, Scatter, wear_index_density
+from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_output.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw_output.parity import parity_panels
+from wearlaw_output.plot import plot
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from wearlaw.pipeline.pipeline import Pipeline
+
+BETWEEN = 8
+"""Points of a curve between two tests."""
+
+MOST_SAMPLES = 200
+"""Most replicates for a band; more would not change it visibly."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit:
+    """Parameters fitted to tests, made by `fit`.
+
+    Attributes
+    ----------
+    parameters : dict of str to Quantity
+        The fitted values.
+    intervals : dict of str to (Quantity, Quantity)
+        Ends of the intervals, by `interval_method`.
+    covariance_intervals : dict of str to (Quantity, Quantity)
+        Ends of the intervals by Student's t from the covariance.
+    interval_method : str
+        "studentised bootstrap", or "Student's t" without a bootstrap.
+    confidence : float
+        Confidence level of the intervals.
+    covariance : ndarray, (p, p)
+        Of the values in SI, in the order of `parameters`, from the linearised model.
+    law : Law or None
+        The law with the fitted parameters; None if the pipeline has no law, or several, which are `predict.laws`.
+    predict : Pipeline
+        The pipeline with the fitted laws and stages.
+    tests : WearTests
+        All given tests.
+    scatter : str
+        Kind of residuals: "relative", "absolute" or "uncertainty".
+    chi2 : float
+        Sum of the squared residuals: relative ones as ln(predicted/measured), absolute ones over the root mean square
+        of the measurements, others over the stated uncertainty.
+    aic : float
+        Akaike's information criterion; only differences between laws fitted to the same tests matter.
+    samples : dict of str to Quantity, (replicates,)
+        The parameters of the bootstrap replicates.
+    provenance : dict
+        Versions, tests, settings and sums.
+    observations : tuple of Observations
+        The measurements with their pipeline, and the fitted friction coefficient.
+    lack_of_fit : tuple of LackOfFit
+        A test for each kind of measurement with repeated tests or stated uncertainties.
+    settings : dict
+        The arguments of `fit`, without the tests and the bootstrap, to make the fit anew.
+    """
+
+    parameters: dict[str, Quantity]
+    intervals: dict[str, tuple[Quantity, Quantity]]
+    covariance_intervals: dict[str, tuple[Quantity, Quantity]]
+    interval_method: str
+    confidence: float
+    covariance: Array
+    law: Law | None
+    predict: Pipeline[...]
+    tests: WearTests
+    scatter: Scatter
+    chi2: float
+    aic: float
+    samples: dict[str, Quantity]
+    provenance: Mapping[str, Any]
+    observations: tuple[Observations, ...]
+    lack_of_fit: tuple[LackOfFit, ...]
+    settings: Mapping[str, Any]
+
+    @property
+    def standard_errors(self) -> dict[str, Quantity]:
+        """Standard errors of the parameters from the covariance."""
+        errors = np.sqrt(np.diag(self.covariance))
+        return {
+            name: from_si(float(error), str(value.units))
+            for (name, value), error in zip(self.parameters.items(), errors, strict=True)
+        }
+
+    @property
+    def correlation(self) -> Array:
+        """Correlation of the parameters, (p, p)."""
+        size = np.sqrt(np.diag(self.covariance))
+        correlation: Array = self.covariance / np.outer(size, size)
+        return correlation
+
+    @property
+    def rms(self) -> Quantity:
+        """Root mean square of the residuals of the first kind of measurement.
+
+        For relative scatter and stated uncertainties it is a ratio: 0.1 is then a factor of about 1.1. For absolute
+        scatter it has the unit of the measurement.
+        """
+        first = self.observations[0]
+        mean = float(np.sqrt(np.mean(first.compare(self._fitted(first)) ** 2)))
+        if first.scatter == "absolute":
+            return from_si(mean * float(first.divisor[0]), first.unit)
+        return from_si(mean, "")
+
+    @property
+    def residuals(self) -> pd.DataFrame:
+        """A row for each measurement: test, measured and predicted value, residual, and predicted over measured.
+
+        The ratio is NaN unless both values are positive.
+        """
+        rows = []
+        for one in self.observations:
+            predicted = self._fitted(one)
+            shown = one.unit
+            ratio = np.full(predicted.shape, np.nan)
+            np.divide(predicted, one.measured, out=ratio, where=(predicted > 0.0) & (one.measured > 0.0))
+            rows.append(
+                pd.DataFrame(
+                    {
+                        "label": one.tests.labels,
+                        "observable": one.head,
+                        "creepage [%]": from_si(one.problem.creepage, UNITS["creepage"]).magnitude,
+                        "measured": from_si(one.measured, shown).magnitude,
+                        "predicted": from_si(predicted, shown).magnitude,
+                        "residual": one.in_shown_unit(predicted),
+                        "predicted/measured": ratio,
+                    }
+                )
+            )
+        return pd.concat(rows, ignore_index=True)
+
+    def table(self) -> pd.DataFrame:
+        """Return the parameters with their intervals, a row for each."""
+        rows = []
+        for name, value in self.parameters.items():
+            low, high = self.intervals[name]
+            rows.append(
+                {
+                    "parameter": name,
+                    "value": value.magnitude,
+                    "low": low.magnitude,
+                    "high": high.magnitude,
+                    "standard_error": self.standard_errors[name].magnitude,
+                    "unit": f"{value.units:~C}",
+                }
+            )
+        return pd.DataFrame(rows)
+
+    def to_toml(self, path: str | os.PathLike[str]) -> None:
+        """Write the fitted law and its provenance to a file that `read_law` reads.
+
+        Fitted numbers of stages stand in the provenance.
+
+        Raises
+        ------
+        FitError
+            If the pipeline has no law, or several.
+        OutputError
+            If the file cannot be written.
+        """
+        if self.law is None and self.predict.laws:
+            raise FitError("a file holds one law, and this fit has several; they are in fit.predict.laws")
+        if self.law is None:
+            raise FitError("a fit without a wear law has no law to write; its parameters are in fit.parameters")
+        write_law(path, self.law, self.provenance)
+
+    def figure_data(self) -> FigureData:
+        """Return measured and fitted values, with the band of the bootstrap replicates."""
+        return _figure_data(self)
+
+    def plot(self) -> Figure:
+        """Return a drawing of `figure_data`."""
+        return plot(self.figure_data())
+
+    @property
+    def contact_parameters(self) -> tuple[str, ...]:
+        """The fitted parameters that change the contact: the friction coefficient and numbers of stages."""
+        places = self.observations[0].places
+        return tuple(name for name in self.parameters if name not in places or places[name].kind == "stage")
+
+    def values_in_si(self, which: Mapping[str, Quantity] | None = None) -> dict[str, Array]:
+        """Return the fitted parameters, or others, as SI arrays of one axis."""
+        chosen = self.parameters if which is None else which
+        return {
+            name: np.atleast_1d(value.magnitude) * si_factor(value, str(value.units)) for name, value in chosen.items()
+        }
+
+    def _fitted(self, one: Observations) -> Array:
+        predicted: Array = one.predicted(self.values_in_si())[0]
+        return predicted
+
+    def __repr__(self) -> str:
+        degrees = sum(one.measured.size for one in self.observations) - len(self.parameters)
+        lines = [f"Fit to {self._count()}, {degrees} degrees of freedom, {self.scatter} scatter"]
+        for name, value in self.parameters.items():
+            low, high = (f"{end.magnitude:.3g}" for end in self.intervals[name])
+            unit = repr(value).partition(" ")[2]
+            lines.append(f"  {name:<21} {value.magnitude:<8.4g} ({low} to {high}) {unit}".rstrip())
+        first = self.observations[0]
+        factor = f", a factor of {np.exp(self.rms.magnitude):.4g}" if first.scatter == "relative" else ""
+        lines.append(f"  rms residual          {self.rms!r}{factor}")
+        for one in self.lack_of_fit:
+            of = f" of {name_of(one.observable)}" if len(self.observations) > 1 else ""
+            lines.append(f"  lack of fit           {'yes' if one.poor else 'none'}{of}: {one}")
+        lines.append(f"  intervals             {self.confidence:.0%}, {self.interval_method}")
+        return "\n".join(lines)
+
+    def _count(self) -> str:
+        return " and ".join(_counted(one) for one in self.observations)
+
+
+def _counted(one: Observations) -> str:
+    name = one.observable.replace("_", " ")
+    plural = f"{name}s" if one.observable in (WEAR, TRACTION) else f"values of {name}"
+    return f"{one.measured.size} {plural}"
+
+
+def _figure_data(fit: Fit) -> FigureData:
+    """Return a panel for each kind of measurement: outcomes over Tγ/A, tractions over creepage, or parity."""
+    panels = tuple(_panel(fit, one) for one in fit.observations)
+    single = all(_varied(one) for one in fit.observations)
+    apart = "" if single else "; the tests differ in several conditions, so no curve runs through them"
+    names = ", ".join(fit.parameters)
+    replicates = f"{fit.confidence:.0%} of the bootstrap replicates"
+    band = f"; band: {replicates}" if fit.samples and any(len(panel.curves) == 2 for panel in panels) else ""
+    source = fit.tests.source or "tests"
+    return FigureData("fit", f"Fit of {names}", panels, f"{names} fitted to {source}{band}{apart}.", replicates)
+
+
+def _panel(fit: Fit, one: Observations) -> Panel:
+    """Return measured and fitted values against the one condition that varies, or else against each other."""
+    name = _varied(one)
+    if name is None:
+        return _parity(fit, one)
+    values = _numbers(one.conditions[name])
+    order = np.argsort(values, kind="stable")
+    problem = one.pipeline.posed(
+        {other: _between_tests(value, order) for other, value in one.conditions.items()}, of_one_patch="fit"
+    )
+    if FRICTION in fit.parameters:
+        fitted = np.full(problem.batch_shape, one.problem.friction_coefficient[0])
+        problem = problem.replaced(friction_coefficient=fitted)
+    if "creepage" in name and ((values >= 0.0).all() or (values <= 0.0).all()):
+        axis = "creepage" if one.observable == TRACTION else "wear_index_density"
+        at_tests, along = (
+            in_unit(some.rigid_slip if axis == "creepage" else wear_index_density(fit.predict, some), UNITS[axis])
+            for some in (one.problem, problem)
+        )
+        head, is_log = label(axis), axis != "creepage" and bool((one.measured > 0.0).all())
+    else:
+        given = one.conditions[name]
+        unit = f"{given.units:~P}" if isinstance(given, pint.Quantity) else ""
+        at_tests, along, head, is_log = values, _finer(values[order]), label(name, units={name: unit}), False
+    scale: Literal["log", "linear"] = "log" if is_log else "linear"
+    measured = Curve("measured", at_tests, in_unit(one.measured, one.unit), colour=BLACK, points=True)
+    axes = PlotAxis(head, scale), PlotAxis(one.label, scale)
+    return Panel(*axes, (_curve(fit, one, problem, along), measured))
+
+
+def _parity(fit: Fit, one: Observations) -> Panel:
+    """Return measured against fitted values."""
+    fitted, measured = (in_unit(values, one.unit) for values in (fit._fitted(one), one.measured))
+    tests = Curve("tests", fitted, measured, points=True, hollow=True)
+    values = np.concatenate([fitted, measured])
+    (panel,) = parity_panels(one.label, [("", [tests])], values, bool((values <= 0.0).any()))
+    return panel
+
+
+def _varied(one: Observations) -> str | None:
+    """Return the only condition that differs between the tests, apart from a measured traction, or None."""
+    numbers = {name: _numbers(value) for name, value in one.conditions.items() if name != TRACTION}
+    names = [name for name, values in numbers.items() if np.ptp(values) > SAME * np.abs(values).mean()]
+    return names[0] if len(names) == 1 else None
+
+
+def _numbers(value: Any) -> Array:
+    return real_array(value.magnitude if isinstance(value, pint.Quantity) else value)
+
+
+def _between_tests(value: Any, order: NDArray[np.intp]) -> Any:
+    """Return a condition of the tests in some order and of points between them; a single value stays."""
+    numbers = _numbers(value)
+    if numbers.ndim == 0:
+        return value
+    finer = _finer(numbers[order])
+    return Q(finer, str(value.units)) if isinstance(value, pint.Quantity) else finer
+
+
+def _finer(values: Array) -> Array:
+    """Return values and further ones between them."""
+    places = np.arange(values.size, dtype=np.float64)
+    return np.interp(np.linspace(0.0, places[-1], BETWEEN * (values.size - 1) + 1), places, values)
+
+
+def _curve(fit: Fit, one: Observations, problem: Problem, along: Array) -> Curve:
+    """Return the fitted values at operating points, with their band."""
+    order = np.argsort(along, kind="stable")
+
+    def at(values: dict[str, Array]) -> Array:
+        return in_unit(one.predicted(values, problem), one.unit)[:, order]
+
+    best = at(fit.values_in_si())[0]
+    low = high = None
+    if fit.samples:
+        values = fit.values_in_si(fit.samples)
+        count = len(next(iter(values.values())))
+        chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).round().astype(int))
+        tail = 0.5 - 0.5 * fit.confidence
+        low, high = np.quantile(at({name: some[chosen] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
+    return Curve("fitted", along[order], best, low=low, high=high)

@@ -1,0 +1,151 @@
+"""Commands for authors of models: check a model, and begin a plugin."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal, TypeAlias, get_args
+
+import click
+
+from wearlaw.cli.describe import accuracies
+from wearlaw.cli.shared import echo, fields, values
+from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, message_of, shown
+from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.pipeline import Rig
+from wearlaw.plugins import loader
+from wearlaw.plugins.shelf import Shelf, unknown
+from wearlaw_kit.kit import Check, NotRunError, checks, validate_expected
+from wearlaw_kit.scaffold import Kind, write_plugin
+
+
+@click.command("new-plugin")
+@click.argument("name")
+@click.option("--wear-law", "kind", flag_value="wear_law", help="Start from a wear law: Archard's.")
+@click.option("--contact-model", "kind", flag_value="contact_model", help="Start from a contact model: full slip.")
+@click.option("--rig", "kind", flag_value="rig", help="Start from a rig: a weight on two rollers.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    default=Path(),
+    help="Folder in which wearlaw-NAME is made [default: the working folder].",
+)
+def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
+    """Begin a plugin: write a small distribution, wearlaw-NAME, with a model to replace.
+
+    It holds a module of about 30 lines, its entry point, its tests, a README and a CI workflow, and passes its tests,
+    ruff and mypy --strict as it is. NAME is what the model will be called in wearlaw.wear_law("NAME") or
+    wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores. For a stage, a law of another
+    outcome or a material, begin with a wear law and replace its module by one of the documentation.
+    """
+    if kind is None:
+        raise click.UsageError("say what the plugin provides: --wear-law, --contact-model or --rig")
+    folder = write_plugin(name, kind, output)
+    echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
+    install = 'python -m pip install -e ".[test]"'
+    for line in (f"cd {shlex.quote(str(folder))}", install, "pytest", "wearlaw plugins", f"wearlaw check {name}"):
+        echo(f"  {line}")
+
+
+@click.command()
+@click.argument("name")
+@click.option(
+    "--option", "options", metavar="FIELD=VALUE", multiple=True, help="Set a field of the model; may be repeated."
+)
+@click.option(
+    "--expect-failure",
+    "expected",
+    metavar="CHECK=REASON",
+    multiple=True,
+    help="A check that is known to fail, with the reason; if it passes, that is a failure. May be repeated.",
+)
+def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> None:
+    """Check that an installed model keeps what wearlaw relies on. Prints a line a check; exit code 1 if any fails.
+
+    \b
+    wearlaw check usfd
+    wearlaw check usfd --option fitted_for=exact
+    wearlaw check my_set                            a parameter set of a plugin
+    wearlaw check twin_disc --option track_width="8 mm"
+    wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
+    """  # noqa: D301
+    source, given = _installed(name), values("--option", options)
+    model = _made(source, given) if isinstance(source, type) else loader.wear_law(name, **given)
+    reasons = fields("--expect-failure", expected, "CHECK=REASON")
+    found = list(checks(model))
+    validate_expected("--expect-failure", model, found, reasons)
+    outcomes = [_outcome(one, reasons.get(one.name)) for one in found]
+    if isinstance(model, ContactModel):
+        for line in accuracies(model):
+            echo(line)
+    for claim, reason in model.exemptions.items():
+        echo(f"not claimed {claim}: {reason}")
+    counted: dict[str, int] = {word: outcomes.count(word) for word in OUTCOMES}
+    counted["not claimed"] = len(model.exemptions)
+    echo(", ".join(f"{count} {word}" for word, count in counted.items() if count or word in ALWAYS_COUNTED))
+    if counted["failed"] or counted["not run"]:
+        click.get_current_context().exit(1)
+
+
+Outcome: TypeAlias = Literal["ok", "failed", "failed as expected", "not run"]
+
+OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
+
+ALWAYS_COUNTED = ("ok", "failed", "not claimed")
+"""What `wearlaw check` counts in its last line even if there is none."""
+
+
+def _made(model: type[Model], options: Mapping[str, object]) -> Model:
+    """Return the model with these fields; a rig takes others from its `example_fields`."""
+    own = model.example_fields if issubclass(model, Rig) else {}
+    try:
+        return model(**{**own, **options})
+    except ConfigurationError as error:
+        missing = dict.fromkeys(problem.path[0] for problem in error.problems if problem.message == "is missing")
+        if not missing:
+            raise
+        hint = f"give {' '.join(f'--option {field}=VALUE' for field in missing)}"
+        if issubclass(model, Rig):
+            hint += f", or values to try the rig with in {model.__name__}.example_fields"
+        raise InputError(f"{error}\n{hint}") from None
+
+
+def _outcome(check: Check, expected: str | None) -> Outcome:
+    """Run a check and print its line, with the reason if it is expected to fail; one that is not run has no line."""
+    try:
+        check()
+    except AssertionError as error:
+        if isinstance(error, NotRunError):
+            return "not run"
+        if expected is not None:
+            echo(f"failed as expected {check.name}: {expected}")
+            return "failed as expected"
+        reason = message_of(error) or check.doc
+        echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
+        return "failed"
+    if expected is not None:
+        echo(f"FAILED {check.name}: it passes, but is expected to fail: {expected}")
+        return "failed"
+    echo(f"ok {check.name}")
+    return "ok"
+
+
+def _installed(name: str) -> type[Model] | WearLaw:
+    """Return the class of the model with this name, or the law of a parameter set."""
+    found = loader.installed()
+    models = (found.wear_laws, found.laws, found.contact_models, found.stages, found.rigs, found.readers)
+    shelves: tuple[Shelf[Any], ...] = (*models, found.parameter_sets)
+    for shelf in shelves:
+        if name in shelf.providers:
+            model: type[Model] | WearLaw = shelf.find(name, found.broken)
+            return model
+    for shelf in found.shelves():
+        if name in shelf.providers:
+            raise UnknownModelError(
+                f"{shown(name)} is a {shelf.kind}, which has no checks; wearlaw show {name} explains it"
+            )
+    known = [one for shelf in shelves for one in shelf.items()]
+    raise UnknownModelError(unknown("model", name, known, found.broken))

@@ -1,0 +1,82 @@
+"""How the checks run on examples, and their shared tolerances."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TypeVar
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import described
+from wearlaw_kit.sampling import EPS
+
+T = TypeVar("T", Contact, Problem)
+
+SAME = 16.0 * EPS
+"""Relative difference of two orders of the same few operations: vector and scalar code may round differently."""
+
+SUM = 64.0 * EPS
+"""Error of a sum over nodes, relative to the sum of magnitudes."""
+
+
+def for_each(examples: T, examine: Callable[[T], None]) -> None:
+    """Run a function on a batch of problems or contacts; if it fails, name the first one that fails by itself."""
+    try:
+        examine(copy.deepcopy(examples))
+    except Exception:
+        for point in range(len(examples.rolling_speed)):
+            alone = examples[point : point + 1]
+            try:
+                examine(copy.deepcopy(alone))
+            except Exception as error:
+                error.add_note(f"example={alone!r}")
+                raise error from None
+        raise  # only together
+
+
+class ModelRaisedError(AssertionError):
+    """The failure of a check in which the model raised an error of its own."""
+
+
+def as_failure(error: BaseException) -> AssertionError:
+    """Return an error as the failure of a check: of a model's own, one with its name, message and notes."""
+    while isinstance(error, BaseExceptionGroup):  # of several different failures, the first
+        error = error.exceptions[0]
+    if isinstance(error, AssertionError):
+        return error
+    failure = ModelRaisedError(f"the model raised {described(error)}")
+    for note in getattr(error, "__notes__", []):
+        failure.add_note(note)
+    return failure
+
+
+@contextmanager
+def beginning(where: str) -> Iterator[None]:
+    """Begin the message of a failure with the place where the model fails."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        failure = as_failure(error)
+        failure.args = (f"{where}{failure}",)
+        raise failure from (None if failure is error else error)
+
+
+def assert_close(
+    found: Array, expected: Array, message: str, relative: float | Array = SAME, absolute: float | Array = 0.0
+) -> None:
+    """Assert that two arrays agree, and name the worst entry if they do not."""
+    found, expected = np.broadcast_arrays(found, expected)
+    allowed = np.broadcast_to(relative * np.abs(expected) + absolute, expected.shape)
+    wrong = ~(np.abs(found - expected) <= allowed)
+    if wrong.any():
+        worst = np.unravel_index(np.argmax(np.where(wrong, np.abs(found - expected), 0.0)), expected.shape)
+        raise AssertionError(
+            f"{message}: {found[worst]!r} instead of {expected[worst]!r} (allowed: {allowed[worst]:.1e})"
+        )

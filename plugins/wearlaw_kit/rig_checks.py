@@ -1,0 +1,338 @@
+"""Checks of a rig: the problems that it makes from the conditions of its example, and from others near them.
+
+A problem follows from its conditions by a short formula. So two ways to the same problem differ by `SAME` at most.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from typing import Any, TypeAlias
+
+import numpy as np
+import pint
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.material import Material
+from wearlaw.contact.problem import Body, Geometry
+from wearlaw.errors import ConditionsError, InputError, UnitError, WearlawError, described
+from wearlaw.pipeline.pipeline import Rig
+from wearlaw.settings.configuration import Configuration
+from wearlaw.units.quantities import Q, Quantity, parse, scalar_si
+from wearlaw_kit.bisection import lost_digits
+from wearlaw_kit.examples import assert_close
+
+Conditions: TypeAlias = dict[str, Any]
+
+FACTORS = np.array([1.0, 0.9375, 0.875])
+"""Factors that vary the conditions of the example, close enough to one that the rig still takes them."""
+
+POSITIVE = ("normal_force", "max_pressure", "patch_area", "friction_coefficient", "rolling_speed", "density")
+"""Attributes of a problem that must be greater than zero."""
+
+LOAD_OVER_PRESSURE: dict[Geometry, float] = {"line": 0.25 * np.pi, "ellipse": 2.0 / 3.0}
+"""Hertz's N/(p0 A): the mean of an elliptic pressure over its peak."""
+
+
+OF_STRIPS = ("y", "width", "half_length", "max_pressure of strips")
+"""Names of the numbers with an axis of strips."""
+
+
+def example_of(rig: Rig) -> Conditions:
+    """Return the conditions of a rig's example.
+
+    Raises
+    ------
+    InputError
+        If it has none.
+    """
+    if not rig.example:
+        conditions = ", ".join(f'"{name}": ...' for name in rig.conditions())
+        raise InputError(
+            f"checks: rig '{rig.name}' has no conditions to try it with; write the conditions of one test into the"
+            f' class {type(rig).__name__}, with units as text such as "1 %":\n  example = {{{conditions}}}'
+        )
+    return dict(rig.example)
+
+
+def varied(rig: Rig) -> dict[str, Quantity | float]:
+    """Return the conditions of the example that are numbers, with or without a unit; words and records are none."""
+    found = {name: _number(value) for name, value in example_of(rig).items()}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _number(value: object) -> Quantity | float | None:
+    if isinstance(value, str):
+        try:
+            return parse(value)
+        except UnitError:
+            return None
+    if isinstance(value, pint.Quantity) or (isinstance(value, int | float) and not isinstance(value, bool)):
+        return value
+    return None
+
+
+def in_unit_of(value: Quantity | float, numbers: Array | float) -> Any:
+    """Return numbers in the unit of a condition, or as they are where it has none."""
+    return Q(numbers, str(value.units)) if isinstance(value, pint.Quantity) else numbers
+
+
+def times(value: Quantity | float, factors: Array | float) -> Any:
+    """Return a condition multiplied by factors, in its own unit."""
+    return in_unit_of(value, getattr(value, "magnitude", value) * factors)
+
+
+def values_of(problem: Any) -> dict[str, Any]:
+    """Return the numbers that a problem holds, by name; zero for missing patches, and 1 or 0 for `exists`."""
+    found = {field.name: getattr(problem, field.name) for field in dataclasses.fields(problem)}
+    if problem.strips is not None:
+        found |= {name: getattr(problem.strips, name.removesuffix(" of strips")) for name in OF_STRIPS}
+    values = {name: value for name, value in found.items() if hasattr(value, "dtype") or isinstance(value, int | float)}
+    exists: Any = values.pop("exists", None)
+    if exists is None:
+        return values
+    there = {
+        name: np.where(exists[..., None] if name in OF_STRIPS else exists, value, 0.0) for name, value in values.items()
+    }
+    return {**there, "exists": exists.astype(np.float64)}
+
+
+def _problem(rig: Rig, **changed: Any) -> Any:
+    """Return the problem of the example with some conditions changed."""
+    return rig.checked_problem({**example_of(rig), **changed})
+
+
+def _assert_same(found: Any, expected: dict[str, Array], what: str) -> None:
+    for name, value in values_of(found).items():
+        assert_close(value, expected[name], f"{what}: {name}")
+
+
+def makes_several_patches(rig: Rig) -> bool:
+    """Return whether the problem of the example has several patches; False if the rig fails."""
+    try:
+        return bool(_problem(rig).dims)
+    except WearlawError:
+        return False
+
+
+def problem_is_finite_and_positive(rig: Rig) -> None:
+    """The example gives a problem of finite numbers, with a load, a patch, friction and a density above zero."""
+    problem = _problem(rig).existing()
+    assert problem.size, "the bodies of the example touch nowhere"
+    for name, value in values_of(problem).items():
+        assert np.isfinite(value).all(), f"{name} of the problem is {value!r}, not finite"
+    for name in POSITIVE:
+        value = getattr(problem, name)
+        assert (np.isfinite(value) & (np.asarray(value) > 0.0)).all(), (
+            f"{name} of the problem is {value!r}, not above zero"
+        )
+
+
+def pressure_carries_the_load(rig: Rig) -> None:
+    """Load, pressure and patch agree: N is π/4 p0 A on a line, 2/3 p0 A on an ellipse, and the sum of strips."""
+    problem = _problem(rig).existing()
+    if problem.strips is not None:
+        carried = problem.strips.normal_force.sum(axis=-1)
+    else:
+        carried = LOAD_OVER_PRESSURE[problem.geometry] * problem.max_pressure * problem.patch_area
+    assert_close(carried, problem.normal_force, "the force that the pressure carries over the patch [N]")
+
+
+def problem_has_the_shape_of_the_conditions(rig: Rig) -> None:
+    """Every number of the problem is a float64 array of the shape of the conditions: no axis, one, or two.
+
+    The rig's own axes follow, as `dims` names them, and an axis of strips.
+    """
+    for shape in ((), (1,), (2, 3)):
+        problem = _problem(rig, **{name: times(value, np.ones(shape)) for name, value in varied(rig).items()})
+        for name, value in values_of(problem).items():
+            kind = getattr(value, "dtype", type(value))
+            assert kind == np.float64, f"{name} of the problem is of type {kind}, not float64"
+            full = (*shape, *map(len, problem.dims.values()))
+            found = value.shape[:-1] if name in OF_STRIPS else value.shape
+            assert found == full, f"{name} has shape {value.shape} for conditions of shape {shape}"
+
+
+def arrays_equal_single_calls(rig: Rig) -> None:
+    """Arrays give the same as a call for each of their values, and broadcast if they lie on different axes."""
+    for name, value in varied(rig).items():
+        singles = [values_of(_problem(rig, **{name: times(value, factor)})) for factor in FACTORS]
+        expected = {field: np.stack([np.asarray(single[field]) for single in singles]) for field in singles[0]}
+        _assert_same(_problem(rig, **{name: times(value, FACTORS)}), expected, f"an array of {name}")
+    _assert_broadcasts(rig)
+
+
+def _assert_broadcasts(rig: Rig) -> None:
+    values = varied(rig)
+    first, *rest = values
+    down, along = FACTORS[:2, None], FACTORS
+
+    def changed(one: Array | float, others: Array | float) -> Conditions:
+        return {name: times(values[name], one if name == first else others) for name in (first, *rest)}
+
+    singles = [[values_of(_problem(rig, **changed(i, j))) for j in along] for i in down[:, 0]]
+    expected = {field: np.array([[single[field] for single in row] for row in singles]) for field in singles[0][0]}
+    expected = expected if rest else {field: value[:, :1] for field, value in expected.items()}
+    _assert_same(_problem(rig, **changed(down, along)), expected, f"{first} on an axis of its own")
+
+
+def conditions_are_declared(rig: Rig) -> None:
+    """`conditions()` has the names in the example and the one in `creepage`, and the example is one test."""
+    declared = rig.conditions()
+    for name in (*rig.example, rig.creepage):
+        assert name in declared, f"`conditions()` does not name '{name}', only {', '.join(declared) or 'none'}"
+    assert rig.creepage in varied(rig), f"the example gives no '{rig.creepage}', which `creepage` names"
+    for name, value in varied(rig).items():
+        assert np.ndim(value) == 0, f"the example has an array of {name}; give one value"
+
+
+def creepage_is_proportional_to_its_condition(rig: Rig) -> None:
+    """Half of the condition that `creepage` names is half of the problem's creepage; without it all stays finite."""
+    none = _problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], 0.0)}).existing()
+    for name, value in values_of(none).items():
+        assert np.isfinite(value).all(), f"{name} of the problem is {value!r} where {rig.creepage} is zero"
+    found = none.longitudinal_creepage
+    assert (found == 0.0).all(), f"the problem has the creepage {found!r} where {rig.creepage} is zero"
+    whole, half = (
+        _problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], share)}).existing() for share in (1.0, 0.5)
+    )
+    assert (whole.longitudinal_creepage != 0.0).all(), f"the example has no creepage; give another {rig.creepage}"
+    assert_close(
+        half.longitudinal_creepage, 0.5 * whole.longitudinal_creepage, f"the creepage of half the {rig.creepage}"
+    )
+
+
+def only_creepage_turns_with_its_sign(rig: Rig) -> None:
+    """The creepage changes its sign with its condition, and nothing else changes.
+
+    A rolling speed may, where it is the mean of a speed that is kept and one that makes the creepage.
+    """
+    problem, turned = (_problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], sign)}) for sign in (1.0, -1.0))
+    expected = values_of(problem)
+    expected["longitudinal_creepage"] = -expected["longitudinal_creepage"]
+    expected["rolling_speed"] = values_of(turned)["rolling_speed"]
+    _assert_same(turned, expected, f"{rig.creepage} of the other sign")
+
+
+def units_of_conditions_are_checked(rig: Rig) -> None:
+    """A bare number, or a quantity of another dimension, is refused by a `UnitError` that names the condition."""
+    for name, value in varied(rig).items():
+        if isinstance(value, pint.Quantity):
+            _assert_refused(
+                rig, {name: value.magnitude}, UnitError, name, f"the bare number {name}={value.magnitude!r}"
+            )
+            other = Q(value.magnitude, "candela")  # of which no condition of a rig is
+            _assert_refused(rig, {name: other}, UnitError, name, f"{name}={other!r}")
+
+
+def unknown_and_missing_conditions_are_refused(rig: Rig) -> None:
+    """A `ConditionsError` names a condition that the rig does not take, or one that is left out and not optional."""
+    _assert_refused(rig, {"no_such_condition": 1.0}, ConditionsError, "no_such_condition", "an unknown condition")
+    for name in example_of(rig):
+        rest = {other: value for other, value in example_of(rig).items() if other != name}
+        try:
+            rig.checked_problem(rest)
+        except WearlawError as error:
+            _assert_names(error, ConditionsError, name, f"the example without {name}")
+
+
+def values_that_are_no_numbers_are_refused(rig: Rig) -> None:
+    """NaN in a condition is refused by an error that names it; infinity is refused, or gives a finite problem."""
+    for name, value in varied(rig).items():
+        number = getattr(value, "magnitude", value)
+        nan, infinite = (in_unit_of(value, np.array([number, bad])) for bad in (np.nan, np.inf))
+        _assert_refused(rig, {name: nan}, InputError, name, f"NaN in {name}")
+        try:
+            problem = _problem(rig, **{name: infinite})
+        except InputError:
+            continue
+        for field, found in values_of(problem).items():
+            assert np.isfinite(found).all(), f"infinity in {name} is taken, and makes {field} of the problem {found!r}"
+
+
+def _assert_refused(rig: Rig, changed: Conditions, kind: type[WearlawError], name: str, what: str) -> None:
+    try:
+        _problem(rig, **changed)
+    except WearlawError as error:
+        _assert_names(error, kind, name, what)
+    else:
+        raise AssertionError(f"{what} is taken; raise wearlaw.{kind.__name__} with a message that names '{name}'")
+
+
+def _assert_names(error: WearlawError, kind: type[WearlawError], name: str, what: str) -> None:
+    named = isinstance(error, kind) and re.search(rf"\b{name}\b", str(error))
+    wanted = f"raise wearlaw.{kind.__name__} with a message that names '{name}'"
+    assert named, f"{what} raises {described(error)}; {wanted}"
+
+
+def geometry_is_that_of_the_problem(rig: Rig) -> None:
+    """`patch_geometry` is the shape of the patch of the problem, or None."""
+    made = _problem(rig).geometry
+    assert rig.patch_geometry in (None, made), (
+        f"`patch_geometry` is '{rig.patch_geometry}', but the patch of the problem is '{made}'"
+    )
+
+
+def bodies_are_those_of_the_problem(rig: Rig) -> None:
+    """Each of `bodies` has a name, a material and a radius, and the problem has the density of the first of them.
+
+    It still has if the materials in the fields of the rig are denser.
+    """
+    for name, body in rig.bodies.items():
+        assert name.isidentifier(), f"the name of a body must be an identifier, got {name!r}"
+        assert isinstance(body, Body), f"`bodies` has {body!r} for {name}, not a wearlaw.Body"
+        assert isinstance(body.material, Material), f"the material of {name} is {body.material!r}"
+        radius = body.rolling_radius
+        assert np.all(np.asarray(radius) > 0.0), f"the rolling radius of {name} is {radius!r} m, not above zero"
+    for tried, which in ((rig, ""), (_denser(rig), " of the rig with denser materials")):
+        for name, body in [*tried.bodies.items()][:1]:
+            expected = np.asarray(scalar_si(body.material.density, "kg/m^3"))
+            message = f"the density of the problem{which}, with {name} as the first body"
+            assert_close(_problem(tried).existing().density, expected, message)
+
+
+def _denser(record: Any) -> Any:
+    """Return a record with each material in its fields a quarter denser than the one before."""
+    changed: dict[str, Any] = {}
+    for name, value in record:
+        if isinstance(value, Material):
+            changed[name] = value.model_copy(update={"density": value.density * 1.25 ** (len(changed) + 1)})
+        elif isinstance(value, Configuration):
+            changed[name] = _denser(value)
+    return record.model_copy(update=changed) if changed else record
+
+
+def problem_is_in_double_precision(rig: Rig) -> None:
+    """Loads, pressures, friction, sizes, speeds and creepages are exact, in steps of 1e-8 of each condition."""
+    for name, value in varied(rig).items():
+
+        def changed(factor: float, name: str = name, value: Any = value) -> Array:
+            values = values_of(_problem(rig, **{name: times(value, factor)}))
+            return np.concatenate([np.ravel(values[field]) for field in PRECISE])
+
+        lost_digits(changed, f"the problem loses digits of {name}", ROUNDING)
+
+
+PRECISE = (
+    *("normal_force", "max_pressure", "a", "b", "friction_coefficient", "rolling_speed"),
+    *("longitudinal_creepage", "lateral_creepage", "spin"),
+)
+"""Numbers of a problem; what else a rig may add to them, such as what is left of a balance, may be rounding alone."""
+
+ROUNDING = 1e-10
+"""Error of a problem that an iteration finds; it moves a step of 1e-8 by a fiftieth, single precision by six of it."""
+
+CHECKS = (
+    problem_is_finite_and_positive,
+    pressure_carries_the_load,
+    problem_has_the_shape_of_the_conditions,
+    arrays_equal_single_calls,
+    conditions_are_declared,
+    units_of_conditions_are_checked,
+    unknown_and_missing_conditions_are_refused,
+    values_that_are_no_numbers_are_refused,
+    geometry_is_that_of_the_problem,
+    bodies_are_those_of_the_problem,
+    problem_is_in_double_precision,
+)
+OF_CREEPAGE = (creepage_is_proportional_to_its_condition, only_creepage_turns_with_its_sign)

@@ -1,0 +1,1 @@
+"""What applications write: figures, tables, and the folders that hold them."""

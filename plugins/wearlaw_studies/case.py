@@ -1,0 +1,574 @@
+"""Case files: studies in TOML, with units.
+
+A case names a rig, contact models with stages around them, laws, and the operating points at which every pair of a
+contact model and a law is evaluated. `load_case` reads one from a file, or by the name of a case that a plugin ships.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import cached_property
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import tomli_w
+from packaging.specifiers import InvalidSpecifier, SpecifierSet
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    SerializerFunctionWrapHandler,
+    TypeAdapter,
+    ValidationInfo,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
+
+from wearlaw.errors import (
+    CaseError,
+    ConfigurationError,
+    Fault,
+    InputError,
+    PluginWarning,
+    WearlawError,
+    WearlawWarning,
+    described,
+    did_you_mean,
+    shown,
+    with_problems,
+)
+from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.labels import labelled, labels
+from wearlaw.models.law import WEAR, Law, Outcome
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.composition import several_patches
+from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
+from wearlaw.plugins import loader
+from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
+from wearlaw.plugins.shelf import Shelf
+from wearlaw.settings.configuration import Configuration, known_as
+from wearlaw.settings.text_files import beside, read_text, reading
+from wearlaw.settings.toml_files import LARGEST, parse_toml
+from wearlaw.units.variables import UNITS, meaning_of
+from wearlaw_studies.figure_check import wrong_figures, wrong_name
+from wearlaw_studies.figure_spec import FigureSpec
+from wearlaw_studies.grid import Condition, Grid
+from wearlaw_studies.measured import MeasuredTests, check_rig
+from wearlaw_studies.uncertain_point import Condition as UncertainCondition
+from wearlaw_studies.uncertain_point import UncertainPoint
+
+ModelT = TypeVar("ModelT", bound=Model)
+
+CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
+"""Names of the files that a run writes: its case, and its measured tests if they came from a file."""
+
+
+LISTED = "must be a list of names, or of tables with a name and options"
+"""Error about a list of models."""
+
+
+def _models(value: Any) -> Any:
+    if not isinstance(value, (list, tuple)):
+        raise InputError(f"{LISTED}; got {shown(value)}")
+    return value
+
+
+def _some_models(value: Any) -> Any:
+    if not _models(value):
+        raise InputError(f"{LISTED}; got {shown(value)}")
+    return value
+
+
+def _name_of(value: Any) -> str:
+    """Return the name of a model in a list, or "" if it is not a name or a table with one."""
+    name = value.get("model") if isinstance(value, dict) else value
+    return name if isinstance(name, str) else ""
+
+
+def _other_law(value: Any) -> Any:
+    """Raise an error for the name of a wear law, or of no law."""
+    found, name = loader.installed(), _name_of(value)
+    wear = {*found.wear_laws.providers, *found.parameter_sets.providers}
+    if name in wear or (isinstance(value, Law) and value.outcome.name == WEAR):
+        raise InputError(f"{name or value.name} predicts the wear rate; list it under wear_laws")
+    if name:
+        found.laws.find(name, found.broken)
+    return value
+
+
+def _wear_law(value: Any) -> Any:
+    """Raise an error for a law of another outcome."""
+    found, name = loader.installed(), _name_of(value)
+    law = value if isinstance(value, Law) else None if name in found.wear_laws.providers else loader.laws().get(name)
+    if law is not None and law.outcome.name != WEAR:
+        raise InputError(f"{law.name} predicts {law.outcome.name}, not wear; list it under laws")
+    return value
+
+
+def _require(needed: Mapping[str, str]) -> None:
+    """Raise an error unless distributions are installed in the versions asked for.
+
+    Parameters
+    ----------
+    needed : mapping of str to str
+        Names of distributions with version ranges such as ">=1.2,<2"; "" for any version.
+
+    Raises
+    ------
+    ConfigurationError
+        If some are missing, have other versions, or their ranges are not valid.
+    """
+    wrong = [Fault(("plugins", name), fault) for name, versions in needed.items() if (fault := _unmet(name, versions))]
+    if wrong:
+        raise ConfigurationError(Case.subject(), wrong)
+
+
+def _unmet(name: str, versions: str) -> str:
+    """Return why a distribution does not meet a range of versions, or "" if it does."""
+    try:
+        allowed = SpecifierSet(versions)
+    except InvalidSpecifier:
+        return f"{shown(versions)} is not a version range; write one such as '>=1.2,<2'"
+    try:
+        found = version(name)
+    except PackageNotFoundError:
+        return f"is not installed; install it with: pip install '{name}{versions}'"
+    return (
+        "" if allowed.contains(found, prereleases=True) else f"version {found} is installed, but {versions} is needed"
+    )
+
+
+def _section(name: str) -> str:
+    found = loader.installed()
+    found.resources["section"].find(name, found.broken)
+    return name
+
+
+LISTS = ("stages", "laws", "wear_laws")
+"""The lists of models that may be empty; a case that is written down leaves empty ones out."""
+
+RESERVED = ("pair", "contact_model", "sweep", "law", "wear_law")
+"""Names of other columns of results, which no outcome and no axis of a rig may have."""
+
+
+class Case(Configuration):
+    """A study: a rig, contact models, laws, and operating points at which every pair of a model and a law is evaluated.
+
+    Stages, if given, stand around every contact model.
+    """
+
+    title: str
+    """The title of the study in its results."""
+    plugins: dict[str, str] = Field(default_factory=dict)
+    """The distributions that the case needs, each with a version range such as ">=1.2,<2"; "" for any version."""
+    rig: RigField
+    """The rig: its `type` and fields, or a `preset` such as "suros" with the fields that differ."""
+    contact_models: Annotated[
+        tuple[ContactModelField, ...], BeforeValidator(_some_models), Field(json_schema_extra={"minItems": 1})
+    ]
+    """The contact models, each a name or a table of its name and options."""
+    stages: Annotated[tuple[StageField, ...], BeforeValidator(_models)] = ()
+    """Stages around every contact model, such as "patch_mean", likewise; the first one stands next to the model."""
+    laws: Annotated[tuple[Annotated[LawField, BeforeValidator(_other_law)], ...], BeforeValidator(_models)] = ()
+    """Laws of other outcomes than wear, such as damage by fatigue, likewise."""
+    wear_laws: Annotated[tuple[Annotated[WearLawField, BeforeValidator(_wear_law)], ...], BeforeValidator(_models)] = ()
+    """The wear laws, likewise; they can be left out if there are `laws`."""
+    sweeps: Annotated[dict[str, Grid], Field(min_length=1)]
+    """Grids of operating points, each under a name."""
+    profiles: dict[str, Grid] = Field(default_factory=dict)
+    """Single operating points at which the patch is shown, each under a name: stresses and slip along a line's patch,
+    wear across an ellipse."""
+    uncertainty: dict[str, UncertainPoint] = Field(default_factory=dict)
+    """Uncertain operating points, each under a name; for `wearlaw uncertainty`."""
+    measured: MeasuredTests | None = None
+    """Measured tests, to show beside the predictions."""
+    sections: tuple[Annotated[str, AfterValidator(_section)], ...] = ()
+    """The sections that plugins add to the report, by name."""
+    figures: dict[str, FigureSpec] = Field(default_factory=dict)
+    """The figures, each under the name of its file. Default: one of each kind for each sweep and profile."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _has_its_plugins(cls, fields: Any) -> Any:
+        """Check for missing plugins first, before something else fails without them."""
+        if isinstance(fields, dict):
+            needed = fields.get("plugins", {})
+            if isinstance(needed, dict):
+                _require({str(name): str(versions) for name, versions in needed.items()})
+        return fields
+
+    @field_validator("wear_laws")
+    @classmethod
+    def _some_law(cls, laws: tuple[WearLaw, ...], info: ValidationInfo) -> tuple[WearLaw, ...]:
+        if not laws and info.data.get("laws") == ():
+            raise InputError(
+                'is missing or empty; give at least one, as in wear_laws = ["usfd"], or laws of other outcomes than'
+                " wear under laws"
+            )
+        return laws
+
+    @field_validator("laws", "wear_laws")
+    @classmethod
+    def _of_known_bodies(cls, laws: tuple[Law, ...], info: ValidationInfo) -> tuple[Law, ...]:
+        """Check the bodies of laws when the case is read; a rig need not name its bodies."""
+        named = any(law.body is not None for law in laws)
+        bodies = tuple(info.data["rig"].bodies) if named and "rig" in info.data else ()
+        has = f"Its bodies are {' and '.join(bodies)}"
+        wrong = [
+            Fault((str(number), "body"), f"the rig has no body {shown(law.body)}{did_you_mean(law.body, bodies)} {has}")
+            for number, law in enumerate(laws)
+            if law.body is not None and bodies and law.body not in bodies
+        ]
+        if wrong:
+            raise ConfigurationError(cls.subject(), wrong)
+        return laws
+
+    @field_validator("sections")
+    @classmethod
+    def _once(cls, sections: tuple[str, ...]) -> tuple[str, ...]:
+        twice = sorted({name for name in sections if sections.count(name) > 1})
+        if twice:
+            raise InputError(f"{' and '.join(map(repr, twice))} is listed twice; leave one out")
+        return sections
+
+    @field_validator("sweeps", "profiles", "uncertainty")
+    @classmethod
+    def _fit_the_rig(cls, given: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
+        """Let the rig check conditions when the case is read, not when it runs; a wrong rig checks none."""
+        rig, wrong = info.data.get("rig"), []
+        for name, point in given.items():
+            if fault := wrong_name(name):
+                wrong.append(Fault((), f"the name {shown(name)} {fault}"))
+            if info.field_name == "profiles" and point.axes():
+                wrong.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
+            if rig is not None:
+                wrong += [Fault((name, *fault.path), fault.message) for fault in point.faults(rig)]
+        if wrong:
+            raise ConfigurationError(cls.subject(), wrong)
+        return given if rig is None else {name: point.ordered(rig) for name, point in given.items()}
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """The unit in which results show each condition of the sweeps and profiles."""
+        found: dict[str, str] = {}
+        for grid in (*self.sweeps.values(), *self.profiles.values()):
+            found = {**grid.units(), **found}
+        return found
+
+    @cached_property
+    def contact_models_by_label(self) -> dict[str, ContactModel]:
+        """The contact models by their labels in results, which name the stages around them."""
+        around = f" with {' and '.join(labels(self.stages))}" if self.stages else ""
+        return {f"{label}{around}": model for label, model in labelled(self.contact_models).items()}
+
+    @cached_property
+    def laws_by_label(self) -> dict[str, Law]:
+        """The laws by their labels in results, wear laws first."""
+        every: tuple[Law, ...] = (*self.wear_laws, *self.laws)
+        return labelled(every)
+
+    @cached_property
+    def outcomes(self) -> dict[str, Outcome]:
+        """The outcomes of the laws by name, wear first."""
+        return {law.outcome.name: law.outcome for law in (*self.wear_laws, *self.laws)}
+
+    @cached_property
+    def result_units(self) -> dict[str, str]:
+        """The units of all variables in results: those of the table of variables, outcomes and conditions."""
+        endings = ("", "_error", "_low", "_high")
+        of_laws = {f"{name}{end}": outcome.unit for name, outcome in self.outcomes.items() for end in endings}
+        return {**UNITS, **of_laws, **self.units}
+
+    @model_serializer(mode="wrap")
+    def _without_empty_lists(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        fields: dict[str, Any] = serialize(self)
+        return {name: value for name, value in fields.items() if value or name not in LISTS}
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Case:
+        wrong = [*self._wrong_names(), *self._wrong_units()]
+        if not wrong:  # the others need labels and units
+            wrong = [*self._wrong_axes(), *self._wrong_outcomes(), *self._wrong_stages(), *self._wrong_others()]
+        if wrong:
+            raise ConfigurationError(self.subject(), wrong)
+        return self
+
+    def _wrong_names(self) -> Iterator[Fault]:
+        """Yield the lists of models in which one is listed twice."""
+        every: tuple[Law, ...] = (*self.wear_laws, *self.laws)
+        lists: dict[str, tuple[Model, ...]] = {"contact_models": self.contact_models, "stages": self.stages, "": every}
+        for path, models in lists.items():
+            try:
+                labels(models)
+            except InputError as error:
+                yield Fault((path,) if path else (), str(error))
+
+    def _wrong_units(self) -> Iterator[Fault]:
+        """Yield the conditions that have units of different dimensions in different places."""
+        for kind, grids in (("sweeps", self.sweeps), ("profiles", self.profiles)):
+            for name, grid in grids.items():
+                try:
+                    grid.points(self.units)
+                except InputError as error:
+                    yield Fault((kind, name), str(error))
+
+    def _wrong_others(self) -> Iterator[Fault]:
+        """Yield the faults of uncertain parameters, measured tests and figures."""
+        for name, point in self.uncertainty.items():
+            for fault in point.wrong_laws(self.laws_by_label):
+                yield Fault(("uncertainty", name, *fault.path), fault.message)
+        if self.measured:
+            several = several_patches(next(iter(self.sweeps.values())).problem(self.rig), self.rig)
+            if several:
+                yield Fault(("measured",), f"{several}; leave [measured] out")
+            else:
+                try:
+                    check_rig(self.measured.data, self.rig)
+                except InputError as error:
+                    yield Fault(("measured",), str(error))
+        yield from wrong_figures(self)
+
+    def _wrong_axes(self) -> Iterator[Fault]:
+        """Yield the axes of the rig's patches that results would mix up with other columns."""
+        conditions = {name for grid in (*self.sweeps.values(), *self.profiles.values()) for name in grid.given}
+        for axis in next(iter(self.sweeps.values())).problem(self.rig).dims:
+            if axis in (*RESERVED, "node", *conditions):
+                yield Fault(
+                    ("rig",), f"its axis {shown(axis)} has the name of another column of results; rename the axis"
+                )
+
+    def _wrong_outcomes(self) -> Iterator[Fault]:
+        """Yield the laws whose results would be mixed up with others."""
+        first: dict[str, Law] = {}
+        conditions = {name for grid in (*self.sweeps.values(), *self.profiles.values()) for name in grid.given}
+        for number, law in enumerate(self.laws):
+            outcome, path = law.outcome, ("laws", str(number))
+            other = first.setdefault(outcome.name, law)
+            if (outcome.unit, outcome.of) != (other.outcome.unit, other.outcome.of):
+                units = f"[{outcome.unit}] of {outcome.of}, but {other.name} in [{other.outcome.unit}] of"
+                yield Fault(
+                    path, f"{law.name} gives {outcome.name} in {units} {other.outcome.of}; put one in a case of its own"
+                )
+            if outcome.name == WEAR:
+                yield Fault(path, f"{law.name} predicts the wear rate; derive it from wl.WearLaw, for wear_laws")
+            if outcome.name in (*RESERVED, *conditions):
+                yield Fault(path, f"its outcome '{outcome.name}' is the name of another column of results; rename it")
+            if any(law.name == wear_law.name for wear_law in self.wear_laws):
+                yield Fault(path, f"a wear law of the case is called '{law.name}' too; put it in a case of its own")
+
+    def _wrong_stages(self) -> Iterator[Fault]:
+        """Yield the stages that fail around a contact model, tried at the first operating point of the first sweep."""
+        if not self.stages:
+            return
+        problem = next(iter(self.sweeps.values())).problem(self.rig)
+        for label, model in labelled(self.contact_models).items():
+            for count in range(len(self.stages) + 1):
+                try:
+                    with warnings.catch_warnings():
+                        warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
+                        Pipeline(rig=self.rig, contact_model=model, stages=self.stages[:count]).predict(problem)
+                except WearlawError as error:
+                    if count:  # otherwise the model does not suit the rig, which running the case notes
+                        name = self.stages[count - 1].name
+                        yield Fault(
+                            ("stages", str(count - 1)),
+                            f"{name} cannot stand around {label}: {error}; leave one of them out",
+                        )
+                        return
+                    break
+
+
+def case_text(name_or_path: str) -> str:
+    """Return the text of a case file, or of a shipped case by its name.
+
+    Raises
+    ------
+    CaseError
+        If there is no such file and no such case.
+    UnknownModelError
+        If several plugins ship a case of that name.
+    """
+    found = loader.installed()
+    known = found.resources["case"].items()
+    if name_or_path in found.resources["case"].providers:
+        text: str = found.resources["case"].find(name_or_path, found.broken)
+        return text
+    try:
+        return read_text(name_or_path, LARGEST)
+    except FileNotFoundError:
+        hint = did_you_mean(name_or_path, known)
+        raise CaseError(
+            f"there is no case file {shown(Path(name_or_path))}{hint} Shipped cases: {', '.join(known)}"
+        ) from None
+    except InputError as error:
+        raise CaseError(f"cannot read the case file {shown(Path(name_or_path))}: {error}") from None
+
+
+def case_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a case file, with the options of all installed models."""
+    schema = Case.model_json_schema(by_alias=True)
+    definitions = schema["$defs"]
+    properties, found = schema["properties"], loader.installed()
+    shelves: dict[str, Shelf[Any]] = {
+        "contact_models": found.contact_models,
+        "stages": found.stages,
+        "laws": found.laws,
+        "wear_laws": found.wear_laws,
+    }
+    for field, shelf in shelves.items():
+        properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
+    sets = found.parameter_sets
+    properties["wear_laws"]["items"]["anyOf"] += [
+        *({"const": name} for name in sets.items()),
+        *({**table, "required": ["model"]} for table in _tables(sets, definitions)),
+    ]
+    schema["anyOf"] = [{"required": [name], "properties": {name: {"minItems": 1}}} for name in ("wear_laws", "laws")]
+    for window in ("FigureSpec", "Window"):
+        _add_outcomes(definitions[window]["properties"]["y"], [law.outcome.name for law in found.laws.items().values()])
+    properties["sections"]["items"] = {"enum": list(found.resources["section"].items())}
+    rigs = found.rigs.items()
+    bare = [name for name, rig in rigs.items() if not any(one.is_required() for one in rig.model_fields.values())]
+    properties["rig"] = {"anyOf": [{"enum": bare}]}
+    axis, schema["allOf"] = definitions["FigureSpec"]["properties"]["x"], []
+    for name, rig in rigs.items():
+        with _left_out(found.rigs, name):
+            tables, known = list(_rig_tables(name, rig, definitions)), rig.conditions()
+            if known:
+                this = {"properties": {"rig": {"anyOf": _named(name, rig)}}}
+                schema["allOf"].append({"if": this, "then": {"properties": _conditions(rig, definitions)}})
+            properties["rig"]["anyOf"] += tables
+            axis["enum"] = list(dict.fromkeys([*axis["enum"], *known]))
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def _add_outcomes(schema: Any, outcomes: list[str]) -> None:
+    """Add names of outcomes to the variables that a schema accepts."""
+    for inner in schema.get("anyOf", []):
+        _add_outcomes(inner, outcomes)
+    if "items" in schema:
+        _add_outcomes(schema["items"], outcomes)
+    if "enum" in schema:
+        schema["enum"] = list(dict.fromkeys([*schema["enum"], *outcomes]))
+
+
+@contextmanager
+def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
+    """Leave a model out, with a warning, if its schema raises an error."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        reason = f"{shelf.kind} {shown(name)} of {shelf.origin(name)} is left out of the schema: {described(error)}"
+        warnings.warn(reason, PluginWarning, stacklevel=4)
+
+
+def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield the schemas of a rig's table: one with its fields, and one for each preset."""
+    yield _model_schema(name, rig, definitions, "type")
+    for preset in rig.presets():
+        table = preset_fields(rig, preset).model_json_schema(ref_template=f"#/$defs/{name}.{preset}.{{model}}")
+        definitions.update({f"{name}.{preset}.{key}": value for key, value in table.pop("$defs", {}).items()})
+        named = {"type": {"const": name}, "preset": {"const": preset}}
+        required = ["preset", *table.get("required", [])]
+        yield {**table, "properties": {**named, **table.get("properties", {})}, "required": required}
+
+
+def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
+    """Return the schemas that identify a rig: its name, a table with its type, or one with a preset of its own."""
+    typed = {"type": "object", "properties": {"type": {"const": name}}, "required": ["type"]}
+    presets = [preset for preset, owners in known_presets().items() if owners == [rig]]
+    by_preset = {"type": "object", "properties": {"preset": {"enum": presets}}, "required": ["preset"]}
+    return [{"const": name}, typed, *([by_preset] if presets else [])]
+
+
+def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schemas of the tables of a case that hold a rig's conditions."""
+    found = {}
+    kinds: dict[str, Any] = {"sweeps": Condition, "profiles": Condition, "uncertainty": UncertainCondition}
+    for field, annotation in kinds.items():
+        one = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
+        definitions.update(one.pop("$defs", {}))
+        properties = {name: {**one, "description": meaning_of(name)} for name in rig.conditions()}
+        if field == "uncertainty":
+            properties["laws"] = definitions["UncertainPoint"]["properties"]["laws"]
+        table = {"properties": properties, "required": list(rig.needed()), "additionalProperties": False}
+        found[field] = {"additionalProperties": table}
+    return found
+
+
+def _tables(shelf: Shelf[Any], definitions: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the schema of each model's table."""
+    found = []
+    for name, item in shelf.items().items():
+        with _left_out(shelf, name):
+            found.append(_model_schema(name, item if isinstance(item, type) else type(item), definitions))
+    return found
+
+
+def _model_schema(name: str, model: type[Model], definitions: dict[str, Any], key: str = "model") -> dict[str, Any]:
+    """Return the schema of a model's table, and add its definitions to the others."""
+    table = model.model_json_schema(ref_template=f"#/$defs/{name}.{{model}}")
+    definitions.update({f"{name}.{inner}": value for inner, value in table.pop("$defs", {}).items()})
+    table["properties"] = {key: {"const": name}, **table.get("properties", {})}
+    table["required"] = [key, *(field for field in table.get("required", []) if not _published(model, field))]
+    return table
+
+
+def _published(model: type[Model], field: str) -> bool:
+    """Return whether a field without a default takes a value published by the model's source."""
+    try:
+        return hasattr(model(), field)
+    except InputError:
+        return False
+
+
+def load_case(name_or_path: str) -> Case:
+    """Return the case of a TOML file, or a shipped one by its name.
+
+    Raises
+    ------
+    CaseError
+        If the file is missing, is not TOML, or has wrong fields, which the message names by their paths.
+    """
+    name_or_path = os.fspath(name_or_path)
+    text = case_text(name_or_path)
+    try:
+        fields = parse_toml(text)
+    except InputError as error:
+        raise CaseError(f"case {shown(Path(name_or_path))} {error}") from None
+    try:
+        if name_or_path in loader.installed().resources["case"].providers:
+            return known_as(name_or_path, Case(**fields))
+        with reading(name_or_path):
+            return Case(**_beside(fields))
+    except ConfigurationError as error:
+        raise CaseError(with_problems(f"case {shown(Path(name_or_path))} is wrong in:", error.problems)) from None
+
+
+def _beside(fields: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a case, with the path of its tests made relative to here instead of to the case file."""
+    measured = fields.get("measured")
+    if isinstance(measured, dict):
+        tests = measured.get("tests")
+        if isinstance(tests, str) and tests not in loader.installed().resources["test set"].providers:
+            return {**fields, "measured": {**measured, "tests": str(beside(tests))}}
+    return fields
+
+
+def written(case: Case) -> dict[str, str]:
+    """Return the files that rerun a case in any folder, by name: the case with all defaults, and its measured tests.
+
+    Tests that a plugin ships need no file.
+    """
+    fields = case.model_dump(mode="json", by_alias=True, exclude_none=True)
+    files = {}
+    if case.measured is not None and not case.measured.shipped:
+        fields["measured"]["tests"] = TESTS_FILE
+        files[TESTS_FILE] = case.measured.text
+    return {CASE_FILE: tomli_w.dumps(fields), **files}

@@ -1,0 +1,23 @@
+"""Commands that print case files and their schema. They load nothing that only a run needs."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+from wearlaw.cli.shared import echo_file
+from wearlaw_studies.case import case_schema, case_text
+
+
+@click.command()
+@click.argument("name")
+def case(name: str) -> None:
+    """Print a case file: NAME is the name of a shipped one (tassini2010, wheel_on_rail, wheelset), or a path."""
+    echo_file(case_text(name))
+
+
+@click.command()
+def schema() -> None:
+    """Print the JSON Schema of a case file with the options of the installed models."""
+    echo_file(json.dumps(case_schema(), indent=2, ensure_ascii=False) + "\n")

@@ -1,0 +1,177 @@
+"""Commands that run case files: a study, or how uncertain its predictions are."""
+
+from __future__ import annotations
+
+import shutil
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+import click
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from wearlaw.cli import Stopped
+from wearlaw.cli.shared import echo, folder_for, print_notes, print_results
+from wearlaw.errors import OutputError, shown
+from wearlaw.pipeline.notes import Notes, grouped
+from wearlaw.version import __version__
+from wearlaw_output.curves import FigureFormat
+from wearlaw_output.files import written_formats
+from wearlaw_output.folder import results_folder
+from wearlaw_studies.case import load_case
+from wearlaw_studies.report.tables import NamedTable, summaries
+from wearlaw_studies.study import Study, evaluations, used
+from wearlaw_studies.study import run as run_case
+from wearlaw_studies.uncertainty import uncertainty_of
+from wearlaw_studies.uncertainty_files import UNCERTAINTY, write_uncertainty
+from wearlaw_studies.written import RESULTS, check_room, without_csv, write
+from wearlaw_sweeps.progress import Bar
+
+
+@click.command()
+@click.argument("case")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-results].")
+@click.option("--overwrite", is_flag=True, help="Replace the files of an earlier run in that folder; others stay.")
+@click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
+@click.option("--resume", is_flag=True, help="Go on from the finished blocks of an interrupted run, in FOLDER.partial.")
+@click.option(
+    "--csv/--no-csv",
+    default=None,
+    help="Write results.csv or leave it out [default: write it up to 1 048 575 rows, those that Excel reads].",
+)
+@written_formats
+def run(
+    case: str,
+    output: Path | None,
+    overwrite: bool,
+    workers: int,
+    resume: bool,
+    csv: bool | None,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+) -> None:
+    """Run a study: CASE is a case file, or the name of one that is shipped (tassini2010, wheel_on_rail, wheelset).
+
+    Every contact model of the case is paired with every law. Results are written as report.html, a page to open in a
+    browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
+    spelt out.
+    """
+    loaded = load_case(case)
+    folder = output if output is not None else folder_for(case, "results")
+    notes = Notes()
+    partial = _partial(folder, resume)
+    try:
+        with results_folder(folder, overwrite, RESULTS) as fresh:
+            left_out = without_csv(loaded, csv)
+            check_room(loaded, folder, left_out is None)
+            with Bar(evaluations(loaded)) as bar, notes.of("run"):
+                study = run_case(loaded, bar, workers, partial, resume)
+                if left_out is not None:
+                    study = replace(study, notes=(*study.notes, left_out))
+                with notes.of("figures"):
+                    names = write(study, fresh, figure_formats, latex, bar.stage, left_out is None)
+    except KeyboardInterrupt:
+        if partial.exists():
+            raise Stopped(f"Stopped; finished blocks are in {shown(partial)}, and --resume goes on") from None
+        raise
+    _discard(partial)
+    print_notes(grouped([*study.notes, *notes.texts]))
+    for table in summaries(study):
+        Console().print(_summary(table))
+    _print_used(study)
+    print_results(folder, names)
+
+
+def _partial(folder: Path, resume: bool) -> Path:
+    """Return the folder of finished blocks for a folder of results.
+
+    Raises
+    ------
+    OutputError
+        If it exists and is not to be resumed.
+    """
+    named = folder if folder.name else folder.resolve()  # "." has no name
+    partial = named.with_name(f"{named.name}.partial")
+    if partial.exists() and not resume:
+        raise OutputError(
+            f"output: {shown(partial)} holds the finished blocks of an interrupted run; add --resume to go on with it,"
+            " remove it, or choose another folder with -o"
+        )
+    return partial
+
+
+def _discard(partial: Path) -> None:
+    for store in partial.glob("*.zarr"):
+        shutil.rmtree(store, ignore_errors=True)
+    with suppress(OSError):  # it does not exist, or other files are in it
+        partial.rmdir()
+
+
+def _print_used(study: Study) -> None:
+    """Print the version of wearlaw, and each other distribution with the models it provided."""
+    provided: dict[str, list[str]] = {f"wearlaw {__version__}": []}
+    for kind, names in used(study.case).items():
+        for name, distribution in names.items():
+            provided.setdefault(distribution, []).append(f"{kind} {name}")
+    (ours, _), *others = provided.items()
+    echo(f"Computed with {ours}")
+    for distribution, things in others:
+        echo(f"  and {distribution}: {', '.join(things)}")
+
+
+def _summary(summary: NamedTable) -> Table:
+    """Return a short table of an outcome for the screen."""
+    what, *values = summary.frame.columns
+    title = Text(f"{summary.title}: {what}")
+    table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE, pad_edge=False)
+    table.add_column("", overflow="fold")
+    for value in values:
+        table.add_column(value, justify="right", no_wrap=True)
+    for pair, *values_of_pair in summary.frame.itertuples(index=False, name=None):
+        table.add_row(Text(pair), *("" if value != value else f"{value:.4g}" for value in values_of_pair))
+    return table
+
+
+@click.command()
+@click.argument("case")
+@click.option("--samples", type=int, default=2**14, show_default=True, help="How many, rounded up to a power of two.")
+@click.option("--seed", type=int, default=0, show_default=True, help="The same seed gives the same samples.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-uncertainty]."
+)
+@click.option("--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay.")
+@written_formats
+def uncertainty(
+    case: str,
+    samples: int,
+    seed: int,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+) -> None:
+    """Say how uncertain predictions are: CASE is a case file with tables [uncertainty.NAME].
+
+    Every contact model of the case is paired with every law. Written are wear_rates.csv with medians and 95 %
+    intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each
+    pair, such as scatter_usfd_on_exact.png for the table [uncertainty.scatter].
+    """
+    loaded = load_case(case)
+    folder = output if output is not None else folder_for(case, "uncertainty")
+    total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
+    notes = Notes()
+    with results_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as bar:
+        found = uncertainty_of(loaded, samples, seed, bar)
+        bar.stage("writing results")
+        with notes.of("figures"):
+            names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)
+    if found.samples != samples:
+        echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
+    print_notes([*found.notes, *notes.texts])
+    echo(found.wear_rates.to_string(index=False, float_format=lambda number: f"{number:.4g}"))
+    if len(found.indices):
+        echo(found.indices.to_string(index=False, float_format=lambda share: f"{round(share, 3) + 0.0:.3f}"))
+    print_results(folder, names)

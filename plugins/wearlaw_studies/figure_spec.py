@@ -1,0 +1,172 @@
+"""Figures as a case file describes them: variables, models, and ranges of the axes."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+
+from wearlaw.contact.conditions import LOADS
+from wearlaw.errors import ConfigurationError, Fault
+from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT
+from wearlaw.settings.configuration import Configuration
+from wearlaw.units.quantities import Unit, from_si
+from wearlaw.units.variables import UNITS
+from wearlaw_studies.grid import Grid
+
+OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")
+"""Variables along the patch of a line contact; the creepage of the operating point is a horizontal line."""
+
+ACROSS = ("depth", "sliding_distance")
+"""Variables across the patch of an elliptic contact, for one of the bodies."""
+
+OF_LOAD = (*LOADS, "half_width", "semi_axis_a", "semi_axis_b")
+"""The variables that the load alone determines."""
+
+BY_PATCH = "patch"
+"""The `x` of a figure with bars for each patch, if the rig makes several."""
+
+Scale = Literal["linear", "log"]
+
+
+def _variables(value: Any) -> Any:
+    return (value,) if isinstance(value, str) else value
+
+
+_VARIABLE = {"enum": list(dict.fromkeys(("wear_rate", MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *OF_PROFILE, *ACROSS)))}
+
+Variables = Annotated[
+    tuple[str, ...],
+    BeforeValidator(_variables),
+    Field(min_length=1),
+    WithJsonSchema({"anyOf": [_VARIABLE, {"type": "array", "items": _VARIABLE, "minItems": 1}]}),
+]
+"""One variable, or several with the same unit."""
+
+Labels = Annotated[
+    tuple[str | int, ...],
+    BeforeValidator(lambda value: (value,) if isinstance(value, str | int) else value),
+    Field(min_length=1),
+    WithJsonSchema(
+        {"anyOf": [_LABEL := {"type": ["string", "integer"]}, {"type": "array", "items": _LABEL, "minItems": 1}]}
+    ),
+]
+"""One label of an axis of patches, or several."""
+
+Range = tuple[float | str, float | str]
+"""Two ends of an axis, each with its unit if the variable has one."""
+
+
+class Window(Configuration):
+    """A panel of a figure. It inherits all fields but the title from the figure."""
+
+    title: str = ""
+    """Title above the panel."""
+    y: Variables | None = None
+    """The variable to show, or several with the same unit."""
+    patches: dict[str, Labels] | None = None
+    """The patches to show if the rig makes several, such as { side = "right", patch = 1 }. Default: all."""
+    body: str | None = None
+    """The body whose wear across the patch is shown, such as "wheel". Default: the first of the rig."""
+    x_range: Range | None = None
+    """Ends of the x axis, such as ["0 N", "70 N"]. Default: those of the curves."""
+    y_range: Range | None = None
+    """Ends of the y axis. Default: all values are visible."""
+    x_scale: Scale | None = None
+    """Linear or logarithmic x axis. Default: linear."""
+    y_scale: Scale | None = None
+    """Linear or logarithmic y axis. Default: linear."""
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """The variables to show."""
+        return self.y or ()
+
+
+class FigureSpec(Window):
+    """A figure of a sweep, or of a profile of the patch."""
+
+    caption: str = ""
+    """The caption. Default: the conditions."""
+    sweep: str | None = None
+    """The sweep to show; give this or `profile`."""
+    profile: str | None = None
+    """The profile to show."""
+    x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", BY_PATCH, *OF_CONTACT, *OF_POINT, *OF_PATCH]})] = "x"
+    """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it. If the rig
+    makes several patches, "patch" shows bars for each."""
+    pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
+    """The pairs whose wear rates or other outcomes are shown, such as "usfd on exact". Default: all."""
+    contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
+    """The contact models whose other variables are shown. Default: all."""
+    map: Annotated[str, WithJsonSchema(_VARIABLE)] | None = None
+    """A variable to show in colours over two axes of a sweep, `x` and `y`. Each pair or contact model has a panel."""
+    measured: bool = False
+    """Whether to show the measured tests."""
+    panels: tuple[Window, ...] = ()
+    """Several panels, such as the whole and an enlarged part. Default: one."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> FigureSpec:
+        wrong = []
+        if (self.sweep is None) == (self.profile is None):
+            wrong.append(Fault(("sweep",), "give either sweep or profile, which the figure shows"))
+        for number, window in enumerate(self.windows()):
+            if not window.y:
+                wrong.append(Fault((*(("panels", str(number)) if self.panels else ()), "y"), "is missing"))
+        if self.map and (len(self.shown) != 1 or self.shown[0] == self.x):
+            wrong.append(Fault(("y",), "a map runs over two axes of the sweep; name the other one as y"))
+        if self.map:
+            other = [name for name in ("profile", "panels", "measured", "body") if getattr(self, name)]
+            wrong += [Fault((name,), "a map does not take it; leave it out") for name in other]
+        if self.measured and self.profile:
+            wrong.append(Fault(("measured",), "tests are measured over the whole patch; show a sweep"))
+        if wrong:
+            raise ConfigurationError("figure", wrong)
+        return self
+
+    @property
+    def of_values(self) -> set[str]:
+        """The variables that the figure shows along the y axis or in colours."""
+        return {self.map} if self.map else {variable for window in self.windows() for variable in window.shown}
+
+    def windows(self) -> tuple[Window, ...]:
+        """Return the panels, each with the fields that it inherits."""
+        inherited = ("y", "patches", "body", "x_range", "y_range", "x_scale", "y_scale")
+        common = {name: getattr(self, name) for name in inherited}
+        own = [{name: value for name, value in panel if value is not None} for panel in self.panels] or [{}]
+        return tuple(Window(**{**common, **window}) for window in own)
+
+
+def ends(variable: str, unit: str, given: Range) -> tuple[float, float]:
+    """Return the ends of an axis in the unit of its variable.
+
+    Raises
+    ------
+    UnitError
+        If an end lacks a unit, or has one of another dimension.
+    """
+    expected = Unit(unit, positive=False)
+    plain = [isinstance(end, float) and not unit for end in given]
+    low, high = (
+        end if bare else from_si(expected.si(end, variable), unit).magnitude
+        for end, bare in zip(given, plain, strict=True)
+    )
+    return float(low), float(high)
+
+
+def axis_along(grid: Grid, x: str, creepage: str) -> str:
+    """Return the axis of a grid along which a figure runs: its x, else the creepage, else the longest axis.
+
+    For an x that depends on the load, the axis is the load, or the first condition that only the rig knows. A figure by
+    patch runs along none, "".
+    """
+    if x == BY_PATCH:
+        return ""
+    axes = grid.axes()
+    loads = [name for name in axes if name in LOADS] or [name for name in axes if name not in UNITS]
+    if x in axes:
+        return x
+    if x in OF_LOAD and loads:
+        return loads[0]
+    return creepage if creepage in axes or not axes else max(axes, key=lambda name: axes[name])

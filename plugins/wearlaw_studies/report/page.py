@@ -1,0 +1,107 @@
+"""The report of a study: one page that opens offline in any browser.
+
+The page contains plotly.js, nearly all of its 5 MB. It loads nothing, and its security policy forbids requests.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Sequence
+from functools import cache
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from plotly.offline import get_plotlyjs
+
+from wearlaw.pipeline.notes import grouped
+from wearlaw.version import __version__
+from wearlaw_output.curves import FigureData
+from wearlaw_output.styled import html_table
+from wearlaw_studies.report.interactive import plotly_figure
+from wearlaw_studies.report.main_result import main_caption, main_figure, main_result, main_table
+from wearlaw_studies.report.tables import models, parameters, profiles, summaries
+from wearlaw_studies.sections import VERDICTS, CheckedClaim, Verdict
+from wearlaw_studies.study import Study, used
+
+
+def report(study: Study, case_text: str) -> str:
+    """Return the page; the same study gives the same bytes.
+
+    Parameters
+    ----------
+    study : Study
+        The study to show.
+    case_text : str
+        The case, as TOML.
+    """
+    claims = [claim for section in study.sections for claim in section.claims]
+    main = main_result(study)
+    first = main_figure(main)
+    return _template().render(
+        study=study,
+        notes=grouped(study.notes),
+        case_text=case_text,
+        claims=claims,
+        counted=counted,
+        main_figure=first,
+        main_table=main_table(main),
+        main_caption=main_caption(main),
+        figures=[figure for figure in study.figures if figure is not first],
+        beyond_shakedown=any(map(has_strip, (first, *study.figures))),
+        summaries=[*summaries(study), *profiles(study)],
+        parameters=parameters(study),
+        models=models(study),
+        used=[(kind, name, origin) for kind, names in used(study.case).items() for name, origin in names.items()],
+        version=__version__,
+        plotlyjs=get_plotlyjs(),
+    )
+
+
+@cache
+def _template() -> Template:
+    """Return the template of the page, compiled once: that takes longer than rendering."""
+    environment = Environment(
+        autoescape=True,
+        loader=PackageLoader("wearlaw_studies.report"),
+        lstrip_blocks=True,
+        trim_blocks=True,
+        undefined=StrictUndefined,
+    )
+    environment.filters.update(
+        heading=_heading, paragraphs=paragraphs, plotly=plotly_figure, spaced=spaced, strip=has_strip, styled=html_table
+    )
+    return environment.get_template("report.html.j2")
+
+
+def counted(claims: Sequence[CheckedClaim]) -> str:
+    """Return how many claims there are of each verdict, in words."""
+    verdicts = Counter(claim.verdict for claim in claims)
+    each = ", ".join(f"{verdicts[one]} {_of_many(one, verdicts[one])}" for one in VERDICTS if one in verdicts)
+    return f"{len(claims)} {'claim' if len(claims) == 1 else 'claims'}: {each}"
+
+
+def _of_many(verdict: Verdict, count: int) -> str:
+    """Return a verdict as a predicate: "holds" of one claim, "hold" and "do not hold" of several."""
+    if count == 1:
+        return verdict
+    return verdict.replace("holds", "hold").replace("does", "do")
+
+
+def has_strip(figure: FigureData) -> bool:
+    """Return whether a figure has a strip along the x axis, beyond shakedown."""
+    return any(shade.strip for panel in figure.panels for shade in panel.shades)
+
+
+def paragraphs(text: str) -> list[str]:
+    """Split a text into paragraphs at blank lines."""
+    return [part for part in re.split(r"\n\s*\n", text.strip()) if part]
+
+
+def spaced(name: str) -> str:
+    """Return the words of a name."""
+    return name.replace("_", " ").strip().capitalize()
+
+
+def _heading(figure: FigureData, study: Study) -> str:
+    """Return the title of a figure, or its name in words if the title is that of the study."""
+    return figure.title if figure.title != study.case.title else spaced(figure.name)

@@ -1,0 +1,236 @@
+"""The tables of a study: outcomes of its sweeps, its models and their parameters, and the tables of its sections.
+
+Each can be written as CSV with all digits, and for LaTeX with the digits shown.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+import pandas as pd
+import pint
+import xarray
+
+from wearlaw.models.contact_model import Model
+from wearlaw.models.labels import labelled
+from wearlaw.pipeline.variables import MASS
+from wearlaw.settings.configuration import Configuration
+from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.units.registry import symbol
+from wearlaw.units.variables import label as label_of
+from wearlaw.units.variables import name_of
+from wearlaw_output.styled import Marked
+from wearlaw_studies.results import (
+    Patch,
+    along_main_axis,
+    axes_of,
+    beyond_limits,
+    labelled_by,
+    main_axis,
+    outcomes_of,
+    patch_axes,
+    patches_of,
+    predicting,
+)
+from wearlaw_studies.study import Study, used
+
+COLUMNS = 5
+"""Number of values on the main axis at which outcomes are shown."""
+
+FOOTNOTES = {
+    "†": "outside the range, the materials or the body that the law was fitted to",
+    "*": "beyond first yield",
+    "‡": "beyond shakedown",
+}
+"""Meanings of the marks of outcomes and depths."""
+
+
+@dataclass(frozen=True, eq=False)
+class NamedTable:
+    """A table with its file name, an identifier, its title and footnotes. The heads of its columns hold the units."""
+
+    name: str
+    title: str
+    frame: pd.DataFrame
+    footnotes: tuple[str, ...] = ()
+
+
+def tables(study: Study) -> list[NamedTable]:
+    """Return all tables of a study."""
+    of_sections = [NamedTable(n, n, frame) for section in study.sections for n, frame in section.tables.items()]
+    return [*summaries(study), *profiles(study), parameters(study), models(study), *of_sections]
+
+
+def summaries(study: Study) -> list[NamedTable]:
+    """Return a short table of each outcome for each sweep, and of the mass lost at all patches if there are several."""
+    creepage = study.case.rig.creepage
+    return [
+        _marked(
+            f"{outcome}_{name}",
+            f"Sweep '{name}'{_fixed(sweep, creepage)}{', all patches together' if outcome == MASS else ''}",
+            summary(sweep, creepage, outcome, predicting(study, outcome, sweep.pair.values.tolist())),
+        )
+        for name, sweep in study.sweeps.items()
+        for outcome in (*(one.name for one in outcomes_of(study, sweep)), *((MASS,) if MASS in sweep else ()))
+    ]
+
+
+def _marked(name: str, title: str, frame: pd.DataFrame) -> NamedTable:
+    """Return a table with the footnotes of its marks."""
+    marks = "".join(getattr(value, "marks", "") for value in frame.to_numpy().flat)
+    return NamedTable(name, title, frame, tuple(f"{mark} {FOOTNOTES[mark]}" for mark in FOOTNOTES if mark in marks))
+
+
+def _marks(outside: Any, beyond: Mapping[str, xarray.DataArray], model: str) -> list[str]:
+    """Return the marks of the operating points of a contact model, from where they are outside and beyond limits."""
+    limits = [np.atleast_1d(where.sel(contact_model=model).values) for where in beyond.values()]
+    beyond_yield, beyond_shakedown = limits or [np.zeros(np.shape(outside), bool)] * 2
+    last = np.where(beyond_shakedown, "‡", np.where(beyond_yield, "*", ""))
+    return [str(mark) for mark in np.char.add(np.where(outside, "†", ""), last)]
+
+
+def _fixed(sweep: xarray.Dataset, creepage: str) -> str:
+    """Return the values of the other axes at which a sweep is shown, in words."""
+    main = main_axis(sweep, creepage)
+    line = along_main_axis(sweep, creepage)
+    others = [axis for axis in axes_of(sweep) if axis != main]
+    at = (f"{name_of(axis)} {line[axis].item():.4g} {line[axis].attrs['units']}".rstrip() for axis in others)
+    return f" at {', '.join(at)}" if others else ""
+
+
+def summary(sweep: xarray.Dataset, creepage: str, outcome: str, pairs: list[str]) -> pd.DataFrame:
+    """Return an outcome at a few values of the main axis, with a row for each pair and for the ends of its band.
+
+    If the rig makes several patches, there is a row for each of them, or one for the sum of `MASS` over all.
+    """
+    axis = main_axis(sweep, creepage)
+    line = along_main_axis(sweep, creepage)
+    count = line.sizes[axis]
+    line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
+    rows: dict[str, Any] = {}
+    low, high = f"{outcome}_low", f"{outcome}_high"
+    parts = [_together(line)] if outcome == MASS else [_of_patch(line, patch) for patch in patches_of(line)]
+    for pair, (patch, here, beyond) in itertools.product(pairs, parts):
+        one, label = here.sel(pair=pair), labelled_by(patch, pair)
+        marks = _marks(one.outside_range.values > 0.0, beyond, one.pair_contact_model.item())
+        values = {label: one[outcome]}
+        if low in one and (one[high] > one[low]).any():
+            values |= {f"{label}, low end": one[low], f"{label}, high end": one[high]}
+        rows |= {label: list(map(Marked, each.values, marks)) for label, each in values.items()}
+    heads = [_four_digits(value) for value in line[axis].values]
+    frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
+    what, along = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
+    frame.insert(0, f"{what} by {along}", list(rows))
+    return frame
+
+
+_Part: TypeAlias = tuple[Patch, xarray.Dataset, dict[str, xarray.DataArray]]
+"""A patch, the results there, and where it is beyond its limits."""
+
+
+def _of_patch(line: xarray.Dataset, patch: Patch) -> _Part:
+    return patch, line.sel(patch), beyond_limits(line.sel(patch))
+
+
+def _together(line: xarray.Dataset) -> _Part:
+    """Return the sum of the mass lost at all patches, marked if any patch is."""
+    axes = patch_axes(line)
+    mass = line[[MASS]].sum(axes, min_count=1, keep_attrs=True)
+    outside = line.outside_range.max(axes)
+    return {}, mass.assign(outside_range=outside), {name: one.any(axes) for name, one in beyond_limits(line).items()}
+
+
+def profiles(study: Study) -> list[NamedTable]:
+    """Return a short table for each profile across the patch: the greatest depth on each body, by pair and patch."""
+    found = []
+    for name, profile in study.profiles.items():
+        if "y" not in profile:
+            continue
+        rows = [(pair, patch) for pair in profile.pair.values.tolist() for patch in patches_of(profile)]
+        columns: dict[str, Any] = {"pair": [labelled_by(patch, pair) for pair, patch in rows]}
+        for body in _worn(profile, study):
+            unit = profile[f"{body}_depth"].attrs["units"].replace("um", "µm")
+            deepest = [_deepest(study, profile.sel(patch), pair, body) for pair, patch in rows]
+            columns[f"{body}: greatest depth [{unit}]"], columns[f"{body}: at y [mm]"] = zip(*deepest, strict=True)
+        title = f"Profile '{name}': wear across the patch, {_per(profile, study)}"
+        frame = pd.DataFrame({head: np.array(values, dtype=object) for head, values in columns.items()})
+        found.append(_marked(f"profile_{name}", title, frame))
+    return found
+
+
+def _deepest(study: Study, profile: xarray.Dataset, pair: str, body: str) -> tuple[Marked, float]:
+    """Return the greatest depth that a pair gives for a body, with its marks, and its position."""
+    depth, model = profile[f"{body}_depth"].sel(pair=pair), study.pair(pair).contact_model
+    (marks,) = _marks([study.is_outside(profile, pair, body)], beyond_limits(profile), model)
+    if depth.isnull().all():  # a law for the other body
+        return Marked(np.nan, marks), np.nan
+    place = profile.y.sel(contact_model=model) if "contact_model" in profile.y.dims else profile.y
+    deepest = int(np.nanargmax(depth.values))
+    return Marked(depth[deepest].item(), marks), place[deepest].item()
+
+
+def _per(profile: xarray.Dataset, study: Study) -> str:
+    """Return the reference of each body's depth, such as per metre rolled."""
+    return ", ".join(f"{body} {profile[f'{body}_depth'].attrs['long_name']}" for body in _worn(profile, study))
+
+
+def _worn(profile: xarray.Dataset, study: Study) -> list[str]:
+    """Return the bodies whose wear a profile shows."""
+    return [body for body in study.case.rig.bodies if f"{body}_depth" in profile]
+
+
+def _four_digits(value: float) -> str:
+    return np.format_float_positional(value, precision=4, fractional=False, trim="-")
+
+
+def parameters(study: Study) -> NamedTable:
+    """Return every parameter of the rig and of the models."""
+    subjects: list[tuple[str, Configuration]] = [("rig", study.case.rig), *_models(study)]
+    rows = [(subject, *row) for subject, record in subjects for row in _fields(record)]
+    columns = ["of", "parameter", "value", "meaning"]
+    return NamedTable("parameters", "Parameters", pd.DataFrame(rows, columns=columns))
+
+
+def models(study: Study) -> NamedTable:
+    """Return the distribution and the literature source of each model."""
+    origins = used(study.case)
+    rows = [(label, one.kind, origins[one.kind][one.name], one.source) for label, one in _models(study)]
+    columns = ["model", "kind", "provided by", "source"]
+    return NamedTable("models", "Models", pd.DataFrame(rows, columns=columns))
+
+
+def _models(study: Study) -> list[tuple[str, Model]]:
+    """Return the contact models of all pairs, the stages around them and the laws, with their labels."""
+    used_here = [pair.pipeline.contact_model for pair in study.pairs]
+    contact_models = {label: one for label, one in labelled(study.case.contact_models).items() if one in used_here}
+    laws = {pair.law: pair.pipeline.laws[0] for pair in study.pairs}
+    return [*contact_models.items(), *labelled(study.case.stages).items(), *laws.items()]
+
+
+def _fields(record: Configuration, within: str = "") -> Iterator[tuple[str, str, str]]:
+    """Yield name, value and meaning of each field that is set, including fields of nested records."""
+    for name, meaning in field_docstrings(type(record)).items():
+        value = getattr(record, name)
+        if isinstance(value, Model):
+            yield f"{within}{name}", value.name, meaning
+        if isinstance(value, Configuration):
+            yield from _fields(value, f"{within}{name}.")
+        elif value is not None:
+            yield f"{within}{name}", _text(value), meaning
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, pint.Quantity):
+        return f"{_number(value.magnitude)} {symbol(value.units, '~P')}".rstrip()
+    return _number(value) if isinstance(value, float) else str(value)
+
+
+def _number(value: Any) -> str:
+    """Return a number with 12 digits, or the count and the ends of an array, such as the points of a profile."""
+    if np.ndim(value):
+        return f"{np.size(value)} values from {np.min(value):.12g} to {np.max(value):.12g}"
+    return f"{value:.12g}"

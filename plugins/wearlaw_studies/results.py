@@ -1,0 +1,194 @@
+"""The datasets of a case that was run, and slices of them for tables and figures."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import xarray
+
+from wearlaw.errors import InputError, did_you_mean, shown
+from wearlaw.models.law import WEAR, Outcome
+from wearlaw.pipeline.composition import fitted_to_other_body
+from wearlaw.pipeline.pairs import Pair
+from wearlaw.pipeline.selection import in_words as in_words
+from wearlaw.pipeline.variables import MASS
+from wearlaw.units.variables import UNITS
+from wearlaw_studies.case import Case
+
+Patch: TypeAlias = Mapping[str, Any]
+"""Labels of a patch along the axes of its rig, such as {"side": "left", "patch": 1}; {} if the rig makes one patch."""
+
+PATCH_AXES = "patch_axes"
+"""Attribute of a sweep with the names of the axes that its rig adds for several patches."""
+
+LIMITS = {"first_yield": "beyond first yield", "shakedown_limit": "beyond shakedown"}
+"""The limits of the maximum pressure, with words for a contact beyond them."""
+
+SHAKEDOWN = "shakedown_limit"
+"""The limit beyond which panels have a strip along the x axis."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """The sweeps and profiles of a case; `Study` documents the attributes."""
+
+    case: Case
+    pairs: tuple[Pair, ...]
+    sweeps: dict[str, xarray.Dataset]
+    profiles: dict[str, xarray.Dataset]
+
+    def sweep(self, name: str) -> xarray.Dataset:
+        """Return the results of a sweep.
+
+        Raises
+        ------
+        InputError
+            If the case has none of that name.
+        """
+        if name not in self.sweeps:
+            raise InputError(
+                f"the case has no sweep {shown(name)}{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]"
+            )
+        return self.sweeps[name]
+
+    def conditions(self, *, sweep: str | None = None, profile: str | None = None) -> dict[str, Any]:
+        """Return the conditions of a sweep or a profile of the case, as arguments of a pipeline.
+
+        The axes of a sweep are arrays, each along a dimension of its own. A section can predict more than the results
+        hold: ``study.pairs[0].pipeline(**study.conditions(sweep="curve"))``.
+
+        Raises
+        ------
+        InputError
+            If the case has none of that name.
+        """
+        kind, name = ("sweep", sweep) if sweep is not None else ("profile", profile or "")
+        grids = self.case.sweeps if kind == "sweep" else self.case.profiles
+        if name not in grids:
+            raise InputError(f"the case has no {kind} {shown(name)}{did_you_mean(name, grids)} Add [{kind}s.{name}]")
+        return grids[name].conditions()
+
+    def pair(self, label: str) -> Pair:
+        """Return the pair with a label."""
+        (found,) = (pair for pair in self.pairs if pair.label == label)
+        return found
+
+    def is_outside(self, profile: xarray.Dataset, label: str, body: str) -> bool:
+        """Return whether the depth that a pair gives for a body lies outside what its law was fitted to."""
+        law = self.pair(label).pipeline.wear_law
+        other = fitted_to_other_body(self.case.rig.bodies, law, body)
+        return other or bool(profile.outside_range.sel(pair=label).item())
+
+
+def predicting(results: Results, outcome: str, labels: Sequence[str]) -> list[str]:
+    """Return the pairs among these whose law predicts an outcome; a wear law also predicts `MASS`."""
+    of_law = WEAR if outcome == MASS else outcome
+    return [label for label in labels if results.pair(label).outcome.name == of_law]
+
+
+def outcomes_of(results: Results, sweep: xarray.Dataset) -> list[Outcome]:
+    """Return the outcomes in the results of a sweep, wear first."""
+    return [outcome for name, outcome in results.case.outcomes.items() if name in sweep]
+
+
+def axes_of(sweep: xarray.Dataset) -> list[str]:
+    """Return the axes of a sweep's grid."""
+    others = ("pair", "contact_model", *patch_axes(sweep))
+    return [str(dim) for dim in sweep.dims if dim not in others]
+
+
+def patch_axes(sweep: xarray.Dataset) -> list[str]:
+    """Return the axes of a sweep that its rig adds for several patches."""
+    return [axis for axis in _names_of_patch_axes(sweep) if axis in sweep.dims]
+
+
+def is_of_patches(line: xarray.Dataset) -> bool:
+    """Return whether a sweep, or a part of it such as one patch, is that of a rig that makes several patches."""
+    return bool(_names_of_patch_axes(line))
+
+
+def _names_of_patch_axes(sweep: xarray.Dataset) -> list[str]:
+    names: list[str] = sweep.attrs.get(PATCH_AXES, "").split()
+    return names
+
+
+def patches_of(sweep: xarray.Dataset, asked: Mapping[str, Collection[Any]] | None = None) -> list[Patch]:
+    """Return the labels of each patch that exists at any point of a sweep; [{}] if the rig makes one patch.
+
+    `asked` holds the labels to choose from, by axis.
+    """
+    axes = patch_axes(sweep)
+    if not axes:
+        return [{}]
+    of_contact = next(one for one in sweep.data_vars.values() if {"contact_model", *axes} <= set(one.dims))
+    there = of_contact.notnull().any([dim for dim in of_contact.dims if dim not in axes])
+    return [
+        patch
+        for patch in possible_patches(sweep)
+        if there.sel(patch) and all(patch[axis] in labels for axis, labels in (asked or {}).items())
+    ]
+
+
+def possible_patches(sweep: xarray.Dataset) -> list[Patch]:
+    """Return the labels of each patch that the rig can make, whether it exists or not."""
+    axes = patch_axes(sweep)
+    labels = itertools.product(*(sweep[axis].values.tolist() for axis in axes))
+    return [dict(zip(axes, one, strict=True)) for one in labels]
+
+
+def by_patch(point: xarray.Dataset, asked: Mapping[str, Collection[Any]] | None = None) -> xarray.Dataset:
+    """Return an operating point along an axis "patch" of its existing patches, with their numbers from 0."""
+    axes, found = patch_axes(point), patches_of(point, asked)
+    each = [point.sel(patch).drop_vars(axes) for patch in found]
+    return xarray.concat(each, xarray.Variable("patch", range(len(each))), coords="minimal", compat="override")
+
+
+def labelled_by(patch: Patch, label: str) -> str:
+    """Return a label with a patch in words behind it, if the rig makes several."""
+    return f"{label}, {in_words(patch)}" if patch else label
+
+
+def main_axis(sweep: xarray.Dataset, creepage: str) -> str:
+    """Return the axis along which tables and figures run: the creepage of the rig, or else the longest axis.
+
+    Without axes, it is the creepage of the single point, or else another condition.
+    """
+    axes = axes_of(sweep)
+    if creepage in axes or not axes:
+        return creepage if creepage in sweep else _other(sweep)
+    return max(axes, key=lambda axis: sweep.sizes[axis])
+
+
+def along_main_axis(sweep: xarray.Dataset, creepage: str) -> xarray.Dataset:
+    """Return a sweep along its main axis, at the middle of the other axes."""
+    return along(sweep, main_axis(sweep, creepage))
+
+
+def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
+    """Return a sweep along an axis, at the middle of the others; a single point becomes an axis of length 1."""
+    line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})
+    if axes_of(line):
+        return line
+    at = axis if axis in line else _other(line)
+    return line.set_coords(at).expand_dims(at)
+
+
+def middle_of(sweep: xarray.Dataset) -> xarray.Dataset:
+    """Return a sweep at the middle of all its axes."""
+    return sweep.isel({axis: sweep.sizes[axis] // 2 for axis in axes_of(sweep)})
+
+
+def _other(point: xarray.Dataset) -> str:
+    """Return a variable of a sweep without axes."""
+    return next(str(name) for name in point.data_vars if not point[name].dims)
+
+
+def beyond_limits(dataset: xarray.Dataset) -> dict[str, xarray.DataArray]:
+    """Return where the contact of each model is beyond each of `LIMITS`; {} if they are not known."""
+    needed = ("max_pressure", *LIMITS)
+    if any(name not in dataset or dataset[name].attrs.get("units") != UNITS[name] for name in needed):
+        return {}
+    return {limit: dataset.max_pressure > dataset[limit] for limit in LIMITS}

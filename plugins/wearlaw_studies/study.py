@@ -1,0 +1,469 @@
+"""Running a case: every contact model with every law at all operating points, as labelled datasets."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import textwrap
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import xarray
+
+from wearlaw.arrays.array import Array, steady
+from wearlaw.contact.material import Material
+from wearlaw.errors import (
+    InputError,
+    ModelError,
+    WearlawError,
+    WearlawWarning,
+    described,
+    message_of,
+    shown,
+)
+from wearlaw.models.contact_model import Model
+from wearlaw.models.law import WEAR
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.pipeline.composition import warn_of_unlike_materials
+from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.pairs import Pair
+from wearlaw.pipeline.pipeline import Pipeline, Rig
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
+from wearlaw.plugins import loader
+from wearlaw.settings.arguments import expect
+from wearlaw.settings.configuration import LINE, known_name, parts
+from wearlaw.units.variables import UNITS
+from wearlaw.version import __version__
+from wearlaw_studies.case import Case
+from wearlaw_studies.figures import figures_of
+from wearlaw_studies.pairs import pairs_of
+from wearlaw_studies.results import PATCH_AXES, Results, axes_of
+from wearlaw_studies.sections import Section
+from wearlaw_sweeps.evaluator import Evaluator
+from wearlaw_sweeps.points import Points
+from wearlaw_sweeps.sweep import weight
+
+if TYPE_CHECKING:
+    from wearlaw.plugins.shelf import Shelf
+    from wearlaw_output.curves import FigureData
+    from wearlaw_studies.grid import Grid
+
+Dims: TypeAlias = Mapping[str, tuple[str | int, ...]]
+"""The axes that a rig adds for several patches, with their labels."""
+
+LIMITS = ("max_pressure", "first_yield", "shakedown_limit")
+"""Variables that show whether the contact of a profile stays elastic, if the yield stress of a body is known."""
+
+PROFILE_STRIPS = 101
+"""Strips of a profile across the patch, if the contact model can choose them."""
+
+
+@dataclass(frozen=True, repr=False)
+class Study(Results):
+    """The results of a case.
+
+    Attributes
+    ----------
+    case : Case
+        The case that was run.
+    pairs : tuple of Pair
+        The pairs that were evaluated.
+    sweeps, profiles : dict of str to xarray.Dataset
+        The results by the names that the case gives them.
+    notes : tuple of str
+        Omissions and warnings, once each.
+    sections : tuple of Section
+        Sections that plugins add to the report, in the order of the case.
+    """
+
+    notes: tuple[str, ...]
+    sections: tuple[Section, ...] = ()
+
+    @cached_property
+    def figures(self) -> tuple[FigureData, ...]:
+        """The data of the figures of the study."""
+        return figures_of(self)
+
+    def __repr__(self) -> str:
+        sweeps = [
+            f"{name} ({', '.join(f'{axis} {one.sizes[axis]}' for axis in axes_of(one)) or 'one point'})"
+            for name, one in self.sweeps.items()
+        ]
+        rows = {
+            "pairs": [pair.label for pair in self.pairs],
+            "sweeps": sweeps,
+            "profiles": [name for name, profile in self.profiles.items() if profile],
+            "sections": [section.title for section in self.sections],
+            "notes": [str(len(self.notes))] if self.notes else [],
+        }
+        indent = 13 * " "
+        parts = [
+            textwrap.fill(", ".join(those), LINE, initial_indent=f"  {row:11}", subsequent_indent=indent)
+            for row, those in rows.items()
+            if those
+        ]
+        return "\n".join([f"Study of {shown(self.case.title)}", *parts])
+
+
+@steady
+def run(
+    case: Case,
+    on_block: Callable[[int], None] = lambda _: None,
+    workers: int = 1,
+    store: Path | None = None,
+    resume: bool = False,
+) -> Study:
+    """Run a case.
+
+    Parameters
+    ----------
+    case : Case
+        The study to run.
+    on_block : callable, optional
+        Called with the number of evaluations just done, to show progress; `evaluations(case)` is their sum.
+    workers : int
+        How many processes evaluate the sweeps.
+    store : Path, optional
+        Folder for the stores of sweeps of more than 10⁵ points, in which an interrupted run keeps its finished blocks.
+    resume : bool
+        Whether to go on with the stores there.
+    """
+    expect(Case, case, "case", "a wearlaw.Case, as from wl.load_case")
+    notes = Notes()
+    evaluator = Evaluator(on_block, workers, store, resume)
+    pairs = pairs_of(case, notes)
+    sweeps = {name: _sweep(name, grid, case, pairs, notes, evaluator) for name, grid in case.sweeps.items()}
+    evaluator.warn_if_resumed()
+    profiles = {name: _profile(name, grid, case, pairs, notes) for name, grid in case.profiles.items()}
+    for dataset in (*sweeps.values(), *profiles.values()):
+        dataset.attrs.update(title=case.title, provenance=json.dumps(provenance(case)))
+    study = Study(case, tuple(pairs), sweeps, profiles, tuple(notes.texts))
+    sections = tuple(_section(name, study, notes) for name in case.sections)
+    return replace(study, notes=tuple(notes.texts), sections=sections)
+
+
+def _section(name: str, study: Study, notes: Notes) -> Section:
+    """Return the section that a plugin makes from a study."""
+    found = loader.installed()
+    sections = found.resources["section"]
+    make = sections.find(name, found.broken)
+    subject = f"section '{name}' of {sections.origin(name)}"
+    try:
+        with notes.of(f"section '{name}'"):
+            section = make(_copied(study))
+        if not isinstance(section, Section):
+            raise TypeError(f"it must be a Section, got {shown(section)}")
+    except WearlawError as error:
+        raise InputError(
+            f"{subject}: {message_of(error)}\nTo run the case without this section, take '{name}' out of `sections`"
+        ) from error
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        raise ModelError(f"{subject} failed with {described(error)}") from error
+    return section
+
+
+def _copied(study: Study) -> Study:
+    """Return a study with tables of its own, which a section may change."""
+    sweeps, profiles = (
+        {name: dataset.copy(deep=True) for name, dataset in datasets.items()}
+        for datasets in (study.sweeps, study.profiles)
+    )
+    return replace(study, sweeps=sweeps, profiles=profiles)
+
+
+def evaluations(case: Case) -> int:
+    """Return the number of evaluations that a case needs, each of a pair at an operating point."""
+    pairs = pairs_of(case, Notes())
+    return sum(
+        grid.size * (1 + len(_band_ends(pair.pipeline)))
+        for name, grid in case.sweeps.items()
+        for pair in _usable(f"sweep '{name}'", grid, pairs, Notes())
+    )
+
+
+def provenance(case: Case) -> dict[str, Any]:
+    """Return the origin of a result: the version of wearlaw, the models that plugins provided, and the case."""
+    provided = {f"{kind.replace(' ', '_')}s": names for kind, names in used(case).items()}
+    return {"wearlaw": __version__, **provided, "case": case.model_dump(mode="json", by_alias=True, exclude_none=True)}
+
+
+def used(case: Case) -> dict[str, dict[str, str]]:
+    """Return the models and other named items of a case, by kind and name, with distribution and version."""
+    found = loader.installed()
+    named: dict[type, Shelf[Any]] = {
+        WearLaw: found.parameter_sets,
+        Material: found.materials,
+        Case: found.resources["case"],
+    }
+    origins: dict[str, dict[str, str]] = {shelf.kind: {} for shelf in found.shelves()}
+    for part in parts(case):
+        if isinstance(part, Model):
+            origins[part.kind][part.name] = found.of_kind(part.kind).distribution(part.name, type(part))
+        name = known_name(part)
+        if name is not None:
+            (shelf,) = (shelf for kind, shelf in named.items() if isinstance(part, kind))
+            origins[shelf.kind][name] = shelf.distribution(name)
+        if isinstance(part, Material) and type(part) is not Material:
+            types, cls = found.material_types, type(part)
+            origins[types.kind][cls.__name__] = types.distribution(cls.__name__, cls)
+    if case.measured is not None and case.measured.shipped:
+        origins[found.resources["test set"].kind] = {
+            case.measured.tests: found.resources["test set"].distribution(case.measured.tests)
+        }
+    origins[found.resources["section"].kind] = {
+        name: found.resources["section"].distribution(name) for name in case.sections
+    }
+    return {kind: dict(sorted(names.items())) for kind, names in origins.items()}
+
+
+def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
+    """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
+    first = grid.problem(case.rig)
+    points = replace(grid.points(case.units), weight=weight(first))
+    axes = points.dims
+    usable = _usable(f"sweep '{name}'", grid, pairs, notes)
+    found_in = _variables(grid, case, usable)
+    rates: list[dict[str, Array]] = []
+    contacts: dict[str, dict[str, Array]] = {}
+    for number, pair in enumerate(usable):
+        new = found_in.of_contact[pair.contact_model] if pair.contact_model not in contacts else ()
+        outputs = [*_of_pair(pair, first), *new, *(found_in.of_point if not contacts else ())]
+        with notes.of(f"sweep '{name}'"):
+            warn_of_unlike_materials(pair.pipeline.contact_model, first, stacklevel=1)
+            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first.dims)
+        contacts.setdefault(pair.contact_model, found)
+        band = _band(f"{name}-{number}", pair, points, first.dims, found, evaluator)
+        rates.append({v: found[v] for v in _of_pair(pair, first)} | band)
+    any_contact = next(iter(contacts.values()))
+    of_patches = (*axes, *first.dims)
+    missing = np.full(points.shape + tuple(map(len, first.dims.values())), np.nan)
+    variables: dict[str, Any] = {
+        **{
+            v: (("pair", *of_patches), np.stack([rate.get(v, missing) for rate in rates]))
+            for v in dict.fromkeys(v for rate in rates for v in rate)
+        },
+        **{
+            v: (("contact_model", *of_patches), np.stack([c.get(v, missing) for c in contacts.values()]))
+            for v in (*OF_CONTACT, *OF_POINT, *OF_PATCH)
+            if any(v in offered for offered in found_in.of_contact.values())
+        },
+        **{v: (of_patches, any_contact[v]) for v in found_in.of_point},
+        **{v: (axes, np.full(points.shape, level)) for v, level in found_in.conditions.items()},
+    }
+    units = case.result_units
+    dataset = xarray.Dataset(
+        {v: (dims, values, {"units": units[v]}) for v, (dims, values) in variables.items()},
+        attrs={PATCH_AXES: " ".join(first.dims)} if first.dims else {},
+    )
+    return dataset.assign_coords(
+        {axis: (axis, one.values, {"units": units[axis]}) for axis, one in points.varying.items()}
+        | {axis: (axis, list(labels)) for axis, labels in first.dims.items()}
+        | {"pair": [pair.label for pair in usable], "contact_model": list(contacts)}
+        | {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
+        | {f"pair_{kind}": ("pair", labels) for kind, labels in _labels_of_laws(case, usable).items()}
+    )
+
+
+def _labels_of_laws(case: Case, pairs: list[Pair]) -> dict[str, list[str]]:
+    """Return the labels of the wear laws of pairs, and of their laws of other outcomes if the case has any."""
+    found = {"wear_law": [pair.law if pair.outcome.name == WEAR else "" for pair in pairs]}
+    return found | ({"law": [pair.law if pair.outcome.name != WEAR else "" for pair in pairs]} if case.laws else {})
+
+
+def _of_pair(pair: Pair, problem: Any) -> tuple[str, ...]:
+    """Return the variables of a pair: its outcome, the error of a mean over the patch, and whether it is outside.
+
+    With several patches there is also the mass lost at each, since wear rates cannot be added.
+    """
+    error = (f"{pair.outcome.name}{ERROR}",) if pair.outcome.of == "area mean" else ()
+    mass = (MASS,) if problem.dims and pair.outcome.name == WEAR else ()
+    return (pair.outcome.name, *error, "outside_range", *mass)
+
+
+@dataclass(frozen=True)
+class _Variables:
+    """Variables of a sweep besides the rates of its pairs.
+
+    Attributes
+    ----------
+    of_contact : dict of str to list of str
+        For each contact model, the variables that its predictions have. If the rig balances its loads with the forces,
+        they include those of the operating points.
+    of_point : list of str
+        Variables of the operating points, which do not depend on the contact model.
+    conditions : dict of str to float
+        Conditions that are the same at all points.
+    """
+
+    of_contact: dict[str, list[str]]
+    of_point: list[str]
+    conditions: dict[str, float]
+
+
+def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
+    """Return the variables of a sweep, found by predicting its first operating point."""
+    problem, axes = grid.problem(case.rig), grid.axes()
+    levels = {name: grid.level(name, case.units) for name in grid.given}
+    conditions = {name: level for name, level in levels.items() if isinstance(level, float)}
+    given = conditions if problem.dims else axes  # a condition for all patches is not the variable of one of them
+    of_contact: dict[str, list[str]] = {}
+    of_point: dict[str, None] = {}
+    for pair in {pair.contact_model: pair for pair in pairs}.values():
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", WearlawWarning)  # the sweep repeats them
+            prediction = pair.pipeline.without_law().predict(problem)
+        of_contact[pair.contact_model] = [v for v in offered(prediction, OF_CONTACT) if v not in given]
+        # A rig may use the name of a variable for something else.
+        same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
+        new = [v for v in same if v not in given]
+        if type(case.rig).balanced is Rig.balanced:
+            of_point |= dict.fromkeys(new)
+        else:
+            of_contact[pair.contact_model] += new
+    known = {*axes, *of_point, *(v for variables in of_contact.values() for v in variables)}
+    fixed = {name: level for name, level in conditions.items() if name not in known}
+    return _Variables(of_contact, [v for v in (*OF_POINT, *OF_PATCH) if v in of_point], fixed)
+
+
+def numbers(case: Case) -> int:
+    """Return the number of values in the results of all sweeps of a case."""
+    pairs, total = pairs_of(case, Notes()), 0
+    for name, grid in case.sweeps.items():
+        usable = _usable(f"sweep '{name}'", grid, pairs, Notes())
+        found = _variables(grid, case, usable)
+        of_contact = sum(len(variables) for variables in found.of_contact.values())
+        first = grid.problem(case.rig)
+        of_pair = len(usable) * len({v for pair in usable for v in (*_of_pair(pair, first), *_band_names(pair))})
+        patches = math.prod(map(len, first.dims.values()))
+        total += grid.size * (patches * (len(found.of_point) + of_contact + of_pair) + len(found.conditions))
+        total += sum(grid.axes().values())
+    return total
+
+
+def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
+    """Leave out pairs that cannot use a traction coefficient, if the grid gives one."""
+    if "traction_coefficient" not in grid.given:
+        return pairs
+    usable = [pair for pair in pairs if pair.pipeline.contact_model.uses_measured_traction]
+    for pair in pairs:
+        if pair not in usable:
+            notes.add(f"{subject}: {pair.contact_model} is left out, since it computes the traction itself")
+    if not usable:
+        raise InputError(f'{subject}: no contact model of the case can use a traction_coefficient; add "global"')
+    return usable
+
+
+def _band(
+    key: str, pair: Pair, points: Points, dims: Dims, found: dict[str, Array], evaluator: Evaluator
+) -> dict[str, Array]:
+    """Return the ends of the outcome over the published range of the law's parameters."""
+    ends, outcome = [], pair.outcome.name
+    for end, one in zip(_band_names(pair), _band_ends(pair.pipeline), strict=False):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band gave them already
+            ends.append(evaluator(f"{key}-{end}", one, points, [outcome], dims)[outcome])
+    return dict(zip(_band_names(pair), ends or [found[outcome]] * 2, strict=False))
+
+
+def _band_names(pair: Pair) -> tuple[str, ...]:
+    """Return the names of the ends of a band; wear rates have them in any case."""
+    name = pair.outcome.name
+    return (f"{name}_low", f"{name}_high") if name == WEAR or _band_ends(pair.pipeline) else ()
+
+
+def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:
+    """Return the pipelines with the low and the high end of the law's published range, if there is one."""
+    (law,) = pipeline.laws
+    band = law.band()
+    return [] if band is None else [pipeline.with_law(law) for law in (band[0], band[2])]
+
+
+def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
+    """Return the profile of the patch: fields of each contact model, and the outcomes of each pair."""
+    problem = grid.problem(case.rig)
+    contacts: dict[str, xarray.Dataset] = {}
+    of_pairs: list[xarray.Dataset] = []
+    shown: list[str] = []
+    usable = _usable(f"profile '{name}'", grid, pairs, notes)
+    resolved = [pair for pair in usable if pair.pipeline.scale == "cells"]
+    if not resolved:
+        after = " after its stages" if case.stages else ""
+        notes.add(f"profile '{name}' is left out: no contact model of the case resolves the patch{after}")
+        return xarray.Dataset()
+    for pair in resolved:
+        if problem.geometry != "line" and pair.outcome.name != WEAR:
+            notes.add(f"profile '{name}': {pair.label} is left out, since only wear is shown across a patch")
+            continue
+        with notes.of(f"profile '{name}'"):
+            prediction = pair.pipeline.predict(pair.pipeline.posed(grid.conditions()))
+            of_pair, whole = _by_patch(prediction, case.rig) if problem.dims else _seen(prediction, case.rig)
+        if not whole:
+            notes.add(f"profile '{name}' is left out: rig '{case.rig.name}' does not name its bodies")
+            return xarray.Dataset()
+        of_contact = whole.drop_vars(of_pair)
+        before = contacts.get(pair.contact_model, of_contact)  # laws of the two bodies show a part each
+        more = [v for v in before.data_vars if v not in of_contact]
+        contacts[pair.contact_model] = of_contact.merge(before[more]) if more else of_contact
+        of_pairs.append(whole.drop_vars(of_contact.data_vars))
+        shown.append(pair.label)
+    if not shown:
+        return xarray.Dataset()
+    # A model with nodes of its own has NaN at the nodes of others.
+    dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="outer")
+    if problem.dims:
+        dataset.attrs[PATCH_AXES] = " ".join(problem.dims)
+    return dataset.assign(xarray.concat(of_pairs, "pair", join="outer").data_vars).assign_coords(pair=shown)
+
+
+def _by_patch(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
+    """Return the result of `_seen` for several patches, with their axes.
+
+    Each patch lies elsewhere, so its position is a variable over the axis "node".
+    """
+    axes, exists = prediction.problem.dims, prediction.problem.exists
+    of_law: list[str] = []
+    each = []
+    for labels in itertools.product(*axes.values()):
+        patch = dict(zip(axes, labels, strict=True))
+        place = tuple(known.index(label) for known, label in zip(axes.values(), labels, strict=True))
+        if exists is None or exists[place]:
+            of_law, one = _seen(prediction.sel(**patch), rig)
+            if not one:
+                return [], one
+            (position,) = map(str, one.dims)
+            one = one.reset_index(position).rename_dims({position: "node"}).reset_coords(position)
+            numbered = one.assign_coords(node=range(one.sizes["node"]))
+            each.append(numbered.expand_dims({axis: [label] for axis, label in patch.items()}))
+    found = xarray.merge(each, join="outer", compat="no_conflicts")
+    return of_law, found.reindex({axis: np.array(labels) for axis, labels in axes.items()})
+
+
+def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
+    """Return the variables of a profile that differ from law to law, and the profile of a prediction.
+
+    The profile of a line runs along the patch, over x. That of an ellipse runs across it, over y, with the wear of
+    each body that the law is for.
+    """
+    limits = LIMITS if len(offered(prediction, LIMITS)) == len(LIMITS) else ()
+    whole = {name: ((), getattr(prediction, name).magnitude, {"units": UNITS[name]}) for name in limits}
+    of_law = {"outside_range": ((), prediction.outside_range.magnitude, {"units": ""})}
+    (law,) = prediction.laws
+    if prediction.problem.geometry == "line":
+        local = [law.outcome.name] if law.outcome.of == "area mean" else []
+        return [*local, *of_law], prediction.profile.assign(whole | of_law)
+    bodies = [body for body in rig.bodies if law.body in (None, body)]
+    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS).reset_coords() for body in bodies}
+    named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
+    if not named:
+        return [], xarray.Dataset()
+    shown = [name for name in named if not name.endswith(("_sliding_distance", "_profile_position"))]
+    return [*shown, *of_law], xarray.Dataset(named).assign(whole | of_law)

@@ -1,0 +1,136 @@
+"""The uncertainty of the predictions of a case: every contact model with every wear law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from wearlaw.errors import InputError
+from wearlaw.models.law import WEAR
+from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.pairs import Pair
+from wearlaw.units.quantities import WEAR_RATE
+from wearlaw.units.variables import name_of
+from wearlaw_fits.uncertainties.result import CONFIDENCE, Uncertainty, uncertainty
+from wearlaw_studies.case import Case
+from wearlaw_studies.pairs import pairs_of
+
+
+@dataclass(frozen=True)
+class UncertainPair:
+    """The uncertainty of one outcome of a pair at an operating point."""
+
+    point: str
+    pair: Pair
+    uncertainty: Uncertainty
+
+
+@dataclass(frozen=True, eq=False)
+class CaseUncertainty:
+    """The uncertainty of the predictions of a case.
+
+    Attributes
+    ----------
+    pairs : tuple of UncertainPair
+    wear_rates : pandas.DataFrame
+        Median and interval for each operating point and pair. If there are other outcomes than wear, they have rows
+        here too, and columns say which outcome and unit each row has.
+    indices : pandas.DataFrame
+        Sobol indices, with a row for each input.
+    samples : int
+        Samples for each pair and operating point.
+    notes : tuple of str
+        Remarks for the reader.
+    """
+
+    pairs: tuple[UncertainPair, ...]
+    wear_rates: pd.DataFrame
+    indices: pd.DataFrame
+    samples: int
+    notes: tuple[str, ...]
+
+
+def uncertainty_of(
+    case: Case, samples: int, seed: int, on_pair: Callable[[int], None] = lambda _: None
+) -> CaseUncertainty:
+    """Compute the uncertainty of the predictions of a case.
+
+    Parameters
+    ----------
+    case : Case
+        With at least one operating point under `uncertainty`.
+    samples : int
+        Number of samples, rounded up to a power of two.
+    seed : int
+        The same seed gives the same samples.
+    on_pair : callable, optional
+        Called with 1 after each pair, to show progress.
+
+    Raises
+    ------
+    InputError
+        If nothing in the case is uncertain.
+    """
+    notes = Notes()
+    pairs = pairs_of(case, notes)
+    if not any(point.varies(pair.law) for point in case.uncertainty.values() for pair in pairs):
+        raise InputError(
+            "nothing in the case is uncertain; add a table such as [uncertainty.scatter] in which some conditions are"
+            ' distributions, as in creepage = {uniform = ["0.5 %", "1.5 %"]}'
+        )
+    found: list[UncertainPair] = []
+    rates, indices = [], []
+    for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
+        subject = f"{name}: {pair.label}"
+        if not point.varies(pair.law):
+            notes.add(f"{subject} is left out, since none of its inputs is uncertain")
+            on_pair(1)
+            continue
+        with notes.of(subject):
+            law = point.parameters(pair.law)
+            one = uncertainty(pair.pipeline, law=law, samples=samples, seed=seed, **point.conditions())
+            each = [one.of(outcome) for outcome in one.outcomes]
+            rates += [{"point": name, "pair": pair.label, **_interval(single)} for single in each]
+        for single in each:
+            (outcome,) = single.outcomes
+            if np.ptp(single[outcome].magnitude) == 0.0:
+                notes.add(f"{subject}: the {name_of(outcome)} is the same in all samples")
+            else:
+                where = {"point": name, "pair": pair.label, "outcome": outcome}
+                indices.append(single.sobol().reset_index().assign(**where))
+            found.append(UncertainPair(name, pair, single))
+        on_pair(1)
+    only_wear = all(row["outcome"] == WEAR for row in rates)
+    front = ["point", "pair"] if only_wear else ["point", "pair", "outcome"]
+    table = pd.concat(indices, ignore_index=True) if indices else pd.DataFrame(columns=front)
+    shares = table[[*front, *table.columns.drop(["point", "pair", "outcome"], errors="ignore")]]
+    medians = pd.DataFrame(rates)
+    if only_wear:
+        ends = {name: f"{name} [{WEAR_RATE}]" for name in medians.columns.drop(["point", "pair"])}
+        medians = medians.drop(columns=["outcome", "unit"]).rename(columns=ends)
+    return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, _folded(notes.texts, found))
+
+
+def _folded(texts: Sequence[str], pairs: Sequence[UncertainPair]) -> tuple[str, ...]:
+    """Return notes with one in place of those that all pairs of an operating point share."""
+    subjects: dict[str, list[str]] = {}
+    for one in pairs:
+        subjects.setdefault(one.point, []).append(f"{one.point}: {one.pair.label}: ")
+    shared: dict[str, str] = {}
+    for point, heads in subjects.items():
+        every = dict.fromkeys(heads)
+        for text in texts:
+            rest = text.removeprefix(next(iter(every)))
+            if rest != text and all(head + rest in texts for head in every):
+                shared |= {head + rest: f"{point}: {rest}" for head in every}
+    return tuple(dict.fromkeys(shared.get(text, text) for text in texts))
+
+
+def _interval(one: Uncertainty) -> dict[str, str | float]:
+    low, high = one.interval(CONFIDENCE)
+    ends = {"median": one.median, f"{50 - 50 * CONFIDENCE:g} %": low, f"{50 + 50 * CONFIDENCE:g} %": high}
+    values = {name: float(value.to(one.unit or "dimensionless").magnitude) for name, value in ends.items()}
+    return {"outcome": one.outcomes[0], "unit": one.unit or "-", **values}

@@ -1,0 +1,221 @@
+"""Evaluating a block of a sweep, in any process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pint
+
+from wearlaw.arrays import kernels
+from wearlaw.arrays.array import Array, steady
+from wearlaw.contact.elastic_limit import Overload
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import CompositionError, InputError, RangeWarning, did_you_mean, shown
+from wearlaw.models.contact_model import fault
+from wearlaw.models.law import Law, named_outcomes
+from wearlaw.pipeline.composition import check_traction
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.prediction import Prediction, unsolved
+from wearlaw.pipeline.ranges import Seen
+from wearlaw.pipeline.variables import long_name, outcome_units, unit_of
+from wearlaw.settings.caught_warnings import caught_warnings
+from wearlaw.units.quantities import Quantity
+from wearlaw_sweeps.located import posed
+from wearlaw_sweeps.points import Points
+
+Outputs = dict[str, Array]
+"""Results of a block by name, (points, *axes of the rig) each, in the units of the job."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """The evaluation of every block.
+
+    Attributes
+    ----------
+    pipeline : Pipeline
+    units : mapping of str to str
+        The unit of each output, by its name.
+    dims : mapping of str to tuple
+        The rig's own axes with their labels, as in `Problem.dims`.
+    accelerate : bool or None
+        The setting of `wearlaw.accelerate`, to apply in every process.
+    """
+
+    pipeline: Pipeline[...]
+    units: Mapping[str, str]
+    dims: Mapping[str, tuple[str | int, ...]] = field(default_factory=dict)
+    accelerate: bool | None = field(default_factory=kernels.chosen)
+
+    @property
+    def own_shape(self) -> tuple[int, ...]:
+        """Shape of the results at one operating point: the numbers of labels of the rig's own axes."""
+        return tuple(map(len, self.dims.values()))
+
+    def attributes(self, name: str) -> dict[str, str]:
+        """Return the attributes of an output in results: its unit and its long name."""
+        return {"units": self.units[name], "long_name": long_name(name, self.pipeline.laws)}
+
+
+@dataclass(frozen=True)
+class BlockRecord:
+    """What the warnings of a sweep need to know of a block.
+
+    Attributes
+    ----------
+    points : int
+        Number of operating points, or of patches if there are several at each point.
+    overload : Overload or None
+        The one furthest beyond first yield.
+    ranges : mapping of str to tuple
+        For each variable that leaves the range of the law: lowest and highest mean over the patch in SI, and the number
+        of points outside.
+    remarks : tuple of str
+        Warnings of the rig, such as that a wheel climbs its rail.
+    """
+
+    points: int
+    overload: Overload | None
+    ranges: Mapping[str, tuple[float, float, int]]
+    remarks: tuple[str, ...] = ()
+
+
+@steady
+def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, BlockRecord]:
+    """Return the outputs of a block of operating points, and its record.
+
+    `on_block` is called with the number of points just done, several times for a long block.
+    """
+    kernels.accelerate(job.accelerate)
+    with caught_warnings() as caught:
+        problem = posed(part, job.pipeline.posed)
+    remarks = dict.fromkeys(map(str, caught))
+    if job.dims or problem.dims:
+        _check_axes(job, problem, part)
+        on_block = on_block and _in_points(on_block, part.size, problem.size)
+    watch = job.pipeline.range_watch()
+    if problem.size:
+        prediction = job.pipeline.watched(problem, watch, on_block)
+        outputs = {name: _in_unit(prediction[name], unit) for name, unit in job.units.items()}
+    else:  # the bodies touch nowhere
+        outputs = {name: np.full(problem.batch_shape, np.nan) for name in job.units}
+    return outputs, BlockRecord(watch.points, watch.overload, watch.seen, tuple(remarks))
+
+
+def _check_axes(job: Job, problem: Problem, part: Points) -> None:
+    """Raise an error unless the axes of a block's problem are the operating points and the rig's own axes."""
+    wanted = (part.size, *job.own_shape) if part.dims else job.own_shape
+    if problem.dims != job.dims or problem.batch_shape != wanted:
+        raise fault(
+            job.pipeline.rig,
+            f"gave a batch of shape {problem.batch_shape} with the axes {problem.dims!r}"
+            f" for {part.size} operating points, but of shape {wanted} with {job.dims!r} for the first of them. In the"
+            " rig, give each condition an axis of length one for each of the rig's axes, as in values[..., None, None]",
+        )
+
+
+def _in_points(on_block: Callable[[int], None], points: int, patches: int) -> Callable[[int], None]:
+    """Return a function that takes numbers of patches and passes on numbers of operating points in proportion."""
+    done = 0
+
+    def advance(more: int) -> None:
+        nonlocal done
+        before, done = done * points // patches, done + more
+        on_block(done * points // patches - before)
+
+    return advance
+
+
+def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
+    """Return the warnings of a prediction at the points of all blocks together, and the first one of the rig."""
+    every = list(blocks)
+    watch = job.pipeline.range_watch()
+    if job.dims:
+        watch.counted = "patches"
+    watch.points = sum(one.points for one in every)
+    for one in every:
+        for name, seen in one.ranges.items():
+            watch.see_outside(name, Seen(*seen))
+    watch.overload = max((one.overload for one in every if one.overload), default=None)
+    with caught_warnings() as found:
+        watch.warn(stacklevel=1)
+    remark = next((text for one in every for text in one.remarks), None)
+    return found if remark is None else [*found, RangeWarning(remark)]
+
+
+def output_units(
+    pipeline: Pipeline[...], problem: Problem, points: Points, outputs: list[str] | None = None
+) -> dict[str, str]:
+    """Return the unit of each output; `problem` is that of the first operating point, of shape (1,).
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+    problem : Problem
+    points : Points
+    outputs : list of str, optional
+        Names of the outputs; by default the outcomes of all laws.
+
+    Raises
+    ------
+    CompositionError
+        If no outputs are given and there is no law.
+    InputError
+        If there is no such output, or it is a condition.
+    """
+    if problem.geometry == "line":
+        check_traction(pipeline.contact_model, problem)
+    if outputs is None and not pipeline.laws:
+        raise CompositionError(
+            f"the pipeline has no wear law; give one, as in rig | {pipeline.contact_model!r} | wl.wear_law('usfd'), or"
+            ' name what to keep, as in outputs=["tangential_force"]'
+        )
+    prediction, of_laws = unsolved(problem, pipeline.staged_model, pipeline.laws), outcome_units(pipeline.laws)
+    given = {*points.coordinates(), *points.fixed}
+    units = {}
+    for name in list(named_outcomes(pipeline.laws)) if outputs is None else outputs:
+        if name in given:
+            raise InputError(
+                f"outputs: {shown(name)} is one of the conditions, and among the coordinates of the results"
+            )
+        _check_body(name, pipeline.laws)
+        value = _output(prediction, name)
+        if value is None:
+            named = dict.fromkeys((*of_laws, *problem.results, *dir(prediction)))
+            known = [one for one in named if one not in given and _is_output(prediction, one)]
+            raise InputError(
+                f"outputs: there is no {shown(name)} at an operating point{did_you_mean(name, known)}"
+                f" There are: {', '.join(known)}"
+            )
+        units[name] = unit_of(name, value, pipeline.laws)
+    return units
+
+
+def _check_body(name: str, laws: Sequence[Law]) -> None:
+    """Raise an error for an outcome that has a law for each body, if the body is not named."""
+    of_bodies = [known for known, index in named_outcomes(laws).items() if laws[index].outcome.name == name != known]
+    if of_bodies:
+        raise InputError(f"outputs: {shown(name)} has a law for each body; name {' or '.join(of_bodies)}")
+
+
+def _output(prediction: Prediction, name: str) -> Quantity | None:
+    """Return a value of a prediction at one point, or None if it cannot be an output."""
+    if name in outcome_units(prediction.laws) or name in prediction.problem.results:
+        return prediction[name]
+    there = not name.startswith("_") and hasattr(type(prediction), name)
+    value = getattr(prediction, name) if there else None
+    return value if isinstance(value, pint.Quantity) and np.shape(value.magnitude) == (1,) else None
+
+
+def _is_output(prediction: Prediction, name: str) -> bool:
+    try:
+        return _output(prediction, name) is not None
+    except CompositionError:  # without a law there is no wear
+        return False
+
+
+def _in_unit(quantity: Any, unit: str) -> Array:
+    return np.ascontiguousarray(quantity.to(unit).magnitude)

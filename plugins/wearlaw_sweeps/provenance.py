@@ -1,0 +1,92 @@
+"""What determines the results of a sweep: recorded with them, and compared before a sweep is resumed."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pint
+
+from wearlaw.arrays.kernels import WORTHWHILE, accelerated
+from wearlaw.errors import OutputError, shown, with_problems
+from wearlaw.models.contact_model import Model
+from wearlaw.plugins import loader
+from wearlaw.settings.configuration import parts
+from wearlaw.units.quantities import text_of
+from wearlaw.version import __version__
+from wearlaw_sweeps.evaluation import Job
+from wearlaw_sweeps.points import BLOCK, Points, Varying
+
+Provenance = dict[str, Any]
+"""All that determines the results of a sweep, as JSON."""
+
+
+def provenance_of(job: Job, points: Points) -> Provenance:
+    """Return versions, pipeline, conditions, outputs and blocks of a sweep; columns of numbers by their digest."""
+    installed = loader.installed()
+    provided = {
+        f"{part.kind} {part.name}": installed.of_kind(part.kind).distribution(part.name, type(part))
+        for part in parts(job.pipeline)
+        if isinstance(part, Model)
+    }
+    varying = {name: _summary(column) for name, column in points.varying.items()}
+    provenance = {
+        "wearlaw": __version__,
+        "plugins": provided,
+        "kernels": "compiled" if accelerated(WORTHWHILE) else "NumPy",
+        "predict": job.pipeline.model_dump(mode="json"),
+        "conditions": {name: _text(value) for name, value in points.fixed.items()} | varying,
+        "outputs": dict(job.units),
+        "blocks": list(points.block_shape),
+    }
+    if points.kept:
+        provenance["kept"] = {name: _summary(column) for name, column in points.kept.items()}
+    if job.dims:
+        provenance["axes"] = {name: list(labels) for name, labels in job.dims.items()}
+    as_read: Provenance = json.loads(json.dumps(provenance))
+    return as_read
+
+
+def _text(value: object) -> str:
+    """Return a condition as text with all its digits."""
+    return text_of(value) if isinstance(value, pint.Quantity) else str(value)
+
+
+def _summary(column: Varying) -> str:
+    digest = hashlib.sha256()
+    for start in range(0, column.values.size, BLOCK):
+        digest.update(column.values[start : start + BLOCK].data)
+    first, last = (float(column.values[part][0]) for part in (slice(1), slice(-1, None)))
+    ends = f"{first:g} to {last:g} {column.unit or ''}".rstrip()
+    origin = f", {column.origin}" if column.origin else ""
+    return f"{column.values.size} values, {ends}, along {column.dim}{origin}, SHA-256 {digest.hexdigest()[:16]}"
+
+
+def check_same(path: Path, before: Provenance, now: Provenance) -> None:
+    """Raise an error unless the sweep in a store is the same as this one.
+
+    Raises
+    ------
+    OutputError
+        If they differ; the message lists the changes.
+    """
+    changes = list(_changes("", before, now))
+    if changes:
+        head = f"{shown(path)} holds another sweep and cannot be resumed, since these have changed:"
+        raise OutputError(
+            with_problems(head, changes)
+            + f"\nChange them back, choose another place, or remove {shown(path)} to start again"
+        )
+
+
+def _changes(field: str, before: Any, now: Any) -> Iterator[str]:
+    if isinstance(before, list) and isinstance(now, list):
+        before, now = ({str(number): value for number, value in enumerate(each)} for each in (before, now))
+    if isinstance(before, dict) and isinstance(now, dict):
+        for key in dict.fromkeys([*before, *now]):
+            yield from _changes(f"{field}.{key}" if field else key, before.get(key, "nothing"), now.get(key, "nothing"))
+    elif before != now:
+        yield f"{field}: was {before}, is {now}".replace("**2", "²").replace("**3", "³")

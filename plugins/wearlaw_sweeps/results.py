@@ -1,0 +1,109 @@
+"""Results of a sweep in memory, and as a labelled dataset."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pint
+import xarray
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import is_friction_law
+from wearlaw.units.quantities import parse
+from wearlaw.units.registry import symbol
+from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
+from wearlaw_sweeps.points import ITEM, Block, Points
+from wearlaw_sweeps.provenance import Provenance, provenance_of
+from wearlaw_sweeps.room import check_memory
+
+COMPLETE, INCOMPLETE = "complete", "incomplete"
+"""Values of the attribute "status" of results."""
+
+
+def bytes_of(job: Job, points: Points) -> int:
+    """Return the size of the outputs of a sweep."""
+    return points.size * math.prod(job.own_shape) * len(job.units) * ITEM
+
+
+class Memory:
+    """Results in memory.
+
+    Attributes
+    ----------
+    store : None
+    resumed : bool
+        False.
+    job : Job
+    points : Points
+    done : dict of int to BlockRecord
+        Records of the finished blocks, by number.
+    """
+
+    store = None
+    resumed = False
+
+    def __init__(self, job: Job, points: Points) -> None:
+        check_memory(bytes_of(job, points), 'give a folder for them, store="..."')
+        self.job, self.points = job, points
+        self.done: dict[int, BlockRecord] = {}
+        self._arrays = {name: np.empty((points.size, *job.own_shape)) for name in job.units}
+
+    def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
+        """Take over a finished block."""
+        for name, values in outputs.items():
+            self._arrays[name][block.flat] = values
+        self.done[block.number] = record
+
+    def arrays(self) -> dict[str, Array]:
+        """Return the outputs in the shape of the points."""
+        return {name: values.reshape(self.points.shape + self.job.own_shape) for name, values in self._arrays.items()}
+
+    def finish(self, notes: Sequence[str]) -> xarray.Dataset:
+        """Return the results as a labelled dataset."""
+        found = dataset(self.points, self.arrays(), self.job)
+        return found.assign_attrs(attributes(COMPLETE, provenance_of(self.job, self.points), notes))
+
+    def close(self) -> None:
+        """Do nothing: there is no file to close."""
+
+
+def attributes(status: str, provenance: Provenance, notes: Sequence[str] = ()) -> dict[str, str]:
+    """Return the attributes of results: status, provenance, and remarks for the reader."""
+    return {"status": status, "provenance": json.dumps(provenance), "notes": "\n".join(notes)}
+
+
+def dataset(points: Points, variables: Mapping[str, Array], job: Job) -> xarray.Dataset:
+    """Return results as a dataset with the conditions as coordinates, except those on disk."""
+    coordinates: dict[str, Any] = {**points.rows, **_labels(job)}
+    for name, one in points.coordinates().items():
+        if not one.on_disk:
+            coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
+    numbers = {name: _number(value) for name, value in points.fixed.items()}
+    coordinates |= {name: number for name, number in numbers.items() if number is not None}
+    dims = (*points.dims, *job.dims)
+    data = {name: (dims, values, job.attributes(name)) for name, values in variables.items()}
+    others = {name: str(points.fixed[name]) for name, number in numbers.items() if number is None}
+    return xarray.Dataset(data, coordinates, others)
+
+
+def _labels(job: Job) -> dict[str, Any]:
+    """Return the labels of the rig's own axes; zarr has a stable format only for texts of any length."""
+    found = {}
+    for name, labels in job.dims.items():
+        integers = all(isinstance(label, int) for label in labels)
+        found[name] = (name, np.array(labels, dtype=np.int64 if integers else object))
+    return found
+
+
+def _number(value: Any) -> Any:
+    """Return a condition as a scalar coordinate, or None for a law of friction."""
+    if is_friction_law(value):
+        return None
+    quantity = parse(value) if isinstance(value, str) else value
+    if isinstance(quantity, pint.Quantity):
+        return (), float(quantity.magnitude), {"units": symbol(quantity.units, "~C")}
+    return (), float(quantity), {"units": ""}

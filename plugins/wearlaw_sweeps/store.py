@@ -1,0 +1,199 @@
+"""The store of a sweep: one group of zarr, with a chunk for each block and output."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import filelock
+import numpy as np
+import xarray
+import zarr
+from pydantic import TypeAdapter
+from zarr.codecs import Crc32cCodec
+
+from wearlaw.arrays.array import Array
+from wearlaw.errors import OutputError, shown
+from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
+from wearlaw_sweeps.points import ITEM, Block, Points, Varying
+from wearlaw_sweeps.provenance import check_same, provenance_of
+from wearlaw_sweeps.results import COMPLETE, INCOMPLETE, attributes, bytes_of, dataset
+from wearlaw_sweeps.room import check_disk
+from wearlaw_sweeps.workers import RECORDS
+
+CHECKED = Crc32cCodec()
+"""Every chunk ends with its CRC-32C, so that a damaged one does not decode."""
+
+
+class Store:
+    """Results in a folder, of which one process at a time is the writer.
+
+    An output is an array in which each block is a chunk. A block counts as finished if its record and all its chunks
+    are there and decode, whatever ended the process that wrote them.
+
+    Parameters
+    ----------
+    job : Job
+    points : Points
+    path : Path
+    resume : bool
+        Whether to go on with what the folder holds.
+
+    Attributes
+    ----------
+    store : str
+        The absolute path of the folder, to which the evaluating processes write.
+    done : dict of int to BlockRecord
+        Records of the finished blocks, by number.
+    resumed : bool
+        Whether the folder held the sweep before.
+
+    Raises
+    ------
+    OutputError
+        If the folder holds anything but this sweep, or holds it and `resume` is false, or another process writes it.
+    """
+
+    def __init__(self, job: Job, points: Points, path: Path, resume: bool) -> None:
+        self.job, self.points = job, points
+        self.path, self.store = path, str(path.absolute())
+        self.done: dict[int, BlockRecord] = {}
+        self.resumed = False
+        self._provenance = provenance_of(job, points)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._lock = filelock.FileLock(f"{self.store}.lock", blocking=False)
+        try:
+            self._lock.acquire()
+        except filelock.Timeout:
+            raise OutputError(f"store: {shown(path)} is being written by another process; wait for its end") from None
+        try:
+            self._begin_or_go_on(resume)
+        except BaseException:
+            self.close()
+            raise
+
+    def _begin_or_go_on(self, resume: bool) -> None:
+        self.resumed = self._begun(resume)
+        if not self.resumed:
+            large = sum(one.values.size for one in self.points.coordinates().values() if one.on_disk)
+            check_disk(bytes_of(self.job, self.points) + large * ITEM, self.path)
+            zarr.create_group(self.store, zarr_format=3, attributes=attributes(INCOMPLETE, self._provenance))
+            self._lay_out()
+            return
+        try:
+            self._lay_out()
+            for block in self.points.blocks():
+                if (record := self._kept(block)) is not None:
+                    self.done[block.number] = record
+        except (ValueError, KeyError, TypeError) as error:  # what describes an array is damaged
+            raise OutputError(f"store: {shown(self.path)} is damaged ({error}); remove it to start again") from None
+
+    def _begun(self, resume: bool) -> bool:
+        """Return whether the folder holds a part of this sweep, or is empty."""
+        if not self.path.exists() or all(file.suffix == ".partial" for file in self.path.iterdir()):
+            return False
+        try:
+            found = zarr.open_group(self.store, mode="r").attrs
+            before, status = json.loads(str(found["provenance"])), found["status"]
+        except (OSError, ValueError, KeyError, TypeError):
+            raise OutputError(
+                f"store: {shown(self.path)} is not empty, and holds no sweep of wearlaw; choose another folder"
+            ) from None
+        if not resume:
+            what = "the results of a sweep" if status == COMPLETE else "an unfinished sweep"
+            raise OutputError(
+                f"store: {shown(self.path)} holds {what}; add resume=True, choose another folder, or remove it"
+            )
+        check_same(self.path, before, self._provenance)
+        return True
+
+    def _lay_out(self) -> None:
+        """Write the coordinates, and the arrays of outputs that are missing."""
+        points, own_shape = self.points, self.job.own_shape
+        group = zarr.open_group(self.store, mode="r+")
+        for name in self.job.units:
+            if name not in group:
+                group.create_array(
+                    name,
+                    shape=points.shape + own_shape,
+                    chunks=points.block_shape + own_shape,
+                    dtype="float64",
+                    compressors=CHECKED,
+                    fill_value=np.nan,
+                    dimension_names=(*points.dims, *self.job.dims),
+                    attributes={**self.job.attributes(name)},
+                )
+        if RECORDS not in group:
+            group.create_array(RECORDS, shape=(len(points.blocks()),), chunks=(1,), dtype=str, compressors=CHECKED)
+        small = dataset(points, {}, self.job).assign_attrs(attributes(INCOMPLETE, self._provenance))
+        small = small.drop_vars(self.job.units, errors="ignore")  # a case keeps some of its conditions as outputs
+        large = {name: column for name, column in points.coordinates().items() if column.on_disk}
+        for name in (*small.coords, *large):  # those of an interrupted sweep may be damaged
+            shutil.rmtree(self.path / str(name), ignore_errors=True)
+        encoding = {name: {"compressors": (CHECKED,)} for name in small.coords}
+        small.to_zarr(self.store, mode="a", consolidated=False, zarr_format=3, encoding=encoding)
+        for name, column in large.items():
+            self._write_large(name, column)
+
+    def _write_large(self, name: str, column: Varying) -> None:
+        """Write a coordinate that is too large for memory, piece by piece."""
+        step = dict(zip(self.points.dims, self.points.block_shape, strict=True))[column.dim]
+        group = zarr.open_group(self.store, mode="r+")
+        array = group.create_array(
+            name,
+            shape=column.values.shape,
+            chunks=(step,),
+            dtype="float64",
+            compressors=CHECKED,
+            fill_value=np.nan,
+            dimension_names=(column.dim,),
+            attributes={"units": column.unit or ""},
+        )
+        for start in range(0, column.values.size, step):
+            array[start : start + step] = column.values[start : start + step]
+        if name != column.dim:  # as xarray tells coordinates from variables
+            group.attrs["coordinates"] = f"{group.attrs.get('coordinates', '')} {name}".strip()
+
+    def _kept(self, block: Block) -> BlockRecord | None:
+        """Return the record of a block if it and all chunks of the block decode, else None."""
+        try:
+            text = zarr.open_array(self.store, path=RECORDS, mode="r")[block.number]
+            record = TypeAdapter(BlockRecord).validate_json(str(text))
+            for name in self.job.units:
+                array: Any = zarr.open_array(self.store, path=name, mode="r")
+                if not self._chunk(array, block).is_file():  # zarr would read it as NaN
+                    return None
+                array[(*block.slices, ...)]
+        except (OSError, ValueError):
+            return None
+        return record
+
+    def _chunk(self, array: Any, block: Block) -> Path:
+        """Return the file of a block in the array of an output."""
+        which = [one.start // size for one, size in zip(block.slices, self.points.block_shape, strict=True)]
+        key = array.metadata.encode_chunk_key((*which, *(0 for _ in self.job.dims)))
+        return self.path / str(array.path) / str(key)
+
+    def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:  # noqa: ARG002
+        """Note that a block is finished; the process that evaluated it has written it."""
+        self.done[block.number] = record
+
+    def arrays(self) -> dict[str, Array]:
+        """Return the outputs in the shape of the points."""
+        return {name: np.asarray(zarr.open_array(self.store, path=name, mode="r")[...]) for name in self.job.units}
+
+    def finish(self, notes: Sequence[str]) -> xarray.Dataset:
+        """Mark the store as complete and open it; values are read when used."""
+        zarr.open_group(self.store, mode="r+").attrs.update(attributes(COMPLETE, self._provenance, notes))
+        found: xarray.Dataset = xarray.open_zarr(self.store, chunks=None, consolidated=False)
+        return found
+
+    def close(self) -> None:
+        """Let other processes write the store."""
+        with suppress(OSError):  # Windows keeps a file in use, and removes it afterwards
+            Path(self._lock.lock_file).unlink()
+        self._lock.release()

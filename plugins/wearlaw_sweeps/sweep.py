@@ -1,0 +1,304 @@
+"""Sweeps: predictions at very many operating points, block by block."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import os
+import pickle
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray
+
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import (
+    ConditionsError,
+    InputError,
+    ResumeWarning,
+    shown,
+)
+from wearlaw.models.contact_model import fault
+from wearlaw.pipeline.composition import warn_of_unlike_materials
+from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig, expect_pipeline
+from wearlaw.pipeline.prediction import unsolved
+from wearlaw.pipeline.variables import default_variables
+from wearlaw.settings.arguments import expect_names
+from wearlaw.settings.caught_warnings import caught_warnings
+from wearlaw.settings.configuration import parts
+from wearlaw_sweeps.evaluation import Job, output_units, range_warnings
+from wearlaw_sweeps.located import posed
+from wearlaw_sweeps.points import BLOCK, Points, outer_product
+from wearlaw_sweeps.progress import Bar
+from wearlaw_sweeps.results import Memory
+from wearlaw_sweeps.room import writing_to
+from wearlaw_sweeps.tables import from_table
+from wearlaw_sweeps.workers import here, in_processes, on_cluster
+
+if TYPE_CHECKING:
+    import pandas
+
+    from wearlaw_sweeps.store import Store
+
+MOST = 2**24
+"""Most numbers of a sweep whose outputs are not named; a larger sweep keeps the outcomes of laws alone."""
+
+SAMPLE = 250
+"""A rig that makes several patches is checked at this many values along a dimension, or up to twice as many."""
+
+
+def sweep(
+    predict: Pipeline[...],
+    /,
+    table: pandas.DataFrame | xarray.Dataset | str | os.PathLike[str] | None = None,
+    *,
+    columns: Mapping[str, str] | None = None,
+    keep: Mapping[str, str] | None = None,
+    sep: str | None = None,
+    decimal: str = ".",
+    outputs: Sequence[str] | None = None,
+    workers: int = 1,
+    client: Any = None,
+    store: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    progress: bool = False,
+    **conditions: Any,
+) -> xarray.Dataset:
+    """Return predictions at all combinations of the conditions that are arrays, or at the rows of a table.
+
+    Parameters
+    ----------
+    predict : Pipeline
+        A rig, a contact model, and stages and laws if given.
+    table : pandas.DataFrame, xarray.Dataset or path, optional
+        Operating points in rows, conditions in columns, with units as in `read_table`. Further conditions are the same
+        in all rows. A file is read in pieces. With `store`, one of any length needs no more memory than a short one.
+    columns : mapping of str to str, optional
+        The column of each condition, as in {"normal_force": "Fz [N]", "longitudinal_creepage": "-creep_x [-]"}. A minus
+        changes the sign. The unit in brackets may be left out if the table has it, and the table may lack it if it is
+        given. Other columns are not used. Default: columns have the names of conditions.
+    keep : mapping of str to str, optional
+        Further columns of numbers to keep as coordinates of the results, such as {"time": "Time [s]"}.
+    sep, decimal : str, optional
+        Of a CSV file: what separates its cells, and its decimal mark, as in `read_table`.
+    outputs : sequence of str, optional
+        Names of outcomes and properties of a prediction to keep, such as "wear_rate", "rcf_damage" or
+        "tangential_force". If laws of one outcome differ by body, the name of the body follows, as in "wear_rate_rail".
+        Default: the variables of `Prediction.to_dataset`, as long as they are no more than 2²⁴ numbers (128 MiB), and
+        in a larger sweep the outcomes of all laws alone; `attrs["notes"]` then says so.
+    workers : int
+        Number of processes on this machine; they are kept for later sweeps.
+    client : distributed.Client, optional
+        A cluster of dask.distributed, instead of `workers`.
+    store : path, optional
+        A folder for the results in zarr format, written block by block. An interrupted sweep keeps its finished blocks
+        there. Default: results in memory.
+    resume : bool
+        Whether to go on with the sweep in `store`, if there is one. Blocks that are missing or damaged are computed,
+        and a `ResumeWarning` says how many were kept.
+    progress : bool
+        Whether to show a progress bar with rate and time left.
+    **conditions
+        The conditions of a prediction; each array is an axis.
+
+    Returns
+    -------
+    xarray.Dataset
+        The outputs, with the conditions as coordinates, and with units in `attrs["units"]` and readable names in
+        `attrs["long_name"]`. With `store`, values are read from there when used.
+
+    Raises
+    ------
+    CompositionError
+        If a large sweep has no law and no outputs are named.
+    DataError
+        If the table is wrong; for a file, the message names line and column.
+    InputError
+        If conditions or outputs are invalid, or the results would not fit into memory or on the disk.
+    OutputError
+        If `store` holds anything but the same sweep, cannot be written, or another process is writing it.
+    SweepError
+        If workers die again and again.
+    """
+    expect_pipeline(predict)
+    if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
+        raise InputError(f"workers: must be the number of processes, at least 1; got {shown(workers)}")
+    as_csv = {"sep": sep, "decimal": decimal}
+    with writing_to(store), _points(predict, table, conditions, columns, keep, as_csv, store, progress) as points:
+        not_given = {name: None for name, value in conditions.items() if value is None}
+        first = _checked_conditions(predict, points, not_given)
+        points = dataclasses.replace(points, weight=weight(first))
+        job, notes = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
+        if store is None and resume:
+            raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
+        target = target_of(job, points, None if store is None else Path(store), resume)
+        blocks = len(points.blocks())
+        if target.resumed and len(target.done) < blocks:
+            warnings.warn(kept(len(target.done), blocks, Path(target.store or "")), ResumeWarning, stacklevel=2)
+        with closing(target), Bar(points.size, progress) as bar:
+            of_results = run(target, bar, workers, client)
+            for warning in of_results:
+                warnings.warn(warning, stacklevel=2)
+            return target.finish([*notes, *map(str, of_results)])
+
+
+def target_of(job: Job, points: Points, store: Path | None, resume: bool) -> Memory | Store:
+    """Return where the results of a sweep go: to memory, or to a store."""
+    if store is None:
+        return Memory(job, points)
+    from wearlaw_sweeps.store import Store  # zarr takes half a second
+
+    return Store(job, points, store, resume)
+
+
+def kept(count: int, of: int, where: Path) -> str:
+    """Return the remark of a sweep that is resumed, with numbers of blocks."""
+    return f"{count} of {of} blocks are kept in {shown(where)}; the others are missing or damaged, and are computed"
+
+
+@contextmanager
+def _points(
+    predict: Pipeline[...],
+    table: Any,
+    conditions: Mapping[str, Any],
+    columns: Mapping[str, str] | None,
+    keep: Mapping[str, str] | None,
+    as_csv: Mapping[str, Any],
+    store: str | os.PathLike[str] | None,
+    progress: bool,
+) -> Iterator[Points]:
+    """Give the operating points of a sweep."""
+    if table is None:
+        for name, value in {"columns": columns, "keep": keep}.items():
+            if value is not None:
+                raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
+        yield outer_product(conditions)
+        return
+    on_disk = None if store is None else Path(store)
+    check = predict.rig.check_names
+    with from_table(
+        table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk, progress=progress
+    ) as points:
+        yield points
+
+
+def _checked_job(
+    pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str] | None, elsewhere: bool
+) -> tuple[Job, list[str]]:
+    """Return the job of a sweep, after checks of its outputs and models, and remarks on the outputs.
+
+    Raises
+    ------
+    InputError
+        If an output is impossible, or other processes could not import a model.
+    """
+    names = [] if outputs is None else expect_names(outputs, "outputs", "wear_rate")
+    if elsewhere:
+        check_importable(pipeline)
+    one = first.flatten()[:1]
+    notes = []
+    if outputs is None:
+        known = unsolved(one, pipeline.staged_model, pipeline.laws)
+        names = default_variables(known, {*points.varying, *points.fixed}, bool(first.dims))
+        size = len(names) * points.size * math.prod(map(len, first.dims.values()))
+        if size > MOST:
+            names = []
+            notes = [f"the sweep is large and keeps only the outcomes of laws: all outputs are {size:.2g} numbers"]
+    units = output_units(pipeline, one, points, list(dict.fromkeys(names)) or None)
+    return Job(pipeline, units, first.dims), notes
+
+
+def check_importable(pipeline: Pipeline[...]) -> None:
+    """Raise an error if other processes could not import a model.
+
+    Raises
+    ------
+    InputError
+        If a model is defined in the running script.
+    """
+    for part in parts(pipeline):
+        if type(part).__module__ == "__main__":
+            raise InputError(
+                f"{part.subject()}: is defined in the running script or notebook, from which other processes cannot"
+                " import it; define it in a module and import it from there, or use one process"
+            )
+
+
+def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapping[str, None]) -> Problem:
+    """Return the problem of some of the first operating points, after checks of the conditions.
+
+    They are checked along each dimension, at the first values of the others. A rig that makes several patches may take
+    long, so that it is asked for a sample of the values.
+    """
+
+    def along(dim: str, values: slice) -> Problem:
+        line = points.part(values if other == dim else slice(0, 1) for other in points.dims)
+        with caught_warnings():  # the blocks record them
+            return posed(line, lambda given: pipeline.rig.checked_problem({**not_given, **given}))
+
+    first = along(points.dims[0], slice(0, SAMPLE))
+    _check_names(pipeline.rig, first, points)
+    slipperiest, there = first, first if first.size else None
+    known = points.sizes[points.dims[0]] <= SAMPLE
+    for dim in points.dims[1 if known else 0 :]:
+        size = points.sizes[dim]
+        every = max(size // SAMPLE, 1) if first.dims else 1
+        step = size if points.file is None else every * BLOCK  # a table of any length must not need more memory
+        for start in range(0, size, step):
+            one = along(dim, slice(start, start + step, every))
+            slipperiest = min(slipperiest, one, key=lambda some: np.nanmin(some.friction_coefficient, initial=np.inf))
+            if there is None and one.size:
+                there = one
+    pipeline.warn_of_problem(first, stacklevel=4)
+    warn_of_unlike_materials(pipeline.contact_model, slipperiest, stacklevel=4)
+    if there is None:
+        raise ConditionsError(TOUCH_NOWHERE.format(pipeline.rig.name))
+    return there
+
+
+def _check_names(rig: Rig, problem: Problem, points: Points) -> None:
+    """Raise an error if an axis of the rig has the name of a condition."""
+    taken = {*points.dims, *points.coordinates(), *points.fixed} & problem.dims.keys()
+    if taken:
+        raise fault(rig, f"has an axis and a condition named '{min(taken)}'; rename one of the two")
+
+
+def weight(problem: Problem) -> float:
+    """Return the size of an operating point of a problem; four numbers of a strip count as one of 16 for a patch."""
+    strips = 0 if problem.strips is None else problem.strips.y.shape[-1]
+    return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
+
+
+def run(target: Memory | Store, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
+    """Evaluate the remaining blocks and return the warnings that belong to the results.
+
+    Parameters
+    ----------
+    target : Memory or Store
+        Target of the results. It keeps the finished blocks after an interrupt.
+    on_block : callable
+        Called with the number of points in each finished block, and first with those finished earlier.
+    workers, client
+        As in `sweep`.
+    """
+    points = target.points
+    left = [block for block in points.blocks() if block.number not in target.done]
+    on_block(points.size - sum(block.size for block in left))
+    several = client is not None or workers > 1
+    job = pickle.dumps(target.job) if several else b""
+    if client is not None:
+        evaluated = on_cluster(client, job, target.store, points, left)
+    elif several:
+        evaluated = in_processes(workers, job, target.store, points, left)
+    else:
+        evaluated = here(target.job, target.store, points, left, on_block)
+    with closing(evaluated):
+        for block, outputs, record in evaluated:
+            target.add(block, outputs, record)
+            if several:
+                on_block(block.size)
+    return range_warnings(target.job, (target.done[number] for number in sorted(target.done)))

@@ -1,0 +1,183 @@
+"""Evaluating the blocks of a sweep: in this process, in others on this machine (loky), or on a cluster (dask)."""
+
+from __future__ import annotations
+
+import functools
+import json
+import pickle
+import signal
+import sys
+import time
+import warnings
+from collections import deque
+from collections.abc import Callable, Generator, Iterable
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import asdict
+from typing import Any, TypeAlias
+
+from wearlaw.errors import ModelError, SweepError, WorkerWarning, described
+from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs, evaluate
+from wearlaw_sweeps.points import Block, Points
+
+Evaluated: TypeAlias = Generator[tuple[Block, Outputs, BlockRecord], None, None]
+"""Finished blocks, in any order, with their outputs ({} if they are in a store) and records."""
+
+RECORDS = "blocks/record"
+"""Array with the record of each finished block. It is in a group of its own, which xarray leaves alone."""
+
+AHEAD = 4
+"""Blocks submitted for each worker, so that none waits for work."""
+
+DEATHS = 3
+"""Deaths of worker processes at which a sweep is given up."""
+
+CHECKED_S = 1.0
+"""Seconds between two counts of the workers of a cluster."""
+
+
+def here(
+    job: Job, store: str | None, points: Points, blocks: list[Block], on_block: Callable[[int], None]
+) -> Evaluated:
+    """Evaluate blocks in this process, with progress also within a block."""
+    for block in blocks:
+        yield block, *_evaluated(job, block, points.part(block.slices), store, on_block)
+
+
+def _evaluated(
+    job: Job, block: Block, part: Points, store: str | None, on_block: Callable[[int], None] | None = None
+) -> tuple[Outputs, BlockRecord]:
+    """Evaluate a block; with a store, write it there and return no outputs."""
+    outputs, record = evaluate(job, part, on_block)
+    if store is None:
+        return outputs, record
+    _write(store, block, outputs, record)
+    return {}, record
+
+
+def _write(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> None:
+    """Write a block; its record comes last, since it says that the block is finished."""
+    import zarr
+
+    for name, values in outputs.items():
+        array: Any = zarr.open_array(store, path=name, mode="r+").with_config(
+            {"write_empty_chunks": True}
+        )  # NaN is a result
+        shape = tuple(part.stop - part.start for part in block.slices)
+        array[(*block.slices, ...)] = values.reshape(shape + values.shape[1:])
+    zarr.open_array(store, path=RECORDS, mode="r+")[block.number] = json.dumps(asdict(record))
+
+
+def _evaluated_elsewhere(job: bytes, block: Block, part: Points, store: str | None) -> tuple[Outputs, BlockRecord]:
+    """Evaluate a block in another process."""
+    try:
+        return _evaluated(_unpickled(job), block, part, store)
+    except Exception:
+        raise
+    except BaseException as error:  # a model's SystemExit must not end the worker, or this program
+        raise ModelError(described(error)) from None
+
+
+@functools.lru_cache(maxsize=8)
+def _unpickled(job: bytes) -> Job:
+    """Unpickle the job of a sweep, once for all of its blocks."""
+    unpickled: Job = pickle.loads(job)
+    return unpickled
+
+
+def in_processes(workers: int, job: bytes, store: str | None, points: Points, blocks: Iterable[Block]) -> Evaluated:
+    """Evaluate blocks in worker processes, which later sweeps use too."""
+    import loky
+
+    waiting, deaths = deque(blocks), 0
+    while waiting:
+        pool = loky.get_reusable_executor(workers, initializer=_leave_ctrl_c_to_the_parent)
+        pending: dict[Future[tuple[Outputs, BlockRecord]], Block] = {}
+        try:
+            while waiting or pending:
+                while waiting and len(pending) < AHEAD * workers:
+                    part = points.part(waiting[0].slices)
+                    future = pool.submit(_evaluated_elsewhere, job, waiting[0], part, store)
+                    pending[future] = waiting.popleft()
+                for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                    outputs, record = future.result()
+                    yield pending.pop(future), outputs, record
+        except BrokenProcessPool:
+            deaths += 1
+            if deaths == DEATHS:
+                raise SweepError(
+                    f"the sweep was given up, since worker processes died {DEATHS} times; does it need more memory than"
+                    " there is?"
+                ) from None
+            warnings.warn("a worker process died; its blocks are evaluated again", WorkerWarning, stacklevel=4)
+            waiting.extendleft(reversed(pending.values()))
+        except BaseException:  # nobody waits for the blocks in work
+            pool.shutdown(kill_workers=True)
+            raise
+
+
+def _leave_ctrl_c_to_the_parent() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def on_cluster(client: Any, job: bytes, store: str | None, points: Points, blocks: Iterable[Block]) -> Evaluated:
+    """Evaluate blocks on a cluster of dask.distributed.
+
+    A task of the cluster is a block with the values along its dimensions; the worker expands them to operating points.
+    If a worker dies, the cluster tries its block again, as often as the setting
+    `distributed.scheduler.allowed-failures` allows.
+    """
+    distributed = sys.modules["distributed"]  # the client comes from there
+    members = _Members(client)
+    left = iter(blocks)
+    pending: dict[Any, Block] = {}
+    waiting: Any = distributed.as_completed([])
+
+    def hand_out() -> None:
+        while len(pending) < AHEAD * members.threads and (block := next(left, None)) is not None:
+            part = points.part(block.slices)
+            future = client.submit(_evaluated_elsewhere, job, block, part, store, pure=False)
+            pending[future] = block
+            waiting.add(future)
+
+    hand_out()
+    try:
+        for future in waiting:
+            block = pending.pop(future)
+            try:
+                outputs, record = future.result()
+            except distributed.KilledWorker as error:
+                raise SweepError(
+                    f"block {block.number} was given up by the cluster, since its workers died: {error}"
+                ) from None
+            hand_out()
+            for address in members.lost(at_once=not pending):
+                warnings.warn(
+                    f"worker {address} left the cluster, and its blocks are evaluated again",
+                    WorkerWarning,
+                    stacklevel=4,
+                )
+            yield block, outputs, record
+    finally:
+        client.cancel(list(pending))
+
+
+class _Members:
+    """The workers of a cluster, as they come and go."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._known: dict[str, int] = client.nthreads()
+        self._checked = time.monotonic()
+
+    @property
+    def threads(self) -> int:
+        """Total number of threads, or 1 if there are no workers yet."""
+        return max(1, sum(self._known.values()))
+
+    def lost(self, at_once: bool) -> list[str]:
+        """Return the addresses of lost workers, checked at most once per `CHECKED_S` unless `at_once`."""
+        if not at_once and time.monotonic() < self._checked + CHECKED_S:
+            return []
+        before, self._known, self._checked = self._known, self._client.nthreads(), time.monotonic()
+        return sorted(set(before) - set(self._known))

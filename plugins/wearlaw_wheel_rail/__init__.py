@@ -1,0 +1,309 @@
+"""A wheel on a rail, and the contact problem that its conditions pose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Required, TypedDict, Unpack
+
+import numpy as np
+from pydantic import Field, field_validator, model_validator
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact import hertz, hertz_ellipse
+from wearlaw.contact.conditions import COEFFICIENTS, ConditionTable, FrictionLaw, condition_arrays
+from wearlaw.contact.material import Material
+from wearlaw.contact.problem import Body, Geometry, Problem
+from wearlaw.errors import UnitError
+from wearlaw.hookspecs import hookimpl
+from wearlaw.pipeline.pipeline import TINY, Rig, check_sizes
+from wearlaw.plugins.fields import MaterialField
+from wearlaw.units.quantities import Length, Quantity, QuantityLike, Speed, Unit, from_si, scalar_si
+
+Radius = Annotated[Quantity, Unit("mm", positive=False, infinite=True)]
+Angle = Annotated[Quantity, Unit("deg", positive=False)]
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+class WheelRailConditions(TypedDict, total=False):
+    """The conditions of a wheel on a rail; arrays broadcast against each other.
+
+    Exactly one of `normal_force` and `max_pressure` gives the load. Creepages are the velocity of the wheel minus that
+    of the rail, over V, as in CONTACT; a positive spin adds to a positive lateral creepage at the leading edge. The
+    contact angle is positive where the surface falls towards y.
+
+    Attributes
+    ----------
+    normal_force : Quantity or str
+        Normal force, N [N].
+    max_pressure : Quantity or str
+        Hertz's maximum pressure, p0 [Pa].
+    longitudinal_creepage : Quantity or str
+        Longitudinal creepage, ξ [-], of magnitude at most 1; positive if the wheel is braked.
+    lateral_creepage : Quantity or str
+        Lateral creepage, η [-], of magnitude at most 1; zero if not given.
+    spin : Quantity or str
+        Spin, φ [1/m]; that of the contact angle, sin δ / r, if not given.
+    contact_angle : Quantity or str
+        Contact angle, δ [rad], between -90 and 90 deg; that of the rig if not given.
+    friction_coefficient : array_like of float, Quantity, str or FallingFriction
+        Friction coefficient, μ [-].
+    rolled_distance : Quantity or str
+        Distance that the bodies have rolled since they were new [m], for laws of running-in.
+    """
+
+    normal_force: QuantityLike
+    max_pressure: QuantityLike
+    longitudinal_creepage: Required[QuantityLike]
+    lateral_creepage: QuantityLike
+    spin: QuantityLike
+    contact_angle: QuantityLike
+    friction_coefficient: Required[ArrayLike | FrictionLaw]
+    rolled_distance: QuantityLike
+
+
+WHEEL_RAIL = ConditionTable(
+    ("normal_force", "max_pressure"),
+    ("longitudinal_creepage", "lateral_creepage", "spin"),
+    COEFFICIENTS[:1],
+    {"longitudinal_creepage": 'Q(0.2, "%")', "friction_coefficient": "0.3"},
+    ("contact_angle", "rolled_distance"),
+)
+"""The conditions of a wheel on a rail."""
+
+
+class _Patch(NamedTuple):
+    """The patch under a load of 1 N at a contact angle, and the spin of that angle, in SI."""
+
+    a: float | Array
+    b: float | Array
+    max_pressure: float | Array
+    spin: float | Array
+
+
+class _Constants(NamedTuple):
+    """Values shared by all operating points, in SI; G and ν are the means of both bodies."""
+
+    shear_modulus: float
+    poisson_ratio: float
+    density: float
+    rolling_speed: float
+
+
+class WheelRail(Rig):
+    """A wheel that rolls on a straight rail and touches it in a point, which the load widens to an ellipse.
+
+    Radii of curvature are positive for a convex body, infinite for a flat one and negative for a concave one. The
+    lateral radii are those of the profiles, in a plane upright and across the rail. On a surface at the contact angle
+    δ, a wheel of the rolling radius r has the radius of curvature r/cos δ in the plane of the rolling direction and the
+    normal. It still rolls 2πr in a revolution. The normal force, the pressure and the lateral creepage and force are
+    normal and tangential to that surface.
+
+    Materials may differ. The rig then takes E* and Kalker's means of G and ν.
+    """
+
+    name: ClassVar[str] = "wheel_rail"
+    source: ClassVar[str] = "Hertz's theory: K. L. Johnson, Contact Mechanics, Cambridge 1985, section 4.2(b)"
+    patch_geometry: ClassVar[Geometry | None] = "ellipse"
+    creepage: ClassVar[str] = "longitudinal_creepage"
+    example: ClassVar[Mapping[str, Any]] = {
+        "normal_force": "80 kN",
+        "longitudinal_creepage": "0.2 %",
+        "lateral_creepage": "0.1 %",
+        "spin": "0.2 1/m",
+        "friction_coefficient": 0.3,
+    }
+    example_fields: ClassVar[Mapping[str, Any]] = {
+        "wheel_radius": "460 mm",
+        "rail_head_radius": "300 mm",
+        "material": "steel",
+        "rolling_speed": "30 m/s",
+    }
+
+    wheel_radius: Length
+    """Rolling radius of the wheel at the contact point, from the axle, r [m]."""
+    rail_head_radius: Radius
+    """Lateral radius of the rail head at the contact point [m]."""
+    wheel_profile_radius: Radius = Field(default="inf mm", validate_default=True)
+    """Lateral radius of the wheel profile at the contact point [m]; infinite for a cone, negative for a worn hollow."""
+    contact_angle: Angle = Field(default="0 deg", validate_default=True)
+    """Contact angle, δ [rad], between -90 and 90 deg, positive where the surface falls towards y; the condition of the
+    same name replaces it."""
+    material: MaterialField
+    """Material of wheel and rail; a file may also give the name of an installed material."""
+    rail_material: MaterialField | None = None
+    """Material of the rail, if it differs from the wheel's."""
+    rolling_speed: Speed
+    """Rolling speed, V [m/s]."""
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            wheel_radius: QuantityLike,
+            rail_head_radius: QuantityLike,
+            wheel_profile_radius: QuantityLike = "inf mm",
+            contact_angle: QuantityLike = "0 deg",
+            material: Material,
+            rail_material: Material | None = None,
+            rolling_speed: QuantityLike,
+        ) -> None: ...
+
+    @field_validator("contact_angle")
+    @classmethod
+    def _not_upright(cls, angle: Quantity) -> Quantity:
+        _check_angle(scalar_si(angle, "rad"))
+        return angle
+
+    @model_validator(mode="after")
+    def _touch_in_a_point(self) -> WheelRail:
+        radii = scalar_si(self.rail_head_radius, "m"), scalar_si(self.wheel_profile_radius, "m")
+        if min(map(abs, radii)) < TINY:
+            raise ValueError('a radius must not be zero or next to it; a flat body has the radius "inf mm"')
+        across = 1.0 / radii[0] + 1.0 / radii[1]
+        if across <= 0.0:
+            raise ValueError(
+                f"rail_head_radius {self.rail_head_radius!r} and wheel_profile_radius {self.wheel_profile_radius!r}"
+                f" have curvatures that sum to {across:.4g} 1/m across the rail; the bodies touch in a point only if"
+                " the sum is positive, so a hollow must have a larger radius than the body inside it"
+            )
+        return self
+
+    @property
+    def bodies(self) -> Mapping[str, Body]:
+        """The "wheel" and the "rail"."""
+        return self._bodies
+
+    @cached_property
+    def _bodies(self) -> dict[str, Body]:
+        return {
+            "wheel": Body(self.material, scalar_si(self.wheel_radius, "m")),
+            "rail": Body(self.rail_material or self.material, np.inf),
+        }
+
+    @classmethod
+    def conditions(cls) -> tuple[str, ...]:
+        """Return the names of the conditions, some of which exclude each other."""
+        return WHEEL_RAIL.names
+
+    @classmethod
+    def needed(cls) -> tuple[str, ...]:
+        """Return the names of the required conditions, besides one of the loads."""
+        return tuple(WHEEL_RAIL.examples)
+
+    @np.errstate(all="ignore")  # `check_sizes` rejects what overflows
+    def problem(self, /, **conditions: Unpack[WheelRailConditions]) -> Problem:
+        """Return the contact problem that the conditions pose.
+
+        Parameters
+        ----------
+        normal_force, max_pressure : Quantity or str
+            The load, exactly one of them: N [N] or p0 [Pa].
+        longitudinal_creepage, lateral_creepage : Quantity or str
+            ξ and η, ratios or in percent, of magnitude at most 1; η is zero if not given.
+        spin : Quantity or str
+            φ [1/m]; sin δ / r if not given.
+        contact_angle : Quantity or str
+            δ [rad], between -90 and 90 deg; that of the rig if not given.
+        friction_coefficient : array_like of float, Quantity, str or FallingFriction
+            μ [-].
+        rolled_distance : Quantity or str, optional
+            Distance rolled since the bodies were new [m], for laws of running-in.
+
+        Raises
+        ------
+        ConditionsError
+            If conditions are missing, unknown or contradictory, or do not broadcast.
+        UnitError
+            If a condition lacks its unit or is out of bounds.
+        """
+        constants = self._constants
+        arrays = condition_arrays(
+            conditions,
+            WHEEL_RAIL,
+            lambda a: constants.rolling_speed * np.hypot(a["longitudinal_creepage"], a["lateral_creepage"]),
+        )
+        shape = arrays["longitudinal_creepage"].shape
+        patch, angle = self._patch, arrays.get("contact_angle")
+        if angle is not None:
+            _check_angle(angle, "contact_angle: ")
+            # An axis of stride 0 repeats one angle, for which one patch is enough.
+            patch = self._patch_at(angle[tuple(slice(None if stride else 1) for stride in angle.strides)])
+        elif patch.spin:
+            arrays["contact_angle"] = np.broadcast_to(self._angle, shape)
+        if "contact_angle" in arrays and conditions.get("spin") is None:
+            arrays["spin"] = np.broadcast_to(patch.spin, shape)
+        if "max_pressure" in arrays:
+            pressure = arrays.pop("max_pressure")
+            arrays["normal_force"] = (pressure / patch.max_pressure) ** 3
+        scale = np.cbrt(arrays["normal_force"])
+        a, b = patch.a * scale, patch.b * scale
+        max_pressure = hertz_ellipse.max_pressure(arrays["normal_force"], a, b)
+        sizes = {"longer semi-axis": np.maximum(a, b), "shorter semi-axis": np.minimum(a, b)}
+        check_sizes({**sizes, "max pressure": max_pressure, "normal force": arrays["normal_force"]}, arrays)
+        same: dict[str, Any] = constants._asdict()
+        same = {name: np.broadcast_to(value, shape) if shape else np.float64(value) for name, value in same.items()}
+        return Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **same)
+
+    @cached_property
+    def _angle(self) -> Array:
+        """The contact angle of the rig [rad]."""
+        return np.asarray(scalar_si(self.contact_angle, "rad"))
+
+    @cached_property
+    def _patch(self) -> _Patch:
+        """The patch at the contact angle of the rig."""
+        return _Patch(*(float(value) for value in self._patch_at(self._angle)))
+
+    def _patch_at(self, angle: Array) -> _Patch:
+        """Return the patch at contact angles [rad], of their shape."""
+        modulus = hertz.effective_modulus(*(value for pair in self._elastic for value in pair))
+        radii = (self.wheel_radius, self.wheel_profile_radius, self.rail_head_radius)
+        wheel, profile, head = (np.asarray(scalar_si(radius, "m")) for radius in radii)
+        load, straight = np.asarray(1.0), np.asarray(np.inf)
+        curvatures = hertz_ellipse.curvature(wheel / np.cos(angle), straight), hertz_ellipse.curvature(profile, head)
+        a, b = hertz_ellipse.semi_axes(load, *curvatures, modulus)
+        return _Patch(a, b, hertz_ellipse.max_pressure(load, a, b), np.sin(angle) / wheel)
+
+    @cached_property
+    def _constants(self) -> _Constants:
+        (wheel, wheel_ratio), (rail, rail_ratio) = self._elastic
+        return _Constants(
+            shear_modulus=hertz.mean_shear_modulus(0.5 * wheel / (1.0 + wheel_ratio), 0.5 * rail / (1.0 + rail_ratio)),
+            poisson_ratio=hertz.mean_poisson_ratio(wheel, wheel_ratio, rail, rail_ratio),
+            density=scalar_si(self.material.density, "kg/m^3"),
+            rolling_speed=scalar_si(self.rolling_speed, "m/s"),
+        )
+
+    @cached_property
+    def _elastic(self) -> tuple[tuple[float, float], ...]:
+        """E [Pa] and ν of the wheel and of the rail."""
+        materials = (body.material for body in self._bodies.values())
+        return tuple((scalar_si(material.youngs_modulus, "Pa"), material.poisson_ratio) for material in materials)
+
+
+def _check_angle(angle: Array | float, subject: str = "") -> None:
+    """Raise an error for contact angles [rad] of a right angle or more."""
+    upright = np.abs(angle) >= 0.5 * np.pi
+    if upright.any():
+        first = float(np.asarray(angle)[upright].flat[0])
+        raise UnitError(
+            f"{subject}must lie between -90 and 90 deg, got {from_si(first, 'deg')!r}; give the angle of the surface to"
+            ' the axle, such as "70 deg" on a flange'
+        )
+
+
+@hookimpl
+def wearlaw_models() -> list[type[Rig]]:
+    """Return the rig of this plugin."""
+    return [WheelRail]
+
+
+@hookimpl
+def wearlaw_resources() -> dict[str, dict[str, str]]:
+    """Return the study of a wheel on a rail."""
+    return {"case": {"wheel_on_rail": Path(__file__).with_name("wheel_on_rail.toml").read_text(encoding="utf-8")}}
