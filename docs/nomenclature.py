@@ -18,12 +18,13 @@ from wearlaw.settings.parameters import numbers
 from wearlaw.units.variables import UNITS, VARIABLES, label
 from wearlaw_twin_disc import TwinDiscConditions
 from wearlaw_wheel_rail import WheelRailConditions
+from wearlaw_wheelset._rig import WheelsetProblem
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
 CLASSES = (
     *(wl.Problem, wl.Contact, TwinDiscConditions, wl.Prediction, wl.LocalWear),
-    *(wl.CreepForces, WheelRailConditions, wl.Body),
+    *(wl.CreepForces, WheelRailConditions, wl.Body, WheelsetProblem),
 )
 OF_ANY_UNIT = ("outcome", "outcome_error", "value", "local_value")
 """Quantities of a law, whose unit is that of its outcome."""

@@ -116,7 +116,7 @@ class WheelsetProblem(wl.Problem):
     Attributes
     ----------
     roll : ndarray
-        Roll of the wheelset, positive if it lowers the right wheel [rad].
+        Roll of the wheelset, positive if it lowers the right wheel, ρ [rad].
     penetration : ndarray
         Vertical approach of wheel and rail from first touching, at each patch [m].
     imbalance : ndarray
@@ -124,11 +124,13 @@ class WheelsetProblem(wl.Problem):
         of full slip, of the load that the rails would move from wheel to wheel to sink equally, and of the axle load as
         a lateral force.
     lateral_displacement : ndarray
-        Lateral displacement of the wheelset, positive to the right [m].
-    guiding_force, wheel_load : ndarray
-        Lateral force of the wheel on its rail, positive to the right, Y [N], and its vertical force, Q [N].
+        Lateral displacement of the wheelset in the track, positive to the right [m].
+    guiding_force : ndarray
+        Lateral force of a wheel on its rail, positive to the right, Y [N].
+    wheel_load : ndarray
+        Vertical force of a wheel on its rail, Q [N].
     derailment_quotient : ndarray
-        Y/Q [-], with the sign of Y.
+        Guiding force over wheel load, with the sign of Y, Y/Q [-].
     """
 
     roll: Array
@@ -391,12 +393,14 @@ class Wheelset(wl.Rig):
         lateral_displacement : Quantity or str
             Lateral displacement of the wheelset in the track, positive to the right [m].
         lateral_force : Quantity or str
-            Lateral force on the wheelset in place of a displacement, positive to the right, ∑ Y [N]. The wheelset then
-            stands at the nearest stable place to the middle of the track at which the rails bear it.
+            Lateral force on the wheelset, positive to the right [N], in place of a displacement. The wheelset stands
+            where the rails bear it, at the nearest stable place to the middle of the track.
         vertical_load : Quantity or str
             Vertical load of each wheel, Q [N].
-        vertical_load_left, vertical_load_right : Quantity or str
-            Vertical loads of wheels that differ, Q [N], in place of `vertical_load`.
+        vertical_load_left : Quantity or str
+            Vertical load of the left wheel [N]; with `vertical_load_right` in place of `vertical_load`.
+        vertical_load_right : Quantity or str
+            Vertical load of the right wheel [N].
         friction_coefficient : array_like of float, Quantity, str or FallingFriction
             Friction coefficient, μ [-].
         yaw : Quantity or str
