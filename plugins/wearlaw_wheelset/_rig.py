@@ -436,7 +436,7 @@ class Wheelset(wl.Rig):
         if axle_torque is not None and angular_speed is not None:
             raise wl.ConditionsError("give axle_torque or angular_speed, not both")
         if (lateral_displacement is None) == (lateral_force is None):
-            raise wl.ConditionsError("give lateral_displacement or lateral_force, and not both")
+            raise wl.ConditionsError("give lateral_displacement or lateral_force, not both")
         sides = vertical_load_left is None, vertical_load_right is None
         if sides[0] != sides[1] or sides[0] == (vertical_load is None):
             raise wl.ConditionsError("give vertical_load, or vertical_load_left and vertical_load_right")
