@@ -47,13 +47,18 @@ def guided(given: dict[str, Array], **more: Any) -> wl.Prediction:
 
 
 GIVEN = drawn(12)
-FOUND = guided(GIVEN)
 
 
-def test_forces_on_the_rails_balance_those_on_the_wheelset() -> None:
+@pytest.fixture(scope="module")
+def found() -> wl.Prediction:
+    """Return the contact under the drawn conditions."""
+    return guided(GIVEN)
+
+
+def test_forces_on_the_rails_balance_those_on_the_wheelset(found: wl.Prediction) -> None:
     # From the patches alone, whose forces the balance does not share with the results.
-    angle, normal = np.asarray(FOUND.problem.contact_angle), FOUND.normal_force.to("N").magnitude
-    along = FOUND.lateral_force.to("N").magnitude
+    angle, normal = np.asarray(found.problem.contact_angle), found.normal_force.to("N").magnitude
+    along = found.lateral_force.to("N").magnitude
     lateral = np.nansum(along * np.cos(angle) - normal * np.sin(angle), axis=-1)
     vertical = np.nansum(along * np.sin(angle) + normal * np.cos(angle), axis=-1)
     loads = np.stack([GIVEN["vertical_load_left"], GIVEN["vertical_load_right"]], axis=-1)
@@ -61,13 +66,13 @@ def test_forces_on_the_rails_balance_those_on_the_wheelset() -> None:
     assert (np.abs(lateral.sum(axis=-1) - GIVEN["lateral_force"]) < 1.01 * BORNE * axle).all()
     np.testing.assert_allclose(vertical, loads, rtol=2.0 * BALANCED)
     # Sums of patches in another order, of forces up to three times the load.
-    np.testing.assert_allclose(si(FOUND, "guiding_force"), lateral, atol=1e-9 * axle.max())
-    np.testing.assert_allclose(si(FOUND, "wheel_load"), vertical, rtol=1e-9)
-    np.testing.assert_allclose(si(FOUND, "derailment_quotient"), lateral / vertical, atol=1e-8)
+    np.testing.assert_allclose(si(found, "guiding_force"), lateral, atol=1e-9 * axle.max())
+    np.testing.assert_allclose(si(found, "wheel_load"), vertical, rtol=1e-9)
+    np.testing.assert_allclose(si(found, "derailment_quotient"), lateral / vertical, atol=1e-8)
 
 
-def test_displacements_found_give_the_forces_back() -> None:
-    place = si(FOUND, "lateral_displacement")[:, 0]
+def test_displacements_found_give_the_forces_back(found: wl.Prediction) -> None:
+    place = si(found, "lateral_displacement")[:, 0]
     rest = {name: value for name, value in GIVEN.items() if name != "lateral_force"}
     again = guided(rest, lateral_displacement=Q(place, "m"))
     axle = GIVEN["vertical_load_left"] + GIVEN["vertical_load_right"]
@@ -100,7 +105,7 @@ def test_a_force_to_the_right_moves_the_right_flange_to_its_rail() -> None:
     assert quotient == pytest.approx(force / 60e3, rel=1e-6)
 
 
-def test_mirrored_forces_have_mirrored_results() -> None:
+def test_mirrored_forces_have_mirrored_results(found: wl.Prediction) -> None:
     other = dict(GIVEN)
     for name in ("lateral_force", "yaw", "curvature"):
         other[name] = -GIVEN[name]
@@ -110,8 +115,8 @@ def test_mirrored_forces_have_mirrored_results() -> None:
     )
     mirrored = guided(other)
     axle = (GIVEN["vertical_load_left"] + GIVEN["vertical_load_right"])[:, None]
-    assert (np.abs(si(mirrored, "guiding_force")[:, ::-1] + si(FOUND, "guiding_force")) < 4.0 * BORNE * axle).all()
-    np.testing.assert_allclose(si(mirrored, "wheel_load")[:, ::-1], si(FOUND, "wheel_load"), rtol=2.0 * BALANCED)
+    assert (np.abs(si(mirrored, "guiding_force")[:, ::-1] + si(found, "guiding_force")) < 4.0 * BORNE * axle).all()
+    np.testing.assert_allclose(si(mirrored, "wheel_load")[:, ::-1], si(found, "wheel_load"), rtol=2.0 * BALANCED)
 
 
 # --------------------------------------------------------------------------------------------------------- the flange
