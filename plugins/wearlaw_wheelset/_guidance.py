@@ -163,8 +163,9 @@ def _root(
     found = low.copy()
     rows = np.flatnonzero(np.isfinite(at_low) & np.isfinite(high) & (np.abs(at_low) > left_over))
     for unknown in (np.inf, -np.inf):
-        bounds = (array[rows] for array in (low, at_low, high, at_high, left_over))
-        x, missed = _bracketed(excess, rows, *bounds, unknown)
+        x, missed = _bracketed(
+            excess, rows, low[rows], at_low[rows], high[rows], at_high[rows], left_over[rows], unknown
+        )
         found[rows] = np.where(~missed | (unknown > 0.0), x, found[rows])
         rows = rows[missed]
     return found

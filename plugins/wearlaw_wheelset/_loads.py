@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal, NamedTuple, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -155,9 +155,9 @@ class Task:
 
     def part(self, rows: NDArray[np.intp], displacement: Array) -> Task:
         """Return what is asked at some positions, at other displacements [m]."""
-        arrays = {name: one[rows] for name, one in vars(self).items() if isinstance(one, np.ndarray)}
+        found: dict[str, Any] = {name: one[rows] for name, one in vars(self).items() if isinstance(one, np.ndarray)}
         friction = tuple(one[rows] if isinstance(one, np.ndarray) else one for one in self.friction)
-        return replace(self, **arrays | {"friction": friction, "displacement": displacement})
+        return replace(self, **found | {"friction": friction, "displacement": displacement})
 
     def friction_of(self, point: NDArray[np.intp], flange: NDArray[np.bool_], creep_speed: Array) -> Array:
         """Return the friction coefficients of patches [-] at creep speeds [m/s]."""

@@ -217,4 +217,4 @@ def test_results_of_wheels_are_in_datasets_and_sweeps() -> None:
 )
 def test_displacement_or_force_and_one_way_to_state_the_loads(given: dict[str, str], said: str) -> None:
     with pytest.raises(wl.ConditionsError, match=said), warnings.catch_warnings():
-        PAIR(**given, friction_coefficient=0.3)  # type: ignore[arg-type]
+        PAIR(**given, friction_coefficient=0.3)
