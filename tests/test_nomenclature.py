@@ -20,10 +20,14 @@ SYMBOLS_OF_SEVERAL_NAMES = {
     "k": "KTH's map has a wear coefficient in each of its four fields",
     "a": "half the width of a line and the semi-axis of an ellipse in the rolling direction",
     "ξ": "the only creepage of discs, the longitudinal one of wheel and rail",
+    "Q": "the vertical load of a wheel as a condition, and the one that its rail bears",
     "ρ": "the mass density, and the roll of a wheelset",
     "A": "the area of the patch, and the limit of falling friction in its source",
 }
-NAMES_OF_SEVERAL_SYMBOLS = {"wear_index_density": "q·s at a point, and Tγ/A as its mean over the patch"}
+NAMES_OF_SEVERAL_SYMBOLS = {
+    "wear_index_density": "q·s at a point, and Tγ/A as its mean over the patch",
+    "lateral_force": "that of a patch along its surface, and the condition of a wheelset",
+}
 OF_OTHER_KINDS = {"geometry", "problem", "strips", "bodies", "dims", "exists"}
 """Fields of records that are no numbers with a unit."""
 SYMBOL_IS_THE_NAME = {"a", "b", "y"}

@@ -214,7 +214,7 @@ def output_units(
         _check_body(name, pipeline.laws)
         value = _output(prediction, name)
         if value is None:
-            named = dict.fromkeys((*of_laws, *dir(prediction)))
+            named = dict.fromkeys((*of_laws, *problem.results, *dir(prediction)))
             known = [one for one in named if one not in given and _is_output(prediction, one)]
             raise InputError(
                 f"outputs: there is no {shown(name)} at an operating point{did_you_mean(name, known)}"
@@ -233,7 +233,7 @@ def _check_body(name: str, laws: Sequence[Law]) -> None:
 
 def _output(prediction: Prediction, name: str) -> Quantity | None:
     """Return a value of a prediction at one point, or None if it cannot be an output."""
-    if name in outcome_units(prediction.laws):
+    if name in outcome_units(prediction.laws) or name in prediction.problem.results:
         return prediction[name]
     there = not name.startswith("_") and hasattr(type(prediction), name)
     value = getattr(prediction, name) if there else None

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._motion import curvature_along, placed
+from wearlaw_wheelset._normal_loops import NEED
 from wearlaw_wheelset._search import BLOCK, Position, Section, Touching, gaps
 from wearlaw_wheelset._search_loops import compiled_samples, normal_gap, tangential, through
 
@@ -183,6 +184,8 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
 def separated(found: Candidates, saddle: Array, penetration: Array, share: Array, joins: bool) -> Candidates:
     """Return the places that are patches of their own, each with the gap on its own side of the saddles between them.
 
+    Places with too few samples between two others belong to them.
+
     Parameters
     ----------
     found : Candidates
@@ -210,6 +213,11 @@ def separated(found: Candidates, saddle: Array, penetration: Array, share: Array
         for one, other in ((order[shift:], order[:-shift]), (order[:-shift], order[shift:])):
             same = kept.wheel[one] == kept.wheel[other]
             _cut(kept, one[same], kept.arc[other[same]])
+    narrow = (np.isfinite(kept.samples).sum(axis=-1) < NEED) & (kept.number > 0)
+    if narrow.any():
+        wide = np.ones(found.number.shape, dtype=np.bool_)
+        wide[np.flatnonzero(own)[narrow]] = False
+        return separated(found.part(wide), saddle[wide], penetration[wide], share[wide], joins)
     return kept
 
 

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal, NamedTuple, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -123,7 +123,7 @@ class Task:
         u [m] and ψ [rad].
     speed, lateral_velocity, yaw_velocity, turn_rate : ndarray
         V and v_y [m/s], the rate of the yaw and ω_z [rad/s].
-    load : ndarray
+    load : ndarray, (positions, 2)
         Vertical load of each wheel, Q [N].
     friction : pair of ndarray or FallingFriction
         Friction coefficient on the tread and on the flange [-].
@@ -135,6 +135,8 @@ class Task:
         Given speed of rotation, Ω [rad/s]; the torque then follows.
     free : bool
         Whether the wheelset finds its roll; a given one stays, and has no rate.
+    lateral_force : ndarray or None
+        Given sum of the lateral forces on the rails, H [N]; the displacement then follows.
     """
 
     displacement: Array
@@ -149,6 +151,13 @@ class Task:
     torque: Array
     rotation: Array | None
     free: bool
+    lateral_force: Array | None = None
+
+    def part(self, rows: NDArray[np.intp], displacement: Array) -> Task:
+        """Return what is asked at some positions, at other displacements [m]."""
+        found: dict[str, Any] = {name: one[rows] for name, one in vars(self).items() if isinstance(one, np.ndarray)}
+        friction = tuple(one[rows] if isinstance(one, np.ndarray) else one for one in self.friction)
+        return replace(self, **found | {"friction": friction, "displacement": displacement})
 
     def friction_of(self, point: NDArray[np.intp], flange: NDArray[np.bool_], creep_speed: Array) -> Array:
         """Return the friction coefficients of patches [-] at creep speeds [m/s]."""
@@ -211,8 +220,8 @@ class _State(NamedTuple):
         Their places.
     problem, patch, forces
         The contact problem of the places, what else is read of them, and the creep forces, or None without.
-    load : ndarray, (2 positions,)
-        Vertical load that each wheel carries [N].
+    load, lateral : ndarray, (2 positions,)
+        Vertical load that each wheel carries, and lateral force on its rail, to the right [N].
     grip : ndarray, (positions,)
         Torque of full slip [N m].
     miss : ndarray, (positions, 4)
@@ -225,6 +234,7 @@ class _State(NamedTuple):
     patch: Patches
     forces: wl.CreepForces | None
     load: Array
+    lateral: Array
     grip: Array
     miss: Array
 
@@ -262,6 +272,10 @@ class Balance:
     """Share of the penetration by which the gap must rise between patches of each position [-]."""
     scale: Array
     """Factor on the pressure of each wheel's patches, 1 except where the load jumps as a hump joins a patch."""
+    vertical: Array
+    """Vertical force of each wheel on its rail, Q [N], (positions, 2)."""
+    lateral: Array
+    """Lateral force of each wheel on its rail, positive to the right, Y [N], (positions, 2)."""
     correction: Array
     """What Newton's method has learnt of the rates of `_State.miss`, (positions, 4, 4)."""
     shapes: dict[str, Array] = field(default_factory=dict)
@@ -291,7 +305,7 @@ class Balance:
         balance = cls(
             section, elastic, task, pressure, strips, roll.copy(), wheels, np.zeros(count), wheels.copy(), roll.copy(),
             pairs, pairs.copy(), np.zeros(count), right, np.zeros(count), np.full(count, SEPARATE), np.ones(2 * count),
-            np.zeros((count, 4, 4)),
+            pairs.copy(), pairs.copy(), np.zeros((count, 4, 4)),
         )  # fmt: skip
         balance._stand(np.arange(count), roll, touching)
         balance.penetration = balance.whole.copy()
@@ -373,7 +387,7 @@ class Balance:
     def check_torque(self) -> None:
         """Raise an error for a torque that friction cannot transmit."""
         problem, patch = self.posed()
-        _, _, grip = self._sums(self.found, patch, problem, None)
+        _, _, _, grip = self._sums(self.found, patch, problem, None)
         over = ~(np.abs(self.task.torque) < grip)
         if over.any():
             point = int(np.argmax(over))
@@ -391,7 +405,8 @@ class Balance:
             part = found.part(rows[open_])
             patch = _normal.loaded(
                 part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
-                self.task.load[part.point] / part.cosine, 5, guess if guess is None else guess[open_] * part.cosine,
+                self.task.load[part.point, part.side] / part.cosine, 5,
+                guess if guess is None else guess[open_] * part.cosine,
                 self.roll.size,
             )  # fmt: skip
             penetration[open_] = patch.penetration / part.cosine
@@ -404,7 +419,7 @@ class Balance:
         for one in np.unique(spacing):
             sample(self.section, places, rows[spacing == one], float(one), self.roll.size)
 
-    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> Balance:
+    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, bounds: bool = True) -> Balance:
         """Return the loads with penetrations and speeds of rotation that balance the creep forces.
 
         Parameters
@@ -412,6 +427,9 @@ class Balance:
         forces : callable or None
             Returns the creep forces of a problem with one entry for each patch. None leaves out the creep forces; the
             speed of rotation then stays as it is.
+        bounds : bool
+            Whether to search within bounds where Newton's method fails, which takes a hundred times as long. Otherwise
+            these positions are marked as unbalanced.
         """
         names = (
             "roll",
@@ -424,6 +442,8 @@ class Balance:
             "roll_rate",
             "imbalance",
             "share",
+            "vertical",
+            "lateral",
             "correction",
         )
         copies = {name: getattr(self, name).copy() for name in names}
@@ -441,7 +461,7 @@ class Balance:
         found._newton(forces, every, rolls)
         left = found.imbalance > STALLED
         if rolls:
-            if left.any():
+            if left.any() and bounds:
                 found._rolled(forces, left)
                 left &= found.imbalance > ROUGH
             if left.any():  # one of two humps of a patch takes over from the other; let them share the load
@@ -450,10 +470,12 @@ class Balance:
                 found._turn(rows, found.roll[rows])
                 found._newton(forces, left, rolls)
                 left &= found.imbalance > ROUGH
-            if left.any():
+            if left.any() and bounds:
                 found._rolled(forces, left)
-        elif left.any():
+        elif left.any() and bounds:
             found._bracketed(forces, left)
+        if not bounds:
+            found.balanced = found.imbalance <= ROUGH
         return found
 
     def _newton(
@@ -464,7 +486,7 @@ class Balance:
         Broyden's method corrects the estimated rates, in Schubert's form, which keeps those that are zero. The speed
         of rotation and the roll count with the torque and the level that they change.
         """
-        count = self.task.load.size
+        count = self.roll.size
         open_, unit = chosen.copy(), np.ones((count, 1, 4))
         step, before = np.zeros((2, count, 4))
         least, halved = np.full(count, np.inf), np.zeros(count)
@@ -519,6 +541,9 @@ class Balance:
         left = np.abs(state.miss)
         left[:, 3] *= 1.5
         self.imbalance = np.where(chosen, left.max(axis=-1), self.imbalance)
+        self.vertical[chosen], self.lateral[chosen] = (
+            one.reshape(-1, 2)[chosen] for one in (state.load, state.lateral)
+        )
 
     def _rolled(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> None:
         """Find the rolls of some positions within bounds, in place, with the loads balanced at each roll."""
@@ -613,32 +638,34 @@ class Balance:
                 self.shapes[name][rows] = array
         problem, patch = self._posed(part, shapes)
         force = None if forces is None else forces(problem)
-        load, torque, grip = self._sums(part, patch, problem, force)
+        load, lateral, torque, grip = self._sums(part, patch, problem, force)
         miss = np.zeros((open_.size, 4))
-        miss[:, :2] = np.log(np.maximum(load / self.task.load.repeat(2), LEAST_SHARE)).reshape(-1, 2)
+        miss[:, :2] = np.log(np.maximum(load / self.task.load.reshape(-1), LEAST_SHARE)).reshape(-1, 2)
         if force is not None and self.task.rotation is None:
             miss[:, 2] = (torque - self.task.torque) / np.maximum(grip, TINY)
         if self.task.free:
             miss[:, 3] = np.where(open_, self._lower(), 0.0)
-        return _State(part, problem, patch, force, load, grip, miss)
+        return _State(part, problem, patch, force, load, lateral, grip, miss)
 
     def _sums(
         self, part: Candidates, patch: Patches, problem: wl.Problem, force: wl.CreepForces | None
-    ) -> tuple[Array, Array, Array]:
-        """Return the vertical load of each wheel [N], the torque of each axle and that of full slip [N m]."""
-        count = self.task.load.size
-        vertical = patch.normal_force * np.cos(patch.place.angle)
+    ) -> tuple[Array, Array, Array, Array]:
+        """Return vertical and lateral loads of wheels [N], torques of axles and those of full slip [N m]."""
+        count = self.roll.size
+        side = np.where(part.side == 1, 1.0, -1.0)
+        cos, sin = np.cos(patch.place.angle), side * np.sin(patch.place.angle)
+        vertical, lateral = patch.normal_force * cos, -patch.normal_force * sin
         torque = np.zeros(part.point.size)
         if force is not None:
-            side = np.where(part.side == 1, 1.0, -1.0)
-            vertical = vertical + side * force.lateral * np.sin(patch.place.angle)
+            vertical, lateral = vertical + sin * force.lateral, lateral + cos * force.lateral
             parts = zip((force.longitudinal, force.lateral, force.spin_moment), patch.creepages.turning, strict=True)
             torque = problem.rolling_speed * sum(one * other for one, other in parts)
         grip = problem.friction_coefficient * patch.normal_force * patch.place.radius
         load = np.bincount(part.wheel, vertical, 2 * count)
         load[np.bincount(part.wheel, minlength=2 * count) == 0] = 1.0
+        across = np.bincount(part.wheel, lateral, 2 * count)
         torques, grips = (np.asarray(np.bincount(part.point, one, count), np.float64) for one in (torque, grip))
-        return np.asarray(load, np.float64), torques, grips
+        return np.asarray(load, np.float64), np.asarray(across, np.float64), torques, grips
 
     def _rates(self, state: _State) -> Array:
         """Return estimates of the rates of `_State.miss` with ln h of both wheels, Ω and ρ, (positions, 4, 4).
@@ -648,7 +675,7 @@ class Balance:
         1 - f = (1 - d)³. This is FASTSIM on a strip, d being the creepage over that of full slip, which falls with the
         third root of N.
         """
-        part, problem, patch, force, load, grip, _ = state
+        part, problem, patch, force, load, _, grip, _ = state
         count = load.size // 2
         found = np.zeros((count, 4, 4))
         own, side = patch.normal_force * np.cos(patch.place.angle), np.where(part.side == 1, 1.0, -1.0)

@@ -438,13 +438,15 @@ def _solve(samples: Array, given: Array, rules: tuple[Array, Array, Array, Array
             here, target = state.logarithm[at], load[at]
             part = _Gaps(*(array[at] for array in gaps))  # type: ignore[arg-type]
             region, slope, strips, force = _evaluated(part, modulus[at], np.exp(here), rules)
-            wanted = np.where(target > 0.0, target, force)
-            done = state.step(at, np.log(force / wanted), target > 0.0, part, 0.5 * region.approach)
+            solves = target > 0.0
+            borne = np.divide(force, target, out=np.ones_like(force), where=solves)
+            borne = np.where(borne > 0.0, borne, loops.EMPTY)
+            done = state.step(at, np.log(borne), solves, part, 0.5 * region.approach)
             done |= iteration == loops.ITERATIONS - 1
             if done.any():
                 longest = _greatest(part, region, strips[2] * part.curvature) / part.curvature
                 warning = loops.JUMPS * state.jumps[at] + loops.NARROW * region.cut
-                columns = np.stack([region.approach, slope * wanted / force, longest, warning], axis=1)
+                columns = np.stack([region.approach, slope / borne, longest, warning], axis=1)
                 fields[at[done]], sums[at[done]] = strips[..., done].transpose(2, 0, 1), columns[done]
             left.append(at[~done])
         active = np.concatenate(left)

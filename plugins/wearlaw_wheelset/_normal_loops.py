@@ -49,6 +49,9 @@ FLOOR = 1e-4
 NEED = 4
 """Samples of a cubic."""
 
+EMPTY = 0.3
+"""Share of the load that strips count with if they lie between two humps and none of them carries anything."""
+
 BEFORE = 1.0 - 1e-12
 """Factor of a penetration just before a hump joins."""
 
@@ -407,7 +410,7 @@ def _solve(
     logarithm, before_log, before = math.log(approach), 0.0, 0.0
     low, high, warning = -math.inf, math.inf, 0.0
     mode, found, iteration = SOLVES, logarithm, 0
-    top = bend = middle = start = end = slope = force = 0.0
+    top = bend = middle = start = end = slope = force = borne = 0.0
     cut = False
     for _ in range(ITERATIONS):
         approach = math.exp(logarithm)
@@ -433,7 +436,9 @@ def _solve(
             fields[2, i] = _excess(gap, first, last, least, top, bend, middle, approach, fields[0, i]) / curvature
             force += fields[1, i] * fields[2, i]
         force *= 0.5 * math.pi * slope
-        miss = math.log(force / load) if load > 0.0 else 0.0
+        borne = force / load if load > 0.0 else 1.0
+        borne = borne if borne > 0.0 else EMPTY
+        miss = math.log(borne)
         if mode == PROBES:  # a smaller penetration may carry the force, before a hump joined
             mode = SOLVES
             if miss < 0.0:
@@ -470,5 +475,5 @@ def _solve(
     longest = _greatest(gap, first, last, least, top, bend, middle, approach, start, end, fields[2])
     for i in range(cosine.size):
         fields[2, i] /= curvature
-    sums[0], sums[1], sums[2] = approach, slope * load / force if load > 0.0 else slope, longest / curvature
+    sums[0], sums[1], sums[2] = approach, slope / borne, longest / curvature
     sums[3] = warning + (NARROW if cut else 0.0)

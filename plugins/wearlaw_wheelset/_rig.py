@@ -17,6 +17,7 @@ from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
 from wearlaw_wheelset._curve import steady
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
+from wearlaw_wheelset._guidance import guided
 from wearlaw_wheelset._loads import Balance, Elastic, Friction, Pressure, Task
 from wearlaw_wheelset._pictures import Profiles
 from wearlaw_wheelset._profile import Profile
@@ -33,15 +34,23 @@ HUGE = 1e12
 """Greatest value of a condition in its unit, whatever it is: products of several are floats."""
 
 DISPLACEMENT, ANGLE = (wl.Unit(unit, positive=False, limit=HUGE) for unit in ("mm", "mrad"))
+LOAD = wl.Unit("kN", limit=HUGE)
 
 
 class WheelsetConditions(TypedDict, total=False):
     """The conditions of a wheelset on two rails; arrays broadcast against each other."""
 
-    lateral_displacement: Required[Annotated[wl.QuantityLike, DISPLACEMENT]]
+    lateral_displacement: Annotated[wl.QuantityLike, DISPLACEMENT]
     """Lateral displacement of the wheelset in the track, positive to the right [m]."""
-    vertical_load: Required[Annotated[wl.QuantityLike, wl.Unit("kN", limit=HUGE)]]
+    lateral_force: Annotated[wl.QuantityLike, wl.Unit("kN", positive=False, limit=HUGE)]
+    """Lateral force on the wheelset, positive to the right [N], in place of a displacement. The wheelset stands where the
+    rails bear it, at the nearest stable place to the middle of the track."""
+    vertical_load: Annotated[wl.QuantityLike, LOAD]
     """Vertical load of each wheel, Q [N]."""
+    vertical_load_left: Annotated[wl.QuantityLike, LOAD]
+    """Vertical load of the left wheel [N]; with `vertical_load_right` in place of `vertical_load`."""
+    vertical_load_right: Annotated[wl.QuantityLike, LOAD]
+    """Vertical load of the right wheel [N]."""
     friction_coefficient: Required[wl.Friction]
     """Friction coefficient, μ [-]."""
     yaw: Annotated[wl.QuantityLike, ANGLE]
@@ -65,6 +74,14 @@ class WheelsetConditions(TypedDict, total=False):
     rolled_distance: Annotated[wl.QuantityLike, wl.Unit("km", positive=False, negative=False, limit=HUGE)]
     """Distance rolled since the bodies were new [m], for laws of running-in."""
 
+
+RESULTS: Mapping[str, str] = {
+    "lateral_displacement": "mm",
+    "guiding_force": "kN",
+    "wheel_load": "kN",
+    "derailment_quotient": "",
+}
+"""Units of the results for a wheelset and its wheels."""
 
 FLANGE_DEPTH = 10e-3
 """Depth below the taping line at which the thickness of a flange is measured (EN 15313) [m]."""
@@ -123,31 +140,50 @@ class WheelsetProblem(wl.Problem):
     Attributes
     ----------
     roll : ndarray
-        Roll of the wheelset, positive if it lowers the right wheel [rad].
+        Roll of the wheelset, positive if it lowers the right wheel, ρ [rad].
     penetration : ndarray
         Vertical approach of wheel and rail from first touching, at each patch [m].
     imbalance : ndarray
         What the balance leaves over, the greatest of these shares [-]: of the vertical load of a wheel, of the torque
-        of full slip, and of the load that the rails would move from wheel to wheel to sink equally.
+        of full slip, of the load that the rails would move from wheel to wheel to sink equally, and of the axle load as
+        a lateral force.
+    lateral_displacement : ndarray
+        Lateral displacement of the wheelset in the track, positive to the right [m].
+    guiding_force : ndarray
+        Lateral force of a wheel on its rail, positive to the right, Y [N].
+    wheel_load : ndarray
+        Vertical force of a wheel on its rail, Q [N].
+    derailment_quotient : ndarray
+        Guiding force over wheel load, with the sign of Y, Y/Q [-].
     """
 
     roll: Array
     penetration: Array
     imbalance: Array
+    lateral_displacement: Array
+    guiding_force: Array
+    wheel_load: Array
+    derailment_quotient: Array
     balance: Balance
     shape: tuple[int, ...]
 
     @property
+    def results(self) -> Mapping[str, str]:
+        """Units of displacement and forces."""
+        return RESULTS
+
+    @property
     def climbs(self) -> NDArray[np.bool_]:
         """Whether each wheel stands on its flange beyond the steepest place, (positions, sides)."""
-        over, climbs = _climbing(self.balance), np.zeros(self.balance.task.load.size * 2, dtype=np.bool_)
+        over, climbs = _climbing(self.balance), np.zeros(self.balance.roll.size * 2, dtype=np.bool_)
         climbs[self.balance.found.wheel[over]] = True
         return climbs.reshape(-1, 2)
 
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
         mapped = super(WheelsetProblem, self).mapped(function, of_strips)  # a class with slots has no plain super()
-        return mapped.replaced(**{name: function(getattr(self, name)) for name in ("roll", "penetration", "imbalance")})
+        names = ("roll", "penetration", "imbalance", *self.results)
+        return mapped.replaced(**{name: function(getattr(self, name)) for name in names})
 
 
 class Wheelset(wl.Rig):
@@ -158,8 +194,8 @@ class Wheelset(wl.Rig):
     a wheel, and the wheelset turns at the speed at which the creep forces balance the torque on the axle.
 
     Prefer this rig to `WheelRail` where you have profiles, or where a wheel touches in several places. It has no
-    dynamics: lateral displacement, yaw and loads come from a program for vehicle dynamics. Both wheels have the same
-    load, and the same profile unless `left_wheel` gives that of the left one; so do the rails with `left_rail`.
+    dynamics: lateral displacement or force, yaw and loads come from a program for vehicle dynamics. Both wheels have
+    the same profile unless `left_wheel` gives that of the left one; so do the rails with `left_rail`.
 
     Axes are those of the track: x forwards, y to the right, z down. Results have the axes "side" and "patch". Patch 1
     is the place where rigid bodies touch first; missing patches are NaN.
@@ -172,7 +208,8 @@ class Wheelset(wl.Rig):
         "locus of contact: A. D. de Pater, Vehicle System Dynamics 17 (1988) 127-140; strips: J. Piotrowski and W. Kik,"
         " Vehicle System Dynamics 46 (2008) 27-48; half-spaces: I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206-219"
     )
-    creepage: ClassVar[str] = "lateral_displacement"
+    creepage: ClassVar = "lateral_displacement"
+    choices: ClassVar = [("lateral_displacement", "lateral_force")]
     example: ClassVar[Mapping[str, Any]] = {
         "lateral_displacement": "3 mm",
         "yaw": "7.2 mrad",
@@ -381,13 +418,16 @@ class Wheelset(wl.Rig):
         Raises
         ------
         ConditionsError
-            If conditions contradict each other or do not broadcast, a wheel does not touch its rail, or the torque is
-            greater than friction can transmit.
+            If conditions are missing, contradict each other or do not broadcast, a wheel does not touch its rail, or
+            the torque is greater than friction can transmit.
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
         if conditions.get("axle_torque") is not None and conditions.get("angular_speed") is not None:
             raise wl.ConditionsError("give axle_torque or angular_speed, not both")
+        sides = [conditions.get(f"vertical_load_{side}") is None for side in DIMS["side"]]
+        if sides[0] != sides[1] or sides[0] == (conditions.get("vertical_load") is None):
+            raise wl.ConditionsError("give vertical_load, or vertical_load_left and vertical_load_right")
         arrays = self.in_si(conditions, yaw=0.0, lateral_velocity=0.0, yaw_velocity=0.0, curve_radius=np.inf)
         _check_given(arrays)
         shape = arrays["yaw"].shape
@@ -395,18 +435,25 @@ class Wheelset(wl.Rig):
         # Laws of friction stay as they are given: each patch has a creep speed of its own.
         friction: Mapping[str, Any] = {**conditions, **flat}
         tread, on_flange = friction["friction_coefficient"], friction.get("flange_friction_coefficient")
-        balance = self._balance(flat, (tread, tread if on_flange is None else on_flange))
+        self._check_yaw(flat["yaw"])
+        task = self._task(flat, (tread, tread if on_flange is None else on_flange))
+        balance = self._balance(task, flat.get("roll"))
+        balance.check_torque()
         return self._whole(balance, shape, flat.get("rolled_distance"))
 
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, WheelsetProblem)
         distance = problem.rolled_distance
-        balance = problem.balance.solved(forces)
-        self._warn_of_climbing(balance)
+        if problem.balance.task.lateral_force is None:
+            balance, climbs = problem.balance.solved(forces), np.zeros(problem.balance.roll.shape, dtype=np.bool_)
+            self._warn_of_climbing(balance)
+        else:
+            balance, climbs = self._guided(problem.balance, forces)
         if not balance.balanced.all():
             self._warn_of_jams(balance)
         self._warn_of_humps(balance)
+        balance.balanced &= ~climbs
         left = np.where(balance.balanced, balance.imbalance, 0.0)
         if (left > IMBALANCE).any():
             point = int(left.argmax())
@@ -419,32 +466,72 @@ class Wheelset(wl.Rig):
             )
         return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
 
-    def _balance(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Balance:
-        """Return the loads at positions, SI arrays with one axis, without creep forces."""
-        displacement, yaw, roll = given["lateral_displacement"], given["yaw"], given.get("roll")
-        self._check_yaw(yaw)
+    def _task(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
+        """Return what is asked at positions; with a lateral force, they are in the middle of the track at first."""
+        speed = np.full(given["yaw"].shape, wl.scalar_si(self.rolling_speed, "m/s"))
+        none, one = np.zeros(speed.shape), given.get("vertical_load")
+        loads = [given[f"vertical_load_{side}"] if one is None else one for side in DIMS["side"]]
+        return Task(
+            given.get("lateral_displacement", none), given["yaw"], speed, given["lateral_velocity"],
+            given["yaw_velocity"], given["yaw_velocity"] + speed / given["curve_radius"], np.stack(loads, axis=-1),
+            friction, wl.scalar_si(self.flange_angle, "rad"), given.get("axle_torque", none), given.get("angular_speed"),
+            "roll" not in given, given.get("lateral_force"),
+        )  # fmt: skip
+
+    def _rigid(self, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
+        """Return the rolls of rigid wheelsets and where they touch; equal positions are searched once."""
         places = np.stack([displacement, yaw] if roll is None else [displacement, yaw, roll])
         single, which = np.unique(places, axis=1, return_inverse=True)
         rolls, found = searched(self._section, single[0], single[1], None if roll is None else single[2])
-        self._check_contact(single[0], found)
         which = which.reshape(-1)
-        rolls, found = rolls[which], Touching(*(array[which] for array in found))
-        speed = np.full(displacement.shape, wl.scalar_si(self.rolling_speed, "m/s"))
-        turn_rate = given["yaw_velocity"] + speed / given["curve_radius"]
-        task = Task(
-            displacement, yaw, speed, given["lateral_velocity"], given["yaw_velocity"], turn_rate,
-            given["vertical_load"], friction, wl.scalar_si(self.flange_angle, "rad"),
-            given.get("axle_torque", np.zeros(displacement.shape)), given.get("angular_speed"), roll is None,
-        )  # fmt: skip
-        balance = Balance.begun(self._section, self._elastic, task, rolls, found, self.pressure, self.strips)
-        balance.check_torque()
-        return balance
+        return rolls[which], Touching(*(array[which] for array in found))
+
+    def _balance(self, task: Task, roll: Array | None) -> Balance:
+        """Return the loads of a task without creep forces."""
+        rolls, found = self._rigid(task.displacement, task.yaw, roll)
+        self._check_contact(task.displacement, found)
+        return Balance.begun(self._section, self._elastic, task, rolls, found, self.pressure, self.strips)
+
+    def _guided(
+        self, balance: Balance, forces: Callable[[wl.Problem], wl.CreepForces]
+    ) -> tuple[Balance, NDArray[np.bool_]]:
+        """Return the loads of wheelsets where the rails bear their lateral forces, and whether a wheel climbs."""
+        task = balance.task
+        assert task.lateral_force is not None
+        roll = None if task.free else balance.roll
+
+        def solved(part: Task, rows: NDArray[np.intp]) -> Balance:
+            return self._balance(part, None if roll is None else roll[rows]).solved(forces, bounds=False)
+
+        steepest = np.array([one.steepest for one in self._section.sides])
+
+        def stands(displacement: Array, rows: NDArray[np.intp], below: bool) -> NDArray[np.bool_]:
+            _, found = self._rigid(displacement, task.yaw[rows], None if roll is None else roll[rows])
+            return np.asarray((found.arc[..., 0] >= (steepest if below else -np.inf)).all(axis=-1))
+
+        place, climbs, greatest = guided(task, solved, stands)
+        every = np.arange(place.size)
+        balance = solved(task.part(every, place), every)
+        left = np.abs(balance.lateral.sum(axis=-1) - task.lateral_force) / task.load.sum(axis=-1)
+        balance.imbalance = np.maximum(balance.imbalance, left)
+        if climbs.any():
+            point = int(np.argmax(climbs))
+            side = DIMS["side"][int(place[point] > 0.0)]
+            warnings.warn(
+                f"lateral_force: {np.count_nonzero(climbs)} of {climbs.size} positions have no result, the first with"
+                f" {1e-3 * task.lateral_force[point]:.4g} kN: the greatest force found is"
+                f" {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm; beyond it the {side} wheel climbs"
+                " its rail or leaves it",
+                wl.RangeWarning,
+                stacklevel=5,
+            )
+        return balance, climbs
 
     def _whole(self, balance: Balance, shape: tuple[int, ...], distance: Array | None) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
         found = balance.found
         flat, patch = balance.posed()
-        size = balance.task.load.size
+        size = balance.roll.size
         exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
         place = found.point, found.side, found.number
         exists[place] = patch.touch & balance.balanced[found.point]
@@ -477,6 +564,10 @@ class Wheelset(wl.Rig):
             "roll": wide(balance.roll[found.point]),
             "penetration": wide(balance.penetration[found.wheel] - found.gap),
             "imbalance": wide(balance.imbalance[found.point]),
+            "lateral_displacement": wide(balance.task.displacement[found.point]),
+            "guiding_force": wide(balance.lateral[found.point, found.side]),
+            "wheel_load": wide(balance.vertical[found.point, found.side]),
+            "derailment_quotient": wide((balance.lateral / balance.vertical)[found.point, found.side]),
         }
         return WheelsetProblem(**fields, balance=balance, shape=shape)
 
@@ -603,13 +694,14 @@ LEAST_RADIUS, LEAST_LOAD, LEAST_FRICTION = 1e-3, 1e-6, 1e-12
 
 def _check_given(arrays: Mapping[str, Array]) -> None:
     """Raise an error for a curve without a radius, or a load or friction of nothing."""
-    radius, load = arrays["curve_radius"], arrays["vertical_load"]
+    radius = arrays["curve_radius"]
     if (radius == 0.0).any():
         raise wl.ConditionsError("curve_radius: must not be zero; straight track has an infinite radius, 'inf m'")
     if (np.abs(radius) < LEAST_RADIUS).any():
         raise wl.ConditionsError(f"curve_radius: must be {LEAST_RADIUS:g} m or more, got {np.abs(radius).min():g} m")
-    if (load < LEAST_LOAD).any():
-        raise wl.ConditionsError(f"vertical_load: must be {LEAST_LOAD:g} N or more, got {load.min():g} N")
+    for name in ("vertical_load", "vertical_load_left", "vertical_load_right"):
+        if name in arrays and (arrays[name] < LEAST_LOAD).any():
+            raise wl.ConditionsError(f"{name}: must be {LEAST_LOAD:g} N or more, got {arrays[name].min():g} N")
     for name in ("friction_coefficient", "flange_friction_coefficient"):
         if name in arrays and (arrays[name] < LEAST_FRICTION).any():
             raise wl.ConditionsError(f"{name}: must be {LEAST_FRICTION:g} or more, got {arrays[name].min():g}")

@@ -38,7 +38,6 @@ from wearlaw_wheelset._search_loops import (
     ROLLS,
     ROOTS,
     ROUNDING,
-    WIDER,
     WINDOW,
     compiled_search,
     cubic,
@@ -106,15 +105,11 @@ class Table(NamedTuple):
         return cubic(share - index, self.step, *ends)
 
     def near(self, x: Array) -> tuple[Array, Array]:
-        """Return the value and the slope on straight lines between the abscissae; infinite beyond them."""
-        share = (x - self.start) * (1.0 / self.step)
+        """Return the value and the slope at x; the value is infinite beyond the abscissae."""
+        share = (x - self.start) / self.step
         inside = (share >= 0.0) & (share < self.value.size - 1)
-        index = np.where(inside, share, 0.0).astype(np.intp)
-        t = share - index
-        value = self.value[index]
-        value = np.where(inside, value + t * (self.value[index + 1] - value), np.inf)
-        slope = self.slope[index]
-        return value, slope + t * (self.slope[index + 1] - slope)
+        value, slope = self.at(np.where(inside, x, self.start))
+        return np.where(inside, value, np.inf), slope
 
 
 class Coarse(NamedTuple):
@@ -386,9 +381,6 @@ def touching(section: Section, position: Position, near: NDArray[np.intp] | None
     begin, end = (
         np.where(np.isinf(gap[side]), arcs[other], arcs[side]) for side, other in ((left, right), (right, left))
     )
-    wider = np.where(begin == end, 0.0, WIDER * section.spacing)
-    begin = np.maximum(begin - wider, section.wheel_y.start)
-    end = np.minimum(end + wider, section.wheel_y.end)
     arc[place] = _root(section, there, begin, end)
     height[place] = gaps(section, there, arc[place]).gap
     order = np.argsort(height, axis=-1)

@@ -31,9 +31,6 @@ MOST_ROLL = 5e-3
 WINDOW = 16
 """Coarse points around a contact point among which it is looked for after a small roll: 8 mm."""
 
-WIDER = 0.1
-"""Share of the spacing of coarse points by which their interval is widened: slopes there are interpolated."""
-
 ROUNDING = 1e-12
 """Difference between slopes at a contact point that is rounding."""
 
@@ -139,16 +136,15 @@ def at(x: float, start: float, step: float, value: Array, slope: Array) -> tuple
 
 
 def near(x: float, start: float, step: float, value: Array, slope: Array) -> tuple[float, float]:
-    """Return the value and the slope of a table on straight lines; the value is infinite beyond its ends."""
+    """Return the value and the slope of a table at x; the value is infinite beyond its ends."""
     share = (x - start) / step
     if not 0.0 <= share < value.size - 1:
         return np.inf, 0.0
     index = int(share)
-    t = share - index
-    return (
-        value[index] + t * (value[index + 1] - value[index]),
-        slope[index] + t * (slope[index + 1] - slope[index]),
+    found: tuple[float, float] = cubic(
+        share - index, step, value[index], value[index + 1], slope[index], slope[index + 1]
     )
+    return found
 
 
 def touch(
@@ -220,9 +216,6 @@ def touch(
             left = right
         if gap[k + 1] == np.inf:
             right = left
-        if left < right:
-            left = max(left - WIDER * spacing, arc[0])
-            right = min(right + WIDER * spacing, arc[arc.size - 1])
         at_left = at_right = 0.0
         for iteration in range(ROOTS + 2):
             root = left if iteration == 0 else right  # the ends first

@@ -481,6 +481,11 @@ class Problem:
         return math.prod(self.batch_shape) if self.exists is None else int(self.exists.sum())
 
     @property
+    def results(self) -> Mapping[str, str]:
+        """Units of the fields that a subclass adds to the results of predictions, by name; {} by default."""
+        return {}
+
+    @property
     def creepage(self) -> Array:
         """Longitudinal creepage, ξ [-], with its sign; positive if body 1 is the faster one."""
         return self.longitudinal_creepage

@@ -209,7 +209,8 @@ class Prediction:
         """Return a variable by its name, or the prediction at some operating points by their positions.
 
         ``prediction["rcf_damage"]`` is an outcome by its name in results, ``prediction["wear_rate_rail"]`` that of a
-        law for one body, and ``prediction["rcf_damage_error"]`` the estimate of its numerical error.
+        law for one body, ``prediction["rcf_damage_error"]`` the estimate of its numerical error, and
+        ``prediction["guiding_force"]`` a result of the rig.
         ``prediction[0]``, ``prediction[1:3]`` and ``prediction[0, [1, 2]]`` choose positions along the axes, as `isel`
         does.
         """
@@ -222,6 +223,8 @@ class Prediction:
         if name.endswith(ERROR) and name.removesuffix(ERROR) in named:
             index = named[name.removesuffix(ERROR)]
             return from_si(self._whole_error(index), self.laws[index].outcome.unit)
+        if name in self.problem.results:
+            return from_si(getattr(self.problem, name), self.problem.results[name])
         if not name.startswith("_") and hasattr(type(self), name):
             value = getattr(self, name)
             if isinstance(value, pint.Quantity):

@@ -31,6 +31,9 @@ OF_CONTACT = (
     "mean_slip",
     "first_yield",
     "shakedown_limit",
+    "guiding_force",
+    "wheel_load",
+    "derailment_quotient",
 )
 """Variables that depend on the contact model but not on the wear law; no prediction has all of them."""
 
@@ -46,7 +49,7 @@ OF_POINT = (
 )
 """Variables that depend on the operating point alone; no prediction has all of them."""
 
-OF_PATCH = ("lateral_creepage", "spin", "contact_angle")
+OF_PATCH = ("lateral_creepage", "spin", "contact_angle", "lateral_displacement")
 """Variables of one of several patches, which differ in them; with one patch they repeat the conditions."""
 
 MASS = "mass_per_distance"
@@ -102,8 +105,10 @@ def offered(prediction: Predicted, variables: Iterable[str], several_patches: bo
 
 
 def _has(prediction: Predicted, name: str) -> bool:
+    if name in prediction.problem.results:
+        return True
     try:
-        return isinstance(getattr(prediction, name), pint.Quantity)
+        return isinstance(getattr(prediction, name, None), pint.Quantity)
     except CompositionError:  # of another shape of patch
         return False
 

@@ -132,6 +132,14 @@ VARIABLES: Mapping[str, Variable] = {
     "mean_slip": Variable(
         "%", "mean slip", "Mean magnitude of the relative slip over the whole patch", "", "not negative"
     ),
+    "guiding_force": Variable(
+        "kN", "guiding force Y", "Lateral force of a wheel on its rail, positive to the right", "Y", "any"
+    ),
+    "wheel_load": Variable("kN", "wheel load Q", "Vertical force of a wheel on its rail", "Q"),
+    "derailment_quotient": Variable("", "derailment quotient Y/Q", "Guiding force over wheel load", "Y/Q", "any"),
+    "lateral_displacement": Variable(
+        "mm", "lateral displacement", "Lateral displacement of the wheelset in the track", "", "any"
+    ),
     "first_yield": Variable(
         "MPa", "maximum pressure at first yield", "Maximum pressure at which a body first yields under this traction"
     ),

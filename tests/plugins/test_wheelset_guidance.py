@@ -1,0 +1,220 @@
+"""Lateral forces on wheelsets: equilibrium, Nadal's limit, symmetry, and displacements that give their forces back."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+import wearlaw_wheelset as ws
+from tests.plugins.wheelsets import through, wheelset
+from wearlaw import Array, Q
+from wearlaw_wheelset._guidance import BORNE
+from wearlaw_wheelset._loads import BALANCED
+
+PAIR = wheelset(rolling_speed="20 m/s") | wl.contact_model("strip_theory")
+RESULTS = ["lateral_displacement", "guiding_force", "wheel_load", "derailment_quotient"]
+
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
+
+
+def si(result: wl.Prediction, name: str) -> Array:
+    """Return a result of the wheels, (points, sides), in SI."""
+    return np.asarray(result.sel(patch=1)[name].to_base_units().magnitude)
+
+
+def drawn(count: int) -> dict[str, Array]:
+    """Return forces, loads, yaws and friction in SI, for which strips have a balance."""
+    draw = np.random.default_rng(3)
+    return {
+        "lateral_force": draw.uniform(-40e3, 40e3, count),
+        "vertical_load_left": draw.uniform(40e3, 80e3, count),
+        "vertical_load_right": draw.uniform(40e3, 80e3, count),
+        "yaw": draw.uniform(-8e-3, 8e-3, count),
+        "friction_coefficient": draw.uniform(0.1, 0.4, count),
+        "curvature": draw.uniform(-1.0 / 400.0, 1.0 / 400.0, count),
+    }
+
+
+def guided(given: dict[str, Array], **more: Any) -> wl.Prediction:
+    """Return the contact under conditions in SI."""
+    units = {"yaw": "rad", "friction_coefficient": ""}
+    conditions = {name: Q(value, units.get(name, "N")) for name, value in given.items() if name != "curvature"}
+    return PAIR(**conditions, curve_radius=Q(1.0 / given["curvature"], "m"), **more)
+
+
+GIVEN = drawn(12)
+
+
+@pytest.fixture(scope="module")
+def found() -> wl.Prediction:
+    """Return the contact under the drawn conditions."""
+    return guided(GIVEN)
+
+
+def test_forces_on_the_rails_balance_those_on_the_wheelset(found: wl.Prediction) -> None:
+    # From the patches alone, whose forces the balance does not share with the results.
+    angle, normal = np.asarray(found.problem.contact_angle), found.normal_force.to("N").magnitude
+    along = found.lateral_force.to("N").magnitude
+    lateral = np.nansum(along * np.cos(angle) - normal * np.sin(angle), axis=-1)
+    vertical = np.nansum(along * np.sin(angle) + normal * np.cos(angle), axis=-1)
+    loads = np.stack([GIVEN["vertical_load_left"], GIVEN["vertical_load_right"]], axis=-1)
+    axle = loads.sum(axis=-1)
+    assert (np.abs(lateral.sum(axis=-1) - GIVEN["lateral_force"]) < 1.01 * BORNE * axle).all()
+    np.testing.assert_allclose(vertical, loads, rtol=2.0 * BALANCED)
+    # Sums of patches in another order, of forces up to three times the load.
+    np.testing.assert_allclose(si(found, "guiding_force"), lateral, atol=1e-9 * axle.max())
+    np.testing.assert_allclose(si(found, "wheel_load"), vertical, rtol=1e-9)
+    np.testing.assert_allclose(si(found, "derailment_quotient"), lateral / vertical, atol=1e-8)
+
+
+def test_displacements_found_give_the_forces_back(found: wl.Prediction) -> None:
+    place = si(found, "lateral_displacement")[:, 0]
+    rest = {name: value for name, value in GIVEN.items() if name != "lateral_force"}
+    again = guided(rest, lateral_displacement=Q(place, "m"))
+    axle = GIVEN["vertical_load_left"] + GIVEN["vertical_load_right"]
+    assert (np.abs(si(again, "guiding_force").sum(axis=-1) - GIVEN["lateral_force"]) < 1.01 * BORNE * axle).all()
+
+
+def test_forces_of_displacements_give_the_displacements_back() -> None:
+    # Where the sum grows all the way from the middle, only one displacement bears a force.
+    place = np.array([-6.3e-3, -5.5e-3, -3e-3, 0.5e-3, 5.2e-3, 6.0e-3, 6.2e-3, 6.3e-3])
+    common: dict[str, Any] = {
+        "vertical_load": "60 kN",
+        "friction_coefficient": 0.3,
+        "yaw": Q(5.0 * np.sign(place), "mrad"),
+    }
+    at = PAIR(lateral_displacement=Q(place, "m"), **common)
+    force = si(at, "guiding_force").sum(axis=-1)
+    back = si(PAIR(lateral_force=Q(force, "N"), **common), "lateral_displacement")[:, 0]
+    # 1.2 N of 120 kN over the stiffness there, which is least on the tread.
+    ahead = PAIR(lateral_displacement=Q(place + 1e-6, "m"), **common)
+    stiffness = (si(ahead, "guiding_force").sum(axis=-1) - force) / 1e-6
+    assert (stiffness > 0.0).all()
+    assert (np.abs(back - place) < 2.0 * BORNE * 120e3 / stiffness + 1e-9).all()
+
+
+def test_a_force_to_the_right_moves_the_right_flange_to_its_rail() -> None:
+    found = PAIR(lateral_force="20 kN", yaw="5 mrad", vertical_load="60 kN", friction_coefficient=0.3)
+    force, quotient = si(found, "guiding_force"), si(found, "derailment_quotient")
+    assert si(found, "lateral_displacement")[1] > 6e-3
+    assert force[1] > 20e3 > 0.0 > force[0]  # the yaw makes the left wheel push its rail to the left
+    assert quotient == pytest.approx(force / 60e3, rel=1e-6)
+
+
+def test_mirrored_forces_have_mirrored_results(found: wl.Prediction) -> None:
+    other = dict(GIVEN)
+    for name in ("lateral_force", "yaw", "curvature"):
+        other[name] = -GIVEN[name]
+    other["vertical_load_left"], other["vertical_load_right"] = (
+        GIVEN["vertical_load_right"],
+        GIVEN["vertical_load_left"],
+    )
+    mirrored = guided(other)
+    axle = (GIVEN["vertical_load_left"] + GIVEN["vertical_load_right"])[:, None]
+    assert (np.abs(si(mirrored, "guiding_force")[:, ::-1] + si(found, "guiding_force")) < 4.0 * BORNE * axle).all()
+    np.testing.assert_allclose(si(mirrored, "wheel_load")[:, ::-1], si(found, "wheel_load"), rtol=2.0 * BALANCED)
+
+
+# --------------------------------------------------------------------------------------------------------- the flange
+
+
+def plane_flange() -> ws.Profile:
+    """Return a wheel with a tread at 1:40 and a flange that is straight at 70 deg between arcs of 14 and 10 mm."""
+    low, steep = np.arctan(0.025), np.radians(70.0)
+    step, y, z = 0.1e-3, [60e-3], [-1.5e-3]
+    turns = [
+        np.full(900, low),  # the tread, over 90 mm
+        np.arange(low, steep, step / 14e-3),
+        np.full(80, steep),  # the flank, over 8 mm
+        np.arange(steep, 0.0, -step / 10e-3),
+    ]
+    for angle in np.concatenate(turns):
+        y.append(y[-1] - step * np.cos(angle))
+        z.append(z[-1] + step * np.sin(angle))
+    return through(np.array(y[::-1]), np.array(z[::-1]), "wheel")
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Y/Q of a plane flange of 70° in full lateral slip without spin",
+    source="M. J. Nadal, Locomotives a vapeur, Paris 1908",
+    held_to="{share:g}",
+    share=0.01,
+)
+@pytest.mark.parametrize(("friction", "limit"), [(0.3, 1.342), (0.1, 2.077)])
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+def test_a_plane_flange_has_the_quotient_of_nadal(pressure: Any, friction: float, limit: float, share: float) -> None:
+    rig = wheelset(wheel=plane_flange(), pressure=pressure, rolling_speed="20 m/s")
+    contact = rig | wl.contact_model("strip_theory")
+    places = rig.geometry(lateral_displacement=Q(np.arange(10.0, 14.0, 0.05), "mm"), roll="0 mrad").dataset
+    g = places.sel(side="right", patch=1)
+    flank = g.isel(lateral_displacement=int(np.flatnonzero(np.abs(g.contact_angle.values + 70.0) < 0.02)[10]))
+    # A wheelset that moves to the left slides down its right flange at 5 % of V over cos 70°; the spin of sin 70°/r
+    # adds 2/m times the 2 mm of the patch, a thirtieth. The speed of rotation lets the flange roll.
+    found = contact(
+        lateral_displacement=Q(float(flank.lateral_displacement), "mm"), vertical_load="10 kN",
+        roll="0 mrad", friction_coefficient=friction, lateral_velocity="-1 m/s",
+        angular_speed=Q(20.0 / (1e-3 * float(flank.rolling_radius)), "rad/s"),
+    )  # fmt: skip
+    right = found.sel(side="right", patch=1)
+    assert not np.asarray(found.problem.exists)[1, 1:].any()
+    assert abs(right.longitudinal_force / right.normal_force).to("").magnitude < 0.05 * friction
+    assert right["derailment_quotient"].magnitude == pytest.approx(limit, rel=share)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_force_that_no_flange_bears_is_warned_of_with_the_greatest_one(sign: float) -> None:
+    common: dict[str, Any] = {"yaw": Q(5.0 * sign, "mrad"), "vertical_load": "60 kN", "friction_coefficient": 0.3}
+    every = PAIR(lateral_displacement=Q(sign * np.arange(6.3, 6.7, 0.02), "mm"), **common)
+    greatest = 1e-3 * np.abs(si(every, "guiding_force").sum(axis=-1)).max()
+    with pytest.warns(wl.RangeWarning, match=r"lateral_force: 1 of 2 positions have no result.* -?110 kN") as caught:
+        found = PAIR(lateral_force=Q(sign * np.array([20.0, 110.0]), "kN"), **common)
+    said = next(str(one.message) for one in caught if "lateral_force" in str(one.message))
+    assert ("right" if sign > 0.0 else "left") + " wheel climbs" in said
+    # Displacements 0.1 mm apart miss the top of a sum that falls by 1 % over 0.05 mm on either side of it.
+    assert abs(float(said.split("found is ")[1].split(" kN")[0])) == pytest.approx(greatest, rel=0.02)
+    assert np.isnan(si(found, "guiding_force")[1]).all()
+    assert np.isfinite(si(found, "guiding_force")[0]).all()
+
+
+# -------------------------------------------------------------------------------------------------------- their places
+
+
+def test_results_of_wheels_are_in_datasets_and_sweeps() -> None:
+    common: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
+    forces = Q(np.array([0.0, 20.0, 40.0]), "kN")
+    one = PAIR(lateral_force=forces, **common).to_dataset()
+    swept = wl.sweep(PAIR, lateral_force=forces, **common, outputs=RESULTS)
+    assert {name: one[name].attrs["units"] for name in RESULTS} == dict(
+        zip(RESULTS, ("mm", "kN", "kN", ""), strict=True)
+    )
+    for name in RESULTS:
+        np.testing.assert_allclose(one[name].values, swept[name].values, rtol=1e-9)
+    assert one.guiding_force.dims == ("lateral_force", "side", "patch")
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"vertical_load": "60 kN"}, "lateral_displacement or lateral_force"),
+        ({"vertical_load": "60 kN", "lateral_displacement": "0 mm", "lateral_force": "0 kN"}, "not both"),
+        ({"lateral_force": "0 kN"}, "vertical_load_left and vertical_load_right"),
+        ({"lateral_force": "0 kN", "vertical_load_left": "60 kN"}, "vertical_load_left and vertical_load_right"),
+        (
+            {
+                "lateral_force": "0 kN",
+                "vertical_load": "60 kN",
+                "vertical_load_left": "60 kN",
+                "vertical_load_right": "1 kN",
+            },
+            "give vertical_load, or",
+        ),
+    ],
+)
+def test_displacement_or_force_and_one_way_to_state_the_loads(given: dict[str, str], said: str) -> None:
+    with pytest.raises(wl.ConditionsError, match=said), warnings.catch_warnings():
+        PAIR(**given, friction_coefficient=0.3)
