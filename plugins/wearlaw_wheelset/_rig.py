@@ -43,8 +43,8 @@ class WheelsetConditions(TypedDict, total=False):
     lateral_displacement: Annotated[wl.QuantityLike, DISPLACEMENT]
     """Lateral displacement of the wheelset in the track, positive to the right [m]."""
     lateral_force: Annotated[wl.QuantityLike, wl.Unit("kN", positive=False, limit=HUGE)]
-    """Lateral force on the wheelset, positive to the right [N], in place of a displacement. The wheelset stands where the
-    rails bear it, at the nearest stable place to the middle of the track."""
+    """Lateral force on the wheelset, positive to the right [N], in place of a displacement. The wheelset stands where
+    the rails bear it, at the nearest stable place to the middle of the track."""
     vertical_load: Annotated[wl.QuantityLike, LOAD]
     """Vertical load of each wheel, Q [N]."""
     vertical_load_left: Annotated[wl.QuantityLike, LOAD]
@@ -474,8 +474,8 @@ class Wheelset(wl.Rig):
         return Task(
             given.get("lateral_displacement", none), given["yaw"], speed, given["lateral_velocity"],
             given["yaw_velocity"], given["yaw_velocity"] + speed / given["curve_radius"], np.stack(loads, axis=-1),
-            friction, wl.scalar_si(self.flange_angle, "rad"), given.get("axle_torque", none), given.get("angular_speed"),
-            "roll" not in given, given.get("lateral_force"),
+            friction, wl.scalar_si(self.flange_angle, "rad"), given.get("axle_torque", none),
+            given.get("angular_speed"), "roll" not in given, given.get("lateral_force"),
         )  # fmt: skip
 
     def _rigid(self, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
