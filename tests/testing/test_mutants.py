@@ -30,7 +30,7 @@ from tests.testing import (
     wrong_strips,
 )
 from wearlaw_kit import Check, checks, conformance
-from wearlaw_kit.kit import NotRunError
+
 
 WRONG: dict[Any, str] = {
     **wrong_laws.CAUGHT,
@@ -92,7 +92,6 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any) -> Non
     with pytest.raises(AssertionError) as failure:
         check()
     assert len(str(failure.value)) > 10
-    assert not isinstance(failure.value, NotRunError)
     if check.name in ON_EACH_SHAPE and issubclass(mutant, wl.ContactModel):
         assert str(failure.value).startswith(tuple(BEGINS[shape] for shape in mutant.geometries()))
 
