@@ -12,8 +12,8 @@ from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import QUADRATURE, ContactModel
 from wearlaw_kit.bisection import lost_digits
-from wearlaw_kit.law_contacts import NODE_FIELDS, arrays_of
 from wearlaw_kit.examples import EPS, SAME, SUM, assert_close, for_each
+from wearlaw_kit.law_contacts import NODE_FIELDS, arrays_of
 from wearlaw_kit.reduced import friction_limit, random_ellipses, sliding_power, without_spin
 from wearlaw_kit.shapes import (
     ELLIPSE,
@@ -42,9 +42,9 @@ REFINEMENTS = 3
 """Number of refinements by a factor of two; they reduce a first-order error to an eighth."""
 
 CHANCE = 1.3
-"""Scatter of a mean of 512 errors: they scatter by 0.58 of their mean where one step falls anywhere in a cell, and those
-in short slip zones weigh more, as if there were 128. The ratio of two such means scatters by 0.58 √(2/128) = 0.07; four
-times that is allowed."""
+"""Scatter of a mean of 512 errors: they scatter by 0.58 of their mean where one step falls anywhere in a
+cell, and those in short slip zones weigh more, as if there were 128. The ratio of two such means scatters by
+0.58 √(2/128) = 0.07; four times that is allowed."""
 
 STRIPS = 200
 """Number of strips of equal width; their sum of a parabola across the patch is off by the share 1/(2 `STRIPS`²)."""

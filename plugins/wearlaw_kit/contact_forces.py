@@ -173,7 +173,7 @@ def what_sticks_does_not_slip(model: ContactModel, shape: Shape) -> None:
 def forces_are_continuous(model: ContactModel, shape: Shape) -> None:
     """Forces and mean slip have no jump as creepages grow through full slip; one of 1/1000 is found.
 
-    Cells begin to slip as a whole: with them, the mean slip may jump by the accuracy times the slip of full slip. On the
+    Cells begin to slip as a whole: with them, the mean slip may jump by the accuracy times that of full slip. On the
     nodes of an ellipse, with spin, strips may begin to slip elsewhere at once: then a force may jump by the accuracy
     times μN.
     """
@@ -297,10 +297,10 @@ def initial_slopes_are_kalkers(model: ContactModel, shape: Shape) -> None:  # no
 def _slope_error(model: ContactModel) -> float:
     """Return the largest error of the initial slopes, relative to Kalker's slope for the same creepage."""
     small, errors = 1e-6, []
-    for reduced, due in (((small, 0.0, 0.0), (1.0, 0.0)), ((0.0, small, 0.0), (0.0, 1.0)), ((0.0, 0.0, small), (0.0, 1.0))):
-        problem = at_reduced(random_ellipses(POINTS), *reduced)
+    for cause, (along, across) in enumerate([(1.0, 0.0), (0.0, 1.0), (0.0, 1.0)]):
+        problem = at_reduced(random_ellipses(POINTS), *(small * np.eye(3)[cause]))
         forces, unit = model.creep_forces(problem), small * friction_limit(problem)
-        errors += [np.abs(forces.longitudinal / unit - due[0]).max(), np.abs(forces.lateral / unit - due[1]).max()]
+        errors += [np.abs(forces.longitudinal / unit - along).max(), np.abs(forces.lateral / unit - across).max()]
     return float(max(errors))
 
 

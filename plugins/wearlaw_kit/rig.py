@@ -199,11 +199,13 @@ def _assert_refused(
     wanted = f"raise wearlaw.{kind.__name__} with a message that names '{name}'"
     try:
         rig.checked_problem(given)
-    except WearlawError as error:
-        named = isinstance(error, kind) and re.search(rf"\b{name}\b", str(error))
-        assert named, f"{what} raises {described(error)}; {wanted}"
+    except WearlawError as raised:
+        error = raised
     else:
         assert optional, f"{what} is taken; {wanted}"
+        return
+    named = isinstance(error, kind) and re.search(rf"\b{name}\b", str(error))
+    assert named, f"{what} raises {described(error)}; {wanted}"
 
 
 @rule(Rig)
@@ -259,9 +261,8 @@ def problem_is_in_double_precision(rig: Rig) -> None:
 def creepage_is_proportional_to_its_condition(rig: Rig) -> None:
     """Half of the condition that `creepage` names is half of the problem's creepage; without it all stays finite."""
     given = varied(rig)[rig.creepage]
-    none, half, whole = (
-        _problem(rig, **{rig.creepage: times(given, share)}).existing().longitudinal_creepage for share in (0.0, 0.5, 1.0)
-    )
+    problems = (_problem(rig, **{rig.creepage: times(given, share)}).existing() for share in (0.0, 0.5, 1.0))
+    none, half, whole = (problem.longitudinal_creepage for problem in problems)
     assert (none == 0.0).all(), f"the problem has the creepage {none!r} where {rig.creepage} is zero"
     assert (whole != 0.0).all(), f"the example has no creepage; give another {rig.creepage}"
     assert_close(half, 0.5 * whole, f"the creepage of half the {rig.creepage}")

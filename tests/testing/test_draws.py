@@ -17,7 +17,6 @@ from wearlaw_kit import conditions, elliptic_problems, wheel_rails
 from wearlaw_kit.law_contacts import aimed, at_nodes, borders, for_each_contact, means_of, on_line, on_strips
 from wearlaw_kit.reduced import random_lines, translation, wide_ellipses
 
-
 DIGEST = """
 import hashlib, numpy as np, wearlaw as wl
 from wearlaw_kit.law_contacts import for_each_contact

@@ -31,7 +31,6 @@ from tests.testing import (
 )
 from wearlaw_kit import Check, checks, conformance
 
-
 WRONG: dict[Any, str] = {
     **wrong_laws.CAUGHT,
     **wrong_declarations.CAUGHT,
@@ -48,7 +47,7 @@ WRONG: dict[Any, str] = {
 }
 
 
-RIGHT_LAWS: list[Any] = [wrong_declarations.Ramps(), wl.wear_law("brr")]
+RIGHT_LAWS: list[Any] = [wrong_declarations.Ramps(), wl.wear_law("brr"), wl.wear_law("kth")]
 RIGHT_RIGS: list[Any] = [wrong_rigs.Weight()]
 RIGHT_STAGES: list[Any] = [wrong_stages.Lubricated()]
 RIGHT_ON: dict[str, list[Any]] = {
