@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz, hertz_ellipse
@@ -238,13 +239,15 @@ def nodes_cover_the_patch(model: ContactModel, problem: Problem) -> None:
     assert_close(contact.patch_area, problem.patch_area, "the sum of the areas", error_of_sums(model, problem))
 
 
-def _inside(problem: Problem, contact: Contact) -> Array:
+def _inside(problem: Problem, contact: Contact) -> NDArray[np.bool_]:
     """Return where a node lies on a line or in an ellipse, or on a strip of the problem."""
     if problem.strips is None:
         x, y = contact.x / contact.per_node(problem.a), contact.y / contact.per_node(problem.b)
-        return x**2 + y**2 <= 1.0 + SAME
-    on_strip = contact.y == problem.strips.y[..., None, :]
-    return on_strip & (np.abs(contact.x) <= problem.strips.half_length[..., None, :] * (1.0 + SAME))
+        within: NDArray[np.bool_] = x**2 + y**2 <= 1.0 + SAME
+    else:
+        on_strip = contact.y == problem.strips.y[..., None, :]
+        within = on_strip & (np.abs(contact.x) <= problem.strips.half_length[..., None, :] * (1.0 + SAME))
+    return within
 
 
 @on_shapes(*SHAPES, applies=has_nodes)

@@ -189,7 +189,7 @@ def forces_are_continuous(model: ContactModel, shape: Shape) -> None:
 
     for name, step in allowed.items():
         for point, share, before, behind in find_jumps(partial(solved, name), problem.size, intervals):
-            where = f"at {low * (high / low) ** share:g} of {shape.unit}"
+            where = f"at the reduced creepage {low * (high / low) ** share:g}"
             assert abs(behind - before) <= step[point], f"{name} jumps from {before:.9g} to {behind:.9g} {where}"
 
 
@@ -255,8 +255,8 @@ def full_slip_is_met_from_both_sides(model: ContactModel, shape: Shape) -> None:
     for name, rounding in (("force", SUM), ("mean slip", error)):
         wrong = ~(near[name] <= FALL * far[name] + 2.0 * rounding)
         assert not wrong.any(), (
-            f"the {name} jumps by {near[name][wrong].max():.2g} of its value into full slip, at {full[wrong][0]:g} of"
-            f" {shape.unit}"
+            f"the {name} jumps by {near[name][wrong].max():.2g} of its value into full slip, at the reduced creepage"
+            f" {full[wrong][0]:g}"
         )
 
 

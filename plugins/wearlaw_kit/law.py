@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any, TypeVar
 
@@ -66,9 +66,13 @@ def at_each_node(law: Law) -> bool:
 def rate_has_the_right_shape(law: Law, contact: Contact) -> None:
     """There is a rate for each node, or one value for each patch, with no batch axis, one or two."""
     for shape in ((), (1,), (2, 1)):
-        batch = contact[0].mapped(lambda array, shape=shape: np.broadcast_to(array, shape + array.shape).copy())
+        batch = contact[[0]].mapped(partial(_repeated, shape))
         found, due = np.shape(law.rate(batch, law.numbers)), of_patch(law, shape, batch.pressure.shape)
         assert found == due, f"rates of shape {found} in place of {due}"
+
+
+def _repeated(shape: tuple[int, ...], array: Array) -> Array:
+    return np.broadcast_to(array[0], shape + array.shape[1:]).copy()
 
 
 @on_contacts(Law, always=True)
@@ -348,7 +352,7 @@ def _grown(contact: Contact, name: str, factor: float) -> Contact:
 def declared_names_are_variables(law: Law) -> None:
     """`breakpoints`, `jumps`, `monotone_in` and `valid_range` name variables of a contact, with finite values."""
     of_law = (*LAW_VARIABLES, *law.own_variables)
-    declared = {
+    declared: dict[str, tuple[Mapping[str, Any], tuple[str, ...]]] = {
         "breakpoints": (law.breakpoints(law.numbers) or {}, of_law),
         "jumps": (law.jumps(law.numbers), of_law),
         "valid_range": (law.valid_range, PATCH_VARIABLES),

@@ -61,7 +61,8 @@ class _Paths:
         """Return how far each path goes, in e-folds of all values that a law has a part in."""
         names = [name for name in VALUES if name != "traction_bound"]
         logs = [np.log(getattr(self.second, name) / getattr(self.first, name)).reshape(PATHS) for name in names]
-        return np.abs(logs).sum(axis=0)
+        total: Array = np.abs(logs).sum(axis=0)
+        return total
 
     def assert_declared(self, declared: BreakpointMap, path: int, ends: tuple[float, float], what: str) -> None:
         """Assert that a variable passes one of its declared values in a piece of a path, or just outside of it."""

@@ -98,18 +98,18 @@ def _run(law: Law, where: str, found: list[Contact], examine: Callable[[Contact]
             for_each(with_problem(contact, law), examine)
 
 
-def on_contacts(kind: type[Law], **options: Any) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
+def on_contacts(kind: type, **options: Any) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
     """Register a check of a law on contacts of its scale."""
     return _on(for_each_contact, kind, options)
 
 
-def on_nodes(kind: type[Law], **options: Any) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
+def on_nodes(kind: type, **options: Any) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
     """Register a check of a law on contacts whose nodes can be listed anew."""
     return _on(for_each_of_nodes, kind, options)
 
 
 def _on(
-    run: Callable[[Law, Callable[[Contact], None]], None], kind: type[Law], options: dict[str, Any]
+    run: Callable[[Law, Callable[[Contact], None]], None], kind: type, options: dict[str, Any]
 ) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
     def decorate(check: Callable[[Any, Contact], None]) -> Callable[[Any], None]:
         @functools.wraps(check)
@@ -240,7 +240,7 @@ def _at_borders(random: np.random.Generator, contact: Contact, of_law: tuple[Bor
     return contact
 
 
-def with_totals(**fields: Array) -> Contact:
+def with_totals(**fields: Any) -> Contact:
     """Return the contact with these values at its nodes, on strips the components of its vectors, and their sums."""
     area, nodes = fields["area"], tuple(range(fields["rolling_speed"].ndim, fields["area"].ndim))
 

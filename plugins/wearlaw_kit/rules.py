@@ -7,8 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias, TypeVar
 
-from wearlaw.models.contact_model import Model
-
 CheckFunction: TypeAlias = Callable[[Any], None]
 
 F = TypeVar("F", bound=CheckFunction)
@@ -36,7 +34,7 @@ class Rule:
     """
 
     check: CheckFunction
-    kind: type[Model]
+    kind: type
     claims: tuple[str, ...]
     applies: Applies
     first: bool
@@ -56,12 +54,13 @@ RULES: list[Rule] = []
 """All rules, in the order in which they are checked."""
 
 
+def any_model(model: Any) -> bool:  # noqa: ARG001
+    """Return that a rule is one for all models of its kind."""
+    return True
+
+
 def rule(
-    kind: type[Model],
-    *claims: str,
-    applies: Applies = lambda model: True,  # noqa: ARG005
-    always: bool = False,
-    first: bool = False,
+    kind: type, *claims: str, applies: Applies = any_model, always: bool = False, first: bool = False
 ) -> Callable[[F], F]:
     """Return a decorator that registers a check of models of a kind.
 

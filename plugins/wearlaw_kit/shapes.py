@@ -13,7 +13,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -40,7 +40,7 @@ from wearlaw_kit.reduced import (
     wide_ellipses,
     with_creepage,
 )
-from wearlaw_kit.rules import Applies, rule
+from wearlaw_kit.rules import Applies, any_model, rule
 
 MANY = 512
 """Lines to average an error over."""
@@ -77,8 +77,6 @@ class Shape:
     ----------
     where : str
         How messages begin.
-    unit : str
-        What messages call a reduced creepage of 1.
     draw : callable
         Returns a number of problems, from partial to full slip.
     problems : Problem
@@ -97,7 +95,6 @@ class Shape:
 
     geometry: Geometry
     where: str
-    unit: str
     draw: Callable[[int], Problem]
     problems: Problem
     similar: Problem
@@ -136,7 +133,6 @@ _lines, _ellipses = random_lines(48), wide_ellipses(32)
 LINE = Shape(
     geometry="line",
     where="on a line: ",
-    unit="the creepage μa/R",
     draw=random_lines,
     problems=_lines,
     similar=_scaled(_lines),
@@ -151,7 +147,6 @@ LINE = Shape(
 ELLIPSE = Shape(
     geometry="ellipse",
     where="on an ellipse: ",
-    unit="the creepage that linear theory needs for μN",
     draw=random_ellipses,
     problems=_ellipses,
     similar=_scaled(_ellipses),
@@ -165,7 +160,6 @@ ELLIPSE = Shape(
 PATCH = Shape(
     geometry="strips",
     where="on strips: ",
-    unit=ELLIPSE.unit,
     draw=lambda points: in_strips(random_ellipses(points)),
     problems=in_strips(ELLIPSE.problems),
     similar=in_strips(ELLIPSE.similar),
@@ -250,11 +244,7 @@ def of_stage(stage: Stage, points: int) -> list[tuple[ContactModel, Problem]]:
 
 
 def on_shapes(
-    *shapes: Shape,
-    claims: tuple[str, ...] = (),
-    applies: Applies = lambda model: True,  # noqa: ARG005
-    always: bool = False,
-    first: bool = False,
+    *shapes: Shape, claims: tuple[str, ...] = (), applies: Applies = any_model, **options: bool
 ) -> Callable[[Callable[[ContactModel, Shape], None]], Callable[[ContactModel], None]]:
     """Return a decorator that registers a check of a model on a shape, on those of these which the model solves.
 
@@ -274,13 +264,13 @@ def on_shapes(
         def known(model: ContactModel) -> bool:
             return bool(solved(model)) and applies(model)
 
-        return rule(ContactModel, *claims, applies=known, always=always, first=first)(on_all)
+        return rule(ContactModel, *claims, applies=known, **options)(on_all)
 
     return decorate
 
 
 def on_problems(
-    *shapes: Shape, claims: tuple[str, ...] = (), always: bool = False
+    *shapes: Shape, **options: Any
 ) -> Callable[[Callable[[ContactModel, Problem], None]], Callable[[ContactModel], None]]:
     """Return a decorator that registers a check on the `problems` of those of these shapes which the model solves."""
 
@@ -289,6 +279,6 @@ def on_problems(
         def on_shape(model: ContactModel, shape: Shape) -> None:
             for_each(shape.problems, functools.partial(check, model))
 
-        return on_shapes(*shapes, claims=claims, always=always)(on_shape)
+        return on_shapes(*shapes, **options)(on_shape)
 
     return decorate

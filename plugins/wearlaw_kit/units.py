@@ -112,26 +112,23 @@ def _made(rig: Rig, given: Mapping[str, Any]) -> Array:
 @rule(ContactModel)
 def acceleration_does_not_matter(model: Law | ContactModel) -> None:
     """Compiled loops and NumPy give the same results to rounding."""
-    results = _rate if isinstance(model, Law) else _powers
     try:
         accelerate(True)
     except InputError:  # numba is not installed
         return
     try:
-        found = results(model)
+        found = _results(model)
         accelerate(False)
-        for (name, value, _), (_, due, size) in zip(found, results(model), strict=True):
+        for (name, value, _), (_, due, size) in zip(found, _results(model), strict=True):
             assert_close(value, due, f"{name} with compiled loops", SAME, SUM * size)
     finally:
         accelerate(None)
 
 
-def _rate(law: Any) -> list[tuple[str, Array, Array | float]]:
-    return [("the rate", law.rate(random_contacts(POINTS, law=law), law.numbers), 0.0)]
-
-
-def _powers(model: Any) -> list[tuple[str, Array, Array | float]]:
-    """Return forces and energies by name, each with the size that its rounding is relative to."""
+def _results(model: Law | ContactModel) -> list[tuple[str, Array, Array | float]]:
+    """Return rates, or forces and energies, by name, each with the size that its rounding is relative to."""
+    if isinstance(model, Law):
+        return [("the rate", _computed(model), 0.0)]
     found: list[tuple[str, Array, Array | float]] = []
     for shape in SHAPES:
         if shape.geometry in model.geometries():
