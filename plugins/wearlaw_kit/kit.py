@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import TypeVar
 
 from wearlaw.errors import InputError, WearlawWarning, did_you_mean
@@ -15,13 +14,20 @@ from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
+from wearlaw_kit import (  # each registers its rules  # noqa: F401
+    contact,
+    contact_forces,
+    law,
+    law_branches,
+    line_fields,
+    rig,
+    stage,
+    units,
+)
 from wearlaw_kit.examples import ModelRaisedError, failing
 from wearlaw_kit.rules import RULES, Rule, rule
 
 TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
-
-for _module in ("contact", "contact_forces", "line_fields", "law", "law_branches", "rig", "stage", "units"):
-    import_module(f"wearlaw_kit.{_module}")  # each registers its rules
 
 
 @rule(Model, always=True)

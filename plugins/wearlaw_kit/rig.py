@@ -61,11 +61,14 @@ def _number(value: object) -> Quantity | float | None:
     return None
 
 
+def in_unit_of(value: Quantity | float, numbers: Array | float) -> Any:
+    """Return numbers in the unit of a condition, or as they are where it has none."""
+    return Q(numbers, str(value.units)) if isinstance(value, pint.Quantity) else numbers
+
+
 def times(value: Quantity | float, factors: Array | float) -> Any:
     """Return a condition multiplied by factors, in its own unit."""
-    if isinstance(value, pint.Quantity):
-        return Q(value.magnitude * factors, str(value.units))
-    return value * factors
+    return in_unit_of(value, getattr(value, "magnitude", value) * factors)
 
 
 def values_of(problem: Any) -> dict[str, Any]:
@@ -187,9 +190,10 @@ def unknown_and_missing_conditions_are_refused(rig: Rig) -> None:
 def values_that_are_no_numbers_are_refused(rig: Rig) -> None:
     """NaN in a condition is refused by an error that names it; infinity is refused, or gives a finite problem."""
     for name, value in varied(rig).items():
-        for factor, optional in ((np.nan, False), (np.inf, True)):
-            given = {**rig.example, name: times(value, np.array([1.0, factor]))}
-            _assert_refused(rig, given, InputError, name, f"{factor} in {name}", optional=optional)
+        for number, optional in ((np.nan, False), (np.inf, True)):
+            numbers = np.array([getattr(value, "magnitude", value), number])
+            given = {**rig.example, name: in_unit_of(value, numbers)}
+            _assert_refused(rig, given, InputError, name, f"{number} in {name}", optional=optional)
 
 
 def _assert_refused(
