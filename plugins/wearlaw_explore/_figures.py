@@ -20,6 +20,9 @@ FIELDS = {"pressure": label("pressure"), "slip": label("slip"), "wear": "wear ra
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 """Colours that the colour-blind can tell apart (M. Okabe and K. Ito)."""
 
+WIDE = {"flex": "1 1 300px", "min-width": "260px", "max-width": "100%"}
+"""Style of an element that stands beside others if there is room, as on no phone."""
+
 APART = 15.0
 """Distance by which wheel and rail are drawn apart [mm]."""
 
@@ -43,7 +46,7 @@ def nodes(prediction: wl.Prediction) -> Data:
     across += np.mean(contact.y[..., [0, -1]]) - 0.5 * across[-1]
     length = contact.area / width
     ahead = np.cumsum(length, axis=0)
-    middle = 0.5 * ahead[-1] - np.mean(contact.x[[0, -1]], axis=0)
+    middle = 0.5 * ahead[-1]
     edges = {
         "left": ahead - length - middle,
         "right": ahead - middle,
@@ -90,8 +93,8 @@ def wear_across(prediction: wl.Prediction, side: str, profiles: Any) -> Data:
 
 def plain(title: str, x: str, y: str, **options: Any) -> Any:
     """Return an empty figure as wide as its place."""
-    drawn = figure(title=title, x_axis_label=x, y_axis_label=y, height=280, tools="pan,wheel_zoom,reset,hover,save",
-                   sizing_mode="stretch_width", min_width=260, **options)  # fmt: skip
+    drawn = figure(title=title, x_axis_label=x, y_axis_label=y, height=320, tools="pan,wheel_zoom,reset,hover,save",
+                   sizing_mode="stretch_width", styles=WIDE, **options)  # fmt: skip
     drawn.toolbar.logo = None
     drawn.toolbar.active_scroll = None  # the wheel scrolls the page
     return drawn
@@ -118,7 +121,7 @@ class Patch:
                    fill_color={"field": name, "transform": colours})  # fmt: skip
         drawn.line("x", "y", source=self.edge, color="black")
         drawn.hover.tooltips = [(FIELDS[name], f"@{name}")]
-        drawn.add_layout(ColorBar(color_mapper=colours, title=FIELDS[name].partition(" ")[2]), "below")
+        drawn.add_layout(ColorBar(color_mapper=colours, title=FIELDS[name], height=8), "below")
         return drawn
 
     def show(self, prediction: wl.Prediction | None) -> None:

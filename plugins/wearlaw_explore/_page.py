@@ -14,13 +14,10 @@ from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.units.variables import name_of
 from wearlaw_explore._answer import Answer, Subject, law_name, noted, together, worst
-from wearlaw_explore._figures import Curves, OnProfiles, Patch
+from wearlaw_explore._figures import WIDE, Curves, OnProfiles, Patch
 
 LIVE = 0.25
 """Time of an answer up to which figures follow a slider as it moves [s]; slower ones wait for its release."""
-
-WIDE = {"flex": "1 1 300px", "min-width": "260px", "max-width": "100%"}
-"""Style of an element that stands beside others if there is room, as on no phone."""
 
 
 def explore(predict: Any, /, **conditions: Any) -> Any:
@@ -102,13 +99,12 @@ class _Page:
     def layout(self) -> Any:
         """The page: its controls beside its figures, or above them on a phone."""
         figures = [*self.fields.figures, self.curves.figure, *(self.profiles.figures if self.profiles else ())]
-        panes = [pn.pane.Bokeh(one, styles=WIDE, sizing_mode="stretch_width") for one in figures]
         laws = pn.Column(pn.pane.HTML("Wear laws"), self.laws)
         controls = pn.Column(
             *self.widgets.values(), self.other, self.model, laws, self.patch, styles={**WIDE, "max-width": "420px"}
         )
         right = pn.Column(
-            self.notes, pn.FlexBox(*panes, sizing_mode="stretch_width"), self.numbers, self.python,
+            self.notes, pn.FlexBox(*figures, sizing_mode="stretch_width"), self.numbers, self.python,
             styles={**WIDE, "flex": "4 1 600px"},
         )  # fmt: skip
         return pn.FlexBox(controls, right, flex_wrap="wrap", sizing_mode="stretch_width")
@@ -136,7 +132,7 @@ class _Page:
         self._show_patch()
         self.numbers.object = answer.numbers()
         python = self.subject.python(answer.model, answer.laws, conditions)
-        self.python.object = f"<p>The same in Python:</p><pre tabindex=0>{escape(python)}</pre>"
+        self.python.object = f"<p>The same in Python:</p><pre tabindex=0 style='white-space: pre-wrap'>{escape(python)}</pre>"
         self.notes.object = "".join(f"<p role=status>{escape(text)}</p>" for text in notes.texts)
 
     def _show_curve(self, answer: Answer) -> None:
