@@ -9,7 +9,6 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -21,6 +20,9 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
 from tests.core.test_report_browser import BROWSER, DRIVER, FLAGS, PATIENCE_S
+from wearlaw_explore._answer import Answer
+from wearlaw_explore._command import named
+from wearlaw_explore._figures import edge, nodes
 
 needs_browser = pytest.mark.skipif(BROWSER is None or DRIVER is None, reason="needs chromium and chromedriver on PATH")
 
@@ -44,7 +46,7 @@ def address() -> Iterator[str]:
         line = it.stdout.readline()
         assert "http://localhost:" in line, line
         yield line.split("at ")[1].split(";")[0]
-        it.terminate()
+        it.kill()
 
 
 @pytest.fixture(scope="module")
@@ -73,6 +75,54 @@ def text(page: webdriver.Chrome) -> str:
 
 def wait(page: webdriver.Chrome, until: Any) -> None:
     WebDriverWait(page, PATIENCE_S, poll_frequency=0.05).until(lambda _: until())
+
+
+def answer(model: str, *laws: str, rig: str = "wheel_rail", **conditions: Any) -> Answer:
+    subject = named(rig)
+    given = subject.start(conditions)
+    return Answer(subject, f'wl.contact_model("{model}")', [f'wl.wear_law("{law}")' for law in laws], given)
+
+
+@pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning")
+@pytest.mark.parametrize("model", ["fastsim", "strip_theory"])
+def test_cells_tile_the_patch_and_carry_its_wear(model: str) -> None:
+    prediction = answer(model, "usfd").predictions['wl.wear_law("usfd")']
+    cells = nodes(prediction)
+    areas = (cells["right"] - cells["left"]) * (cells["top"] - cells["bottom"])
+    area = prediction.patch_area.to("mm^2").magnitude
+    np.testing.assert_allclose(areas.sum(), area, rtol=1e-9)
+    np.testing.assert_allclose((areas * cells["wear"]).sum(), prediction.wear_rate.magnitude * area, rtol=1e-9)
+    ellipse = edge(prediction)
+    assert np.abs(cells["left"]).max() <= ellipse["x"].max()
+    np.testing.assert_allclose(cells["top"].max(), ellipse["y"].max(), rtol=0.01)  # strips are a quadrature of it
+
+
+def test_an_ellipse_answers_within_a_fifth_of_a_second() -> None:
+    sliders = named("wheel_rail")
+    slider = sliders.slider("longitudinal_creepage", sliders.start({}))
+    assert slider is not None
+
+    def seconds() -> float:
+        started = perf_counter()
+        one = answer("fastsim", "usfd", "kth")
+        assert len(one.curve(slider)) == 2
+        nodes(one.predictions['wl.wear_law("usfd")'])
+        return perf_counter() - started
+
+    assert min(seconds() for _ in range(3)) < 0.2
+
+
+def test_the_python_on_the_page_gives_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    one = answer("global", "brr", rig="twin_disc", creepage="2 %")
+    exec(one.subject.python(one.model, one.laws, one.conditions), {})
+    assert capsys.readouterr().out.strip() == repr(one.predictions['wl.wear_law("brr")'])
+
+
+def test_errors_are_notes_and_a_load_replaces_the_other() -> None:
+    wrong = answer("global", "brr", rig="twin_disc", normal_force="7 m")
+    assert not wrong.predictions
+    assert "normal_force" in wrong.notes.texts[0]
+    assert "max_pressure" not in wrong.conditions
 
 
 def opened(browser: webdriver.Chrome, address: str, width: int) -> webdriver.Chrome:
