@@ -186,7 +186,7 @@ class Answer:
         """Return creepages and wear rates by law; {} if it would take too long, or there is no contact everywhere."""
         rig = self.subject.rig
         balances = type(rig).balanced is not wl.Rig.balanced
-        if not self.predictions or self.seconds > SLOW * len(self.laws) and not balances:
+        if not self.predictions or (self.seconds > SLOW * len(self.laws) and not balances):
             return {}
         low = slider.low if slider.low > 0.0 or balances else slider.high / POINTS
         x = np.linspace(low, slider.high, FEW_POINTS if balances else POINTS)

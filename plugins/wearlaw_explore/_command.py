@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import click
 import panel as pn
+from bokeh.models import CustomJS
 
 import wearlaw as wl
 from wearlaw.cli.shared import echo, fields, value
 from wearlaw_explore._answer import Subject
 from wearlaw_explore._page import page
 from wearlaw_studies.case import load_case
+
+VIEWPORT = """document.head.insertAdjacentHTML("beforeend",
+    '<meta name="viewport" content="width=device-width, initial-scale=1">')"""
+"""JavaScript that makes the page as wide as the screen of a phone."""
 
 
 @click.command()
@@ -32,11 +39,16 @@ def explore(rig: str, conditions: tuple[str, ...], port: int, browser: bool) -> 
     start = {name: value(text) for name, text in fields("--set", conditions, "CONDITION=VALUE").items()}
     page(subject, start)  # an error before the server starts
     server = pn.serve(
-        lambda: page(subject, start), port=port, address="localhost", show=browser, start=False, verbose=False,
+        lambda: _served(subject, start), port=port, address="localhost", show=browser, start=False, verbose=False,
         title=f"wearlaw: {subject.rig.name}",
     )  # fmt: skip
     echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
     server.run_until_shutdown()
+
+
+def _served(subject: Subject, start: dict[str, str | float]) -> Any:
+    pn.state.curdoc.js_on_event("document_ready", CustomJS(code=VIEWPORT))
+    return page(subject, start)
 
 
 def named(rig: str) -> Subject:

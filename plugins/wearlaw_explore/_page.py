@@ -61,7 +61,7 @@ class _Page:
         self.sliders = {name: slider for name, slider in found.items() if slider is not None}
         self.widgets = {
             name: pn.widgets.EditableFloatSlider(
-                name=one.label, start=one.low, end=one.high, value=one.start, step=(one.high - one.low) / 200.0,
+                label=one.label, start=one.low, end=one.high, value=one.start, step=(one.high - one.low) / 200.0,
                 format="0.[0000]", sizing_mode="stretch_width",
             )
             for name, one in self.sliders.items()
@@ -69,13 +69,13 @@ class _Page:
         models = {law_name(code): code for code in subject.models}
         laws = {law_name(code): code for code in subject.laws}
         first = [*subject.own_laws] or [code for code in laws.values() if law_name(code) == "usfd"]
-        self.model = pn.widgets.Select(name="Contact model", options=models, sizing_mode="stretch_width")
-        self.laws = pn.widgets.CheckBoxGroup(name="Wear laws", options=laws, inline=True)
+        self.model = pn.widgets.Select(label="Contact model", options=models, sizing_mode="stretch_width")
+        self.laws = pn.widgets.CheckBoxGroup(label="Wear laws", options=laws, inline=True)
         self.laws.value = [code for code in laws.values() if code in first] or [next(iter(laws.values()))]
         self.other = pn.widgets.TextInput(
-            name="Other conditions", placeholder='such as rolled_distance = 5 km', sizing_mode="stretch_width"
+            label="Other conditions", placeholder="such as rolled_distance = 5 km", sizing_mode="stretch_width"
         )
-        self.patch = pn.widgets.Select(name="Patch", options=[""], visible=False, sizing_mode="stretch_width")
+        self.patch = pn.widgets.Select(label="Patch", options=[""], visible=False, sizing_mode="stretch_width")
         self.notes, self.numbers = pn.pane.HTML(sizing_mode="stretch_width"), pn.pane.HTML()
         self.python = pn.pane.HTML(sizing_mode="stretch_width")
         rig, along = subject.rig, self.sliders.get(subject.rig.creepage)
@@ -91,9 +91,9 @@ class _Page:
             widget.param.watch(self._changed, "value_throttled")
         for widget in (self.model, self.laws, self.other):
             widget.param.watch(self._changed, "value")
-        self.patch.param.watch(self._show_patch, "value")
-        self._changed()
-        self._changed()  # for its time: the first answer loads and compiles
+        self.patch.param.watch(self._changed, "value")
+        self._update()
+        self._update()  # for its time: the first answer loads and compiles
 
     @property
     def layout(self) -> Any:
@@ -114,6 +114,14 @@ class _Page:
             self._changed()
 
     def _changed(self, *_: Any) -> None:
+        """Update the page under the lock of its document, without which figures must not change."""
+        document = pn.state.curdoc
+        if self.answer is None or document is None or document.session_context is None:
+            self._update()
+        else:
+            document.add_next_tick_callback(self._update)
+
+    def _update(self) -> None:
         notes = Notes()
         conditions = dict(self.start)
         for name, widget in self.widgets.items():
@@ -129,10 +137,12 @@ class _Page:
         self.patch.param.update(options=patches or [""], visible=len(patches) > 1)
         if self.patch.value not in patches and patches:
             self.patch.value = patches[0]
-        self._show_patch()
+        self._show_patch(answer)
         self.numbers.object = answer.numbers()
         python = self.subject.python(answer.model, answer.laws, conditions)
-        self.python.object = f"<p>The same in Python:</p><pre tabindex=0 style='white-space: pre-wrap'>{escape(python)}</pre>"
+        self.python.object = (
+            f"<p>The same in Python:</p><pre tabindex=0 style='white-space: pre-wrap'>{escape(python)}</pre>"
+        )
         self.notes.object = "".join(f"<p role=status>{escape(text)}</p>" for text in notes.texts)
 
     def _show_curve(self, answer: Answer) -> None:
@@ -147,8 +157,8 @@ class _Page:
         rates = [worst(one.wear_rate.magnitude, 1)[0] for one in answer.predictions.values()]
         self.curves.mark.data = {"x": [self.widgets[along].value] * len(rates), "y": rates}
 
-    def _show_patch(self, *_: Any) -> None:
-        patches = self.answer.patches() if self.answer else {}
+    def _show_patch(self, answer: Answer) -> None:
+        patches = answer.patches()
         self.fields.show(patches.get(self.patch.value))
-        if self.profiles and self.answer and patches:
-            self.profiles.show(self.answer.predictions, str(self.patch.value).partition(" ")[0])
+        if self.profiles and patches:
+            self.profiles.show(answer.predictions, str(self.patch.value).partition(" ")[0])

@@ -41,7 +41,9 @@ DEEP = """
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
     command = [sys.executable, "-c", "from wearlaw.cli import main; main()", "explore", "wheel_rail", "--no-browser"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}) as it:
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}
+    ) as it:
         assert it.stdout is not None
         line = it.stdout.readline()
         assert "http://localhost:" in line, line
@@ -56,7 +58,11 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chro
     options = webdriver.ChromeOptions()
     options.binary_location = BROWSER
     # Any other host than this one fails to resolve, as without a network.
-    for flag in (*FLAGS, f"--user-data-dir={home / 'profile'}", "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE localhost"):
+    for flag in (
+        *FLAGS,
+        f"--user-data-dir={home / 'profile'}",
+        "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE localhost",
+    ):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     places = dict.fromkeys(("HOME", "TMPDIR", "XDG_CONFIG_HOME", "XDG_CACHE_HOME"), str(home))
