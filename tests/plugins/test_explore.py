@@ -76,7 +76,8 @@ def deep(page: webdriver.Chrome, selector: str) -> list[Any]:
 
 
 def text(page: webdriver.Chrome) -> str:
-    return " ".join(str(one.text) for one in deep(page, "pre, table, p"))
+    script = DEEP.replace("return found", "return found.map(e => e.textContent).join(' ')")
+    return str(page.execute_script(script, "pre, table, p"))
 
 
 def wait(page: webdriver.Chrome, until: Any) -> None:
