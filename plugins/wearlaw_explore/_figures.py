@@ -35,7 +35,7 @@ def nodes(prediction: wl.Prediction) -> Data:
         return {}
     contact = prediction.contact
     with unwarned():
-        wear = (contact | prediction.laws[0]).local_wear_rate.magnitude
+        wear = 1e3 * (contact | prediction.laws[0]).rate  # µg/m/mm²
     fields = {"pressure": 1e-6 * contact.pressure, "slip": 100.0 * contact.slip, "wear": wear}
     if prediction.problem.geometry == "line":
         order = np.argsort(contact.x)
