@@ -23,7 +23,7 @@ from wearlaw_studies.case import load_case
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 SENTENCES = " ".join(TEXT.split())
 PLUGINS = sorted((ROOT / "plugins").glob("wearlaw_*"))
-APPLICATIONS = {f"wearlaw_{name}" for name in ("fits", "kit", "life", "output", "studies", "sweeps")}
+APPLICATIONS = {f"wearlaw_{name}" for name in ("explore", "fits", "kit", "life", "output", "studies", "sweeps")}
 
 
 def imported(path: Path) -> Iterator[tuple[str, str]]:

@@ -200,6 +200,7 @@ __all__ = [
     "contact_models",
     "creepage_for",
     "elastic_limit",
+    "explore",
     "fit",
     "half_space",
     "hertz",
@@ -244,6 +245,7 @@ __all__ = [
 if TYPE_CHECKING:
     from wearlaw.pipeline.inverse import creepage_for
     from wearlaw.plugins.law_files import read_law, read_wear_law
+    from wearlaw_explore import explore
     from wearlaw_fits.comparison import Comparison, compare
     from wearlaw_fits.fit import fit
     from wearlaw_fits.result import Fit
@@ -264,6 +266,7 @@ _LATE = {
     "creepage_for": "wearlaw.pipeline.inverse",
     "read_law": "wearlaw.plugins.law_files",
     "read_wear_law": "wearlaw.plugins.law_files",
+    "explore": "wearlaw_explore",
     "Comparison": "wearlaw_fits.comparison",
     "compare": "wearlaw_fits.comparison",
     "fit": "wearlaw_fits.fit",

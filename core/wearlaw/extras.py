@@ -16,8 +16,9 @@ EXTRA_OF = {
     "wearlaw_contact_files": "fits",
     "wearlaw_studies": "studies",
     "wearlaw_life": "studies",
+    "wearlaw_explore": "explore",
 }
-"""The extra that holds what an application needs; `fits` holds `sweeps`, and `studies` holds both."""
+"""The extra that holds what an application needs; `fits` holds `sweeps`, `studies` holds both, and `explore` all."""
 
 
 class MissingPackageError(WearlawError, ModuleNotFoundError):
