@@ -60,11 +60,12 @@ def house() -> str:
     models, applications = contracts[1]["modules"], contracts[2]["forbidden_modules"]
     arrow, layers = (one["layers"] for one in contracts if one["type"] == "layers")
     rooms = [name for layer in layers for name in re.split(r" [|:] ", layer) if (ROOT / "core/wearlaw" / name).is_dir()]
-    apart = [name for name in applications if name not in arrow]
+    inner = [name for layer in arrow for name in layer.split(" | ")]
+    apart = [name for name in applications if name not in inner]
     return "\n".join(
         [
-            f"applications    {' -> '.join([*arrow])}",
-            *(f"  {name:22} {first_line(f'plugins/{name}')}" for name in [*arrow, *apart]),
+            f"applications    {' -> '.join(arrow)}",
+            *(f"  {name:22} {first_line(f'plugins/{name}')}" for name in [*inner, *apart]),
             "models",
             *(f"  {name:22} {first_line(f'plugins/{name}')}" for name in models),
             "core",
