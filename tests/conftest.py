@@ -1,6 +1,6 @@
 """How much hypothesis searches, and the numbers of marks that tests receive.
 
-`pytest --hypothesis-profile deep`, or `nox -s deep`, searches ten times as long, in the conformance kit too.
+`pytest --hypothesis-profile deep`, or `nox -s deep`, searches ten times as long.
 """
 
 from __future__ import annotations

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import wearlaw as wl
+from wearlaw_kit.examples import EPS
 from wearlaw_kit.reduced import saturation, with_creepage
-from wearlaw_kit.sampling import EPS
 from wearlaw_kit.strategies import line_problems, log_uniform
 
 __all__ = [

@@ -125,7 +125,6 @@ CASES = [pytest.param(check, id=f"{named(model)}-{check.name}") for model in MOD
     source="what must hold of any model (see the page on the kit)",
     held_to="the bounds that each check states",
 )
-@pytest.mark.hypothesis  # `nox -s deep` takes it with the tests that hypothesis marks itself
 @pytest.mark.parametrize("check", CASES)
 def test_the_model_conforms(check: Check) -> None:
     check()

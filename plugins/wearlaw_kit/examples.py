@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
@@ -13,9 +12,10 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import described
-from wearlaw_kit.sampling import EPS
 
 T = TypeVar("T", Contact, Problem)
+
+EPS = float(np.finfo(np.float64).eps)
 
 SAME = 16.0 * EPS
 """Relative difference of two orders of the same few operations: vector and scalar code may round differently."""
@@ -27,12 +27,12 @@ SUM = 64.0 * EPS
 def for_each(examples: T, examine: Callable[[T], None]) -> None:
     """Run a function on a batch of problems or contacts; if it fails, name the first one that fails by itself."""
     try:
-        examine(copy.deepcopy(examples))
+        examine(examples)
     except Exception:
         for point in range(len(examples.rolling_speed)):
             alone = examples[point : point + 1]
             try:
-                examine(copy.deepcopy(alone))
+                examine(alone)
             except Exception as error:
                 error.add_note(f"example={alone!r}")
                 raise error from None
@@ -43,29 +43,20 @@ class ModelRaisedError(AssertionError):
     """The failure of a check in which the model raised an error of its own."""
 
 
-def as_failure(error: BaseException) -> AssertionError:
-    """Return an error as the failure of a check: of a model's own, one with its name, message and notes."""
-    while isinstance(error, BaseExceptionGroup):  # of several different failures, the first
-        error = error.exceptions[0]
-    if isinstance(error, AssertionError):
-        return error
-    failure = ModelRaisedError(f"the model raised {described(error)}")
-    for note in getattr(error, "__notes__", []):
-        failure.add_note(note)
-    return failure
-
-
 @contextmanager
-def beginning(where: str) -> Iterator[None]:
-    """Begin the message of a failure with the place where the model fails."""
+def failing(where: str = "") -> Iterator[None]:
+    """Begin the message of a failure with the place where the model fails; an error in the model is a failure too."""
     try:
         yield
     except KeyboardInterrupt:
         raise
+    except AssertionError as error:
+        error.args = (f"{where}{error}",)
+        raise
     except BaseException as error:
-        failure = as_failure(error)
-        failure.args = (f"{where}{failure}",)
-        raise failure from (None if failure is error else error)
+        failure = ModelRaisedError(f"{where}the model raised {described(error)}")
+        failure.__notes__ = getattr(error, "__notes__", [])
+        raise failure from error
 
 
 def assert_close(

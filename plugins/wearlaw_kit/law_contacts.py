@@ -1,4 +1,4 @@
-"""Contacts on which the checks try a wear law: on lines, on strips of an ellipse, and the means of an ellipse.
+"""Contacts on which the checks try a law: on lines, on strips of an ellipse, and the means of an ellipse.
 
 In one contact of several nodes, nodes lie below, at and above a border of the law, nodes stick beside nodes that slip,
 and nodes stand for no area. On strips, traction and slip point in different directions. The strips are of different
@@ -7,26 +7,31 @@ widths and lie in one part or in two, as in a patch that is no ellipse.
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import LAW_VARIABLES, Contact
+from wearlaw.contact.contact import LAW_VARIABLES, Contact, variable_at_nodes
+from wearlaw.contact.material import steel
+from wearlaw.contact.problem import Body, Problem
 from wearlaw.models.law import Law
-from wearlaw_kit.examples import beginning, for_each
-from wearlaw_kit.sampling import (
-    CONDITIONS_DRAWN,
-    NODE_VALUES_DRAWN,
-    aimed,
-    at_nodes,
-    contact_from_shares,
-    retotalled,
-    with_problem,
-    with_totals_of_strips,
-)
+from wearlaw_kit.examples import failing, for_each
+from wearlaw_kit.rules import rule
+
+NODE_FIELDS = (
+    "pressure", "traction", "slip", "traction_bound", "area", "x", "y", "traction_x", "traction_y", "slip_x", "slip_y",
+)  # fmt: skip
+"""Fields of a contact with a value at each node."""
+
+VALUES = ("pressure", "traction", "slip", "traction_bound", "area", "rolling_speed", "density")
+"""Fields of a contact of one node from which the others follow."""
+
+STEEL = steel(shear_yield_stress=None)
+"""The material of the bodies, unless a law is tried with another."""
 
 Border: TypeAlias = tuple[str, float]
 """A variable of a contact, and the SI value at which a law branches."""
@@ -49,9 +54,6 @@ POINTS = 24
 LINES, AXES = (1, 3, 8), ((3, 1), (4, 3), (5, 4))
 """Numbers of nodes on a line, and along a strip and of strips."""
 
-LINE, STRIPS, MEANS = "", "on strips: ", "on the means of an ellipse: "
-"""How messages begin."""
-
 
 def borders(law: Law) -> tuple[Border, ...]:
     """Return where a law branches, the wear index last, since the values at the nodes change it.
@@ -69,12 +71,12 @@ def borders(law: Law) -> tuple[Border, ...]:
 
 def for_each_contact(law: Law, examine: Callable[[Contact], None]) -> None:
     """Run a function on contacts of the scale of a law."""
-    patch, of_law = law.scale == "patch", borders(law)
-    lines = (1,) if patch else LINES
-    _run(law, LINE, [on_line(of_law, seed, POINTS, nodes) for seed, nodes in enumerate(lines)], examine)
-    if not patch:
-        _run(law, STRIPS, [on_strips(of_law, seed, POINTS, axes) for seed, axes in enumerate(AXES)], examine)
-    _run(law, MEANS, [means_of(of_law, 0, POINTS)], examine)
+    of_law, means = borders(law), [means_of(borders(law), 0, POINTS)]
+    if law.scale == "patch":
+        _run(law, "", [on_line(of_law, 0, POINTS, 1)], examine)
+    else:
+        _run_on_nodes(law, of_law, examine)
+    _run(law, "on the means of an ellipse: ", means, examine)
 
 
 def for_each_of_nodes(law: Law, examine: Callable[[Contact], None]) -> None:
@@ -82,81 +84,136 @@ def for_each_of_nodes(law: Law, examine: Callable[[Contact], None]) -> None:
 
     A law of the patch, which may sum over the nodes, is not tried at its borders, which a sum meets but for rounding.
     """
-    of_law = borders(law) if law.outcome.of != "patch" else ()
-    _run(law, LINE, [on_line(of_law, seed, POINTS, nodes) for seed, nodes in enumerate(LINES)], examine)
-    _run(law, STRIPS, [on_strips(of_law, seed, POINTS, axes) for seed, axes in enumerate(AXES)], examine)
+    _run_on_nodes(law, borders(law) if law.outcome.of != "patch" else (), examine)
 
 
-def on_contacts(check: Callable[[Law, Contact], None]) -> Callable[[Law], None]:
-    """Run a check on contacts of the scale of a law."""
-    return functools.wraps(check)(lambda law: for_each_contact(law, functools.partial(check, law)))
-
-
-def on_nodes(check: Callable[[Law, Contact], None]) -> Callable[[Law], None]:
-    """Run a check on contacts whose nodes can be listed anew."""
-    return functools.wraps(check)(lambda law: for_each_of_nodes(law, functools.partial(check, law)))
+def _run_on_nodes(law: Law, of_law: tuple[Border, ...], examine: Callable[[Contact], None]) -> None:
+    _run(law, "", [on_line(of_law, seed, POINTS, nodes) for seed, nodes in enumerate(LINES)], examine)
+    _run(law, "on strips: ", [on_strips(of_law, seed, POINTS, axes) for seed, axes in enumerate(AXES)], examine)
 
 
 def _run(law: Law, where: str, found: list[Contact], examine: Callable[[Contact], None]) -> None:
-    with beginning(where):
+    with failing(where):
         for contact in found:
             for_each(with_problem(contact, law), examine)
+
+
+def on_contacts(kind: type, **options: Any) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
+    """Register a check of a law on contacts of its scale."""
+    return _on(for_each_contact, kind, options)
+
+
+def on_nodes(kind: type, **options: Any) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
+    """Register a check of a law on contacts whose nodes can be listed anew."""
+    return _on(for_each_of_nodes, kind, options)
+
+
+def _on(
+    run: Callable[[Law, Callable[[Contact], None]], None], kind: type, options: dict[str, Any]
+) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
+    def decorate(check: Callable[[Any, Contact], None]) -> Callable[[Any], None]:
+        @functools.wraps(check)
+        def on_all(law: Any) -> None:
+            run(law, functools.partial(check, law))
+
+        return rule(kind, **options)(on_all)
+
+    return decorate
+
+
+def random_contacts(points: int, seed: int = 0, loaded: bool = False, law: Law | None = None) -> Contact:
+    """Return contacts of one node at many random operating points, reproducible by seed.
+
+    With `loaded`, every other one has node values in the upper half of their ranges, those of discs at work: from
+    30 MPa, 1e-4 of slip and 0.1 mm².
+    """
+    random = np.random.default_rng(seed)
+    shares, conditions = random.random((points, 1, 4)), random.random((points, 4))
+    if loaded:
+        shares[::2] = 0.5 + 0.5 * shares[::2]
+    return with_problem(_from_shares(shares, conditions), law)
 
 
 def on_line(of_law: tuple[Border, ...], seed: int, points: int, nodes: int) -> Contact:
     """Return mixed contacts with one axis of nodes; those of one node do not stick."""
     random = np.random.default_rng(seed)
-    contact = _at_borders(random, _random(random, points, nodes), of_law)
+    contact = _at_borders(random, _mixed(random, points, nodes), of_law)
     return contact if nodes == 1 else _sticking(random, contact)
 
 
 def on_strips(of_law: tuple[Border, ...], seed: int, points: int, axes: tuple[int, int]) -> Contact:
     """Return mixed contacts on strips, with axes of nodes along a strip and of strips."""
     random = np.random.default_rng(seed)
-    contact = _strips(random, _random(random, points, axes[0] * axes[1]), axes)
+    contact = _strips(random, _mixed(random, points, axes[0] * axes[1]), axes)
     return _sticking(random, _at_borders(random, contact, of_law))
 
 
 def means_of(of_law: tuple[Border, ...], seed: int, points: int) -> Contact:
     """Return contacts of one node with the means of an ellipse, whose Tγ is not the product of traction and slip."""
     random = np.random.default_rng(seed)
-    contact = _strips(random, _random(random, points, 1), (1, 1))
+    contact = _strips(random, _mixed(random, points, 1), (1, 1))
     # Spin alone dissipates energy without a force, up to that of full slip.
     contact = retotalled(contact, traction=contact.traction * (random.random((points, 1, 1)) < SPINNING))
     index = random.random(points) * (contact.traction_bound * contact.slip * contact.area)[..., 0, 0]
     return _at_borders(random, contact.replaced(wear_index=index), of_law)
 
 
-def _random(random: np.random.Generator, points: int, nodes: int) -> Contact:
+def _mixed(random: np.random.Generator, points: int, nodes: int) -> Contact:
     """Return random contacts of one axis of nodes, of which some lack pressure, traction, slip or area."""
-    shares = random.random((points, nodes, NODE_VALUES_DRAWN))
+    shares = random.random((points, nodes, 4))
     shares[..., :3] *= random.random((points, nodes, 3)) >= EMPTY
-    contact = contact_from_shares(shares, random.random((points, CONDITIONS_DRAWN)))
+    contact = _from_shares(shares, random.random((points, 4)))
     empty = random.random(contact.area.shape) < EMPTY
     empty[..., 0] = False
     return retotalled(contact, area=np.where(empty, 0.0, contact.area))
 
 
+def _from_shares(nodes: Array, conditions: Array) -> Contact:
+    """Map numbers from 0 to 1 to a contact; 0 stands for the value 0 in pressure, traction and slip.
+
+    Parameters
+    ----------
+    nodes : ndarray, (batch, nodes, 4)
+        For pressure, traction over its bound, slip, area.
+    conditions : ndarray, (batch, 4)
+        For friction, rolling speed, density, sign.
+    """
+
+    def at_node(index: int, low: float, high: float) -> Array:
+        value: Array = np.where(nodes[..., index] == 0, 0.0, low * (high / low) ** nodes[..., index])
+        return value
+
+    sign = np.where(conditions[..., 3] < 0.5, 1.0, -1.0)[..., None]
+    bound = (0.01 * 150.0 ** conditions[..., 0])[..., None] * at_node(0, 1e5, 1e10)
+    area = 1e-10 * 1e6 ** nodes[..., 3]
+    return with_totals(
+        pressure=at_node(0, 1e5, 1e10),
+        traction=sign * at_node(1, 1e-6, 1.0) * bound,
+        slip=sign * at_node(2, 1e-8, 1.0),
+        traction_bound=bound,
+        area=area,
+        x=np.broadcast_to(np.linspace(-1e-3, 1e-3, area.shape[-1]), area.shape),
+        rolling_speed=1e-2 * 1e4 ** conditions[..., 1],
+        density=1e3 + 1.9e4 * conditions[..., 2],
+    )
+
+
 def _strips(random: np.random.Generator, contact: Contact, axes: tuple[int, int]) -> Contact:
     """Return a contact with its nodes on strips and its vectors in random directions."""
     points = contact.rolling_speed.size
-
-    def laid(name: str) -> Array:
-        array: Array = np.abs(getattr(contact, name)).reshape(points, *axes)
-        return array
-
+    laid = {name: np.abs(getattr(contact, name)).reshape(points, *axes) for name in NODE_FIELDS[:5]}
+    traction, slip = laid.pop("traction"), laid.pop("slip")
     angle = random.uniform(-np.pi, np.pi, (points, *axes))
     turned = angle + random.uniform(-WIDEST, WIDEST, angle.shape) * (random.random(angle.shape) < 0.7)
-    traction, slip = laid("traction"), laid("slip")
     y = np.sort(random.uniform(-5e-3, 5e-3, (points, axes[1])))
     in_two_parts = random.random((points, 1)) < 0.5
     y = y + 1e-2 * in_two_parts * (np.arange(axes[1]) >= axes[1] / 2)
-    return with_totals_of_strips(
-        pressure=laid("pressure"),
-        traction=(traction * np.cos(angle), traction * np.sin(angle)),
-        slip=(slip * np.cos(turned), slip * np.sin(turned)),
-        traction_bound=laid("traction_bound"),
-        area=laid("area"),
+    return with_totals(
+        **laid,
+        traction_x=traction * np.cos(angle),
+        traction_y=traction * np.sin(angle),
+        slip_x=slip * np.cos(turned),
+        slip_y=slip * np.sin(turned),
         x=np.sort(random.uniform(-5e-3, 5e-3, (points, *axes)), axis=-2),
         y=np.broadcast_to(y[:, None, :], (points, *axes)),
         strip_width=10.0 ** random.uniform(-4, -2, (points, axes[1])),
@@ -181,3 +238,139 @@ def _at_borders(random: np.random.Generator, contact: Contact, of_law: tuple[Bor
         there = (chosen == number) & (random.random(shape) >= EMPTY)
         contact = aimed(contact, name, np.where(there, near, at_nodes(contact, name)))
     return contact
+
+
+def with_totals(**fields: Any) -> Contact:
+    """Return the contact with these values at its nodes, on strips the components of its vectors, and their sums."""
+    area, nodes = fields["area"], tuple(range(fields["rolling_speed"].ndim, fields["area"].ndim))
+
+    def total(value: Array) -> Array:
+        found: Array = (value * area).sum(nodes)
+        return found
+
+    if "strip_width" in fields:
+        qx, qy, sx, sy = (fields[name] for name in ("traction_x", "traction_y", "slip_x", "slip_y"))
+        fields |= {"traction": np.hypot(qx, qy), "slip": np.hypot(sx, sy)}
+        fields |= {"force_x": total(qx), "force_y": total(qy), "wear_index": total(qx * sx + qy * sy)}
+        fields["tangential_force"] = np.hypot(fields["force_x"], fields["force_y"])
+        fields["moment_z"] = -total(fields["x"] * qy + fields["y"] * qx)
+    else:
+        fields["tangential_force"] = total(fields["traction"])
+        fields["wear_index"] = total(fields["traction"] * fields["slip"])
+    return Contact(normal_force=total(fields["pressure"]), **fields)
+
+
+def with_problem(contact: Contact, law: Law | None = None) -> Contact:
+    """Return the contact with a problem of like size and load, of two bodies of the material to try the law with.
+
+    The bodies are called "body_1" and "body_2", and one of them as the law's `body`.
+    """
+    ellipse, area, force = contact.on_strips, contact.patch_area, contact.normal_force
+    a = np.full_like(area, 1e-3)
+    material = STEEL if law is None or law.example_material is None else law.example_material
+    own = [law.body] if law is not None and law.body else []
+    names = [*own, *(name for name in ("body_1", "body_2") if name not in own)][:2]
+    problem = Problem(
+        geometry="ellipse" if ellipse else "line",
+        a=a,
+        b=area / (np.pi * a) if ellipse else 0.25 * area / a,
+        normal_force=force,
+        max_pressure=(1.5 if ellipse else 4.0 / np.pi) * force / area,
+        effective_modulus=np.full_like(area, 1.12e11),
+        poisson_ratio=np.full_like(area, 0.28),
+        friction_coefficient=np.full_like(area, 0.3),
+        longitudinal_creepage=contact.mean_slip,
+        lateral_creepage=np.zeros_like(area),
+        spin=np.zeros_like(area),
+        rolling_speed=contact.rolling_speed,
+        density=contact.density,
+        rolled_distance=np.full_like(area, 1e3),
+        bodies={name: Body(material, 0.25) for name in names},
+    )
+    return contact.replaced(problem=problem)
+
+
+def arrays_of(contact: Contact) -> dict[str, Array]:
+    """Return the fields and totals of a contact by name."""
+    fields = {field.name: getattr(contact, field.name) for field in dataclasses.fields(contact)}
+    return {name: value for name, value in fields.items() if value is not None and name != "problem"}
+
+
+def at_nodes(contact: Contact, variable: str) -> Array:
+    """Return the magnitude of a variable at the nodes."""
+    magnitude: Array = np.abs(variable_at_nodes(contact, variable))
+    return magnitude
+
+
+def forward(contact: Contact) -> Contact:
+    """Return the contact with positive creepage."""
+    return retotalled(contact, traction=np.abs(contact.traction), slip=np.abs(contact.slip))
+
+
+def retotalled(contact: Contact, **changed: Array) -> Contact:
+    """Return the contact with some node values changed, and its sums recomputed.
+
+    On strips, a new magnitude of traction or slip keeps the direction of the old one, or lies along x without one.
+    """
+    values = {name: getattr(contact, name) for name in (*VALUES, "x")} | changed
+    if not contact.on_strips:
+        return with_totals(**values).replaced(problem=contact.problem)
+    factors = {name: _ratio(values[name], getattr(contact, name)) for name in ("traction", "slip", "area")}
+    for name in ("traction", "slip"):
+        turned = getattr(contact, name) == 0.0
+        for axis, alone in (("x", values[name]), ("y", 0.0)):
+            values[f"{name}_{axis}"] = np.where(turned, alone, getattr(contact, f"{name}_{axis}") * factors[name])
+    found = with_totals(**values, y=contact.y, strip_width=contact.strip_width).replaced(problem=contact.problem)
+    if not _of_means(contact):
+        return found
+    # The Tγ of means is not the product of their traction and slip.
+    factor = factors["traction"] * factors["slip"] * factors["area"]
+    return found.replaced(wear_index=contact.wear_index * factor[..., 0, 0])
+
+
+def _ratio(new: Array, old: Array) -> Array:
+    """Return new over old, or one where the old value is zero."""
+    factor: Array = np.divide(new, old, out=np.ones_like(old), where=old != 0.0)
+    return factor
+
+
+def _of_means(contact: Contact) -> bool:
+    """Return whether the one node of a contact holds the means of an ellipse."""
+    return contact.on_strips and contact.pressure.shape[-2:] == (1, 1)
+
+
+def aimed(contact: Contact, variable: str, value: Array | float) -> Contact:
+    """Return the contact with a variable set to a value at all nodes, or unchanged if that is impossible.
+
+    A wear-index density is reached by traction, a slip speed by slip, the wear index by area.
+
+    Parameters
+    ----------
+    value : ndarray or float
+        Value for all nodes, or one for each; for the wear index, the one of the first node counts.
+    """
+    target = np.broadcast_to(np.asarray(value, dtype=np.float64), contact.pressure.shape)
+    sign = np.where(contact.traction + contact.slip < 0, -1.0, 1.0)
+    speed = contact.per_node(contact.rolling_speed)
+    if variable in ("x", "traction_bound"):
+        return contact.replaced(**{variable: target.copy()})
+    if variable == "pressure":
+        return retotalled(contact, pressure=target.copy(), traction_bound=np.maximum(contact.traction_bound, target))
+    if variable in ("slip", "slip_speed"):
+        return retotalled(contact, slip=sign * (target if variable == "slip" else target / speed))
+    if variable == "frictional_power_density":
+        return aimed(contact, "wear_index_density", target / speed)
+    first = target.reshape(*contact.wear_index.shape, -1)[..., 0]
+    if variable == "wear_index":
+        exact = np.where(contact.wear_index > 0, first, contact.wear_index)
+        factor = contact.per_node(_ratio(exact, contact.wear_index))
+        return retotalled(contact, area=contact.area * factor).replaced(wear_index=exact)
+    if variable == "wear_index_density" and _of_means(contact):
+        dissipates = contact.wear_index > 0.0
+        return contact.replaced(wear_index=np.where(dissipates, first * contact.patch_area, contact.wear_index))
+    if variable == "wear_index_density" and contact.on_strips:
+        target = contact.traction * _ratio(target, contact.wear_index_density)
+    elif variable == "wear_index_density":
+        slip = np.abs(contact.slip)
+        target = np.divide(target, slip, out=np.abs(contact.traction), where=slip > 0)
+    return retotalled(contact, traction=sign * target, traction_bound=np.maximum(contact.traction_bound, target))

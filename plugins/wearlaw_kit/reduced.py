@@ -12,10 +12,7 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact import kalker
-from wearlaw.contact.material import steel
 from wearlaw.contact.problem import CreepForces, Problem, Strips
-from wearlaw_twin_disc import TwinDisc
-from wearlaw_wheel_rail import WheelRail
 
 SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 """Reduced creepages at which a theory of ellipses may saturate."""
@@ -30,15 +27,6 @@ STRIP_AT = np.linspace(-0.95, 0.95, 20)
 
 STRIP_WIDTH = np.full(20, 0.1)
 """Widths of the strips over b."""
-
-ELASTIC = steel(shear_yield_stress=None)
-"""Steel of unknown strength, of whose plastic flow nothing warns."""
-
-TWIN_DISC = TwinDisc.suros(material=ELASTIC)
-"""The rig of the University of Sheffield."""
-
-WHEEL_RAIL = WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=ELASTIC, rolling_speed="30 m/s")
-"""A new wheel on straight track."""
 
 
 def in_strips(problem: Problem) -> Problem:

@@ -14,9 +14,8 @@ from hypothesis import given, settings
 import wearlaw as wl
 from wearlaw import Contact, Material, Problem, TwinDisc, WheelRail
 from wearlaw_kit import conditions, elliptic_problems, wheel_rails
-from wearlaw_kit.law_contacts import borders, for_each_contact, means_of, on_line, on_strips
+from wearlaw_kit.law_contacts import aimed, at_nodes, borders, for_each_contact, means_of, on_line, on_strips
 from wearlaw_kit.reduced import random_lines, translation, wide_ellipses
-from wearlaw_kit.sampling import aimed, at_nodes
 
 DIGEST = """
 import hashlib, numpy as np, wearlaw as wl
@@ -24,7 +23,7 @@ from wearlaw_kit.law_contacts import for_each_contact
 from wearlaw_kit.shapes import SHAPES
 drawn = []
 for shape in SHAPES:
-    for problem in (shape.problems, shape.similar, shape.batch, shape.random(8)):
+    for problem in (shape.problems, shape.similar, shape.batch, shape.draw(8)):
         drawn += [problem.creepage, problem.spin, problem.a, problem.max_pressure, problem.friction_coefficient]
 for_each_contact(wl.wear_law("kth"), lambda contact: drawn.extend([contact.traction, contact.slip, contact.area]))
 digest = hashlib.sha256(b"".join(np.ascontiguousarray(one).tobytes() for one in drawn)).hexdigest()

@@ -20,9 +20,10 @@ from tests.testing.wrong_declarations import NoReason, UnknownClaim
 from tests.testing.wrong_law_nodes import PairOfPoints
 from tests.testing.wrong_laws import Linear, Raises, WrongSign
 from tests.testing.wrong_rigs import Weight
+from tests.testing.wrong_stages import Lubricated
 from wearlaw.models.contact_model import Claim
 from wearlaw_kit import Check, checks, conformance
-from wearlaw_kit.kit import CLAIMS, NotRunError
+from wearlaw_kit.rules import RULES
 
 SUITE = """
 from tests.testing.wrong_declarations import HottestNode
@@ -82,7 +83,7 @@ def exempt(base: Any, claim: str) -> Any:
     return type("Exempt", (base,), {"exemptions": property(lambda _: {claim: "for the tests"}), "__doc__": "Exempt."})()
 
 
-@pytest.mark.parametrize("claim", CLAIMS)
+@pytest.mark.parametrize("claim", dict.fromkeys(claim for rule in RULES for claim in rule.claims[1:]))
 def test_an_exemption_leaves_out_the_checks_of_a_claim(claim: Claim) -> None:
     kept, left = ([check.name for check in checks(model)] for model in (Strips(), exempt(Strips, claim)))
     assert set(left) < set(kept)
@@ -98,18 +99,19 @@ def test_a_single_check_can_be_exempt(base: Any, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("model", "name"),
+    ("base", "name"),
     [
-        (Linear(), "rate_is_finite"),
-        (Cells(), "contact_is_finite"),
-        (Weight(), "units_of_conditions_are_checked"),
-        (wl.patch_mean(), "pipelines_take_the_contact"),
+        (Linear, "rate_is_finite"),
+        (Cells, "contact_is_finite"),
+        (Weight, "units_of_conditions_are_checked"),
+        (Lubricated, "pipelines_take_the_contact"),
     ],
 )
-def test_what_must_hold_for_any_model_cannot_be_exempt(model: Any, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(type(model), "exemptions", {name: "for a test"})
-    with pytest.raises(wl.InputError, match=f"`exemptions` names {name}, which must hold for any {model.kind}"):
-        conformance(model)
+def test_what_must_hold_for_any_model_cannot_be_exempt(base: Any, name: str) -> None:
+    found = {check.name: check for check in checks(exempt(base, name))}
+    assert name in found
+    with pytest.raises(AssertionError, match=f"`exemptions` names {name}, which must hold for any"):
+        found["exemptions_are_claims"]()
 
 
 def test_checks_are_named_documented_and_frozen() -> None:
@@ -133,7 +135,7 @@ def test_a_rig_without_an_example_is_an_error_that_says_what_to_write(monkeypatc
 
 def test_an_error_in_the_model_is_a_failure_that_names_it() -> None:
     def broken() -> None:
-        raise ExceptionGroup("", [ExceptionGroup("", [KeyError("a"), ValueError("b")]), TypeError("c")])
+        raise KeyError("a")
 
     with pytest.raises(AssertionError, match=r"^the model raised KeyError: 'a'$"):
         Check("broken", "", broken)()
@@ -175,17 +177,17 @@ class ShapedByCreepage(Wrapped):
     "model", [Batched(), ShapedByCreepage(), PairOfPoints()], ids=lambda model: type(model).__name__
 )
 def test_after_a_wrong_shape_no_other_check_is_run_which_might_fill_the_memory(model: Any) -> None:
-    outcomes = {}
+    failures = {}
     tracemalloc.start()
     for check in checks(model):
         try:
             check()
         except AssertionError as error:
-            outcomes[check.name] = error
+            failures[check.name] = str(error)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert {*outcomes, "exemptions_are_claims"} == {check.name for check in checks(model)}
-    assert sum(not isinstance(error, NotRunError) for error in outcomes.values()) == 1
+    assert {*failures, "exemptions_are_claims"} == {check.name for check in checks(model)}
+    assert len({*failures.values()}) == 1
     # A single check without this would solve 512 lines on 48 nodes: 512² · 48 numbers of 8 bytes are 100 MB an array.
     assert peak < 10e6
 

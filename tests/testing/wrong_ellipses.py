@@ -181,7 +181,7 @@ CAUGHT: dict[Any, str] = {
     BeyondTheEdge: "nodes_cover_the_patch",
     TwiceThePressure: "pressure_sums_to_the_load",
     MomentOnTheWheel: "tractions_sum_to_the_forces",
-    LongitudinalOnly: "magnitudes_are_those_of_the_vectors",
+    LongitudinalOnly: "full_slip_is_reached",
     SlipsAgainstLateralTraction: "no_node_gains_energy",
     LeaksBetweenPoints: "batch_equals_loop",
     SinglePrecisionForces: "solution_is_in_double_precision",

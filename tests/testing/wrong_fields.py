@@ -52,7 +52,7 @@ class ExcessOfCompiledLoopDiffers(Exact):  # type: ignore[misc]
 
 
 CAUGHT: dict[Any, str] = {
-    SlipsBeforeTheZone: "slip_lies_in_the_slip_zone",
+    SlipsBeforeTheZone: "what_sticks_does_not_slip",
     ForceOfAnother: "forces_alone_are_those_of_the_contact",
     CrossingAside: "crossings_are_where_the_fields_cross",
     TooMuchExcess: "excess_dissipation_is_that_of_the_fields",

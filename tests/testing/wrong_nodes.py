@@ -218,7 +218,7 @@ CAUGHT: dict[Any, str] = {
     **{changed(OwnSlope, change): check for change, check in ON_STRIPS.items()},
     SpinBackwards: "spin_has_its_force_and_moment",
     SlipWithoutSpin: "slip_turns_with_the_spin",
-    TractionInABand: "fields_sum_to_the_totals",
+    TractionInABand: "tractions_sum_to_the_forces",
     Coarse: "declared_accuracy_is_not_coarse",
     CoarseOnStrips: "declared_accuracy_is_not_coarse",
 }

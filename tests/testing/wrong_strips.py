@@ -32,10 +32,6 @@ class RefinedHasAsManyStrips(Strips):
         return self
 
 
-class RefinedHasTheSameForces(RefinedHasAsManyStrips):
-    """Its forces seem to converge at once, since it has as many strips and cells."""
-
-
 class StripsOfHalfTheWear(Strips):
     """On the strips that are asked for, it slips half as much."""
 
@@ -92,7 +88,6 @@ CAUGHT: dict[Any, str] = {
     LosesEnergyOfTranslation: "slip_dissipates_the_energy_fed_in",
     LosesEnergyOnAnyStrips: "refined_nodes_improve_the_sums",
     RefinedHasAsManyStrips: "refined_nodes_improve_the_sums",
-    RefinedHasTheSameForces: "refined_strips_improve_the_forces",
     StripsOfHalfTheWear: "other_strips_have_the_same_sums",
 }
 """The check that must catch each."""

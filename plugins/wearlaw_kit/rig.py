@@ -14,50 +14,39 @@ import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.material import Material
-from wearlaw.contact.problem import Body, Geometry
+from wearlaw.contact.problem import Geometry
 from wearlaw.errors import ConditionsError, InputError, UnitError, WearlawError, described
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import Q, Quantity, parse, scalar_si
 from wearlaw_kit.bisection import lost_digits
 from wearlaw_kit.examples import assert_close
+from wearlaw_kit.rules import rule
 
 Conditions: TypeAlias = dict[str, Any]
 
 FACTORS = np.array([1.0, 0.9375, 0.875])
 """Factors that vary the conditions of the example, close enough to one that the rig still takes them."""
 
-POSITIVE = ("normal_force", "max_pressure", "patch_area", "friction_coefficient", "rolling_speed", "density")
-"""Attributes of a problem that must be greater than zero."""
-
 LOAD_OVER_PRESSURE: dict[Geometry, float] = {"line": 0.25 * np.pi, "ellipse": 2.0 / 3.0}
 """Hertz's N/(p0 A): the mean of an elliptic pressure over its peak."""
-
 
 OF_STRIPS = ("y", "width", "half_length", "max_pressure of strips")
 """Names of the numbers with an axis of strips."""
 
+PRECISE = (
+    *("normal_force", "max_pressure", "a", "b", "friction_coefficient", "rolling_speed"),
+    *("longitudinal_creepage", "lateral_creepage", "spin"),
+)
+"""Numbers of a problem; what else a rig may add to them, such as what is left of a balance, may be rounding alone."""
 
-def example_of(rig: Rig) -> Conditions:
-    """Return the conditions of a rig's example.
-
-    Raises
-    ------
-    InputError
-        If it has none.
-    """
-    if not rig.example:
-        conditions = ", ".join(f'"{name}": ...' for name in rig.conditions())
-        raise InputError(
-            f"checks: rig '{rig.name}' has no conditions to try it with; write the conditions of one test into the"
-            f' class {type(rig).__name__}, with units as text such as "1 %":\n  example = {{{conditions}}}'
-        )
-    return dict(rig.example)
+ROUNDING = 1e-10
+"""Error of a problem that an iteration finds; it moves a step of 1e-8 by a fiftieth, single precision by six of it."""
 
 
 def varied(rig: Rig) -> dict[str, Quantity | float]:
     """Return the conditions of the example that are numbers, with or without a unit; words and records are none."""
-    found = {name: _number(value) for name, value in example_of(rig).items()}
+    found = {name: _number(value) for name, value in rig.example.items()}
     return {name: value for name, value in found.items() if value is not None}
 
 
@@ -99,7 +88,7 @@ def values_of(problem: Any) -> dict[str, Any]:
 
 def _problem(rig: Rig, **changed: Any) -> Any:
     """Return the problem of the example with some conditions changed."""
-    return rig.checked_problem({**example_of(rig), **changed})
+    return rig.checked_problem({**rig.example, **changed})
 
 
 def _assert_same(found: Any, expected: dict[str, Array], what: str) -> None:
@@ -107,27 +96,21 @@ def _assert_same(found: Any, expected: dict[str, Array], what: str) -> None:
         assert_close(value, expected[name], f"{what}: {name}")
 
 
-def makes_several_patches(rig: Rig) -> bool:
-    """Return whether the problem of the example has several patches; False if the rig fails."""
+def _has_one_creepage(rig: Rig) -> bool:
+    """Return whether one condition gives the creepage; several patches have creepages of their own."""
     try:
-        return bool(_problem(rig).dims)
+        return rig.creepage in varied(rig) and not _problem(rig).dims
     except WearlawError:
-        return False
+        return rig.creepage in varied(rig)
 
 
+@rule(Rig, always=True)
 def problem_is_finite_and_positive(rig: Rig) -> None:
     """The example gives a problem of finite numbers, with a load, a patch, friction and a density above zero."""
-    problem = _problem(rig).existing()
-    assert problem.size, "the bodies of the example touch nowhere"
-    for name, value in values_of(problem).items():
-        assert np.isfinite(value).all(), f"{name} of the problem is {value!r}, not finite"
-    for name in POSITIVE:
-        value = getattr(problem, name)
-        assert (np.isfinite(value) & (np.asarray(value) > 0.0)).all(), (
-            f"{name} of the problem is {value!r}, not above zero"
-        )
+    assert _problem(rig).existing().size, "the bodies of the example touch nowhere"  # `checked_problem` tries the rest
 
 
+@rule(Rig)
 def pressure_carries_the_load(rig: Rig) -> None:
     """Load, pressure and patch agree: N is π/4 p0 A on a line, 2/3 p0 A on an ellipse, and the sum of strips."""
     problem = _problem(rig).existing()
@@ -138,6 +121,7 @@ def pressure_carries_the_load(rig: Rig) -> None:
     assert_close(carried, problem.normal_force, "the force that the pressure carries over the patch [N]")
 
 
+@rule(Rig, always=True)
 def problem_has_the_shape_of_the_conditions(rig: Rig) -> None:
     """Every number of the problem is a float64 array of the shape of the conditions: no axis, one, or two.
 
@@ -153,29 +137,26 @@ def problem_has_the_shape_of_the_conditions(rig: Rig) -> None:
             assert found == full, f"{name} has shape {value.shape} for conditions of shape {shape}"
 
 
+@rule(Rig)
 def arrays_equal_single_calls(rig: Rig) -> None:
     """Arrays give the same as a call for each of their values, and broadcast if they lie on different axes."""
-    for name, value in varied(rig).items():
+    values = varied(rig)
+    for name, value in values.items():
         singles = [values_of(_problem(rig, **{name: times(value, factor)})) for factor in FACTORS]
         expected = {field: np.stack([np.asarray(single[field]) for single in singles]) for field in singles[0]}
         _assert_same(_problem(rig, **{name: times(value, FACTORS)}), expected, f"an array of {name}")
-    _assert_broadcasts(rig)
-
-
-def _assert_broadcasts(rig: Rig) -> None:
-    values = varied(rig)
     first, *rest = values
-    down, along = FACTORS[:2, None], FACTORS
 
     def changed(one: Array | float, others: Array | float) -> Conditions:
         return {name: times(values[name], one if name == first else others) for name in (first, *rest)}
 
-    singles = [[values_of(_problem(rig, **changed(i, j))) for j in along] for i in down[:, 0]]
-    expected = {field: np.array([[single[field] for single in row] for row in singles]) for field in singles[0][0]}
+    rows = [[values_of(_problem(rig, **changed(i, j))) for j in FACTORS] for i in FACTORS[:2]]
+    expected = {field: np.array([[single[field] for single in row] for row in rows]) for field in rows[0][0]}
     expected = expected if rest else {field: value[:, :1] for field, value in expected.items()}
-    _assert_same(_problem(rig, **changed(down, along)), expected, f"{first} on an axis of its own")
+    _assert_same(_problem(rig, **changed(FACTORS[:2, None], FACTORS)), expected, f"{first} on an axis of its own")
 
 
+@rule(Rig)
 def conditions_are_declared(rig: Rig) -> None:
     """`conditions()` has the names in the example and the one in `creepage`, and the example is one test."""
     declared = rig.conditions()
@@ -186,85 +167,52 @@ def conditions_are_declared(rig: Rig) -> None:
         assert np.ndim(value) == 0, f"the example has an array of {name}; give one value"
 
 
-def creepage_is_proportional_to_its_condition(rig: Rig) -> None:
-    """Half of the condition that `creepage` names is half of the problem's creepage; without it all stays finite."""
-    none = _problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], 0.0)}).existing()
-    for name, value in values_of(none).items():
-        assert np.isfinite(value).all(), f"{name} of the problem is {value!r} where {rig.creepage} is zero"
-    found = none.longitudinal_creepage
-    assert (found == 0.0).all(), f"the problem has the creepage {found!r} where {rig.creepage} is zero"
-    whole, half = (
-        _problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], share)}).existing() for share in (1.0, 0.5)
-    )
-    assert (whole.longitudinal_creepage != 0.0).all(), f"the example has no creepage; give another {rig.creepage}"
-    assert_close(
-        half.longitudinal_creepage, 0.5 * whole.longitudinal_creepage, f"the creepage of half the {rig.creepage}"
-    )
-
-
-def only_creepage_turns_with_its_sign(rig: Rig) -> None:
-    """The creepage changes its sign with its condition, and nothing else changes.
-
-    A rolling speed may, where it is the mean of a speed that is kept and one that makes the creepage.
-    """
-    problem, turned = (_problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], sign)}) for sign in (1.0, -1.0))
-    expected = values_of(problem)
-    expected["longitudinal_creepage"] = -expected["longitudinal_creepage"]
-    expected["rolling_speed"] = values_of(turned)["rolling_speed"]
-    _assert_same(turned, expected, f"{rig.creepage} of the other sign")
-
-
+@rule(Rig, always=True)
 def units_of_conditions_are_checked(rig: Rig) -> None:
     """A bare number, or a quantity of another dimension, is refused by a `UnitError` that names the condition."""
     for name, value in varied(rig).items():
         if isinstance(value, pint.Quantity):
-            _assert_refused(
-                rig, {name: value.magnitude}, UnitError, name, f"the bare number {name}={value.magnitude!r}"
-            )
-            other = Q(value.magnitude, "candela")  # of which no condition of a rig is
-            _assert_refused(rig, {name: other}, UnitError, name, f"{name}={other!r}")
+            for wrong in (value.magnitude, Q(value.magnitude, "candela")):  # of which no condition of a rig is
+                _assert_refused(rig, {**rig.example, name: wrong}, UnitError, name, f"{name}={wrong!r}")
 
 
+@rule(Rig)
 def unknown_and_missing_conditions_are_refused(rig: Rig) -> None:
     """A `ConditionsError` names a condition that the rig does not take, or one that is left out and not optional."""
-    _assert_refused(rig, {"no_such_condition": 1.0}, ConditionsError, "no_such_condition", "an unknown condition")
-    for name in example_of(rig):
-        rest = {other: value for other, value in example_of(rig).items() if other != name}
-        try:
-            rig.checked_problem(rest)
-        except WearlawError as error:
-            _assert_names(error, ConditionsError, name, f"the example without {name}")
+    unknown = {**rig.example, "no_such_condition": 1.0}
+    _assert_refused(rig, unknown, ConditionsError, "no_such_condition", "an unknown condition")
+    for name in rig.example:
+        rest = {other: value for other, value in rig.example.items() if other != name}
+        _assert_refused(rig, rest, ConditionsError, name, f"the example without {name}", optional=True)
 
 
+@rule(Rig, always=True)
 def values_that_are_no_numbers_are_refused(rig: Rig) -> None:
     """NaN in a condition is refused by an error that names it; infinity is refused, or gives a finite problem."""
     for name, value in varied(rig).items():
-        number = getattr(value, "magnitude", value)
-        nan, infinite = (in_unit_of(value, np.array([number, bad])) for bad in (np.nan, np.inf))
-        _assert_refused(rig, {name: nan}, InputError, name, f"NaN in {name}")
-        try:
-            problem = _problem(rig, **{name: infinite})
-        except InputError:
-            continue
-        for field, found in values_of(problem).items():
-            assert np.isfinite(found).all(), f"infinity in {name} is taken, and makes {field} of the problem {found!r}"
+        for number, optional in ((np.nan, False), (np.inf, True)):
+            numbers = np.array([getattr(value, "magnitude", value), number])
+            given = {**rig.example, name: in_unit_of(value, numbers)}
+            _assert_refused(rig, given, InputError, name, f"{number} in {name}", optional=optional)
 
 
-def _assert_refused(rig: Rig, changed: Conditions, kind: type[WearlawError], name: str, what: str) -> None:
-    try:
-        _problem(rig, **changed)
-    except WearlawError as error:
-        _assert_names(error, kind, name, what)
-    else:
-        raise AssertionError(f"{what} is taken; raise wearlaw.{kind.__name__} with a message that names '{name}'")
-
-
-def _assert_names(error: WearlawError, kind: type[WearlawError], name: str, what: str) -> None:
-    named = isinstance(error, kind) and re.search(rf"\b{name}\b", str(error))
+def _assert_refused(
+    rig: Rig, given: Conditions, kind: type[WearlawError], name: str, what: str, optional: bool = False
+) -> None:
+    """Assert that conditions raise an error that names one of them; if `optional`, they may give a problem too."""
     wanted = f"raise wearlaw.{kind.__name__} with a message that names '{name}'"
+    try:
+        rig.checked_problem(given)
+    except WearlawError as raised:
+        error = raised
+    else:
+        assert optional, f"{what} is taken; {wanted}"
+        return
+    named = isinstance(error, kind) and re.search(rf"\b{name}\b", str(error))
     assert named, f"{what} raises {described(error)}; {wanted}"
 
 
+@rule(Rig)
 def geometry_is_that_of_the_problem(rig: Rig) -> None:
     """`patch_geometry` is the shape of the patch of the problem, or None."""
     made = _problem(rig).geometry
@@ -273,15 +221,14 @@ def geometry_is_that_of_the_problem(rig: Rig) -> None:
     )
 
 
+@rule(Rig)
 def bodies_are_those_of_the_problem(rig: Rig) -> None:
-    """Each of `bodies` has a name, a material and a radius, and the problem has the density of the first of them.
+    """Each of `bodies` has a name and a radius, and the problem has the density of the first of them.
 
     It still has if the materials in the fields of the rig are denser.
     """
     for name, body in rig.bodies.items():
         assert name.isidentifier(), f"the name of a body must be an identifier, got {name!r}"
-        assert isinstance(body, Body), f"`bodies` has {body!r} for {name}, not a wearlaw.Body"
-        assert isinstance(body.material, Material), f"the material of {name} is {body.material!r}"
         radius = body.rolling_radius
         assert np.all(np.asarray(radius) > 0.0), f"the rolling radius of {name} is {radius!r} m, not above zero"
     for tried, which in ((rig, ""), (_denser(rig), " of the rig with denser materials")):
@@ -302,6 +249,7 @@ def _denser(record: Any) -> Any:
     return record.model_copy(update=changed) if changed else record
 
 
+@rule(Rig)
 def problem_is_in_double_precision(rig: Rig) -> None:
     """Loads, pressures, friction, sizes, speeds and creepages are exact, in steps of 1e-8 of each condition."""
     for name, value in varied(rig).items():
@@ -313,26 +261,25 @@ def problem_is_in_double_precision(rig: Rig) -> None:
         lost_digits(changed, f"the problem loses digits of {name}", ROUNDING)
 
 
-PRECISE = (
-    *("normal_force", "max_pressure", "a", "b", "friction_coefficient", "rolling_speed"),
-    *("longitudinal_creepage", "lateral_creepage", "spin"),
-)
-"""Numbers of a problem; what else a rig may add to them, such as what is left of a balance, may be rounding alone."""
+@rule(Rig, applies=_has_one_creepage)
+def creepage_is_proportional_to_its_condition(rig: Rig) -> None:
+    """Half of the condition that `creepage` names is half of the problem's creepage; without it all stays finite."""
+    given = varied(rig)[rig.creepage]
+    problems = (_problem(rig, **{rig.creepage: times(given, share)}).existing() for share in (0.0, 0.5, 1.0))
+    none, half, whole = (problem.longitudinal_creepage for problem in problems)
+    assert (none == 0.0).all(), f"the problem has the creepage {none!r} where {rig.creepage} is zero"
+    assert (whole != 0.0).all(), f"the example has no creepage; give another {rig.creepage}"
+    assert_close(half, 0.5 * whole, f"the creepage of half the {rig.creepage}")
 
-ROUNDING = 1e-10
-"""Error of a problem that an iteration finds; it moves a step of 1e-8 by a fiftieth, single precision by six of it."""
 
-CHECKS = (
-    problem_is_finite_and_positive,
-    pressure_carries_the_load,
-    problem_has_the_shape_of_the_conditions,
-    arrays_equal_single_calls,
-    conditions_are_declared,
-    units_of_conditions_are_checked,
-    unknown_and_missing_conditions_are_refused,
-    values_that_are_no_numbers_are_refused,
-    geometry_is_that_of_the_problem,
-    bodies_are_those_of_the_problem,
-    problem_is_in_double_precision,
-)
-OF_CREEPAGE = (creepage_is_proportional_to_its_condition, only_creepage_turns_with_its_sign)
+@rule(Rig, applies=_has_one_creepage)
+def only_creepage_turns_with_its_sign(rig: Rig) -> None:
+    """The creepage changes its sign with its condition, and nothing else changes.
+
+    A rolling speed may, where it is the mean of a speed that is kept and one that makes the creepage.
+    """
+    problem, turned = (_problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], sign)}) for sign in (1.0, -1.0))
+    expected = values_of(problem)
+    expected["longitudinal_creepage"] = -expected["longitudinal_creepage"]
+    expected["rolling_speed"] = values_of(turned)["rolling_speed"]
+    _assert_same(turned, expected, f"{rig.creepage} of the other sign")

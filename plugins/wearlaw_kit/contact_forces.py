@@ -1,0 +1,360 @@
+"""Checks of how the forces follow the creepages: symmetry, growth, friction, full slip, initial slopes, spin."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.models.contact_model import ContactModel
+from wearlaw_kit.bisection import Indices, find_jumps
+from wearlaw_kit.contact import has_nodes
+from wearlaw_kit.examples import SAME, SUM, assert_close, for_each
+from wearlaw_kit.reduced import (
+    at_magnitude,
+    at_reduced,
+    creeping,
+    friction_limit,
+    lever,
+    parts_of_power,
+    random_ellipses,
+    saturation,
+    sliding_power,
+    translation,
+    with_creepage,
+    without_spin,
+)
+from wearlaw_kit.shapes import (
+    ELLIPSE,
+    LINE,
+    PATCH,
+    SHAPES,
+    Shape,
+    assert_same_forces,
+    assert_same_power,
+    error_of_force,
+    error_of_sums,
+    error_of_traction,
+    forces_alone,
+    on_problems,
+    on_shapes,
+    solutions,
+)
+
+POINTS = 32
+"""Number of patches checked at once."""
+
+FAR = 100.0
+"""Reduced creepage far beyond the saturation of any theory that saturates."""
+
+FULL = 1e4
+"""Reduced creepage at which hardly more than the rigid slip is left."""
+
+SMALL = 0.1
+"""Reduced spin at which theories are still close to linear theory."""
+
+SLOPE = 1e-3
+"""Error of initial slopes on an ellipse: half of the last digit of Kalker's coefficients."""
+
+FALL = 0.02
+"""Share to which the difference between partial and full slip falls, from 1e-4 to 1e-8 away from full slip: a hundredth
+for a square root c √gap, the steepest onset in theories of contact, and a fiftieth for c √gap (1 + d √gap) with a d as
+low as -50."""
+
+
+@on_problems(*SHAPES)
+def wear_index_is_forces_times_creepages(model: ContactModel, problem: Problem) -> None:
+    """Tγ is ξFx, and on an ellipse ξFx + ηFy + φMz."""
+    contact = model.solve(problem)
+    rounding = SAME * parts_of_power(problem, contact.forces)
+    assert_close(contact.wear_index, problem.power(contact.forces), "the wear index", 0.0, rounding)
+
+
+@on_shapes(*SHAPES)
+def forces_alone_are_those_of_the_contact(model: ContactModel, shape: Shape) -> None:
+    """`tangential_force` and `creep_forces` give the forces of `solve`, with the sign of the creepage."""
+
+    def examine(problem: Problem) -> None:
+        assert_same_forces(problem, forces_alone(model, problem), model.solve(problem).forces, "alone", SUM)
+
+    for_each(shape.problems, examine)
+    examine(shape.batch)
+
+
+@on_problems(*SHAPES, claims=("direction",))
+def zero_creepage_gives_nothing(model: ContactModel, problem: Problem) -> None:
+    """Free rolling has no traction, no slip, no forces and no wear index."""
+    contact = model.solve(creeping(problem, 0.0))
+    for name in ("traction", "slip", "tangential_force", "force_x", "force_y", "moment_z", "wear_index"):
+        value = getattr(contact, name)
+        assert (value == 0).all(), f"without creepage {name} reaches {np.abs(value).max():.3g} in SI units"
+
+
+@on_problems(*SHAPES, claims=("symmetry",))
+def forces_are_odd_in_the_creepages(model: ContactModel, problem: Problem) -> None:
+    """Opposite creepages and spin give opposite forces and moment, and the same wear index."""
+    _compare_turned(model, problem, (-1.0, -1.0, -1.0), "at the opposite creepages")
+
+
+@on_problems(ELLIPSE, claims=("symmetry",))
+def forces_are_mirrored_with_the_creepages(model: ContactModel, problem: Problem) -> None:
+    """Opposite lateral creepage and spin give the same Fx and wear index, and opposite Fy and Mz, as y is mirrored."""
+    _compare_turned(model, problem, (1.0, -1.0, -1.0), "at the mirrored creepages")
+
+
+def _compare_turned(model: ContactModel, problem: Problem, signs: tuple[float, float, float], message: str) -> None:
+    """Compare forces and wear index with those for creepages, and hence forces, of other signs."""
+    contact, other = model.solve(problem), model.solve(creeping(problem, *signs))
+    due = CreepForces(
+        longitudinal=signs[0] * contact.force_x,
+        lateral=signs[1] * contact.force_y,
+        spin_moment=signs[2] * contact.moment_z,
+    )
+    assert_same_forces(problem, other.forces, due, message, SUM)
+    assert_same_power(problem, other, contact, message, SUM)
+
+
+@on_problems(*SHAPES, claims=("growth",))
+def force_grows_with_creepage(model: ContactModel, problem: Problem) -> None:
+    """Fx never falls when a longitudinal creepage alone grows."""
+    growing = np.concatenate([[1.0], 1.0 + np.logspace(-12, 3, 31)])
+    creepage = translation(problem)[:, None] * growing
+    batch = problem[:, None].broadcast_to(creepage.shape).with_creepages(creepage, 0.0 * creepage, 0.0 * creepage)
+    force = forces_alone(model, batch).longitudinal
+    fell = np.diff(force) < -SUM * force[:, :-1]
+    assert not fell.any(), f"the force falls as the creepage grows: {force!r}"
+    assert (force[:, 0] > 0).all(), f"the force is {force[:, 0].min()!r} at a positive creepage"
+
+
+@on_problems(*SHAPES, claims=("traction_bound", "friction"))
+def force_stays_below_friction(model: ContactModel, problem: Problem) -> None:
+    """The tangential force, on an ellipse of Fx and Fy, does not exceed μN."""
+    growing = np.logspace(0, 2, 5)
+    batch = creeping(problem[:, None].broadcast_to((problem.size, growing.size)), growing)
+    share = forces_alone(model, batch).tangential / friction_limit(batch)
+    assert (share <= 1.0 + error_of_force(model, problem)).all(), f"the force reaches {share.max():.9g} μN"
+
+
+@on_problems(*SHAPES, claims=("traction_bound",))
+def traction_keeps_its_bound(model: ContactModel, problem: Problem) -> None:
+    """The magnitude of the traction does not exceed the bound at any node."""
+    for contact in solutions(model, problem):
+        traction = np.abs(contact.traction)
+        over = traction > contact.traction_bound * (1.0 + error_of_traction(model, problem))
+        share = traction[over] / contact.traction_bound[over]
+        assert not over.any(), f"the traction is {share} times its bound at x, y = {contact.x[over]}, {contact.y[over]}"
+
+
+@on_shapes(*SHAPES, claims=("stick",))
+def what_sticks_does_not_slip(model: ContactModel, shape: Shape) -> None:
+    """There is no slip where the traction is below its bound.
+
+    On an ellipse a cell may slip on one side and stick on the other, and the traction may turn within it. So the check
+    sums slip times the distance of the traction from its bound, as a share of the power in full slip; and it leaves out
+    creepages at which no more than such cells slip.
+    """
+    allowed = 0.0 if shape is LINE else model.elliptic_accuracy
+
+    def examine(problem: Problem) -> None:
+        for contact in solutions(model, problem):
+            lacking = np.maximum(contact.traction_bound * (1.0 - SAME) - np.abs(contact.traction), 0.0)
+            share = contact.integral(np.abs(contact.slip), lacking) / sliding_power(problem)
+            assert (share <= allowed).all(), f"below the bound, slip has {share.max():.2g} of the power of full slip"
+
+    for_each(shape.draw(POINTS), examine)
+    if shape is LINE:
+        for_each(shape.problems, examine)
+
+
+@on_shapes(*SHAPES, claims=("continuity",))
+def forces_are_continuous(model: ContactModel, shape: Shape) -> None:
+    """Forces and mean slip have no jump as creepages grow through full slip; one of 1/1000 is found.
+
+    Cells begin to slip as a whole: with them, the mean slip may jump by the accuracy times that of full slip. On the
+    nodes of an ellipse, with spin, strips may begin to slip elsewhere at once: then a force may jump by the accuracy
+    times μN.
+    """
+    problem, low, high, intervals = shape.path
+    error = error_of_sums(model, problem)
+    of_forces = error * (problem.spin != 0) * friction_limit(problem)
+    allowed = {"mean_slip": error * translation(at_magnitude(problem, high))}
+    allowed |= dict.fromkeys(("force_x",) if shape is LINE else ("force_x", "force_y"), of_forces)
+
+    def solved(name: str, index: Indices, share: Array) -> Array:
+        value: Array = getattr(model.solve(at_magnitude(problem[index], low * (high / low) ** share)), name)
+        return value
+
+    for name, step in allowed.items():
+        for point, share, before, behind in find_jumps(partial(solved, name), problem.size, intervals):
+            where = f"at the reduced creepage {low * (high / low) ** share:g}"
+            assert abs(behind - before) <= step[point], f"{name} jumps from {before:.9g} to {behind:.9g} {where}"
+
+
+@on_shapes(*SHAPES, claims=("saturation",))
+def full_slip_is_reached(model: ContactModel, shape: Shape) -> None:
+    """At 100 times the creepage of Carter's full slip, μa/R, the force is μN and every node slips at its bound.
+
+    On an ellipse at 100 times the creepage that linear theory needs for μN, without spin. The force lies along a
+    longitudinal or a lateral creepage; where there are both, between the creepage and the force of linear theory, since
+    theories with a flexibility each for x and y turn it there.
+    """
+    linear = shape.directions / np.hypot(*shape.directions)
+    problem = at_reduced(shape.draw(POINTS)[:, None], FAR * linear[0], FAR * linear[1], 0.0)
+    contact, slip, error = model.solve(problem), translation(problem), error_of_force(model, problem)
+    limit, bound = friction_limit(problem), contact.traction_bound
+    assert_close(contact.tangential_force, limit, "the force in full slip", error)
+    # At a node on the very edge the bound is rounding of that in the centre.
+    edge = SAME * contact.per_node(bound.max(axis=tuple(range(2, bound.ndim))))
+    assert_close(contact.traction, bound, "the traction in full slip", error_of_traction(model, problem), edge)
+    sticks = (contact.slip == 0.0) & (contact.area > 0.0)
+    assert not sticks.any(), f"{contact.stick_ratio.max():.3g} of the patch sticks in full slip"
+    assert_close(contact.mean_slip, slip, "the mean slip in full slip", error_of_sums(model, problem))
+    creepage = np.array([problem.longitudinal_creepage, problem.lateral_creepage]) / slip
+    force = np.array([contact.force_x, contact.force_y]) / limit
+    assert ((creepage * force).sum(axis=0) > 0).all(), "the force in full slip has the sense against the creepage"
+    side = np.where(_cross(creepage, linear) < 0.0, -1.0, 1.0)
+    aside = -np.minimum(side * _cross(creepage, force), side * _cross(force, linear))
+    assert (aside <= error).all(), f"the force in full slip lies aside of the creepage by {aside.max():.3g} rad"
+
+
+def _cross(first: Array, second: Array) -> Array:
+    cross: Array = first[0] * second[1] - first[1] * second[0]
+    return cross
+
+
+@on_shapes(*SHAPES, claims=("saturation",))
+def full_slip_is_met_from_both_sides(model: ContactModel, shape: Shape) -> None:
+    """Where full slip begins, force and mean slip over creepage have the same limit from both sides, without spin.
+
+    The difference between the sides falls with the distance from full slip at least as its square root.
+    """
+    problem = without_spin(shape.draw(POINTS))
+
+    def solved(reduced: Array) -> Contact:
+        return model.solve(at_magnitude(problem, reduced))
+
+    full = np.full(POINTS, FAR)  # the least creepages, to rounding, with the force of full slip and no stick
+    low, limit = np.zeros(POINTS), solved(full).tangential_force * (1.0 - SAME)
+    for _ in range(60):
+        middle = 0.5 * (low + full)
+        contact = solved(middle)
+        reached = (contact.tangential_force >= limit) & (contact.stick_ratio <= SUM)
+        low, full = np.where(reached, low, middle), np.where(reached, middle, full)
+
+    def step(gap: float) -> dict[str, Array]:
+        """Return the relative differences between a `gap` below and a `gap` above full slip."""
+        below, above = (solved(full * (1.0 + side * gap)) for side in (-1.0, 1.0))
+        slip = below.mean_slip / above.mean_slip * (1.0 + gap) / (1.0 - gap)
+        return {"force": np.abs(1.0 - below.tangential_force / above.tangential_force), "mean slip": np.abs(1.0 - slip)}
+
+    far, near = step(1e-4), step(1e-8)
+    error = max(SUM, error_of_sums(model, problem))
+    for name, rounding in (("force", SUM), ("mean slip", error)):
+        wrong = ~(near[name] <= FALL * far[name] + 2.0 * rounding)
+        assert not wrong.any(), (
+            f"the {name} jumps by {near[name][wrong].max():.2g} of its value into full slip, at the reduced creepage"
+            f" {full[wrong][0]:g}"
+        )
+
+
+@on_problems(LINE, claims=("initial_slope",))
+def initial_slope_is_that_of_the_half_space(model: ContactModel, problem: Problem) -> None:
+    """On a line the force at small creepage is (π/2) E* a ξ per width."""
+    reduced = np.logspace(-9, -4, problem.size)  # relative to the creepage of full slip
+    creepage = reduced * saturation(problem)
+    whole, half = (
+        model.solve(with_creepage(problem, share * creepage)).tangential_force / (share * creepage)
+        for share in (1.0, 0.5)
+    )
+    due = 0.5 * np.pi * problem.effective_modulus * problem.half_width * problem.track_width
+    # T/ξ = T'(0) + c ξ + ..., so that half the creepage halves the remainder: it is twice the difference, except for
+    # the next order, which is the share ξR/(μa) of it. With an error e of each T, the first quotient is off by e, and
+    # twice the difference by 4 e.
+    remainder = 2.0 * (1.0 + reduced) * np.abs(whole - half)
+    assert_close(whole, due, "the force over a small creepage", 5.0 * error_of_force(model, problem), remainder)
+
+
+@on_shapes(ELLIPSE, claims=("initial_slope",))
+def initial_slopes_are_kalkers(model: ContactModel, shape: Shape) -> None:  # noqa: ARG001
+    """For small creepages Fx is G ab C11 ξ, and Fy is G ab C22 η and G ab √(ab) C23 φ.
+
+    The creepage is a millionth of the creepage at saturation, so that the force differs from the linear one by far less
+    than `SLOPE`. A march over coarse cells ends the traction up to a cell too soon. That error is within its accuracy,
+    and of first order: at least 1.5 times smaller on nodes twice as fine.
+    """
+    error = _slope_error(model)
+    if error <= SLOPE:
+        return
+    finer = model.refined()
+    assert finer is not None and error <= model.elliptic_accuracy, f"a slope is off by {error:.2g} of Kalker's"  # noqa: PT018
+    left = _slope_error(finer)
+    assert left <= max(error / 1.5, SLOPE), f"a slope is off by {error:.2g}, and still by {left:.2g} on finer nodes"
+
+
+def _slope_error(model: ContactModel) -> float:
+    """Return the largest error of the initial slopes, relative to Kalker's slope for the same creepage."""
+    small, errors = 1e-6, []
+    for cause, (along, across) in enumerate([(1.0, 0.0), (0.0, 1.0), (0.0, 1.0)]):
+        problem = at_reduced(random_ellipses(POINTS), *(small * np.eye(3)[cause]))
+        forces, unit = model.creep_forces(problem), small * friction_limit(problem)
+        errors += [np.abs(forces.longitudinal / unit - along).max(), np.abs(forces.lateral / unit - across).max()]
+    return float(max(errors))
+
+
+@on_shapes(*SHAPES, claims=("similarity",))
+def contacts_are_similar(model: ContactModel, shape: Shape) -> None:
+    """T/(μN) of a line depends on ξR/(μa) alone.
+
+    On an ellipse forces over μN and the moment over μN a depend on a/b, ν and Gξ/(μp0), Gη/(μp0), Gφa/(μp0) alone.
+    """
+    problem, other = shape.problems, shape.similar
+    known, ratio = forces_alone(model, problem), friction_limit(other) / friction_limit(problem)
+    due = CreepForces(
+        longitudinal=ratio * known.longitudinal,
+        lateral=ratio * known.lateral,
+        spin_moment=ratio * other.a / problem.a * known.spin_moment,
+    )
+    assert_same_forces(other, forces_alone(model, other), due, "of a similar contact", SUM)
+
+
+@on_shapes(ELLIPSE, PATCH, claims=("spin",))
+def spin_has_its_force_and_moment(model: ContactModel, shape: Shape) -> None:
+    """A positive spin alone gives neither a negative Fy nor a negative Mz, and one of them has a size.
+
+    For a small spin, Fy is at least a quarter of the linear theory's. Or Mz is as large a share of μN times its lever:
+    in full slip between rigid bodies, spin gives a moment alone. The simplified theory and Polach's have at least half
+    of the linear Fy at a/b from 1/20 to 20.
+    """
+    problem = at_reduced(shape.draw(POINTS), 0.0, 0.0, SMALL)
+    forces, linear = forces_alone(model, problem), SMALL * friction_limit(problem)
+    shares = {"Fy": forces.lateral / linear, "Mz": forces.spin_moment / (linear * lever(problem))}
+    for name, share in shares.items():
+        assert (share >= -max(SUM, error_of_sums(model, problem)) / SMALL).all(), (
+            f"a positive spin alone gives a negative {name}, of {share.min():.3g} times the size of linear theory"
+        )
+    least = np.maximum(*shares.values()).min()
+    assert least >= 0.25, f"a spin alone gives only {least:.3g} of the Fy of linear theory, and no Mz of that size"
+
+
+@on_shapes(ELLIPSE, PATCH, claims=("spin",), applies=has_nodes)
+def slip_turns_with_the_spin(model: ContactModel, shape: Shape) -> None:
+    """In full slip the slip turns with the spin: it gains (-φy, -φx), where a model resolves the patch.
+
+    It gains a quarter to four times that, since theories with a flexibility each for x, y and spin turn at other rates:
+    the simplified theory at 1 to 3.9 times that, at a/b from 1/20 to 20. The check compares ∫ y s_x dA and ∫ x s_y dA.
+    Half the difference between both signs of the spin leaves out the slip of elastic bodies without spin.
+    """
+    problem = at_magnitude(without_spin(shape.draw(POINTS)), FULL)
+    spin = 0.5 * translation(problem) / np.maximum(problem.a, problem.b)
+    more, less = (
+        model.solve(problem.with_creepages(problem.creepage, problem.lateral_creepage, side * spin))
+        for side in (1.0, -1.0)
+    )
+    for slip, arm in (("slip_x", "y"), ("slip_y", "x")):
+        turned = [contact.integral(getattr(contact, slip), getattr(contact, arm)) for contact in (more, less)]
+        rate = -0.5 * (turned[0] - turned[1]) / (spin * more.integral(getattr(more, arm), getattr(more, arm)))
+        wrong = ~((rate >= 0.25) & (rate <= 4.0))
+        assert not wrong.any(), f"along {arm}, {slip} falls at {rate[wrong][0]:.3g} times the spin"

@@ -1,0 +1,375 @@
+"""Checks of a law: its rates, what they depend on, and what it declares."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from typing import Any, TypeVar
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact
+from wearlaw.errors import WearlawError
+from wearlaw.models.law import Law, Numbers
+from wearlaw.models.wear_law import WearLaw
+from wearlaw.settings.parameters import changed, number_like, numbers
+from wearlaw.units.quantities import Quantity
+from wearlaw_kit.examples import SAME, assert_close
+from wearlaw_kit.law_contacts import (
+    NODE_FIELDS,
+    aimed,
+    arrays_of,
+    at_nodes,
+    borders,
+    for_each_contact,
+    forward,
+    on_contacts,
+    on_nodes,
+    random_contacts,
+    retotalled,
+)
+from wearlaw_kit.rules import rule
+
+T = TypeVar("T")
+
+STEPS = (1.0, 1.001, 0.999)
+"""Factors of a parameter at one operating point after the other; small, since laws refuse parameters out of order."""
+
+SUMS = 1e-9
+"""Rounding of a value that a law of the patch sums over its nodes, where the sum may be a small difference. A mean
+without areas, or the first node alone, is off by the difference of one of at most 40 nodes from the others."""
+
+GROWN_BY = {"wear_index_density": ("traction", "slip")}
+"""Fields of a contact that are raised to raise a variable; others are raised directly."""
+
+
+def of_patch(law: Law, patch: T, nodes: T) -> T:
+    """Return one of two things: what a law with one value for the patch has, or one with a rate for each node."""
+    return patch if law.outcome.of == "patch" else nodes
+
+
+def of_cells(law: Law) -> bool:
+    """Return whether a law is one of the nodes of a patch; one of the whole patch has a single node."""
+    return bool(law.scale != "patch")
+
+
+def at_each_node(law: Law) -> bool:
+    """Return whether a law has a rate for each node of the patch."""
+    return of_cells(law) and law.outcome.of != "patch"
+
+
+@on_contacts(Law, always=True, first=True)
+def rate_has_the_right_shape(law: Law, contact: Contact) -> None:
+    """There is a rate for each node, or one value for each patch, with no batch axis, one or two."""
+    for shape in ((), (1,), (2, 1)):
+        batch = contact[[0]].mapped(partial(_repeated, shape))
+        found, due = np.shape(law.rate(batch, law.numbers)), of_patch(law, shape, batch.pressure.shape)
+        assert found == due, f"rates of shape {found} in place of {due}"
+
+
+def _repeated(shape: tuple[int, ...], array: Array) -> Array:
+    return np.broadcast_to(array[0], shape + array.shape[1:]).copy()
+
+
+@on_contacts(Law, always=True)
+def rate_is_finite(law: Law, contact: Contact) -> None:
+    """The rate is a finite number at every node, even if pressure, traction or slip is zero."""
+    rate = law.rate(contact, law.numbers)
+    assert np.isfinite(rate).all(), f"the rate is not finite: {rate!r}"
+
+
+@on_contacts(Law, always=True, applies=lambda law: not law.outcome.signed)
+def rate_is_never_negative(law: Law, contact: Contact) -> None:
+    """Wear takes material away; no rate is below zero, whatever the sign of the creepage."""
+    rate = law.rate(contact, law.numbers)
+    assert not (rate < 0).any(), f"the rate is negative: {rate!r}"
+
+
+@on_contacts(Law, applies=lambda law: law.outcome.of != "patch" and (isinstance(law, WearLaw) or law.zero_in_stick))
+def no_slip_no_wear(law: Law, contact: Contact) -> None:
+    """Without slip, and hence without dissipation, the rate is exactly zero: at one node or in the whole patch."""
+    rate = law.rate(retotalled(contact, slip=np.zeros_like(contact.slip)), law.numbers)
+    assert (rate == 0).all(), f"without slip the rate is {rate!r}, not zero"
+    rate = law.rate(contact, law.numbers)[contact.slip == 0.0]
+    assert (rate == 0).all(), f"where the bodies stick beside nodes that slip, the rate is {rate!r}, not zero"
+
+
+@on_contacts(WearLaw)
+def direction_of_creepage_does_not_matter(law: WearLaw, contact: Contact) -> None:
+    """The rate is the same if traction and slip both change sign, turn by a right angle, or are mirrored in x."""
+    rate = law.rate(contact, law.numbers)
+    for turned in _turned(contact):
+        assert_close(law.rate(turned, law.numbers), rate, "the rate with traction and slip in another direction")
+
+
+def _turned(contact: Contact) -> Iterator[Contact]:
+    """Yield the contact with reversed vectors, and on strips with turned and with mirrored ones.
+
+    Its sums are not computed anew, so that a wear index at a border of the law stays there.
+    """
+    if not contact.on_strips:
+        names = ("traction", "slip", "tangential_force")
+        yield contact.replaced(**{name: -getattr(contact, name) for name in names})
+        return
+    for (xx, xy), (yx, yy), moment in (((-1, 0), (0, -1), -1), ((0, -1), (1, 0), 1), ((1, 0), (0, -1), -1)):
+        turned = {"moment_z": moment * contact.moment_z}
+        for vector in ("traction", "slip", "force"):
+            x, y = (getattr(contact, f"{vector}_{axis}") for axis in "xy")
+            turned |= {f"{vector}_x": xx * x + xy * y, f"{vector}_y": yx * x + yy * y}
+        yield contact.replaced(**turned)
+
+
+@rule(WearLaw)
+def vectors_dissipate_their_product(law: WearLaw) -> None:
+    """On an ellipse q·s is the product of vectors: slip across the traction adds no wear to a law of the energy.
+
+    A law of the energy is one whose rate on a line stays the same, to the bit, if the traction doubles and the slip is
+    halved. Other laws may depend on the slip across the traction.
+    """
+    of_energy = []
+
+    def compare(contact: Contact) -> None:
+        if not contact.on_strips:
+            double, half = {"traction": 2.0, "traction_bound": 2.0}, {"slip": 0.5}
+            other = contact.replaced(**{name: by * getattr(contact, name) for name, by in (double | half).items()})
+            of_energy.append(np.array_equal(law.rate(contact, law.numbers), law.rate(other, law.numbers)))
+
+    def examine(contact: Contact) -> None:
+        if contact.on_strips:
+            straight, across = (law.rate(_with_slip_across(contact, share), law.numbers) for share in (0.0, 1.0))
+            assert_close(across, straight, "the rate with slip across the traction")
+
+    for_each_contact(law, compare)
+    if all(of_energy):
+        for_each_contact(law, examine)
+
+
+def _with_slip_across(contact: Contact, share: float) -> Contact:
+    """Return a contact with traction along x, and with slip across it of a share of that along it."""
+    return contact.replaced(
+        traction_x=contact.traction,
+        traction_y=np.zeros_like(contact.slip),
+        slip_x=contact.slip,
+        slip_y=share * contact.slip,
+        slip=contact.slip * np.hypot(1.0, share),
+    )
+
+
+@rule(Law)
+def parameters_may_vary(law: Law) -> None:
+    """A number that varies from point to point gives the same rate, breakpoints and ramps as a law for each value."""
+    law = law.explicit()
+    of_each = {name: _of_values(law, name, number) for name, number in numbers(law).items()}
+
+    def with_values(name: str, node_axes: int) -> Numbers:
+        return {**law.numbers, name: (law.numbers[name] * np.array(STEPS)).reshape(-1, *[1] * node_axes)}
+
+    for name, laws in of_each.items():
+        for axes in of_patch(law, (0,), (1, 2)):
+            found = _borders(law, with_values(name, axes))
+            for point, one in laws.items():
+                message = f"the breakpoints and ramps with {name} for each point"
+                assert_close(_at(found, point), _at(_borders(one, one.numbers), 0), message)
+
+    def examine(contact: Contact) -> None:
+        for first in range(contact.rolling_speed.size):
+            batch, alone = contact[[first] * len(STEPS)], contact[[first]]
+            due = of_patch(law, batch.pressure.shape[:1], batch.pressure.shape)
+            for name, laws in of_each.items():
+                rate = law.rate(batch, with_values(name, of_patch(law, 0, batch.pressure.ndim - 1)))
+                assert np.shape(rate) == due, f"rates of shape {np.shape(rate)} when {name} varies"
+                for point, one in laws.items():
+                    assert_close(rate[point], one.rate(alone, one.numbers)[0], f"the rate with {name} for each point")
+
+    for_each_contact(law, examine)
+
+
+def _of_values(law: Law, name: str, number: Quantity | float) -> dict[int, Law]:
+    """Return the laws with a number at each of `STEPS`, by the step, without values that the law does not take."""
+    laws = {}
+    for point, value in enumerate(law.numbers[name] * np.array(STEPS)):
+        with contextlib.suppress(WearlawError):
+            laws[point] = changed(law, {name: number_like(number, float(value))})
+    return laws
+
+
+def _borders(law: Law, p: Numbers) -> list[Any]:
+    """Return the numbers of breakpoints and of ramps."""
+    breakpoints, ramps = law.breakpoints(p) or {}, law.ramps(p) or ()
+    return [value for name in sorted(breakpoints) for value in breakpoints[name]] + [n for ramp in ramps for n in ramp]
+
+
+def _at(found: list[Any], point: int) -> Array:
+    """Return numbers at one operating point, of which each is a float or an array with one value for each."""
+    flat = [np.ravel(number) for number in found]
+    return np.array([each[point if each.size > 1 else 0] for each in flat])
+
+
+@on_contacts(Law)
+def batching_does_not_matter(law: Law, contact: Contact) -> None:
+    """One operating point at a time gives the same as all at once."""
+    together = law.rate(contact, law.numbers)
+    for point in range(contact.rolling_speed.size):
+        alone = law.rate(contact[[point]], law.numbers)[0]
+        assert_close(together[point], alone, f"the rate at operating point {point} of a batch")
+
+
+@on_contacts(Law, applies=lambda law: law.outcome.of != "patch" and not any(name == "x" for name, _ in borders(law)))
+def position_does_not_matter(law: Law, contact: Contact) -> None:
+    """The rate is the same if the nodes lie elsewhere, and pressure, traction and slip are as before.
+
+    A law that branches at positions `x` is not checked.
+    """
+    rate = law.rate(contact, law.numbers)
+    for message, factor, shift in (("at zero", 0.0, 0.0), ("mirrored", -1.0, 0.0), ("shifted", 1.0, 1e-3)):
+        for name in ("x", "y") if contact.on_strips else ("x",):
+            moved = contact.replaced(**{name: factor * getattr(contact, name) + shift})
+            assert_close(law.rate(moved, law.numbers), rate, f"the rate with {name} {message}")
+
+
+@on_nodes(Law, applies=of_cells)
+def order_of_nodes_does_not_matter(law: Law, contact: Contact) -> None:
+    """Each node keeps its rate when nodes or strips are listed in another order, and a patch its value."""
+    rate = law.rate(contact, law.numbers)
+    for axis in _axes(contact):
+        count = contact.pressure.shape[axis]
+        for order in (np.arange(count)[::-1], np.random.default_rng(count).permutation(count)):
+            listed: Callable[[Array], Array] = partial(np.take, indices=order, axis=axis)
+            found = law.rate(_nodes(contact, listed, axis), law.numbers)
+            message = f"the rate with the nodes in the order {order.tolist()}"
+            due = rate if law.outcome.of == "patch" else listed(rate)
+            assert_close(found, due, message, of_patch(law, SUMS, SAME))
+
+
+@on_nodes(Law, applies=of_cells)
+def splitting_a_node_does_not_matter(law: Law, contact: Contact) -> None:
+    """Two parts of a node wear at the rate of the whole, as do two parts of a strip; the rest stays the same.
+
+    So a mean over the nodes has to be weighted by their areas.
+    """
+    rate = law.rate(contact, law.numbers)
+    for axis in _axes(contact):
+        count = contact.pressure.shape[axis]
+        split: Callable[[Array], Array] = partial(np.repeat, repeats=[2, *[1] * (count - 1)], axis=axis)
+        parts, share = _nodes(contact, split, axis), np.array([0.25, 0.75, *[1.0] * (count - 1)])
+        width = share * parts.strip_width if _of_strips(contact, axis) else parts.strip_width
+        parts = parts.replaced(area=share.reshape(-1, *[1] * (-1 - axis)) * parts.area, strip_width=width)
+        found, due = law.rate(parts, law.numbers), rate if law.outcome.of == "patch" else split(rate)
+        assert_close(found, due, "the rate with a node in two parts", of_patch(law, SUMS, SAME))
+
+
+def _of_strips(contact: Contact, axis: int) -> bool:
+    """Return whether an axis is that of the strips."""
+    return contact.on_strips and axis == -1
+
+
+def _axes(contact: Contact) -> tuple[int, ...]:
+    """Return the axes of nodes; the first of them runs along a strip."""
+    return (-2, -1) if contact.on_strips else (-1,)
+
+
+def _nodes(contact: Contact, change: Callable[[Array], Array], axis: int) -> Contact:
+    """Return the contact with its arrays of nodes changed along an axis, and its totals kept."""
+    names = (*NODE_FIELDS, "strip_width") if _of_strips(contact, axis) else NODE_FIELDS
+    return contact.replaced(**{name: change(getattr(contact, name)) for name in names})
+
+
+@on_nodes(Law, applies=at_each_node)
+def each_node_wears_by_itself(law: Law, contact: Contact) -> None:
+    """The rate at a node depends on its own values and the totals of the patch, not on its neighbours."""
+    rate = law.rate(contact, law.numbers)
+    names = [name for name in NODE_FIELDS if name != "area"]
+    for node in np.ndindex(rate.shape[contact.rolling_speed.ndim :]):
+        at: Any = (..., *(slice(index, index + 1) for index in node))
+        alike = {name: np.broadcast_to(getattr(contact, name)[at], rate.shape).copy() for name in names}
+        found = law.rate(contact.replaced(**alike), law.numbers)[at]
+        assert_close(found, rate[at], f"the rate at node {node} among others like it")
+
+
+@on_nodes(Law, applies=at_each_node)
+def strips_wear_as_lines_do(law: Law, contact: Contact) -> None:
+    """Nodes on strips wear at the rate of the same nodes on a line, where traction and slip are parallel to x."""
+    if not contact.on_strips:
+        return
+    along = _with_slip_across(contact, 0.0)
+    nodes = ("pressure", "traction", "slip", "traction_bound", "area", "x")
+    totals = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
+    values = {name: getattr(along, name).reshape(contact.rolling_speed.size, -1) for name in nodes}
+    line = Contact(**values, **{name: getattr(along, name) for name in totals}, problem=contact.problem)
+    rate = law.rate(along, law.numbers).reshape(line.pressure.shape)
+    assert_close(rate, law.rate(line, law.numbers), "the rate on strips, against a line")
+
+
+@rule(Law, applies=lambda law: law.outcome.of != "patch")
+def is_monotone_as_declared(law: Law) -> None:
+    """The rate never falls when a variable in `monotone_in` grows, from anywhere to anywhere, over all decades.
+
+    The wear-index density grows by the traction and by the slip.
+    """
+    start = _many(law)
+    rate = law.rate(start, law.numbers)
+    for name in law.monotone_in:
+        for by, factor in itertools.product(GROWN_BY.get(name, (name,)), 1.0 + np.logspace(-6, 2, 17)):
+            after = law.rate(_grown(start, by, factor), law.numbers)
+            fell = after < rate * (1.0 - SAME)
+            assert not fell.any(), (
+                f"the rate falls from {rate[fell][0]!r} to {after[fell][0]!r} as {name} grows from"
+                f" {at_nodes(start, name)[fell][0]:g} by a factor of {factor:g} in {by}"
+            )
+
+
+def _many(law: Law, points: int = 512) -> Contact:
+    """Return many contacts of one node, a third of them at the breakpoints of the law."""
+    contact = forward(random_contacts(points, law=law))
+    targets = [(name, value) for name, values in (law.breakpoints(law.numbers) or {}).items() for value in values]
+    for number, (name, value) in enumerate(targets):
+        chosen = np.arange(points) % (3 * len(targets)) == number
+        near = arrays_of(aimed(contact, name, value * np.random.default_rng(number).uniform(0.7, 1.1, (points, 1))))
+        mixed = {
+            name: np.where(chosen.reshape(points, *[1] * (old.ndim - 1)), near[name], old)
+            for name, old in arrays_of(contact).items()
+        }
+        contact = contact.replaced(**mixed)
+    return contact
+
+
+def _grown(contact: Contact, name: str, factor: float) -> Contact:
+    """Return the contact with a variable raised, and with it the wear index if that depends on the variable."""
+    if name == "slip_speed":
+        return retotalled(contact, rolling_speed=contact.rolling_speed * factor)
+    if name == "wear_index":
+        return dataclasses.replace(
+            contact, wear_index=contact.wear_index * factor, tangential_force=contact.tangential_force * factor
+        )
+    return aimed(contact, name, at_nodes(contact, name) * factor)
+
+
+@rule(Law, applies=lambda law: law.outcome.of != "patch")
+def declared_names_are_variables(law: Law) -> None:
+    """`breakpoints`, `jumps`, `monotone_in` and `valid_range` name variables of a contact, with finite values."""
+    of_law = (*LAW_VARIABLES, *law.own_variables)
+    declared: dict[str, tuple[Mapping[str, Any], tuple[str, ...]]] = {
+        "breakpoints": (law.breakpoints(law.numbers) or {}, of_law),
+        "jumps": (law.jumps(law.numbers), of_law),
+        "valid_range": (law.valid_range, PATCH_VARIABLES),
+        "monotone_in": (dict.fromkeys(law.monotone_in, ()), LAW_VARIABLES),
+    }
+    for subject, (variables, known) in declared.items():
+        for name, values in variables.items():
+            assert name in known, f"`{subject}` names '{name}'; the variables are: {', '.join(known)}"
+            bad = np.isnan(values).any() or (subject != "valid_range" and not np.isfinite(values).all())
+            assert not bad, f"`{subject}` has {name} = {values}"
+    for name, (low, high) in law.valid_range.items():
+        assert low < high, f"`valid_range` of {name} goes from {low:g} to {high:g}"
+
+
+@on_contacts(WearLaw, applies=lambda law: law.band() is not None)
+def band_is_ordered(law: WearLaw, contact: Contact) -> None:
+    """The law at the low end of published parameters wears no more than at their middle, and that than at the high."""
+    low, middle, high = (end.rate(forward(contact), end.numbers) for end in law.band() or ())
+    assert (low <= middle).all(), f"the low end {low!r} lies above the middle {middle!r}"
+    assert (middle <= high).all(), f"the middle {middle!r} lies above the high end {high!r}"
