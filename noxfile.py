@@ -30,7 +30,7 @@ def slow(session: nox.Session) -> None:
 
 @nox.session(python="3.11", default=False)
 def deep(session: nox.Session) -> None:
-    """Measure the coverage, and let property tests draw ten times the examples."""
+    """Measure the coverage, and let property tests draw twenty times the examples."""
     session.install("-e", ".[test]", *FOR_SLOW)
     session.run("pytest", "-n", "auto", "--cov", "--cov-report=", "--cov-fail-under=0")
     session.run("pytest", "-n", "auto", "--cov", "--cov-append", SLOW)

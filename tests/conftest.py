@@ -1,6 +1,6 @@
 """How much hypothesis searches, and the numbers of marks that tests receive.
 
-`pytest --hypothesis-profile deep`, or `nox -s deep`, searches ten times as long.
+`pytest --hypothesis-profile deep`, or `nox -s deep`, searches twenty times as long.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from hypothesis import settings
 
 from docs.validation import numbers
 
-EXAMPLES, DEEP = 20, 10
+EXAMPLES, DEEP = 10, 20
 
 # Times of single examples vary with the machine and with what is imported first, so there is no deadline.
 settings.register_profile("default", max_examples=EXAMPLES, deadline=None)

@@ -13,7 +13,7 @@ from wearlaw_kit import checks
 
 NEEDED: dict[str, dict[str, Any]] = {
     "archard": {"coefficient": 1e-4},
-    "half_space": {"cells": 10},
+    "half_space": {"cells": 6},
     "energy": {"mass_per_energy": "5 ug/J"},
     "thermal": {"hot_ratio": 0.4, "temperature_range": "500 K"},
     "third_body": {"reduction": 0.7},

@@ -56,10 +56,11 @@ def excess_dissipation(creepage: Array, *others: Any) -> Array:
     creepage, *others : ndarray
         ξ, μ, p0, a, E* and the threshold in SI, of one shape; all but the first may be numbers.
     """
-    if creepage.size == 1:
-        reduced, level, unit = _reduced(float(creepage.item()), *map(_number, others))
+    if not creepage.ndim:
+        reduced, level, unit = _reduced(*map(float, (creepage, *others)))
         of_point = _maximum(OF_FLOATS, reduced)
-        return np.full(creepage.shape, unit * _above(OF_FLOATS, level, *of_point) if level < of_point[-1] else 0.0)
+        of_patch: Any = np.float64(unit * _above(OF_FLOATS, level, *of_point) if level < of_point[-1] else 0.0)
+        return of_patch  # type: ignore[no-any-return]
     with np.errstate(over="ignore"):  # a threshold may lie infinitely far above all values
         reduced, level, unit = _reduced(creepage, *others)
     excess, of_points = np.zeros(creepage.shape), _maximum(OF_ARRAYS, reduced)
@@ -67,10 +68,6 @@ def excess_dissipation(creepage: Array, *others: Any) -> Array:
     excess[reached] = _above(OF_ARRAYS, level[reached], *(values[reached] for values in of_points))
     energy: Array = excess * unit
     return energy
-
-
-def _number(value: Any) -> float:
-    return float(value.item() if isinstance(value, np.ndarray) else value)
 
 
 def _reduced(

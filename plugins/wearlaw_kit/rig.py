@@ -172,8 +172,9 @@ def units_of_conditions_are_checked(rig: Rig) -> None:
     """A bare number, or a quantity of another dimension, is refused by a `UnitError` that names the condition."""
     for name, value in varied(rig).items():
         if isinstance(value, pint.Quantity):
-            for wrong in (value.magnitude, Q(value.magnitude, "candela")):  # of which no condition of a rig is
-                _assert_refused(rig, {**rig.example, name: wrong}, UnitError, name, f"{name}={wrong!r}")
+            number, other = value.magnitude, Q(value.magnitude, "candela")  # of which no condition of a rig is
+            for wrong, what in ((number, f"the bare number {name}={number!r}"), (other, f"{name}={other!r}")):
+                _assert_refused(rig, {**rig.example, name: wrong}, UnitError, name, what)
 
 
 @rule(Rig)

@@ -33,7 +33,9 @@ LIFE = "life.json"
 @click.option("--set", "conditions", metavar="CONDITION=VALUE", multiple=True, help="Condition of all states.")
 @click.option("--until", "limits", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
 @click.option("--body", default="wheel", show_default=True, help="The body that wears: wheel or rail.")
-@click.option("--side", type=click.Choice(["mean", "left", "right"]), default="mean", show_default=True)
+@click.option("--sides", type=click.Choice(["mean", "each"]), default="mean", show_default=True,
+              help="Whether both sides wear by their mean, or each for itself.")  # fmt: skip
+@click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
 @click.option("--depth-step", default="0.05 mm", show_default=True, help="Largest depth of a step.")
 @click.option("--smoothing", default="3 mm", show_default=True, help="Standard deviation of the smoothing.")
 @click.option("--resume", is_flag=True, help="Go on from the finished steps of an interrupted life, in FOLDER.partial.")
@@ -48,7 +50,8 @@ def life(
     conditions: tuple[str, ...],
     limits: tuple[str, ...],
     body: str,
-    side: Any,
+    sides: Any,
+    workers: int,
     depth_step: str,
     smoothing: str,
     resume: bool,
@@ -64,7 +67,8 @@ def life(
     wearlaw life my-case.toml line.csv --over "100000 km" --until flange_thickness="25 mm" -o life/
 
     The first contact model and the first wear law of the case predict. The folder then holds life.csv, the measures
-    at every step; profiles.csv; a figure; the worn profile, worn.csv; and life.json.
+    at every step; profiles.csv; a figure; the worn profile, worn.csv (or that of each side, worn_left.csv and
+    worn_right.csv); and life.json.
     """  # noqa: D301
     folder = output if output is not None else folder_for(str(line), "life")
     partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
@@ -81,8 +85,8 @@ def life(
             predict = pipeline | loaded.wear_laws[0]
             found = wl.wear_out(
                 predict, line, over=_plain(over) if body == "rail" else over, share=share, until=until, body=body,
-                side=side, depth_step=depth_step, smoothing=smoothing, store=partial, resume=resume, progress=True,
-                **given,
+                sides=sides, depth_step=depth_step, smoothing=smoothing, workers=workers, store=partial, resume=resume,
+                progress=True, **given,
             )  # fmt: skip
         names = _write(found, notes.texts, fresh, figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
@@ -97,12 +101,14 @@ def _write(
     """Write a life into an empty folder and return the names of the files."""
     profiles = found.profiles
     columns = profiles.reset_coords("body", drop=True).to_dataframe().reset_index()
-    y, z = (value.magnitude for value in found.profile.points)
+    units = {name: profiles[name].attrs.get("units", "") for name in columns}
     tables = {
         "life": found.table,
-        "profiles": columns.rename(columns=lambda name: f"{name} [{profiles[name].units}]".removesuffix(" []")),
-        "worn": pd.DataFrame({"y [mm]": y, "z [mm]": z}),
+        "profiles": columns.rename(columns=lambda name: f"{name} [{units[name]}]".removesuffix(" []")),
     }
+    for side, profile in zip(found.sides, found.worn_profiles[-1], strict=True):
+        y, z = (value.magnitude for value in profile.points)
+        tables["worn" if side == "mean" else f"worn_{side}"] = pd.DataFrame({"y [mm]": y, "z [mm]": z})
     laws = [repr(law) for law in found.pipeline.laws]
     record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": list(notes)}
     with writing():

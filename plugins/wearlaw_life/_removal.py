@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
@@ -45,10 +46,10 @@ STEPS = 6
 """Most steps of the secant method for the factor; two are usual."""
 
 
-def positions(profile: Profile, count: int) -> Array:
-    """Return even arc lengths from end to end of a profile [m]."""
-    s = profile.curve.s
-    return np.linspace(s[0], s[-1], count)
+def positions(profiles: Sequence[Profile], count: int) -> Array:
+    """Return even arc lengths from end to end of profiles [m]."""
+    ends = np.array([one.curve.s[[0, -1]] for one in profiles])
+    return np.linspace(ends[:, 0].min(), ends[:, 1].max(), count)
 
 
 def even(profile: Profile) -> Profile:

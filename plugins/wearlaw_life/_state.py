@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
-import wearlaw as wl
+from wearlaw import Array
 from wearlaw_life._line import Wear
 from wearlaw_life._removal import Profile
-
-Side = Literal["mean", "left", "right"]
 
 
 @dataclass(frozen=True)
@@ -24,17 +22,26 @@ class Plan:
     spacing: float
     conicity_step: float
     amplitude: float
-    side: Side
+    each: bool
     until: Mapping[str, float]
-    sides: int = 1
+
+    @property
+    def along(self) -> str:
+        """What the life is counted in."""
+        return "passages" if self.body == "rail" else "distance"
+
+    def of_profiles(self, values: Array) -> Array:
+        """Return values of both sides for each profile: as they are, or their mean."""
+        return values if self.each else values.mean(axis=0, keepdims=True)
 
 
 class State(NamedTuple):
-    """A profile after a step, its measures, and what the next step extrapolates.
+    """The profiles after a step, and what the next step extrapolates.
 
     Attributes
     ----------
-    profile : Profile
+    profiles : tuple of Profile
+        One for both sides, or those of the left and the right side.
     row : dict of str to float
         The measures in SI.
     wear : Wear or None
@@ -43,13 +50,10 @@ class State(NamedTuple):
         Distance of the step [m], or passages.
     change : float
         Change of the conicity in the step.
-    pipeline : Pipeline or None
-        The pipeline with the profile, if it is made already.
     """
 
-    profile: Profile
+    profiles: tuple[Profile, ...]
     row: dict[str, float]
     wear: Wear | None = None
     step: float = 0.0
     change: float = 0.0
-    pipeline: wl.Pipeline[...] | None = None

@@ -19,7 +19,6 @@ from zarr.codecs import Crc32cCodec
 import wearlaw as wl
 from wearlaw_life._line import Line, Wear
 from wearlaw_life._state import Plan, State
-from wearlaw_sweeps.evaluation import Job
 from wearlaw_sweeps.provenance import check_same, provenance_of
 
 PROVENANCE = "provenance"
@@ -43,7 +42,7 @@ class Store:
         self.path, self._kind = Path(path), type(getattr(predict.rig, plan.body))
         self.path.parent.mkdir(parents=True, exist_ok=True)
         self._lock = filelock.FileLock(f"{self.path.absolute()}.lock", blocking=False)
-        now = provenance_of(Job(predict, {"wear_profile": ""}), line.points)
+        now = provenance_of(line.job, line.points)
         now["life"] = json.loads(json.dumps(asdict(plan)))
         try:
             self._lock.acquire()
@@ -90,8 +89,10 @@ class Store:
     def add(self, state: State) -> None:
         """Write the start or a finished step; its record comes last."""
         group = zarr.open_group(str(self.path), mode="r+").create_group(self._name(len(self._kept)))
-        text = state.profile.model_dump_json().encode()
-        arrays: dict[str, Any] = {"profile": np.frombuffer(text, dtype=np.uint8)}
+        arrays: dict[str, Any] = {
+            f"profile_{side}": np.frombuffer(one.model_dump_json().encode(), dtype=np.uint8)
+            for side, one in enumerate(state.profiles)
+        }
         if state.wear is not None:
             arrays |= {"depth": state.wear.depth, "mass": state.wear.mass}
         for name, values in arrays.items():
@@ -114,9 +115,10 @@ class Store:
             found = {name: np.asarray(group[name][...]) for name in record["arrays"]}
         except (OSError, ValueError, KeyError):
             return None
-        profile = self._kind.model_validate_json(found["profile"].tobytes())
+        texts = (values.tobytes() for name, values in found.items() if name.startswith("profile"))
+        profiles = tuple(self._kind.model_validate_json(text) for text in texts)
         wear = Wear(found["depth"], found["mass"]) if "depth" in found else None
-        return State(profile, record["row"], wear, record["step"], record["change"])
+        return State(profiles, record["row"], wear, record["step"], record["change"])
 
     def __enter__(self) -> Self:
         return self

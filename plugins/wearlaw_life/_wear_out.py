@@ -1,25 +1,26 @@
-"""Wearing a profile over a distance, step by step."""
+"""Wearing profiles over a distance, step by step."""
 
 from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator, Mapping
+import tempfile
+from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw.pipeline.pipeline import expect_pipeline
-from wearlaw_life._life import UNITS, Life
-from wearlaw_life._line import Line, Wear, first_state, flank_of, read_line, wear_of, weighted
+from wearlaw_life._life import SIDES, UNITS, Life, unit_of
+from wearlaw_life._line import Line, Wear, read_line
 from wearlaw_life._measures import NAMES, flange, hollow
 from wearlaw_life._removal import Profile, conserving, even, normal_depth, positions, smoothed, swept
-from wearlaw_life._state import Plan, Side, State
+from wearlaw_life._state import Plan, State
 from wearlaw_sweeps.progress import Bar
 
 if TYPE_CHECKING:
@@ -47,6 +48,9 @@ AIM = 0.95
 TRIES = 8
 """Most distances that a step tries to hold the conicity."""
 
+NEAR = 1e-9
+"""Share of the way to a limit at which it counts as reached."""
+
 EDGE = 1e-3
 """Share of the deepest wear at an end of a profile that says that the profile is too short."""
 
@@ -64,15 +68,17 @@ def wear_out(
     spacing: wl.QuantityLike = "0.1 mm",
     until: Mapping[str, wl.QuantityLike | float] | None = None,
     body: str = "wheel",
-    side: Side = "mean",
+    sides: Literal["mean", "each"] = "mean",
     conicity_step: float = 0.005,
     amplitude: wl.QuantityLike = "3 mm",
+    workers: int = 1,
+    client: Any = None,
     store: str | os.PathLike[str] | None = None,
     resume: bool = False,
     progress: bool = False,
     **conditions: Any,
 ) -> Life:
-    """Return how a profile wears over a distance on a line.
+    """Return how profiles wear over a distance on a line.
 
     A step predicts the wear of all states across the profile and sums it with their shares. It smooths the sum,
     removes it along the normal over a distance that wears at most `depth_step`, and takes new points at even arc
@@ -86,7 +92,7 @@ def wear_out(
         resolves the patch, and a wear law.
     line : pandas.DataFrame, xarray.Dataset or path
         Operating states in rows, conditions in columns with units, and a column with the share of the distance. A file
-        is read in pieces, as in `wearlaw.sweep`.
+        is read in pieces, as in `wearlaw.sweep`; one of any length needs no more memory than a short one.
     over : Quantity, str or float
         The distance [m], or the number of passages for a rail.
     share : str
@@ -104,15 +110,19 @@ def wear_out(
         Limits of measures in `Life.table` that end the life, such as {"flange_thickness": "25 mm"}.
     body : str
         "wheel" or "rail".
-    side : "mean", "left" or "right"
-        Whose wear is removed. The rig has one profile for both sides: "mean" suits a vehicle that turns, the others
-        give both wheels the wear of one.
+    sides : "mean" or "each"
+        With "mean" both sides have one profile, which wears by the mean of both, as on a vehicle that turns. With
+        "each" they wear for themselves.
     conicity_step : float
         Largest change of the equivalent conicity in a step, if the rig has one; math.inf for any.
     amplitude : Quantity or str
         Amplitude of the lateral displacement at which the conicity is taken [m].
+    workers : int
+        Number of processes on this machine.
+    client : distributed.Client, optional
+        A cluster of dask.distributed, instead of `workers`.
     store : path, optional
-        A folder that keeps the finished steps. A line from a file of any length then needs 8 bytes of memory a state.
+        A folder that keeps the finished steps.
     resume : bool
         Whether to go on with the life in `store`, if there is one.
     progress : bool
@@ -126,61 +136,66 @@ def wear_out(
 
     Raises
     ------
-    ConditionsError
-        If a state is impossible, its wheel climbs or it has no result; the message names the row. If steps were
-        finished before, the error's attribute `life` holds them.
     DataError
-        If the line is wrong, or its shares do not add up to one.
+        If the line is wrong, its shares do not add up to one, or a state is impossible, has no result or its wheel
+        climbs; the message names the row. If steps were finished before, the error's attribute `life` holds them.
     InputError
         If an argument is wrong, or the profile is too short for the wear.
     OutputError
         If `store` holds anything but the same life.
     """
     expect_pipeline(predict)
-    plan = _plan(predict, body, over, depth_step, smoothing, spacing, conicity_step, amplitude, side, until)
+    plan = _plan(predict, body, over, depth_step, smoothing, spacing, conicity_step, amplitude, sides, until)
+    first = tuple(even(one) for one in _given(predict.rig, plan))
+    count = math.ceil(max(np.ptp(one.curve.s) for one in first) / plan.spacing) + 1
     with ExitStack() as stack:
-        on_disk = None if store is None else Path(store)
-        read = stack.enter_context(read_line(predict, line, share, columns, conditions, on_disk, progress))
-        problem = first_state(predict, read)
-        read, plan = weighted(read, problem), replace(plan, sides=len(problem.dims.get("side", "-")))
+        on_disk = Path(tempfile.gettempdir(), "line") if store is None else Path(store)
+        at = positions(first, count)
+        read = read_line(predict, line, share, columns, conditions, body, at, on_disk, progress, workers, client)
+        states = stack.enter_context(read)
         kept = None
         if store is not None:
             from wearlaw_life._store import Store  # zarr takes half a second
 
-            kept = stack.enter_context(Store(store, resume, predict, read, plan))
-        bar = stack.enter_context(Bar(round(plan.over if body == "rail" else 1e-3 * plan.over), progress))
+            kept = stack.enter_context(Store(store, resume, predict, states, plan))
+        unit = 1.0 if body == "rail" else 1e-3
+        bar = stack.enter_context(Bar(round(unit * plan.over), progress))
         bar.stage("passages" if body == "rail" else "km")
-        return _run(predict, read, plan, kept, bar)
+        return _run(predict, states, plan, first, kept, bar, unit)
 
 
-def _run(predict: wl.Pipeline[...], line: Line, plan: Plan, store: Store | None, bar: Bar) -> Life:
-    along = "passages" if plan.body == "rail" else "distance"
+def _run(
+    predict: wl.Pipeline[...], line: Line, plan: Plan, first: tuple[Profile, ...], store: Store | None, bar: Bar,
+    unit: float,
+) -> Life:  # fmt: skip
     states = [] if store is None else store.states()
-    ended = ""
-    unit = 1.0 if plan.body == "rail" else 1e-3
-    shown = round(unit * states[-1].row[along]) if states else 0
-    bar(shown)
+    ended, done = "", 0
 
     def life() -> Life:
-        last = states[-1].pipeline or with_profile(predict, plan.body, states[-1].profile)
-        return Life(last, plan.body, ended, tuple(one.profile for one in states), tuple(one.row for one in states))
+        profiles, rows = tuple(one.profiles for one in states), tuple(one.row for one in states)
+        return Life(with_profiles(predict, plan, profiles[-1]), plan.body, ended, profiles, rows)
 
     try:
-        for state, why in _steps(predict, line, plan, along, states):
-            ended = why
-            if states and state is states[-1]:
-                break
-            states[-1:] = [one._replace(pipeline=None, wear=None) for one in states[-1:]]  # only the last one goes on
+        quiet = False
+        while not states or not (ended := _reached(plan, states[0].row, states[-1].row)):
+            if states:
+                state = _step(predict, line, plan, first, states[-1], quiet)
+                states[-1] = states[-1]._replace(wear=None)  # only the last one goes on
+                quiet = True
+            else:
+                rig = with_profiles(predict, plan, first).rig
+                row = {plan.along: 0.0, **_measured(rig, plan, first, first, {}, np.zeros(line.sides))}
+                state = State(first, row)
+                _check_limits(plan, row)
             states.append(state)
             if store is not None:
                 store.add(state)
-            done = round(unit * state.row[along])
-            bar(done - shown)
-            shown = done
+            bar(round(unit * state.row[plan.along]) - done)
+            done = round(unit * state.row[plan.along])
     except (wl.WearlawError, KeyboardInterrupt) as error:
         if len(states) > 1:
             error.life = life()  # type: ignore[union-attr]
-            reached = f"{unit * states[-1].row[along]:.6g} {'passages' if plan.body == 'rail' else 'km'}"
+            reached = f"{unit * states[-1].row[plan.along]:.6g} {'passages' if plan.body == 'rail' else 'km'}"
             error.add_note(
                 f"{len(states) - 1} steps, to {reached}, are finished: the error's attribute `life` has them"
             )
@@ -188,65 +203,40 @@ def _run(predict: wl.Pipeline[...], line: Line, plan: Plan, store: Store | None,
     return life()
 
 
-def _steps(
-    predict: wl.Pipeline[...], line: Line, plan: Plan, along: str, states: list[State]
-) -> Iterator[tuple[State, str]]:
-    """Yield the state at the start and after each step, and why the life ends if it does."""
-    original = getattr(predict.rig, plan.body)
-    if states:
-        first, now = states[0].profile, states[-1]
-        _, ended = _share_to_limit(plan, states[0].row, now.row, "")
-        if ended:  # the life is complete
-            yield now, ended
-            return
-    else:
-        first = even(original)
-        pipeline = with_profile(predict, plan.body, first)
-        now = State(first, {along: 0.0, **_measured(pipeline, plan, first, first, {})}, pipeline=pipeline)
-        _check_limits(plan, now.row)
-        yield now, ""
-    count = math.ceil(np.ptp(first.curve.s) / plan.spacing) + 1
-    while now.row[along] < plan.over * (1.0 - 1e-12):
-        now, ended = _step(predict, line, plan, along, first, now, count, quiet=bool(now.step))
-        yield now, ended
-        if ended != "":
-            return
-
-
 def _step(
-    predict: wl.Pipeline[...], line: Line, plan: Plan, along: str, first: Profile, now: State, count: int, quiet: bool
-) -> tuple[State, str]:
-    """Return the state after one more step, and why the life ends if it does."""
-    profile = now.profile
-    pipeline = now.pipeline or with_profile(predict, plan.body, profile)
-    at = positions(profile, count)
-    wear = wear_of(pipeline, line, plan.body, at, quiet, flank_of(profile))
-    wear = Wear(smoothed(wear.depth, at, plan.smoothing), wear.mass)
-    chosen = slice(None) if plan.side == "mean" or plan.sides == 1 else slice(*_index(plan.side))
-    deepest = float(wear.depth[chosen].mean(axis=0).max())
+    predict: wl.Pipeline[...], line: Line, plan: Plan, first: tuple[Profile, ...], now: State, quiet: bool
+) -> State:
+    """Return the state after one more step."""
+    pipeline = with_profiles(predict, plan, now.profiles)
+    at = positions(now.profiles, line.job.at.size)
+    wear = line.wear(pipeline, at, quiet)
+    wear = wear._replace(depth=smoothed(plan.of_profiles(wear.depth), at, plan.smoothing))
+    deepest = float(wear.depth.max())
     if not deepest > 0.0:
         raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
-    left = plan.over - now.row[along]
+    left = plan.over - now.row[plan.along]
     step = min((1.0 if now.step else START) * plan.depth_step / deepest, left)
     if now.step:
         step = min(step, GROWTH * now.step)
         if now.wear is not None:
-            rise = float(np.abs((wear.depth - now.wear.depth)[chosen].mean(axis=0)).max())
+            rise = float(np.abs(wear.depth - now.wear.depth).max())
             step = min(step, math.sqrt(2.0 * CORRECTION * plan.depth_step * now.step / rise)) if rise else step
         if now.change > 0.0:
             step = min(step, AIM * plan.conicity_step / now.change * now.step)
-    density = _density(pipeline, plan.body)
-    radius = _radius(pipeline, plan.body)
+    body = pipeline.rig.bodies[plan.body]
+    density, radius = wl.scalar_si(body.material.density, "kg/m^3"), float(np.asarray(body.rolling_radius))
     for _ in range(TRIES):
         middle = _of_middle(wear, now.wear, step, now.step)
-        depth, mass = middle.depth[chosen].mean(axis=0) * step, middle.mass * step
-        _check_ends(depth, plan.body)
-        removal = conserving(profile, at, depth, float(mass[chosen].mean()) / density, radius)
-        after = with_profile(predict, plan.body, removal.profile)
-        row = {along: now.row[along] + step, **_measured(after, plan, first, removal.profile, now.row, mass)}
-        row["factor"] = removal.factor
-        ended = "over" if step >= left * (1.0 - 1e-12) else ""
-        share, ended = _share_to_limit(plan, now.row, row, ended)
+        removals = []
+        for profile, depth, mass in zip(now.profiles, middle.depth, plan.of_profiles(middle.mass), strict=True):
+            _check_ends(profile, at, depth, plan.body)
+            volume = step * float(mass) / density
+            removals.append(conserving(profile, at, step * depth, volume, radius if math.isfinite(radius) else None))
+        after = tuple(one.profile for one in removals)
+        row = {plan.along: now.row[plan.along] + step}
+        row |= _measured(with_profiles(predict, plan, after).rig, plan, first, after, now.row, step * middle.mass)
+        row |= {f"factor{side}": one.factor for side, one in zip(SIDES[len(after)], removals, strict=True)}
+        share = _share_to_limit(plan, now.row, row)
         change = abs(row["equivalent_conicity"] - now.row["equivalent_conicity"])
         if change > plan.conicity_step and step * deepest > SHORTEST * plan.depth_step:
             step *= max(AIM * plan.conicity_step / change, 0.25)
@@ -254,7 +244,7 @@ def _step(
             step *= share
         else:
             break
-    return State(removal.profile, row, wear, step, change, after), ended
+    return State(after, row, wear, step, change)
 
 
 def _of_middle(wear: Wear, before: Wear | None, step: float, step_before: float) -> Wear:
@@ -268,52 +258,77 @@ def _of_middle(wear: Wear, before: Wear | None, step: float, step_before: float)
     return Wear(np.maximum(middle.depth, 0.0), middle.mass)
 
 
-def _share_to_limit(plan: Plan, before: Mapping[str, float], now: dict[str, float], ended: str) -> tuple[float, str]:
-    """Return the share of a step at which the first measure reaches its limit, and why the life ends."""
-    found = 1.0
+def _share_to_limit(plan: Plan, before: Mapping[str, float], after: Mapping[str, float]) -> float:
+    """Return the share of a step at which the first measure reaches its limit, one if none does."""
+    shares = [1.0]
     for name, limit in plan.until.items():
-        start, end = before[name], now[name]
-        if start != limit and (start - limit) * (end - limit) <= 1e-9 * (start - limit) ** 2:
-            share = (limit - start) / (end - start)
-            if share <= found:
-                found, ended = share, name
-    return found, ended
+        for column in columns_of(name, after):
+            start, end = before[column], after[column]
+            if (start - limit) * (end - limit) < 0.0:
+                shares.append((limit - start) / (end - start))
+    return min(shares)
 
 
-def with_profile(predict: wl.Pipeline[...], body: str, profile: Profile) -> wl.Pipeline[...]:
-    """Return the pipeline with another profile of a body."""
+def _reached(plan: Plan, first: Mapping[str, float], now: Mapping[str, float]) -> str:
+    """Return why a life ends, "" if it goes on."""
+    for name, limit in plan.until.items():
+        for column in columns_of(name, now):
+            start, end = first[column], now[column]
+            if (start - limit) * (end - limit) <= NEAR * (start - limit) ** 2:
+                return column
+    return "over" if now[plan.along] >= plan.over * (1.0 - 1e-12) else ""
+
+
+def columns_of(name: str, row: Mapping[str, float]) -> list[str]:
+    """Return the columns of a measure: its own, or those of both sides."""
+    return [name] if name in row else [column for column in row if column in {f"{name}{side}" for side in SIDES[2]}]
+
+
+def _given(rig: Any, plan: Plan) -> tuple[Profile, ...]:
+    """Return the profiles of a rig, one or those of the left and the right side."""
+    right, left = getattr(rig, plan.body), getattr(rig, f"left_{plan.body}", None)
+    if not plan.each:
+        if left is not None:
+            raise wl.InputError(
+                f"sides: the rig has a left_{plan.body} of its own, which has no mean with the right one; give 'each'"
+            )
+        return (right,)
+    if f"left_{plan.body}" not in type(rig).model_fields:
+        raise wl.InputError(f"sides: the rig {rig.name!r} has one profile for both sides; give 'mean'")
+    return left or right, right
+
+
+def with_profiles(predict: wl.Pipeline[...], plan: Plan, profiles: tuple[Profile, ...]) -> wl.Pipeline[...]:
+    """Return the pipeline with other profiles of a body."""
     rig = predict.rig
-    fields = {name: getattr(rig, name) for name in type(rig).model_fields} | {body: profile}
-    new = type(rig)(**fields)
-    return wl.Pipeline(rig=new, contact_model=predict.contact_model, stages=predict.stages, laws=predict.laws)
+    fields = {name: getattr(rig, name) for name in type(rig).model_fields} | {plan.body: profiles[-1]}
+    if plan.each:
+        fields[f"left_{plan.body}"] = profiles[0]
+    return wl.Pipeline(
+        rig=type(rig)(**fields), contact_model=predict.contact_model, stages=predict.stages, laws=predict.laws
+    )
 
 
 def _measured(
-    pipeline: wl.Pipeline[...],
-    plan: Plan,
-    first: Profile,
-    profile: Profile,
-    before: Mapping[str, float],
-    mass: Array | None = None,
-) -> dict[str, float]:
-    """Return the measures of a profile in SI."""
-    rig = pipeline.rig
-    lost = np.zeros(plan.sides) if mass is None else mass
-    chosen = float(lost.mean()) if plan.side == "mean" or plan.sides == 1 else float(lost[_index(plan.side)[0]])
-    row = {"mass": before.get("mass", 0.0) + chosen}
+    rig: Any, plan: Plan, first: tuple[Profile, ...], profiles: tuple[Profile, ...], before: Mapping[str, float],
+    lost: Array,
+) -> dict[str, float]:  # fmt: skip
+    """Return the measures of profiles in SI, after a loss of mass of each side [kg]."""
+    row = {} if plan.each else {"mass": before.get("mass", 0.0) + float(lost.mean())}
     if lost.size == 2:
-        pair = zip(("mass_left", "mass_right"), lost, strict=True)
-        row |= {name: before.get(name, 0.0) + float(one) for name, one in pair}
-    s = first.curve.s
-    row["depth"] = 0.0 if profile is first else float(normal_depth(first, profile, s).max())
-    row["worn_area"] = 0.0 if profile is first else swept(first, profile, None)
-    if plan.body == "wheel":
-        y, z = (1e-3 * one.magnitude for one in profile.points)
-        back = wl.scalar_si(getattr(rig, "flange_back_position", wl.Q(-70.0, "mm")), "m")
-        row |= dict(zip(NAMES, (*flange(y, z, back), hollow(z)), strict=True))
+        pairs = zip((f"mass{side}" for side in SIDES[2]), lost, strict=True)
+        row |= {name: before.get(name, 0.0) + float(one) for name, one in pairs}
+    for side, start, profile in zip(SIDES[len(profiles)], first, profiles, strict=True):
+        new = profile is start
+        row[f"depth{side}"] = 0.0 if new else float(normal_depth(start, profile, start.curve.s).max())
+        row[f"worn_area{side}"] = 0.0 if new else swept(start, profile, None)
+        if plan.body == "wheel":
+            y, z = (1e-3 * one.magnitude for one in profile.points)
+            back = wl.scalar_si(getattr(rig, "flange_back_position", wl.Q(-70.0, "mm")), "m")
+            values = (*flange(y, z, back), hollow(z))
+            row |= {f"{name}{side}": value for name, value in zip(NAMES, values, strict=True)}
     row["equivalent_conicity"] = _conicity(rig, plan.amplitude)
-    row["factor"] = 1.0
-    return row
+    return row | {f"factor{side}": 1.0 for side in SIDES[len(profiles)]}
 
 
 def _conicity(rig: Any, amplitude: float) -> float:
@@ -324,9 +339,8 @@ def _conicity(rig: Any, amplitude: float) -> float:
         return math.nan
 
 
-def _check_ends(depth: Array, body: str) -> None:
-    ends = {"first": depth[0], "last": depth[-1]}
-    for name, value in ends.items():
+def _check_ends(profile: Profile, at: Array, depth: Array, body: str) -> None:
+    for name, value in zip(("first", "last"), np.interp(profile.curve.s[[0, -1]], at, depth), strict=True):
         if value > EDGE * depth.max():
             raise wl.InputError(
                 f"{body}: the profile is too short for the wear, which reaches {value / depth.max():.2g} of its deepest"
@@ -336,26 +350,12 @@ def _check_ends(depth: Array, body: str) -> None:
 
 def _check_limits(plan: Plan, row: Mapping[str, float]) -> None:
     for name, limit in plan.until.items():
-        if name not in row or math.isnan(row[name]):
-            known = ", ".join(key for key, value in row.items() if math.isfinite(value) and key != "factor")
+        columns = columns_of(name, row)
+        if not columns or any(math.isnan(row[column]) for column in columns):
+            known = ", ".join(key for key, value in row.items() if math.isfinite(value) and "factor" not in key)
             raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {known}")
-        if row[name] == limit:
+        if any(row[column] == limit for column in columns):
             raise wl.InputError(f"until: {name} has its limit already; give another one")
-
-
-def _index(side: str) -> tuple[int, int]:
-    first = ("left", "right").index(side)
-    return first, first + 1
-
-
-def _density(pipeline: wl.Pipeline[...], body: str) -> float:
-    return wl.scalar_si(pipeline.rig.bodies[body].material.density, "kg/m^3")
-
-
-def _radius(pipeline: wl.Pipeline[...], body: str) -> float | None:
-    """Return the radius at z = 0 of a body that turns, None for one that does not [m]."""
-    radius = float(np.asarray(pipeline.rig.bodies[body].rolling_radius))
-    return radius if math.isfinite(radius) else None
 
 
 def _plan(
@@ -367,7 +367,7 @@ def _plan(
     spacing: wl.QuantityLike,
     conicity_step: float,
     amplitude: wl.QuantityLike,
-    side: Side,
+    sides: str,
     until: Mapping[str, Any] | None,
 ) -> Plan:
     """Return the settings in SI, checked."""
@@ -376,8 +376,8 @@ def _plan(
             f"body: the rig {predict.rig.name!r} has no profile of {wl.shown(body)} that can wear; take a rig with"
             " profiles, such as wearlaw_wheelset.Wheelset, and its 'wheel' or 'rail'"
         )
-    if side not in ("mean", "left", "right"):
-        raise wl.InputError(f"side: must be 'mean', 'left' or 'right', got {wl.shown(side)}")
+    if sides not in ("mean", "each"):
+        raise wl.InputError(f"sides: must be 'mean' or 'each', got {wl.shown(sides)}")
     if body == "rail" and (isinstance(over, str | wl.Quantity) or not over > 0.0):
         raise wl.InputError(f"over: a rail wears by passages; give their number, such as 1e6, got {wl.shown(over)}")
     if not conicity_step > 0.0:
@@ -391,7 +391,7 @@ def _plan(
         float(length.si(spacing, "spacing")),
         float(conicity_step),
         float(length.si(amplitude, "amplitude")),
-        side,
+        sides == "each",
         {},
     )
     if plan.depth_step > DEEPEST:
@@ -403,8 +403,8 @@ def _plan(
         raise wl.InputError(f"smoothing: must not be negative, got {1e3 * plan.smoothing:.4g} mm")
     limits = {}
     for name, value in (until or {}).items():
-        if name not in UNITS or name == "factor":
+        unit = unit_of(name) if name != "factor" else None
+        if unit is None:
             raise wl.InputError(f"until: there is no measure {wl.shown(name)}; there are {', '.join(UNITS)}")
-        unit = wl.Unit(UNITS[name])
-        limits[name] = float(unit.si(value, f"until: {name}")) if UNITS[name] else float(value)
+        limits[name] = float(wl.Unit(unit).si(value, f"until: {name}")) if unit else float(value)
     return replace(plan, until=limits)

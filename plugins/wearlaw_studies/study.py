@@ -46,9 +46,9 @@ from wearlaw_studies.figures import figures_of
 from wearlaw_studies.pairs import pairs_of
 from wearlaw_studies.results import PATCH_AXES, Results, axes_of
 from wearlaw_studies.sections import Section
+from wearlaw_sweeps.evaluation import weight
 from wearlaw_sweeps.evaluator import Evaluator
 from wearlaw_sweeps.points import Points
-from wearlaw_sweeps.sweep import weight
 
 if TYPE_CHECKING:
     from wearlaw.plugins.shelf import Shelf

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -51,13 +52,41 @@ class Job:
     accelerate: bool | None = field(default_factory=kernels.chosen)
 
     @property
+    def labels(self) -> Mapping[str, Sequence[str | int | float]]:
+        """The axes of the outputs at one operating point, with their labels."""
+        return self.dims
+
+    @property
     def own_shape(self) -> tuple[int, ...]:
-        """Shape of the results at one operating point: the numbers of labels of the rig's own axes."""
-        return tuple(map(len, self.dims.values()))
+        """Shape of the outputs at one operating point."""
+        return tuple(map(len, self.labels.values()))
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """What determines the outputs beside the pipeline, the points and the units."""
+        return {}
+
+    def weight(self, problem: Problem) -> float:
+        """Return the size of an operating point compared with a single line or ellipse."""
+        return weight(problem)
+
+    def posed(self, conditions: Mapping[str, Any]) -> Problem:
+        """Return the problem of conditions."""
+        return self.pipeline.posed(conditions)
+
+    def outputs(self, prediction: Prediction, part: Points) -> Outputs:  # noqa: ARG002
+        """Return the outputs of a prediction at some of the points."""
+        return {name: _in_unit(prediction[name], unit) for name, unit in self.units.items()}
 
     def attributes(self, name: str) -> dict[str, str]:
         """Return the attributes of an output in results: its unit and its long name."""
         return {"units": self.units[name], "long_name": long_name(name, self.pipeline.laws)}
+
+
+def weight(problem: Problem) -> float:
+    """Return the size of an operating point of a problem; four numbers of a strip count as one of 16 for a patch."""
+    strips = 0 if problem.strips is None else problem.strips.y.shape[-1]
+    return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
 
 
 @dataclass(frozen=True)
@@ -91,7 +120,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     """
     kernels.accelerate(job.accelerate)
     with caught_warnings() as caught:
-        problem = posed(part, job.pipeline.posed)
+        problem = posed(part, job.posed)
     remarks = dict.fromkeys(map(str, caught))
     if job.dims or problem.dims:
         _check_axes(job, problem, part)
@@ -99,15 +128,16 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     watch = job.pipeline.range_watch()
     if problem.size:
         prediction = job.pipeline.watched(problem, watch, on_block)
-        outputs = {name: _in_unit(prediction[name], unit) for name, unit in job.units.items()}
+        outputs = job.outputs(prediction, part)
     else:  # the bodies touch nowhere
-        outputs = {name: np.full(problem.batch_shape, np.nan) for name in job.units}
+        outputs = {name: np.full((part.size, *job.own_shape), np.nan) for name in job.units}
     return outputs, BlockRecord(watch.points, watch.overload, watch.seen, tuple(remarks))
 
 
 def _check_axes(job: Job, problem: Problem, part: Points) -> None:
     """Raise an error unless the axes of a block's problem are the operating points and the rig's own axes."""
-    wanted = (part.size, *job.own_shape) if part.dims else job.own_shape
+    own = tuple(map(len, job.dims.values()))
+    wanted = (part.size, *own) if part.dims else own
     if problem.dims != job.dims or problem.batch_shape != wanted:
         raise fault(
             job.pipeline.rig,

@@ -133,9 +133,9 @@ class Points:
     kept : mapping of str to Varying
         Columns of a table that are not conditions, to be coordinates of the results.
     file : Table or None
-        The file from which the points come, to name the places of errors.
+        The table from which the points come, to name the places of errors, without values that are in memory.
     numbers : range or None
-        The numbers of the points among the rows of the file.
+        The numbers of the points among the rows of the table.
     weight : float
         Size of an operating point compared with a single line or ellipse, such as the number of its patches. Blocks
         have fewer points in proportion.
@@ -197,8 +197,9 @@ class Points:
         """Return the points of a block."""
         by_dim = dict(zip(self.dims, slices, strict=True))
         varying = {name: one[by_dim[one.dim]] for name, one in self.varying.items()}
+        kept = {name: one[by_dim[one.dim]] for name, one in self.kept.items()}
         numbers = None if self.numbers is None else self.numbers[by_dim[self.dims[0]]]
-        return Points(self.fixed, varying, file=self.file, numbers=numbers)
+        return Points(self.fixed, varying, kept=kept, file=self.file, numbers=numbers)
 
     def coordinates(self) -> dict[str, Varying]:
         """Return the conditions and kept columns that vary, by name."""

@@ -10,6 +10,7 @@ from typing import Any
 
 import pint
 
+from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import WORTHWHILE, accelerated
 from wearlaw.errors import OutputError, shown, with_problems
 from wearlaw.models.contact_model import Model
@@ -44,6 +45,7 @@ def provenance_of(job: Job, points: Points) -> Provenance:
     }
     if points.kept:
         provenance["kept"] = {name: _summary(column) for name, column in points.kept.items()}
+    provenance |= job.settings
     if job.dims:
         provenance["axes"] = {name: list(labels) for name, labels in job.dims.items()}
     as_read: Provenance = json.loads(json.dumps(provenance))
@@ -56,13 +58,18 @@ def _text(value: object) -> str:
 
 
 def _summary(column: Varying) -> str:
-    digest = hashlib.sha256()
-    for start in range(0, column.values.size, BLOCK):
-        digest.update(column.values[start : start + BLOCK].data)
-    first, last = (float(column.values[part][0]) for part in (slice(1), slice(-1, None)))
-    ends = f"{first:g} to {last:g} {column.unit or ''}".rstrip()
     origin = f", {column.origin}" if column.origin else ""
-    return f"{column.values.size} values, {ends}, along {column.dim}{origin}, SHA-256 {digest.hexdigest()[:16]}"
+    return digest(column.values, column.unit, f", along {column.dim}{origin}")
+
+
+def digest(values: Array, unit: str | None, more: str = "") -> str:
+    """Return what tells numbers from others: their count, ends and hash."""
+    hashed = hashlib.sha256()
+    for start in range(0, values.size, BLOCK):
+        hashed.update(values[start : start + BLOCK].data)
+    first, last = (float(values[part][0]) for part in (slice(1), slice(-1, None)))
+    ends = f"{first:g} to {last:g} {unit or ''}".rstrip()
+    return f"{values.size} values, {ends}{more}, SHA-256 {hashed.hexdigest()[:16]}"
 
 
 def check_same(path: Path, before: Provenance, now: Provenance) -> None:

@@ -15,6 +15,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.units.quantities import parse
 from wearlaw.units.registry import symbol
+from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_sweeps.points import ITEM, Block, Points
 from wearlaw_sweeps.provenance import Provenance, provenance_of
@@ -78,24 +79,25 @@ def attributes(status: str, provenance: Provenance, notes: Sequence[str] = ()) -
 
 def dataset(points: Points, variables: Mapping[str, Array], job: Job) -> xarray.Dataset:
     """Return results as a dataset with the conditions as coordinates, except those on disk."""
-    coordinates: dict[str, Any] = {**points.rows, **_labels(job)}
+    coordinates: dict[str, Any] = {**points.rows, **labels_of(job)}
     for name, one in points.coordinates().items():
         if not one.on_disk:
             coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
     numbers = {name: _number(value) for name, value in points.fixed.items()}
     coordinates |= {name: number for name, number in numbers.items() if number is not None}
-    dims = (*points.dims, *job.dims)
+    dims = (*points.dims, *job.labels)
     data = {name: (dims, values, job.attributes(name)) for name, values in variables.items()}
     others = {name: str(points.fixed[name]) for name, number in numbers.items() if number is None}
     return xarray.Dataset(data, coordinates, others)
 
 
-def _labels(job: Job) -> dict[str, Any]:
-    """Return the labels of the rig's own axes; zarr has a stable format only for texts of any length."""
-    found = {}
-    for name, labels in job.dims.items():
-        integers = all(isinstance(label, int) for label in labels)
-        found[name] = (name, np.array(labels, dtype=np.int64 if integers else object))
+def labels_of(job: Job) -> dict[str, Any]:
+    """Return the axes of outputs at a point as coordinates; zarr has a stable format only for texts of any length."""
+    found: dict[str, Any] = {}
+    for name, labels in job.labels.items():
+        numbers = np.array(labels) if all(isinstance(label, int | float) for label in labels) else None
+        attrs = {"units": VARIABLES[name].unit} if name in VARIABLES else {}
+        found[name] = (name, np.array(labels, dtype=object) if numbers is None else numbers, attrs)
     return found
 
 

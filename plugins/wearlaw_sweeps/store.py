@@ -124,7 +124,7 @@ class Store:
                     dtype="float64",
                     compressors=CHECKED,
                     fill_value=np.nan,
-                    dimension_names=(*points.dims, *self.job.dims),
+                    dimension_names=(*points.dims, *self.job.labels),
                     attributes={**self.job.attributes(name)},
                 )
         if RECORDS not in group:
@@ -175,7 +175,7 @@ class Store:
     def _chunk(self, array: Any, block: Block) -> Path:
         """Return the file of a block in the array of an output."""
         which = [one.start // size for one, size in zip(block.slices, self.points.block_shape, strict=True)]
-        key = array.metadata.encode_chunk_key((*which, *(0 for _ in self.job.dims)))
+        key = array.metadata.encode_chunk_key((*which, *(0 for _ in self.job.labels)))
         return self.path / str(array.path) / str(key)
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:  # noqa: ARG002

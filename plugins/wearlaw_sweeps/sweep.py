@@ -6,6 +6,7 @@ import dataclasses
 import math
 import os
 import pickle
+import tempfile
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
@@ -26,10 +27,12 @@ from wearlaw.models.contact_model import fault
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
+from wearlaw.pipeline.profiles import POSITION
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.settings.configuration import parts
+from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.evaluation import Job, output_units, range_warnings
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import BLOCK, Points, outer_product
@@ -37,11 +40,13 @@ from wearlaw_sweeps.progress import Bar
 from wearlaw_sweeps.results import Memory
 from wearlaw_sweeps.room import writing_to
 from wearlaw_sweeps.tables import from_table
+from wearlaw_sweeps.wear_profile import SHARE, WEAR_PROFILE, ProfileJob, Sum, check_shares
 from wearlaw_sweeps.workers import here, in_processes, on_cluster
 
 if TYPE_CHECKING:
     import pandas
 
+    from wearlaw.units.quantities import QuantityLike
     from wearlaw_sweeps.store import Store
 
 MOST = 2**24
@@ -61,6 +66,9 @@ def sweep(
     sep: str | None = None,
     decimal: str = ".",
     outputs: Sequence[str] | None = None,
+    share: str | None = None,
+    body: str = "wheel",
+    at: QuantityLike | None = None,
     workers: int = 1,
     client: Any = None,
     store: str | os.PathLike[str] | None = None,
@@ -89,7 +97,15 @@ def sweep(
         Names of outcomes and properties of a prediction to keep, such as "wear_rate", "rcf_damage" or
         "tangential_force". If laws of one outcome differ by body, the name of the body follows, as in "wear_rate_rail".
         Default: the variables of `Prediction.to_dataset`, as long as they are no more than 2²⁴ numbers (128 MiB), and
-        in a larger sweep the outcomes of all laws alone; `attrs["notes"]` then says so.
+        in a larger sweep the outcomes of all laws alone; `attrs["notes"]` then says so. ["wear_profile"] gives the
+        depth and the sliding distance of `Prediction.wear_profile` with `body` and `at`.
+    share : str, optional
+        For "wear_profile": the column of the table with the share of each row, which add up to one. The results are
+        then the weighted sums over all rows, with the mass, at constant memory for a file of any length.
+    body : str
+        For "wear_profile": the body that wears.
+    at : Quantity or str, optional
+        For "wear_profile": positions along the profile of the body.
     workers : int
         Number of processes on this machine; they are kept for later sweeps.
     client : distributed.Client, optional
@@ -128,14 +144,35 @@ def sweep(
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {shown(workers)}")
     as_csv = {"sep": sep, "decimal": decimal}
-    with writing_to(store), _points(predict, table, conditions, columns, keep, as_csv, store, progress) as points:
+    profile = outputs in ([WEAR_PROFILE], (WEAR_PROFILE,))
+    if share is not None:
+        if table is None or not profile or store is not None:
+            raise InputError(
+                'share: belongs to a table and outputs=["wear_profile"], without a store, which a sum does not need'
+            )
+        keep = {**(keep or {}), SHARE: share}
+    summed = share is not None
+    with (
+        writing_to(store),
+        _points(predict, table, conditions, columns, keep, as_csv, store, summed, progress) as points,
+    ):
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
-        points = dataclasses.replace(points, weight=weight(first))
-        job, notes = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
+        if profile:
+            job: Job = checked_profile(predict, first, body, at, summed, workers > 1 or client is not None)
+            notes: list[str] = []
+        else:
+            job, notes = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
+        points = dataclasses.replace(points, weight=job.weight(first))
+        if share is not None:
+            check_shares(points, share)
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
-        target = target_of(job, points, None if store is None else Path(store), resume)
+        target: Memory | Sum | Store
+        if isinstance(job, ProfileJob) and job.summed:
+            target = Sum(job, points)
+        else:
+            target = target_of(job, points, None if store is None else Path(store), resume)
         blocks = len(points.blocks())
         if target.resumed and len(target.done) < blocks:
             warnings.warn(kept(len(target.done), blocks, Path(target.store or "")), ResumeWarning, stacklevel=2)
@@ -169,6 +206,7 @@ def _points(
     keep: Mapping[str, str] | None,
     as_csv: Mapping[str, Any],
     store: str | os.PathLike[str] | None,
+    summed: bool,
     progress: bool,
 ) -> Iterator[Points]:
     """Give the operating points of a sweep."""
@@ -178,7 +216,8 @@ def _points(
                 raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
         yield outer_product(conditions)
         return
-    on_disk = None if store is None else Path(store)
+    beside = store if not summed else Path(tempfile.gettempdir(), "sum")  # a sum needs no store, but no memory
+    on_disk = None if beside is None else Path(beside)
     check = predict.rig.check_names
     with from_table(
         table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk, progress=progress
@@ -210,6 +249,26 @@ def _checked_job(
             notes = [f"the sweep is large and keeps only the outcomes of laws: all outputs are {size:.2g} numbers"]
     units = output_units(pipeline, one, points, list(dict.fromkeys(names)) or None)
     return Job(pipeline, units, first.dims), notes
+
+
+def checked_profile(
+    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool, elsewhere: bool,
+    kind: type[ProfileJob] = ProfileJob,
+) -> ProfileJob:  # fmt: skip
+    """Return the job of the wear across a profile, after a prediction of it at the first operating point.
+
+    Raises
+    ------
+    InputError
+        If the body or the positions are wrong, or other processes could not import a model.
+    """
+    if at is None:
+        raise InputError('at: "wear_profile" needs positions, such as at=Q(np.arange(-60, 60, 0.25), "mm")')
+    if elsewhere:
+        check_importable(pipeline)
+    unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
+    positions = VARIABLES[POSITION].expected.si(at, "at")
+    return kind.of(pipeline, first, body, positions, summed)
 
 
 def check_importable(pipeline: Pipeline[...]) -> None:
@@ -267,18 +326,14 @@ def _check_names(rig: Rig, problem: Problem, points: Points) -> None:
         raise fault(rig, f"has an axis and a condition named '{min(taken)}'; rename one of the two")
 
 
-def weight(problem: Problem) -> float:
-    """Return the size of an operating point of a problem; four numbers of a strip count as one of 16 for a patch."""
-    strips = 0 if problem.strips is None else problem.strips.y.shape[-1]
-    return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
-
-
-def run(target: Memory | Store, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
+def run(
+    target: Memory | Sum | Store, on_block: Callable[[int], None], workers: int = 1, client: Any = None
+) -> list[Warning]:
     """Evaluate the remaining blocks and return the warnings that belong to the results.
 
     Parameters
     ----------
-    target : Memory or Store
+    target : Memory, Sum or Store
         Target of the results. It keeps the finished blocks after an interrupt.
     on_block : callable
         Called with the number of points in each finished block, and first with those finished earlier.

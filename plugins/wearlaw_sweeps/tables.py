@@ -91,8 +91,8 @@ def from_table(
             {name: found[name] for name in given},
             {dim: labels for dim, labels in table.labels.items() if dim == table.dim},
             kept={name: found[name] for name in kept},
-            file=table if file else None,
-            numbers=range(found[next(iter(given))].values.size) if file else None,
+            file=table if file else Table(table.label),
+            numbers=range(found[next(iter(given))].values.size),
         )
 
 

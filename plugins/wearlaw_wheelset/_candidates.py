@@ -112,8 +112,13 @@ class Candidates:
         return Candidates(position=Position(*(np.concatenate(pair)[order] for pair in pairs)), **found), order
 
 
-def candidates(section: Section, position: Position, touching: Touching, spacing: float = SPACING) -> Candidates:
-    """Return all places where wheels come close to their rails; positions are of shape (positions, sides)."""
+def candidates(
+    section: Section, position: Position, touching: Touching, spacing: float = SPACING, among: int = 0
+) -> Candidates:
+    """Return all places where wheels come close to their rails; positions are of shape (positions, sides).
+
+    `among` is the number of positions of the task, as in `searched`.
+    """
     point, side, number = np.nonzero(~np.isnan(touching.arc))
     here = Position(*(array[point, side] for array in position))
     arc = touching.arc[point, side, number]
@@ -125,17 +130,21 @@ def candidates(section: Section, position: Position, touching: Touching, spacing
         np.empty(count), np.empty(count), samples, arcs,
         0.5 * curvature_along(section, here, place, arc),
     )  # fmt: skip
-    sample(section, found, np.arange(count), spacing)
+    sample(section, found, np.arange(count), spacing, among)
     return found
 
 
-def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing: float) -> None:
-    """Fill in, in place, the gaps around some of the places at a spacing [m]."""
+def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing: float, among: int = 0) -> None:
+    """Fill in, in place, the gaps around some of the places at a spacing [m]; `among` as in `searched`."""
+    if section.left is not None:
+        for side, one in enumerate(section.sides):
+            sample(one, found, rows[found.side[rows] == side], spacing, among)
+        return
     found.start[rows] = -spacing * (SAMPLES // 2)
     found.step[rows] = spacing
-    if wl.accelerated(rows.size * SAMPLES):
+    if wl.accelerated(max(rows.size, among) * SAMPLES):
         samples, arcs = np.empty((2, rows.size, SAMPLES))
-        position = (np.ascontiguousarray(array[rows]) for array in found.position)
+        position = (np.ascontiguousarray(array[rows]) for array in found.position[:3])
         compiled_samples(
             *position, found.arc[rows], spacing, *section.wheel_y, *section.wheel_radius, *section.rail_z, samples, arcs
         )

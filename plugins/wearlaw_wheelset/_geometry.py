@@ -73,16 +73,15 @@ class Patches:
 def patches(section: Section, position: Position, touching: Touching) -> Patches:
     """Return the contact patches in track axes; NaN where there is none."""
     wide = position.widened()
-    arc = np.where(np.isnan(touching.arc), section.wheel_y.start, touching.arc)
+    arc = np.where(np.isnan(touching.arc), [[one.wheel_y.start] for one in section.sides], touching.arc)
     place = placed(section, wide, arc)
     side = np.array([-1.0, 1.0])[:, None]
     across = place.y + wide.displacement
-    wheel_y, wheel_z, _, wheel_curvature = section.wheel.at(arc)
-    inside = np.clip(place.rail_arc, section.rail.s[0], section.rail.s[-1])
-    rail_y, rail_z, _, rail_curvature = section.rail.at(inside)
+    wheel_y, wheel_z, _, wheel_curvature = section.at("wheel", arc, wide.side)
+    rail_y, rail_z, _, rail_curvature = section.at("rail", place.rail_arc, wide.side)
     found = {
         "y": side * across,
-        "z": section.rail_z.at(across)[0],
+        "z": section.at("rail_z", across, wide.side)[0],
         "x": np.broadcast_to(place.x, arc.shape),
         "contact_angle": side * place.angle,
         "rolling_radius": place.radius,

@@ -310,17 +310,21 @@ class Balance:
         if known:  # places that are far from touching need no samples
             far = touching.gap > FAR * self.whole.reshape(-1, 2)[rows][..., None]
             touching = touching._replace(arc=np.where(far, np.nan, touching.arc))
-        places = candidates(self.section, position, touching, self._spacing)
+        places = candidates(self.section, position, touching, self._spacing, self.roll.size)
         saddle = touching.saddle[places.point, places.side, places.number]
         places = replace(places, point=rows[places.point])
         first = np.flatnonzero(places.number == 0)
         again = first
-        if known:  # `whole` decides where places are close, and how wide the samples must be
+        if known:  # `whole` decides where places are close
             turned = self._chosen(rows[np.abs(roll - self.estimated[rows]) > SMALL_ROLL])
+            step = np.zeros(self.whole.size)
+            np.maximum.at(step, self.found.wheel, self.found.step)
             wheels = np.zeros(self.whole.size, dtype=np.bool_)
-            wheels[places.wheel[(places.number > 0) & turned[places.point]]] = True
-            wheels[self.found.wheel[self.found.step > self._spacing]] = True
-            again = first[wheels[places.wheel[first]]]
+            several = places.wheel[places.number > 0]
+            wheels[several] = (turned.repeat(2) | (step > self._spacing))[several]
+            again, single = first[wheels[places.wheel[first]]], first[~wheels[places.wheel[first]]]
+            wide = single[step[places.wheel[single]] > self._spacing]
+            self._sample(places, wide, step[places.wheel[wide]])  # as wide as they were
         if again.size:
             guess = self.whole[places.wheel[again]] if known else None
             self.whole[places.wheel[again]] = self._alone(places, again, guess)
@@ -361,7 +365,7 @@ class Balance:
         task = self.task
         if not rows.size:
             return
-        _, touching = searched(self.section, task.displacement[rows], task.yaw[rows], roll)
+        _, touching = searched(self.section, task.displacement[rows], task.yaw[rows], roll, self.roll.size)
         on = ~np.isnan(touching.arc[..., 0]).any(axis=-1)
         if on.any():
             self._stand(rows[on], roll[on], Touching(*(array[on] for array in touching)))
@@ -382,18 +386,23 @@ class Balance:
         """Return the vertical penetration if one patch of each wheel carries the whole load, and widen its samples."""
         penetration = np.empty(rows.size)
         open_ = np.arange(rows.size)
-        for widening in range(WIDENINGS + 1):
+        widest = self._spacing * 2.0**WIDENINGS
+        while open_.size:
             part = found.part(rows[open_])
             patch = _normal.loaded(
                 part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
                 self.task.load[part.point] / part.cosine, 5, guess if guess is None else guess[open_] * part.cosine,
+                self.roll.size,
             )  # fmt: skip
             penetration[open_] = patch.penetration / part.cosine
-            open_ = open_[patch.narrow]
-            if not open_.size or widening == WIDENINGS:
-                break
-            sample(self.section, found, rows[open_], self._spacing * 2.0 ** (widening + 1))
+            open_ = open_[patch.narrow & (part.step < widest)]
+            self._sample(found, rows[open_], 2.0 * found.step[rows[open_]])
         return penetration
+
+    def _sample(self, places: Candidates, rows: NDArray[np.intp], spacing: Array) -> None:
+        """Fill in, in place, the gaps around some places at spacings of their own [m]."""
+        for one in np.unique(spacing):
+            sample(self.section, places, rows[spacing == one], float(one), self.roll.size)
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None) -> Balance:
         """Return the loads with penetrations and speeds of rotation that balance the creep forces.
@@ -740,7 +749,7 @@ class Balance:
         """Return the strips of patches, their semi-axes and their centres."""
         found = _normal.penetrated(
             part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
-            self._depth(part), self.strips,
+            self._depth(part), self.strips, self.roll.size,
         )  # fmt: skip
         shapes = {name: getattr(found, name) for name in ("y", "width", "half_length", "a", "b", "centre")}
         return self._sided(part, shapes | {"max_pressure": found.pressure})
@@ -761,8 +770,8 @@ class Balance:
         for k, depth in enumerate(self._depth(part)):
             key = int(part.wheel[k]), int(part.number[k])
             self.starts[key] = found = _half_space.rows(
-                self.section, part.part(np.array([k])), float(depth), self.elastic.modulus, 2 * self.strips,
-                self.starts.get(key),
+                self.section.sides[part.side[k]], part.part(np.array([k])), float(depth), self.elastic.modulus,
+                2 * self.strips, self.starts.get(key),
             )  # fmt: skip
             y[k], half_length[k], pressure[k], width[k], angle[k] = found[:5]
         load, a = half_length * pressure, half_length.max(axis=-1)
@@ -783,9 +792,9 @@ class Balance:
     def _ellipses(self, part: Candidates) -> dict[str, Array]:
         """Return Hertz's ellipses of the curvatures at first touching."""
         at = placed(self.section, part.position, part.arc)
-        along, wheel = part.curvature_x, self.section.wheel.at(part.arc)[3]
+        along, wheel = part.curvature_x, self.section.at("wheel", part.arc, part.side)[3]
         circle = part.cosine / at.radius
-        across = 0.5 * (wheel + circle + self.section.rail.at(at.rail_arc)[3]) - along
+        across = 0.5 * (wheel + circle + self.section.at("rail", at.rail_arc, part.side)[3]) - along
         turn = np.tan(part.position.yaw) / part.cosine  # of the wheel's circles, which skews the gap
         skew = 0.5 * (wheel - circle) * turn / (1.0 + turn**2)
         more = np.hypot(0.5 * (along - across), skew) - np.abs(0.5 * (along - across))

@@ -50,8 +50,8 @@ class Place(NamedTuple):
 def placed(section: Section, position: Position, arc: Array) -> Place:
     """Return the points of contact at arc lengths of the wheel [m], at the mean of the slopes of wheel and rail."""
     at = gaps(section, position, arc)
-    radius, _ = section.wheel_radius.at(arc)
-    rail_arc, _ = section.rail_position.at(at.y)
+    radius, _ = section.at("wheel_radius", arc, position.side)
+    rail_arc, _ = section.at("rail_position", at.y, position.side)
     angle = np.arctan(at.rail_slope - 0.5 * at.rise)
     return Place(at.x, at.y - position.displacement, at.z, angle, radius, rail_arc)
 
@@ -66,8 +66,7 @@ def curvature_along(section: Section, position: Position, place: Place, arc: Arr
     cosine = np.cos(place.angle)
     square = (np.tan(position.yaw) / cosine) ** 2
     round_ = cosine / place.radius
-    inside = np.clip(arc, section.wheel.s[0], section.wheel.s[-1])
-    curved: Array = (round_ + section.wheel.at(inside)[3] * square) / (1.0 + square)
+    curved: Array = (round_ + section.at("wheel", arc, position.side)[3] * square) / (1.0 + square)
     return np.maximum(curved, 0.1 * round_)
 
 
@@ -122,7 +121,7 @@ def creepages(
     side : ndarray
         1 on the right and -1 on the left.
     """
-    _, roll, yaw = position
+    _, roll, yaw, _ = position
     axle = -np.cos(roll) * np.sin(yaw), np.cos(roll) * np.cos(yaw), np.sin(roll)
     rolling = roll_rate * np.cos(yaw), roll_rate * np.sin(yaw)
     upright = speed * np.cos(place.angle)

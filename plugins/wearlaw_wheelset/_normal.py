@@ -104,6 +104,7 @@ def penetrated(
     modulus: ArrayLike,
     penetration: ArrayLike,
     strips: int = 21,
+    among: int = 0,
 ) -> StripPatch:
     """Return patches at a penetration.
 
@@ -122,13 +123,15 @@ def penetrated(
         Approach of the bodies from first touching, δ [m].
     strips : int
         Number of strips of a patch.
+    among : int
+        Number of patches of the task, if these are some of them: compiled loops pay for the last few as well.
 
     Raises
     ------
     InputError
         If a patch has fewer than four samples, a value is not positive, or there are fewer than two strips.
     """
-    return _patches(start, step, gap, curvature_x, modulus, penetration, 0.0, strips)
+    return _patches(start, step, gap, curvature_x, modulus, penetration, 0.0, strips, among)
 
 
 def loaded(
@@ -140,12 +143,13 @@ def loaded(
     normal_force: ArrayLike,
     strips: int = 21,
     guess: ArrayLike | None = None,
+    among: int = 0,
 ) -> StripPatch:
     """Return patches that carry a normal force, to 1e-10 of it.
 
     Parameters
     ----------
-    start, step, gap, curvature_x, modulus, strips
+    start, step, gap, curvature_x, modulus, strips, among
         As for `penetrated`.
     normal_force : array_like, (patches,)
         Normal force, N [N].
@@ -162,7 +166,7 @@ def loaded(
     if guess is None:  # that of a sphere
         force, curvature, elastic = (np.asarray(value, dtype=float) for value in (normal_force, curvature_x, modulus))
         guess = np.cbrt(1.125 * (force / elastic) ** 2 * curvature)
-    return _patches(start, step, gap, curvature_x, modulus, guess, normal_force, strips)
+    return _patches(start, step, gap, curvature_x, modulus, guess, normal_force, strips, among)
 
 
 class HertzPatch(NamedTuple):
@@ -190,6 +194,7 @@ def _patches(
     penetration: ArrayLike,
     load: ArrayLike,
     strips: int,
+    among: int,
 ) -> StripPatch:
     """Return patches at a penetration or, if the load is not zero, under it."""
     samples = np.array(gap, dtype=float, order="C")
@@ -202,7 +207,7 @@ def _patches(
     cosine, sine = _even(strips)
     share, weight = _nodes()
     fields, sums = np.empty((count, 3, strips)), np.empty((count, 4))
-    if wl.accelerated(count * FEW):
+    if wl.accelerated(max(count, among) * FEW):
         loops.patch_loop(samples, given, cosine, sine, share, weight, fields, sums)
     else:
         _solve(samples, given, (cosine, sine, share, weight), fields, sums)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
@@ -118,6 +118,13 @@ class WheelsetProblem(wl.Problem):
     balance: Balance
     shape: tuple[int, ...]
 
+    @property
+    def climbs(self) -> NDArray[np.bool_]:
+        """Whether each wheel stands on its flange beyond the steepest place, (positions, sides)."""
+        over, climbs = _climbing(self.balance), np.zeros(self.balance.task.load.size * 2, dtype=np.bool_)
+        climbs[self.balance.found.wheel[over]] = True
+        return climbs.reshape(-1, 2)
+
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
         mapped = super(WheelsetProblem, self).mapped(function, of_strips)  # a class with slots has no plain super()
@@ -133,7 +140,7 @@ class Wheelset(wl.Rig):
 
     Prefer this rig to `WheelRail` where you have profiles, or where a wheel touches in several places. It has no
     dynamics: lateral displacement, yaw and loads come from a program for vehicle dynamics. Both wheels have the same
-    profile and load, and so do both rails.
+    load, and the same profile unless `left_wheel` gives that of the left one; so do the rails with `left_rail`.
 
     Axes are those of the track: x forwards, y to the right, z down. Results have the axes "side" and "patch". Patch 1
     is the place where rigid bodies touch first; missing patches are NaN.
@@ -168,6 +175,10 @@ class Wheelset(wl.Rig):
     """Profile of the wheels; a file may give the name of a formula, such as "s1002", or the path of a profile."""
     rail: Profile
     """Profile of the rails, without cant; a file may give "uic60" or a path."""
+    left_wheel: Profile | None = None
+    """Profile of the left wheel if it differs; `wheel` is then that of the right one. The flange is at y < 0."""
+    left_rail: Profile | None = None
+    """Profile of the left rail if it differs; `rail` is then that of the right one. The gauge side is at y < 0."""
     nominal_radius: wl.Length
     """Radius of the wheels at the origin of their profile, the taping line [m]."""
     flange_back_distance: wl.Length
@@ -203,6 +214,8 @@ class Wheelset(wl.Rig):
             *,
             wheel: Profile,
             rail: Profile,
+            left_wheel: Profile | None = None,
+            left_rail: Profile | None = None,
             nominal_radius: wl.QuantityLike,
             flange_back_distance: wl.QuantityLike,
             flange_back_position: wl.QuantityLike = "-70 mm",
@@ -224,6 +237,10 @@ class Wheelset(wl.Rig):
 
     @model_validator(mode="after")
     def _fits(self) -> Wheelset:
+        for name, kind in (("left_wheel", "wheel"), ("left_rail", "rail")):
+            given = getattr(self, name)
+            if given is not None and given.kind != kind:
+                raise ValueError(f"{name} is the profile of a {given.kind}; give that of a {kind}")
         if self.wheel.kind != "wheel" or self.rail.kind != "rail":
             swapped = self.wheel.kind != "wheel" and self.rail.kind != "rail"
             raise ValueError(
@@ -510,7 +527,7 @@ class Wheelset(wl.Rig):
     def _warn_of_climbing(self, balance: Balance) -> None:
         """Warn of a wheel that stands on the top of its flange."""
         found = balance.found
-        over = (found.number == 0) & (found.arc < self._steepest)
+        over = _climbing(balance)
         if over.any():
             point, side = (int(index[over][0]) for index in (found.point, found.side))
             displacement = 1e3 * balance.task.displacement[point]
@@ -550,7 +567,10 @@ class Wheelset(wl.Rig):
 
     @property
     def _flange_play(self) -> float | None:
-        """Distance from the flange, below the taping line, to the rail in the middle of the track [m]; None without."""
+        """Distance from the flange, below the taping line, to the rail in the middle of the track [m]; None without.
+
+        It is that of the right wheel.
+        """
         across, radius = self._section.wheel_y.value, self._section.wheel_radius.value
         deep = np.flatnonzero(radius > scalar(self.nominal_radius) + FLANGE_DEPTH)
         if not deep.size or self.wheel.curve.angle.min() > -FLANGE_SLOPE:
@@ -558,27 +578,22 @@ class Wheelset(wl.Rig):
         return 0.5 * scalar(self.gauge) - float(across[deep[-1]])
 
     @cached_property
-    def _steepest(self) -> float:
-        """Arc length of the steepest place of the flange; where it is straight, of its end towards the top [m]."""
-        curve, start = self._section.wheel, self._section.wheel_y.start
-        flange = (curve.s >= start) & (curve.y < 0.0)
-        if not flange.any():
-            return -np.inf
-        angle = curve.angle[flange]
-        steep = angle <= angle.min() + 1e-6
-        return float(curve.s[flange][steep][0])
-
-    @cached_property
     def _section(self) -> Section:
-        return section(
-            self.wheel.curve,
-            self.rail.curve,
-            nominal_radius=scalar(self.nominal_radius),
-            wheel_offset=0.5 * scalar(self.flange_back_distance) - scalar(self.flange_back_position),
-            cant=scalar(self.rail_cant),
-            gauge=scalar(self.gauge),
-            depth=scalar(self.gauge_depth),
-        )
+        def of(wheel: Profile, rail: Profile) -> Section:
+            return section(
+                wheel.curve,
+                rail.curve,
+                nominal_radius=scalar(self.nominal_radius),
+                wheel_offset=0.5 * scalar(self.flange_back_distance) - scalar(self.flange_back_position),
+                cant=scalar(self.rail_cant),
+                gauge=scalar(self.gauge),
+                depth=scalar(self.gauge_depth),
+            )
+
+        right = of(self.wheel, self.rail)
+        if self.left_wheel is None and self.left_rail is None:
+            return right
+        return replace(right, left=of(self.left_wheel or self.wheel, self.left_rail or self.rail))
 
     @cached_property
     def _elastic(self) -> Elastic:
@@ -590,6 +605,12 @@ class Wheelset(wl.Rig):
             wl.hertz.mean_poisson_ratio(e1, n1, e2, n2),
             scalar(self.material.density),
         )
+
+
+def _climbing(balance: Balance) -> NDArray[np.bool_]:
+    """Return which places are the first of a wheel and on its flange beyond the steepest place."""
+    steepest = np.array([one.steepest for one in balance.section.sides])
+    return np.asarray((balance.found.number == 0) & (balance.found.arc < steepest[balance.found.side]))
 
 
 def scalar(value: Any) -> float:

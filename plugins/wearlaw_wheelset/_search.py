@@ -21,7 +21,7 @@ the axes above.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -60,6 +60,9 @@ ACCURATE = {"xatol": 1e-9}
 
 BESIDE = 1e3
 """A place beside any rail [m]."""
+
+STRAIGHT = 1e-6
+"""Difference in the angle of a flank that is straight but for rounding [rad]."""
 
 ON_EDGE = 1e-6
 """Difference between slopes at a contact point that only the end of a profile can have."""
@@ -140,6 +143,8 @@ class Section:
         Height of the rail, positive downwards, and the arc length of its profile, over y.
     wheel, rail : Curve
         The profiles.
+    left : Section or None
+        The left wheel above its rail if their profiles differ; the others are then those of the right side.
     """
 
     wheel_y: Table
@@ -148,6 +153,29 @@ class Section:
     rail_position: Table
     wheel: Curve
     rail: Curve
+    left: Section | None = None
+
+    @cached_property
+    def sides(self) -> tuple[Section, Section]:
+        """The left and the right wheel above their rails, each as a section alone."""
+        return (self, self) if self.left is None else (self.left, replace(self, left=None))
+
+    def at(self, name: str, x: Array, side: NDArray[np.intp]) -> tuple[Array, ...]:
+        """Return values of a table, or of a profile within its ends, at places x on sides; the arrays broadcast."""
+        if self.left is None:
+            return _at(getattr(self, name), x)
+        x, side = np.broadcast_arrays(x, side)
+        of_left, of_right = (_at(getattr(one, name), x) for one in self.sides)
+        return tuple(np.where(side == 0, left, right) for left, right in zip(of_left, of_right, strict=True))
+
+    @property
+    def steepest(self) -> float:
+        """Arc length of the steepest place of the flange; where it is straight, of its end towards the top [m]."""
+        flange = (self.wheel.s >= self.wheel_y.start) & (self.wheel.y < 0.0)
+        if not flange.any():
+            return -np.inf
+        angle = self.wheel.angle[flange]
+        return float(self.wheel.s[flange][angle <= angle.min() + STRAIGHT][0])
 
     @property
     def spacing(self) -> float:
@@ -164,6 +192,10 @@ class Section:
         coarse = Coarse(*points)
         coarse.y[[0, -1]] = BESIDE
         return coarse
+
+
+def _at(of: Table | Curve, x: Array) -> tuple[Array, ...]:
+    return of.at(x) if isinstance(of, Table) else of.at(np.clip(x, of.s[0], of.s[-1]))
 
 
 def section(
@@ -242,11 +274,14 @@ class Position(NamedTuple):
         Roll [rad], positive if it lowers this side.
     yaw : ndarray
         Yaw [rad], positive if it turns the rolling direction towards y.
+    side : ndarray of int
+        0 on the left, 1 on the right.
     """
 
     displacement: Array
     roll: Array
     yaw: Array
+    side: Any
 
     def widened(self) -> Position:
         """Return the position with one more axis."""
@@ -278,9 +313,10 @@ class Gaps(NamedTuple):
 
 def gaps(section: Section, position: Position, arc: Array) -> Gaps:
     """Return the gaps below points of the wheel at arc lengths [m]; the arrays broadcast."""
-    y, dy = section.wheel_y.at(arc)
-    radius, d_radius = section.wheel_radius.at(arc)
-    return _gaps(position, y, radius, d_radius / dy, section.rail_z.at)
+    side = position.side
+    y, dy = section.at("wheel_y", arc, side)
+    radius, d_radius = section.at("wheel_radius", arc, side)
+    return _gaps(position, y, radius, d_radius / dy, lambda across: section.at("rail_z", across, side))
 
 
 def _gaps(
@@ -288,9 +324,9 @@ def _gaps(
     y: Array,
     radius: Array,
     slope: Array,
-    rail_at: Callable[[Array], tuple[Array, Array]],
+    rail_at: Callable[[Array], tuple[Array, ...]],
 ) -> Gaps:
-    displacement, roll, yaw = position
+    displacement, roll, yaw, _ = position
     turn = np.sin(roll), np.cos(roll), np.sin(yaw), np.cos(yaw)
     place_x, place_y, down, steep = locus(y, radius, slope, displacement, turn)
     rail, rail_slope = rail_at(place_y)
@@ -324,6 +360,12 @@ def touching(section: Section, position: Position, near: NDArray[np.intp] | None
     `near`, of shape (positions, sides), limits the search to `WINDOW` coarse points around the given ones; the saddles
     are then those of the window. `every` leaves out coarse points, for a first estimate.
     """
+    if section.left is not None:
+        single = []
+        for side, one in enumerate(section.sides):
+            here = Position(*(array[:, [side]] for array in position))
+            single.append(touching(one, here, None if near is None else near[:, [side]], every))
+        return Touching(*(np.concatenate(pair, axis=1) for pair in zip(*single, strict=True)))
     points = Coarse(*(array[::every] for array in section.coarse))
     if near is not None:
         start = np.clip(near - WINDOW // 2, 0, points.arc.size - WINDOW)[..., None]
@@ -399,7 +441,9 @@ def _root(section: Section, position: Position, left: Array, right: Array) -> Ar
     return right
 
 
-def searched(section: Section, displacement: Array, yaw: Array, roll: Array | None = None) -> tuple[Array, Touching]:
+def searched(
+    section: Section, displacement: Array, yaw: Array, roll: Array | None = None, among: int = 0
+) -> tuple[Array, Touching]:
     """Return the roll at which both wheels touch [rad], positive if it lowers the right one, and where they touch.
 
     Parameters
@@ -411,12 +455,14 @@ def searched(section: Section, displacement: Array, yaw: Array, roll: Array | No
         Yaw [rad], positive if the right wheel moves backwards.
     roll : ndarray, (positions,), optional
         The roll, if it is given; each wheel then touches at a height of its own.
+    among : int
+        Number of positions of the task, if these are some of them: compiled loops pay for the last few as well.
 
     Notes
     -----
     Where a wheel stands on the end of a profile, its own or the rail's, there is no contact point.
     """
-    if wl.accelerated(LOOPS * displacement.size):
+    if wl.accelerated(LOOPS * max(displacement.size, among)):
         rolls, found = _compiled(section, displacement, yaw, roll)
     else:
         rolls = np.empty(displacement.shape)
@@ -427,7 +473,7 @@ def searched(section: Section, displacement: Array, yaw: Array, roll: Array | No
             parts.append(part)
         found = Touching(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
     position = both_sides(displacement, rolls, yaw).widened()
-    arc = np.where(np.isnan(found.arc), section.wheel_y.start, found.arc)
+    arc = np.where(np.isnan(found.arc), _starts(section), found.arc)
     edge = np.abs(gaps(section, position, arc).rise) > ON_EDGE
     return rolls, found._replace(arc=np.where(edge, np.nan, found.arc))
 
@@ -437,9 +483,10 @@ def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | N
     roll_found = np.zeros(displacement.size) if roll is None else roll.copy()
     arc, above, saddle = (np.empty(shape) for _ in range(3))
     least = np.empty(shape[:2])
+    tables = ((*one.coarse, *one.wheel_y, *one.wheel_radius, *one.rail_z) for one in section.sides)
     compiled_search(
-        np.ascontiguousarray(displacement), np.ascontiguousarray(yaw), roll is not None, *section.coarse,
-        *section.wheel_y, *section.wheel_radius, *section.rail_z, roll_found, arc, above, saddle, least,
+        np.ascontiguousarray(displacement), np.ascontiguousarray(yaw), roll is not None, *zip(*tables, strict=True),
+        roll_found, arc, above, saddle, least,
     )  # fmt: skip
     return roll_found, Touching(arc, above, saddle, least)
 
@@ -473,18 +520,25 @@ def _level(
         position = both_sides(displacement[rows], roll[rows], yaw[rows])
         lost = np.asarray(np.isnan(arc).any(axis=-1))  # the point has jumped out of the window
         excess = np.subtract(least[:, 1], least[:, 0], out=np.zeros(rows.size), where=~lost)
-        place = gaps(section, position, np.where(lost[:, None], section.wheel_y.start, arc))
+        start = _starts(section)[:, 0]
+        place = gaps(section, position, np.where(lost[:, None], start, arc))
         lever = (place.y + place.rail_slope * place.z).sum(axis=-1)
         going = np.asarray((np.abs(excess) > ROLL_ACCURACY) & ~lost)
         roll[rows] += np.where(going, roll_step(excess, lever), 0.0)
         rows, arc = rows[going], arc[going]
         if not rows.size:
             return
-        near = ((arc - section.wheel_y.start) / section.spacing).astype(np.intp) + 1
+        near = ((arc - start) / [one.spacing for one in section.sides]).astype(np.intp) + 1
         local = touching(section, both_sides(displacement[rows], roll[rows], yaw[rows]), near)
         least, arc = local.least, local.arc[..., 0]
 
 
 def both_sides(displacement: Array, roll: Array, yaw: Array) -> Position:
     """Return the positions of the left and the right wheel in outward coordinates, with an axis of sides."""
-    return Position(*(np.stack([-array, array], axis=-1) for array in (displacement, roll, yaw)))
+    across, lowered, turned = (np.stack([-array, array], axis=-1) for array in (displacement, roll, yaw))
+    return Position(across, lowered, turned, np.broadcast_to(np.arange(2), across.shape))
+
+
+def _starts(section: Section) -> Array:
+    """Return the arc length of the first point of each side's wheel, of shape (sides, 1) [m]."""
+    return np.array([[one.wheel_y.start] for one in section.sides])

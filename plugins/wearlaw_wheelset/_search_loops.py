@@ -40,6 +40,8 @@ ROUNDING = 1e-12
 VECTOR = "float64[::1]"
 ROWS = "float64[:, ::1]"
 TABLE = f"float64, float64, {VECTOR}, {VECTOR}"
+BOTH = f"UniTuple({VECTOR}, 2)"
+TABLES = f"UniTuple(float64, 2), UniTuple(float64, 2), {BOTH}, {BOTH}"
 
 
 def locus(y: Any, radius: Any, slope: Any, displacement: Any, turn: tuple[Any, Any, Any, Any]) -> tuple[Any, ...]:
@@ -149,14 +151,10 @@ def near(x: float, start: float, step: float, value: Array, slope: Array) -> tup
     )
 
 
-@wl.compiled_loop(
-    f"void({VECTOR}, {VECTOR}, boolean, {VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {TABLE}, {TABLE}, {TABLE}, {VECTOR},"
-    " float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1])"
-)
-def compiled_search(
-    displacement: Array,
-    yaw: Array,
-    given: bool,
+def touch(
+    shift: float,
+    turn: tuple[float, float, float, float],
+    whole: bool,
     arc: Array,
     y: Array,
     radius: Array,
@@ -173,117 +171,171 @@ def compiled_search(
     z_step: float,
     z_value: Array,
     z_slope: Array,
+    gap: Array,
+    rise: Array,
+    height: Array,
+    cell: Any,
+    place: Array,
+    found: Array,
+    above: Array,
+    saddle: Array,
+) -> tuple[float, float]:
+    """Find the contact points of one wheel, and return its least gap and the lever of a roll [m].
+
+    Unless `whole`, they are looked for around the first of those in `found`.
+    """
+    spacing = arc[2] - arc[1]
+    lever = 0.0
+    begin, end = 0, arc.size
+    if not whole:
+        middle = int((found[0] - arc[0]) / spacing) + 1
+        begin = min(max(middle - WINDOW // 2, 0), arc.size - WINDOW)
+        end = begin + WINDOW
+    for patch in range(PATCHES):
+        place[patch], height[patch], cell[patch] = np.nan, np.inf, -1
+    for k in range(begin, end):
+        _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
+        rail, rail_slope = near(across, z_start, z_step, z_value, z_slope)
+        gap[k], rise[k] = rail - down, rail_slope - steep
+        if k == begin:
+            continue
+        falls = rise[k - 1] < 0.0 or gap[k - 1] == np.inf
+        low = falls and rise[k] >= 0.0 and gap[k] < np.inf
+        if not low and not (rise[k - 1] < 0.0 and gap[k - 1] < np.inf and gap[k] == np.inf):
+            continue
+        size = min(gap[k - 1], gap[k])
+        last = PATCHES - 1
+        if size >= height[last]:
+            continue
+        while last > 0 and size < height[last - 1]:
+            height[last], cell[last] = height[last - 1], cell[last - 1]
+            last -= 1
+        height[last], cell[last] = size, k - 1
+    for patch in range(PATCHES):
+        k = cell[patch]
+        if k < 0:
+            continue
+        left, right = float(arc[k]), float(arc[k + 1])
+        if gap[k] == np.inf:
+            left = right
+        if gap[k + 1] == np.inf:
+            right = left
+        if left < right:
+            left = max(left - WIDER * spacing, arc[0])
+            right = min(right + WIDER * spacing, arc[arc.size - 1])
+        at_left = at_right = 0.0
+        for iteration in range(ROOTS + 2):
+            root = left if iteration == 0 else right  # the ends first
+            if iteration > 1:
+                share = at_right / (at_right - at_left) if at_right != at_left else 0.0
+                root = right - share * (right - left)
+            there, d_there = at(root, y_start, y_step, y_value, y_slope)
+            size, d_size = at(root, r_start, r_step, r_value, r_slope)
+            _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
+            rail, rail_slope = at(across, z_start, z_step, z_value, z_slope)
+            value = rail_slope - steep
+            if iteration == 0:
+                at_left = value
+                continue
+            height[patch] = rail - down
+            if iteration == 1:
+                at_right = value
+                continue
+            if value * at_right > 0.0:
+                at_left *= 0.5
+            else:
+                left, at_left = right, at_right
+            right, at_right = root, value
+            if abs(value) < ROUNDING or right == left:
+                break
+        place[patch] = right
+    for first in range(PATCHES - 1):  # sort by the gap at the roots
+        for patch in range(PATCHES - 1 - first):
+            if height[patch + 1] < height[patch]:
+                height[patch], height[patch + 1] = height[patch + 1], height[patch]
+                place[patch], place[patch + 1] = place[patch + 1], place[patch]
+                cell[patch], cell[patch + 1] = cell[patch + 1], cell[patch]
+    if cell[0] >= 0:
+        there, d_there = at(place[0], y_start, y_step, y_value, y_slope)
+        size, d_size = at(place[0], r_start, r_step, r_value, r_slope)
+        _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
+        _, rail_slope = at(across, z_start, z_step, z_value, z_slope)
+        lever = across + rail_slope * down
+    for patch in range(PATCHES):
+        found[patch] = place[patch]
+        above[patch] = height[patch] - height[0] if cell[patch] >= 0 else np.nan
+        highest = -np.inf
+        for k in range(min(cell[0], cell[patch]) + 1, max(cell[0], cell[patch]) + 1):
+            highest = max(highest, gap[k])
+        saddle[patch] = highest - height[0] if cell[patch] >= 0 else np.nan
+    return height[0], lever
+
+
+@wl.compiled_loop(
+    f"void({VECTOR}, {VECTOR}, boolean, {BOTH}, {BOTH}, {BOTH}, {BOTH}, {TABLES}, {TABLES}, {TABLES}, {VECTOR},"
+    " float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1])"
+)
+def compiled_search(
+    displacement: Array,
+    yaw: Array,
+    given: bool,
+    arc_of: tuple[Array, Array],
+    y_of: tuple[Array, Array],
+    radius_of: tuple[Array, Array],
+    slope_of: tuple[Array, Array],
+    y_start_of: tuple[float, float],
+    y_step_of: tuple[float, float],
+    y_value_of: tuple[Array, Array],
+    y_slope_of: tuple[Array, Array],
+    r_start_of: tuple[float, float],
+    r_step_of: tuple[float, float],
+    r_value_of: tuple[Array, Array],
+    r_slope_of: tuple[Array, Array],
+    z_start_of: tuple[float, float],
+    z_step_of: tuple[float, float],
+    z_value_of: tuple[Array, Array],
+    z_slope_of: tuple[Array, Array],
     roll: Array,
     found: Array,
     above: Array,
     saddle: Array,
     least: Array,
 ) -> None:
-    """Find the roll, unless it is given, and the contact points of both wheels at each position."""
-    gap, rise = np.empty(arc.size), np.empty(arc.size)
-    place, height, cell = np.empty(PATCHES), np.empty(PATCHES), np.empty(PATCHES, np.int64)
-    lever = np.empty(2)
-    spacing = arc[2] - arc[1]
+    """Find the roll, unless it is given, and the contact points of both wheels at each position.
+
+    Coarse points and tables are those of the left and the right side.
+    """
+    most = max(arc_of[0].size, arc_of[1].size)
+    gap, rise = np.empty(most), np.empty(most)
+    height, cell, place = np.empty(PATCHES), np.empty(PATCHES, np.int64), np.empty(PATCHES)
     for point in range(displacement.size):
+        shift, sin_yaw, cos_yaw = displacement[point], math.sin(yaw[point]), math.cos(yaw[point])
         whole = True
         for _ in range(ROLLS):
-            for side in range(2):
-                begin, end = 0, arc.size
-                if not whole:
-                    middle = int((found[point, side, 0] - arc[0]) / spacing) + 1
-                    begin = min(max(middle - WINDOW // 2, 0), arc.size - WINDOW)
-                    end = begin + WINDOW
-                sign = -1.0 if side == 0 else 1.0
-                turn = (
-                    sign * math.sin(roll[point]), math.cos(roll[point]),
-                    sign * math.sin(yaw[point]), math.cos(yaw[point]),
-                )  # fmt: skip
-                shift = sign * displacement[point]
-                for patch in range(PATCHES):
-                    place[patch], height[patch], cell[patch] = np.nan, np.inf, -1
-                for k in range(begin, end):
-                    _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
-                    rail, rail_slope = near(across, z_start, z_step, z_value, z_slope)
-                    gap[k], rise[k] = rail - down, rail_slope - steep
-                    if k == begin:
-                        continue
-                    falls = rise[k - 1] < 0.0 or gap[k - 1] == np.inf
-                    low = falls and rise[k] >= 0.0 and gap[k] < np.inf
-                    if not low and not (rise[k - 1] < 0.0 and gap[k - 1] < np.inf and gap[k] == np.inf):
-                        continue
-                    size = min(gap[k - 1], gap[k])
-                    last = PATCHES - 1
-                    if size >= height[last]:
-                        continue
-                    while last > 0 and size < height[last - 1]:
-                        height[last], cell[last] = height[last - 1], cell[last - 1]
-                        last -= 1
-                    height[last], cell[last] = size, k - 1
-                for patch in range(PATCHES):
-                    k = cell[patch]
-                    if k < 0:
-                        continue
-                    left, right = float(arc[k]), float(arc[k + 1])
-                    if gap[k] == np.inf:
-                        left = right
-                    if gap[k + 1] == np.inf:
-                        right = left
-                    if left < right:
-                        left = max(left - WIDER * spacing, arc[0])
-                        right = min(right + WIDER * spacing, arc[arc.size - 1])
-                    at_left = at_right = 0.0
-                    for iteration in range(ROOTS + 2):
-                        root = left if iteration == 0 else right  # the ends first
-                        if iteration > 1:
-                            share = at_right / (at_right - at_left) if at_right != at_left else 0.0
-                            root = right - share * (right - left)
-                        there, d_there = at(root, y_start, y_step, y_value, y_slope)
-                        size, d_size = at(root, r_start, r_step, r_value, r_slope)
-                        _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
-                        rail, rail_slope = at(across, z_start, z_step, z_value, z_slope)
-                        value = rail_slope - steep
-                        if iteration == 0:
-                            at_left = value
-                            continue
-                        height[patch] = rail - down
-                        if iteration == 1:
-                            at_right = value
-                            continue
-                        if value * at_right > 0.0:
-                            at_left *= 0.5
-                        else:
-                            left, at_left = right, at_right
-                        right, at_right = root, value
-                        if abs(value) < ROUNDING or right == left:
-                            break
-                    place[patch] = right
-                for first in range(PATCHES - 1):  # sort by the gap at the roots
-                    for patch in range(PATCHES - 1 - first):
-                        if height[patch + 1] < height[patch]:
-                            height[patch], height[patch + 1] = height[patch + 1], height[patch]
-                            place[patch], place[patch + 1] = place[patch + 1], place[patch]
-                            cell[patch], cell[patch + 1] = cell[patch + 1], cell[patch]
-                least[point, side] = height[0]
-                if cell[0] >= 0:
-                    there, d_there = at(place[0], y_start, y_step, y_value, y_slope)
-                    size, d_size = at(place[0], r_start, r_step, r_value, r_slope)
-                    _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
-                    _, rail_slope = at(across, z_start, z_step, z_value, z_slope)
-                    lever[side] = across + rail_slope * down
-                for patch in range(PATCHES):
-                    found[point, side, patch] = place[patch]
-                    above[point, side, patch] = height[patch] - height[0] if cell[patch] >= 0 else np.nan
-                    highest = -np.inf
-                    for k in range(min(cell[0], cell[patch]) + 1, max(cell[0], cell[patch]) + 1):
-                        highest = max(highest, gap[k])
-                    saddle[point, side, patch] = highest - height[0] if cell[patch] >= 0 else np.nan
+            sin_roll, cos_roll = math.sin(roll[point]), math.cos(roll[point])
+            least[point, 0], left = touch(
+                -shift, (-sin_roll, cos_roll, -sin_yaw, cos_yaw), whole,
+                arc_of[0], y_of[0], radius_of[0], slope_of[0],
+                y_start_of[0], y_step_of[0], y_value_of[0], y_slope_of[0],
+                r_start_of[0], r_step_of[0], r_value_of[0], r_slope_of[0],
+                z_start_of[0], z_step_of[0], z_value_of[0], z_slope_of[0],
+                gap, rise, height, cell, place, found[point, 0], above[point, 0], saddle[point, 0],
+            )  # fmt: skip
+            least[point, 1], right = touch(
+                shift, (sin_roll, cos_roll, sin_yaw, cos_yaw), whole,
+                arc_of[1], y_of[1], radius_of[1], slope_of[1],
+                y_start_of[1], y_step_of[1], y_value_of[1], y_slope_of[1],
+                r_start_of[1], r_step_of[1], r_value_of[1], r_slope_of[1],
+                z_start_of[1], z_step_of[1], z_value_of[1], z_slope_of[1],
+                gap, rise, height, cell, place, found[point, 1], above[point, 1], saddle[point, 1],
+            )  # fmt: skip
             excess = least[point, 1] - least[point, 0]
             lost = math.isnan(found[point, 0, 0]) or math.isnan(found[point, 1, 0])
             if given or (whole and not abs(excess) > ROLL_ACCURACY):
                 break
             whole = lost or not abs(excess) > ROLL_ACCURACY
             if not whole:
-                roll[point] += roll_step(excess, lever[0] + lever[1])
+                roll[point] += roll_step(excess, left + right)
 
 
 @wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, float64, {TABLE}, {TABLE}, {TABLE}, {ROWS}, {ROWS})")

@@ -44,7 +44,10 @@ class Deadly(Linear):
         marker = Path(self.marker)
         if os.getpid() != self.spared and marker.exists():
             if not self.always:
-                marker.unlink()
+                try:
+                    marker.unlink()
+                except FileNotFoundError:  # the other worker has just died
+                    return super().rate(contact, p)
             os._exit(9)
         return super().rate(contact, p)
 

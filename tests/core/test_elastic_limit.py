@@ -20,13 +20,13 @@ K = 2.625e9 / 2.8 / math.sqrt(3.0)
 """Yield stress in shear of the default steel, by von Mises [Pa]."""
 
 
-def under_line_loads(x: Array, z: Array, nu: float) -> tuple[Array, Array]:
+def under_line_loads(x: Array, z: Array, nu: float, count: int = 4000) -> tuple[Array, Array]:
     """Return σx, σy, σz, τzx under Hertz's pressure of 1 on a line, and under that traction, by Flamant's solution.
 
     It is superposed by the midpoint rule in the angle, which converges exponentially.
     """
-    angle = (np.arange(4000) + 0.5) * np.pi / 4000
-    s, weight = np.cos(angle), np.sin(angle) ** 2 * np.pi / 4000  # √(1-s²) ds
+    angle = (np.arange(count) + 0.5) * np.pi / count
+    s, weight = np.cos(angle), np.sin(angle) ** 2 * np.pi / count  # √(1-s²) ds
     away, r4 = x[:, None] - s, ((x[:, None] - s) ** 2 + z[:, None] ** 2) ** 2
     pressed = [-2 / np.pi * z * ((away**2 / r4) @ weight), -2 / np.pi * z**3 * ((1 / r4) @ weight)]
     pressed_shear = -2 / np.pi * z**2 * ((away / r4) @ weight)
@@ -44,11 +44,11 @@ def under_point_loads(x: Array, z: Array, nu: float, a: float, b: float) -> tupl
     J. C. Jaeger, N. G. W. Cook, R. W. Zimmerman, Fundamentals of Rock Mechanics, 2007, after R. Crummett's programs
     Traction_3D_NormalPointLoad.m and Traction_3D_TangentialPointLoad.m.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(300)
-    theta = (np.arange(1600) + 0.5) * 2 * np.pi / 1600
+    nodes, weights = np.polynomial.legendre.leggauss(150)
+    theta = (np.arange(800) + 0.5) * 2 * np.pi / 800
     beta = 0.25 * np.pi * (nodes[:, None] + 1.0)  # radius sin β, pressure cos β
     radius = np.sin(beta)
-    weight = 0.25 * np.pi * weights[:, None] * np.cos(beta) ** 2 * radius * 2 * np.pi / 1600 * a * b
+    weight = 0.25 * np.pi * weights[:, None] * np.cos(beta) ** 2 * radius * 2 * np.pi / 800 * a * b
     loads_x, loads_y = a * radius * np.cos(theta), b * radius * np.sin(theta)
     pressed, sheared = [], []
     for at, depth in zip(x, z, strict=True):
@@ -91,8 +91,7 @@ def test_the_stresses_under_a_line_are_those_of_line_loads(nu: float) -> None:
         np.testing.assert_allclose(found, expected, atol=1e-12)  # of p0; both are exact to rounding
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.28, 0.5])
-@pytest.mark.parametrize("aspect", [0.2, 1.0, 3.0])
+@pytest.mark.parametrize(("aspect", "nu"), [(0.2, 0.28), (1.0, 0.0), (1.0, 0.5), (3.0, 0.28)])
 def test_the_stresses_under_an_ellipse_are_those_of_point_loads(
     aspect: float, nu: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -133,7 +132,7 @@ def test_first_yield_of_a_line_is_that_of_the_stresses_under_line_loads(
     traction, expected = np.array([0.0, 0.3, 0.46, 0.6]), np.array([none, low, paper, high])
     np.testing.assert_allclose(1e-6 * first_yield(K, traction, poisson_ratio=0.28), expected, rtol=within)
     x, z = (one.ravel() for one in np.meshgrid(np.linspace(-0.98, 0.98, 99), np.linspace(0.1, 1.0, 46)))
-    below = np.stack(under_line_loads(x, z, 0.28))
+    below = np.stack(under_line_loads(x, z, 0.28, 200))  # the error falls like exp(-2 z count)
     # With friction the peak is at the surface, to which stresses at two depths are extrapolated.
     near, deeper = (np.stack(under_line_loads(x[:99], np.full(99, depth), 0.28)) for depth in (0.004, 0.008))
     pressed, sheared = np.concatenate([below, 2.0 * near - deeper], axis=-1)
@@ -235,24 +234,23 @@ def test_melans_theorem_proves_a_line_safe_up_to_ten_percent_below_shakedown(
     assert (1.0 - within) * limit * 0.99 <= safe <= 1.02 * limit
 
 
-def peaks(measure: str, ratio: float, friction: Array, sticks: Array, nu: float = 0.28) -> Array:
-    """Return the greatest stresses over p0 (frictions, sticks) on a finer grid, without a table."""
+def peaks(ratio: float, friction: Array, sticks: Array, nu: float) -> dict[str, Array]:
+    """Return the greatest stresses over p0 (frictions, sticks) of each measure on a finer grid, without a table."""
     depth = min(1.0, 1.0 / ratio) if ratio else 1.0
     share = (friction / (1 + friction))[:, None]
-    columns = []
+    columns: dict[str, list[Array]] = {measure: [] for measure in elastic_limit.MEASURES}
     for stick in sticks:
         x = np.append(np.sin(np.linspace(-0.5, 0.5, 81) * np.pi), 2 * stick - 1)
         x, z = (one.ravel() for one in np.meshgrid(x, np.append(1e-12, np.linspace(0.03, 0.99, 33)) * depth))
         pressed, sheared = _stresses(x, z, nu, ratio)
         if stick:
             sheared = sheared - stick * _stresses((x + 1 - stick) / stick, z / stick, nu, ratio)[1]
-        columns.append(elastic_limit.MEASURES[measure](pressed, sheared, share).max(axis=-1) * (1 + friction))
-    return np.stack(columns, axis=-1)
+        for measure, column in columns.items():
+            column.append(elastic_limit.MEASURES[measure](pressed, sheared, share).max(axis=-1) * (1 + friction))
+    return {measure: np.stack(column, axis=-1) for measure, column in columns.items()}
 
 
-@pytest.mark.parametrize(
-    ("ratio", "nu"), [(0.0, 0.28), (0.0, 0.45), (0.05, 0.28), (0.4, 0.0), (1.2, 0.28), (8.0, 0.45), (20.0, 0.28)]
-)
+@pytest.mark.parametrize(("ratio", "nu"), [(0.0, 0.28), (0.05, 0.28), (0.4, 0.0), (1.2, 0.28), (20.0, 0.45)])
 def test_the_tables_are_as_exact_as_the_docstrings_say(
     ratio: float, nu: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -266,8 +264,9 @@ def test_the_tables_are_as_exact_as_the_docstrings_say(
     }
     monkeypatch.setattr(elastic_limit, "DIRECTIONS", 150)
     sticks = (1.0 - share) ** (1.0 / 3.0 if ratio else 0.5)
+    found = peaks(ratio, mu[:, 0], sticks, nu)
     for measure, limit in limits.items():
-        off = limit * peaks(measure, ratio, mu[:, 0], sticks, nu) - 1.0
+        off = limit * found[measure] - 1.0
         assert -0.035 <= off.min() <= off.max() <= 0.035
         if measure != "forward":
             assert off.max() <= 0.02
@@ -341,14 +340,14 @@ def test_arguments_that_no_contact_has_are_refused(given: dict[str, Any], messag
 @pytest.mark.parametrize("shape", ["line", "ellipse"])
 def test_an_overload_is_the_same_of_one_point_and_of_many(shape: str) -> None:
     random = np.random.default_rng(3)
-    p0, mu = random.uniform(5e8, 2.5e9, 300), random.uniform(0.05, 0.6, 300)
-    t = mu * random.uniform(0.0, 1.0, 300)
-    ratio = None if shape == "line" else np.append(2.0 ** random.uniform(-2.0, 2.0, 298), [0.01, 40.0])
+    p0, mu = random.uniform(5e8, 2.5e9, 50), random.uniform(0.05, 0.6, 50)
+    t = mu * random.uniform(0.0, 1.0, 50)
+    ratio = None if shape == "line" else np.append(2.0 ** random.uniform(-2.0, 2.0, 48), [0.01, 40.0])
     bodies = [(K, 0.28), (0.9 * K, 0.4)]
-    alone = [overload(bodies, p0[i], t[i], mu[i, None], None if ratio is None else ratio[i]) for i in range(300)]
+    alone = [overload(bodies, p0[i], t[i], mu[i, None], None if ratio is None else ratio[i]) for i in range(50)]
     worst = max(one for one in alone if one is not None)
     assert overload(bodies, p0, t, mu, ratio) == pytest.approx(worst, rel=1e-14)
-    ratios = np.zeros(300) if ratio is None else ratio
+    ratios = np.zeros(50) if ratio is None else ratio
     for one, at_p0, at_t, at_mu, of in zip(alone, p0, t, mu, ratios, strict=True):
         yields = min(float(first_yield(k, at_t, at_mu, poisson_ratio=nu, axis_ratio=of)) for k, nu in bodies)
         shakes = min(float(shakedown_limit(k, at_t, at_mu, axis_ratio=of)) for k, _ in bodies)

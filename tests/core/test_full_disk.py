@@ -29,7 +29,8 @@ friction_coefficient = 0.4
 
 LIMITED = """
 import resource, sys
-from wearlaw.cli import main, study_commands
+import wearlaw_studies.commands
+from wearlaw.cli import main
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
 main(sys.argv[1:])
 """

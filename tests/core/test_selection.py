@@ -118,6 +118,8 @@ def test_operating_points_of_discs_are_selected_by_position(law: str) -> None:
     np.testing.assert_array_equal(part.profile.traction.values, whole.profile.traction.values[1, [0, 2]])
     assert part.profile.traction.dims == ("point_0", "cell")
     assert np.isfinite(part.isel(point_0=0).wear_rate.magnitude)
+    one = predict(creepage="1 %", max_pressure="1 GPa", friction_coefficient=0.4)
+    np.testing.assert_array_equal(one.isel().contact.traction, one.contact.traction)
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from tests.core.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_sweeps import sweep as sweeping
+from wearlaw_sweeps.evaluation import weight
 from wearlaw_sweeps.evaluator import Evaluator
 from wearlaw_sweeps.points import Points, Varying
 
@@ -69,8 +70,8 @@ def test_blocks_hold_fewer_points_of_several_patches() -> None:
     sizes = [Points({}, varying, weight=weight).block_shape for weight in (1.0, 4.0, 7.5, 54.0)]
     assert sizes == [(30,), (7,), (4,), (1,)]
     one, strips = (rig.problem(**GIVEN) for rig in (Axle(), Cut()))
-    assert (sweeping.weight(one), sweeping.weight(strips)) == (4.0, 4.0 * (1.0 + 12 / 4.0))
-    assert sweeping.weight(one.flatten()) == 1.0
+    assert (weight(one), weight(strips)) == (4.0, 4.0 * (1.0 + 12 / 4.0))
+    assert weight(one.flatten()) == 1.0
 
 
 @pytest.mark.parametrize("workers", [1, 2])

@@ -60,6 +60,7 @@ SOLUTIONS: dict[str, Callable[[reference.Point], reference.Solution]] = {
 }
 
 
+@functools.cache
 def usfd(model: str, creepage: float, parameters: tuple[float, ...] = GLOBAL) -> float:
     """Return the mean rate of USFD [µg/m/mm²] on cells, or on the patch means."""
     if model != "global":
@@ -116,10 +117,12 @@ def densities(model: str, creepage: Array, cells: int) -> Array:
     return np.where(x < 2.0 * c - a, 0.0, bound * slip) / 1e6
 
 
+@functools.cache
 def exact_force(creepage: float) -> float:
     return reference.exact(point(creepage)).force
 
 
+@functools.cache
 def kth(model: str, creepage: float, load: float = LOAD, kept: str = "disc_1") -> float:
     return reference.kth_mean(SOLUTIONS[model](point(creepage, load, kept)), KTH_MID)
 

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
 import warnings
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.core.cases import wearlaw, write
 from wearlaw import Q
-from wearlaw.plugins import loader
-from wearlaw_studies.case import case_text, load_case
 
 RIG = """
 title = "A worn wheel"
@@ -47,16 +41,23 @@ friction_coefficient = 0.3
 """
 
 
-@pytest.fixture
-def worn(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def worn(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the path of a case beside a folder with the profiles that it names."""
-    folder = tmp_path / "study" / "profiles"
+    folder = tmp_path_factory.mktemp("wheelset") / "study" / "profiles"
     folder.mkdir(parents=True)
     ws.write_profile(folder / "worn.prw", ws.Profile.s1002())
     ws.write_profile(folder / "rail.prr", ws.Profile.uic60())
     case = folder.parent / "worn.toml"
     case.write_text(RIG, encoding="utf-8")
     return case
+
+
+@pytest.fixture(scope="module")
+def study(worn: Path) -> wl.Study:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        return wl.run(wl.load_case(str(worn)))
 
 
 def test_paths_of_profiles_are_relative_to_the_case_file(worn: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -74,15 +75,15 @@ def test_paths_of_profiles_are_relative_to_the_case_file(worn: Path, monkeypatch
 
 
 def test_a_missing_profile_is_looked_for_beside_the_case_file(worn: Path) -> None:
-    (worn.parent / "profiles" / "worn.prw").unlink()
-    with pytest.raises(wl.CaseError, match=r"rig\.wheel: 'profiles/worn\.prw' is neither .* nor a file in '.*study'"):
-        wl.load_case(str(worn))
+    case = worn.parent / "missing.toml"
+    case.write_text(RIG.replace("worn.prw", "missing.prw"), encoding="utf-8")
+    with pytest.raises(
+        wl.CaseError, match=r"rig\.wheel: 'profiles/missing\.prw' is neither .* nor a file in '.*study'"
+    ):
+        wl.load_case(str(case))
 
 
-def test_a_study_of_a_wheelset_reports_contact_points_forces_and_wear(worn: Path) -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        study = wl.run(wl.load_case(str(worn)))
+def test_a_study_of_a_wheelset_reports_contact_points_forces_and_wear(study: wl.Study) -> None:
     (section,) = study.sections
     assert [figure.name for figure in section.figures] == [
         "rolling_radius_difference", "contact_straight", "wear_straight",
@@ -100,11 +101,10 @@ def test_a_study_of_a_wheelset_reports_contact_points_forces_and_wear(worn: Path
     np.testing.assert_allclose(load, 50.0, rtol=1e-7)
 
 
-def test_wear_in_the_report_is_that_of_the_prediction(worn: Path) -> None:
+def test_wear_in_the_report_is_that_of_the_prediction(study: wl.Study) -> None:
     """The area below the curve of a wheel, times its circumference and the density, is the mass that it loses."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.WearlawWarning)
-        study = wl.run(wl.load_case(str(worn)))
         (pair,) = study.pairs
         found = pair.pipeline(lateral_displacement="1 mm", vertical_load="50 kN", friction_coefficient=0.3)
     panels = {panel.title: panel for panel in study.sections[0].figures[-1].panels}
@@ -115,41 +115,6 @@ def test_wear_in_the_report_is_that_of_the_prediction(worn: Path) -> None:
         radius = float(np.asarray(one.problem.body("wheel").rolling_radius))
         mass = Q(area, "um*mm/km") * Q(2.0 * np.pi * radius, "m") * wl.steel().density
         assert (mass / one.mass_per_distance).to("").magnitude == pytest.approx(1.0, rel=1e-12)  # rounding
-
-
-def profiles_of(name: str) -> dict[str, ws.Profile]:
-    rig: Any = load_case(name).rig
-    return {field: value for field, value in rig if isinstance(value, ws.Profile)}
-
-
-@pytest.mark.parametrize("name", [name for name in loader.installed().resources["case"].items() if profiles_of(name)])
-def test_a_shipped_case_runs_with_profiles_from_files(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    case, profiles = tomllib.loads(case_text(name)), profiles_of(name)
-    for field, profile in profiles.items():
-        case["rig"][field] = f"{field}.{'prw' if profile.kind == 'wheel' else 'prr'}"
-        ws.write_profile(case["rig"][field], profile)
-    case["profiles"] = dict([*case.get("profiles", {}).items()][:1])
-    case["figures"] = {}
-    for sweep in case["sweeps"].values():
-        for values in sweep.values():
-            if isinstance(values, dict):
-                values["points"] = 2
-    result = wearlaw("run", str(write(Path("case.toml"), case)), "-o", "results")
-    assert result.exit_code == 0, result.output
-    table = pd.read_csv("results/tables/parameters.csv").set_index("parameter")
-    for field in profiles:
-        y = ws.read_profile(case["rig"][field]).points[0].magnitude
-        assert table.value[f"{field}.y"] == f"{y.size} values from {y.min():.12g} to {y.max():.12g} mm"
-
-
-def test_the_shipped_case_is_valid() -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        case = wl.load_case("wheelset")
-    assert isinstance(case.rig, ws.Wheelset)
 
 
 def test_the_section_needs_a_wheelset() -> None:

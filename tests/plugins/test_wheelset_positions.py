@@ -160,9 +160,9 @@ def test_jumps_of_the_contact_point_are_kept() -> None:
         before, after = right(np.array([low, high]))
         assert high - low < 1e-15
         assert abs(before - after) == pytest.approx(jump, rel=0.02)
-        # On either side the point stays on its own branch: the nearest of 400 displacements is off by what the branch
+        # On either side the point stays on its own branch: the nearest of 50 displacements is off by what the branch
         # itself moves, never in between.
-        y = right(np.linspace(low - 1e-6, high + 1e-6, 400))
+        y = right(np.linspace(low - 1e-6, high + 1e-6, 50))
         off = np.minimum(np.abs(y - before), np.abs(y - after))
         assert off.max() < 1e-4
 
@@ -203,11 +203,11 @@ def both_ways(displacement: Array, yaw: Array, roll: Array | None = None) -> lis
 def test_compiled_loops_find_what_numpy_finds(rolled: bool) -> None:
     pytest.importorskip("numba")
     rng = np.random.default_rng(7)
-    displacement, yaw = rng.uniform(-10e-3, 10e-3, 3000), rng.uniform(-30e-3, 30e-3, 3000)
+    displacement, yaw = rng.uniform(-10e-3, 10e-3, 1000), rng.uniform(-30e-3, 30e-3, 1000)
     # Near jumps too, where the two may stand on different sides.
-    displacement[:300] = np.concatenate([place + rng.uniform(-1e-9, 1e-9, 150) for place, _ in JUMPS])
-    yaw[:300] = 0.0
-    (roll, one), (other_roll, other) = both_ways(displacement, yaw, rng.uniform(-2e-3, 2e-3, 3000) if rolled else None)
+    displacement[:100] = np.concatenate([place + rng.uniform(-1e-9, 1e-9, 50) for place, _ in JUMPS])
+    yaw[:100] = 0.0
+    (roll, one), (other_roll, other) = both_ways(displacement, yaw, rng.uniform(-2e-3, 2e-3, 1000) if rolled else None)
     assert other_roll == pytest.approx(roll, rel=0.0, abs=4.0 * ROLL_ACCURACY)
     assert other.least == pytest.approx(one.least, rel=0.0, abs=4.0 * ROLL_ACCURACY)
     # The order of two patches is free where their gaps are the same, to what the rolls leave open.

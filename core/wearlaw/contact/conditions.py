@@ -107,7 +107,7 @@ def condition_arrays(
             raise UnitError(f"{name}: must not be negative, got {given[name]!r}")
     for name in table.creepages:
         if name not in arrays:
-            arrays[name] = np.zeros(())
+            arrays[name] = np.float64(0.0)  # type: ignore[assignment]
     arrays = broadcast(arrays)
     if is_friction_law(friction):
         arrays["friction_coefficient"] = _of_friction_law(

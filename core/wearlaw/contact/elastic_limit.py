@@ -42,7 +42,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypeVar
 
@@ -85,6 +85,9 @@ DIRECTIONS = 48
 
 SURFACE = 1e-12
 """Depth over the smaller semi-axis that stands for the surface, where the formulas are singular at the edges."""
+
+ABOVE_ROUNDING = 1.0 + 1e-9
+"""Factor by which a bound exceeds the values that it is a bound of, so that rounding does not."""
 
 BLOCK = 1 << 16
 """Operating points in a block."""
@@ -202,56 +205,78 @@ def overload(
     max_pressure, traction_coefficient, friction_coefficient, axis_ratio : ndarray
         Arrays of one shape, not negative; an `axis_ratio` of None is a line.
     """
-    arrays: list[Any] = [max_pressure, traction_coefficient, friction_coefficient]
+    points = [max_pressure, traction_coefficient, friction_coefficient]
     if axis_ratio is not None:
-        arrays.append(axis_ratio)
-    find: Callable[..., Overload | None] = _overload_among
+        points.append(axis_ratio)
     if max_pressure.size == 1:  # floats take a tenth of the time of arrays
-        find, arrays = _overload, [array.item() for array in arrays]
-    worst = None
-    for k, nu in bodies:
-        found = find(k, nu, *arrays)
-        if found is not None:
-            worst = found if worst is None else max(worst, found)
-    return worst
+        pressure, *rest = (array.item() for array in points)
+        found = [_overload(k, nu, pressure, *rest) for k, nu in bodies]
+    else:
+        flat = [array.reshape(-1) for array in points]
+        found = [
+            _overload_among(k, nu, *(array[start : start + BLOCK] for array in flat))
+            for k, nu in bodies
+            for start in range(0, max_pressure.size, BLOCK)
+        ]
+    return max((one for one in found if one is not None), default=None)
 
 
-def _overload_among(k: float, nu: float, *arrays: Array) -> Overload | None:
-    """Return `overload` of one body at many operating points."""
-    worst = None
-    flat = [array.reshape(-1) for array in arrays]
-    for start in range(0, flat[0].size, BLOCK):
-        p0, t, mu, *ratio = (array[start : start + BLOCK] for array in flat)
-        if not ratio and _surely_elastic(k, nu, float(p0.max()), float(t.max()), float(mu.max())):
-            continue
-        for measure in ("forward", "von_mises"):
-            load = p0 * _peak(measure, nu, t, mu, *ratio) / k
-            at = int(load.argmax())
-            if load[at] > 1.0:
-                found = Overload(measure == "forward", float(load[at]), float(p0[at]), float(t[at]))
-                worst = found if worst is None else max(worst, found)
-                break
-    return worst
-
-
-def _surely_elastic(k: float, nu: float, max_pressure: float, traction: float, friction: float) -> bool:
-    """Return whether a body on a line stays elastic however much of the patch slips; a quick check."""
-    friction = max(friction, traction)
-    most = _table("von_mises", nu, 0.0).most[int(FRICTIONS * friction / (1.0 + friction))]
-    return max_pressure * (1.0 + friction) * most <= k
-
-
-def _overload(
-    k: float, nu: float, max_pressure: float, traction: float, friction: float, axis_ratio: float | None = None
-) -> Overload | None:
+def _overload(k: float, nu: float, max_pressure: float, *point: float) -> Overload | None:
     """Return `overload` of one body at one operating point."""
-    if axis_ratio is None and _surely_elastic(k, nu, max_pressure, traction, friction):
+    if _bound("von_mises", nu, max_pressure, *point) <= k:
         return None
     for measure in ("forward", "von_mises"):
-        load = max_pressure * _peak_at(measure, nu, traction, friction, axis_ratio) / k
+        load = max_pressure * _peak_at(measure, nu, *point) / k
         if load > 1.0:  # beyond shakedown there is no need to check first yield
-            return Overload(measure == "forward", load, max_pressure, traction)
+            return Overload(measure == "forward", load, max_pressure, point[0])
     return None
+
+
+def _overload_among(k: float, nu: float, max_pressure: Array, *points: Array) -> Overload | None:
+    """Return `overload` of one body at many operating points.
+
+    The greatest load is sought among the points whose bound exceeds the load of one of them, the one with the greatest
+    bound.
+    """
+    for measure in ("forward", "von_mises"):
+        bound = _bound(measure, nu, max_pressure, *points)
+        first = int(bound.argmax())
+        if bound[first] <= k:
+            continue
+        least = max_pressure[first] * _peak_at(measure, nu, *(float(array[first]) for array in points))
+        chosen = np.flatnonzero(bound >= max(least, k))
+        p0, *rest = (array[chosen] for array in (max_pressure, *points))
+        load = p0 * _peak(measure, nu, *rest) / k
+        at = int(load.argmax())
+        if load[at] > 1.0:
+            return Overload(measure == "forward", float(load[at]), float(p0[at]), float(rest[0][at]))
+    return None
+
+
+def _bound(
+    measure: str, nu: float, max_pressure: _Value, traction: _Value, friction: _Value, axis_ratio: _Value | None = None
+) -> _Value:
+    """Return a quick upper bound of the deciding shear stress [Pa], however much of a line slips.
+
+    There is none for an ellipse, whose bound is infinite.
+    """
+    if axis_ratio is not None:
+        return max_pressure * math.inf
+    most, mu = _table(measure, nu, 0.0).most, _at_least(traction, friction)
+    row = FRICTIONS * (mu / (1.0 + mu))
+    greatest: Any = most[int(row)] if isinstance(row, float) else np.take(most, _places(row))
+    bound: _Value = max_pressure * (1.0 + mu) * (ABOVE_ROUNDING * greatest)
+    return bound
+
+
+def _at_least(traction: _Value, friction: _Value) -> _Value:
+    """Return the friction coefficient, or the traction coefficient if that is greater, or `TINY`."""
+    mu: Any
+    if isinstance(traction, float):
+        mu = max(friction, traction, TINY)
+    else:
+        mu = np.maximum(np.maximum(friction, traction), TINY)
+    return mu  # type: ignore[no-any-return]
 
 
 def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike | None, axis_ratio: ArrayLike) -> Array:
@@ -286,7 +311,7 @@ def _peak(measure: str, nu: float, traction: Array, friction: Array, axis_ratio:
     return peak
 
 
-def _peak_at(measure: str, nu: float, traction: float, friction: float, axis_ratio: float | None) -> float:
+def _peak_at(measure: str, nu: float, traction: float, friction: float, axis_ratio: float | None = None) -> float:
     """Return `_peak` at one operating point."""
     if axis_ratio is None:
         return _on_line(measure, nu, traction, friction)
@@ -316,13 +341,8 @@ def _interpolated(table: _Table, traction: _Value, friction: _Value, power: floa
     """
     values: Any
     place: Any
-    mu: Any
-    if isinstance(traction, float):
-        values, place = table.floats, int
-        mu = max(friction, traction, TINY)
-    else:
-        values, place = table.array, _places
-        mu = np.maximum(np.maximum(friction, traction), TINY)
+    values, place = (table.floats, int) if isinstance(traction, float) else (table.array, _places)
+    mu = _at_least(traction, friction)
     u = FRICTIONS * (mu / (1.0 + mu))
     v = SLIPS * (1.0 - (1.0 - traction / mu) ** power) ** 0.5
     i, j = place(u), place(v)

@@ -248,7 +248,9 @@ class Problem:
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, ARRAYS)
+        creepage: object = self.longitudinal_creepage
+        if not isinstance(creepage, float):  # one operating point has NumPy's scalars
+            freeze(self, ARRAYS)
 
     @classmethod
     @np.errstate(all="ignore")  # `_checked_size` rejects what overflows

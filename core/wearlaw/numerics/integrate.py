@@ -239,7 +239,7 @@ def integrate_laws(
         If the model or a law breaks its contract.
     """
     model, problem = prepared(model, problem)
-    numbered = list(zip(laws, map(_frozen, numbers or [law.numbers for law in laws]), strict=True))
+    numbered = list(zip(laws, map(_frozen, numbers) if numbers else [law.numbers for law in laws], strict=True))
     across: tuple[Across | None, ...] = (None,) * len(laws)
     if problem.geometry == "line":
         found, solver = _over_line(model, numbered, problem, on_block)
@@ -320,12 +320,6 @@ def _over_line(
             found |= {f"{name} {index}" if name in OF_LAW else name: values for name, values in mean.items()}
         return found | _on_own_nodes(solver, on_nodes, part) if on_nodes else found
 
-    if fields and problem.batch_shape == () and problem.exists is None:
-        found = solver.columns(problem, ALL, columns)  # scalars take less time than arrays of one number
-        if on_block is not None:
-            on_block(problem, found)
-        del found["longitudinal"]
-        return found, solver
     block = BLOCK if fields and not any(one is None for one in ramps) else NODE_BLOCK
     return solver.by_block(problem, block, columns, on_block, drop_force=fields is not None), solver
 

@@ -95,14 +95,18 @@ class Solver:
     ) -> Columns:
         """Return the columns of a function of the problem in the shape of its batch; see `blocks.by_block`.
 
+        A single line stays one: its scalars take less time than arrays of one number.
+
         Raises
         ------
         ModelError
             If the model or the law fails, or a column is not one finite float64 for each operating point.
         """
         checked = partial(self.columns, columns=columns)
-        found = by_block(problem.flatten(), self.block(block, problem), checked, on_block, drop_force)
-        return {name: problem.unflatten(values) for name, values in found.items()}
+        one_line = problem.geometry == "line" and problem.batch_shape == () and problem.exists is None
+        flat = problem if one_line else problem.flatten()
+        found = by_block(flat, self.block(block, problem), checked, on_block, drop_force)
+        return found if flat is problem else {name: problem.unflatten(values) for name, values in found.items()}
 
     def block(self, points: int, problem: Problem) -> int:
         """Return the number of operating points in a block: all of them if they are already solved."""

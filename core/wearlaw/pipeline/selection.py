@@ -161,6 +161,8 @@ class Selection:
 
     def _of_solved(self, contact: Contact, problem: Problem) -> Contact:
         """Return the chosen ones of the existing patches, which lie along the one batch axis of a solved contact."""
+        if not problem.batch_shape:  # a single point
+            return contact
         rows: NDArray[np.intp] = np.full(problem.batch_shape, -1)
         rows[np.ones_like(rows, dtype=np.bool_) if problem.exists is None else problem.exists] = np.arange(problem.size)
         chosen = self._of(rows).reshape(-1)
