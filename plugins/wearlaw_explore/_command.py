@@ -38,7 +38,7 @@ def explore(rig: str, conditions: tuple[str, ...], port: int, browser: bool) -> 
     subject = named(rig)
     start = {name: value(text) for name, text in fields("--set", conditions, "CONDITION=VALUE").items()}
     page(subject, start)  # an error before the server starts
-    server = pn.serve(
+    server: Any = pn.serve(
         lambda: _served(subject, start), port=port, address="localhost", show=browser, start=False, verbose=False,
         title=f"wearlaw: {subject.rig.name}",
     )  # fmt: skip
@@ -47,7 +47,8 @@ def explore(rig: str, conditions: tuple[str, ...], port: int, browser: bool) -> 
 
 
 def _served(subject: Subject, start: dict[str, str | float]) -> Any:
-    pn.state.curdoc.js_on_event("document_ready", CustomJS(code=VIEWPORT))
+    page_document: Any = pn.state.curdoc
+    page_document.js_on_event("document_ready", CustomJS(code=VIEWPORT))
     return page(subject, start)
 
 

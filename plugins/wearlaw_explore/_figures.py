@@ -20,7 +20,7 @@ FIELDS = {"pressure": label("pressure"), "slip": label("slip"), "wear": "wear ra
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 """Colours that the colour-blind can tell apart (M. Okabe and K. Ito)."""
 
-WIDE = {"flex": "1 1 300px", "min-width": "260px", "max-width": "100%"}
+WIDE: dict[str, str | None] = {"flex": "1 1 300px", "min-width": "260px", "max-width": "100%"}
 """Style of an element that stands beside others if there is room, as on no phone."""
 
 APART = 15.0
@@ -116,7 +116,7 @@ class Patch:
 
     def _map(self, name: str) -> Any:
         drawn = plain(FIELDS[name].partition(" [")[0], "x, leading edge left [mm]", "y [mm]", match_aspect=True)
-        colours = LinearColorMapper(Viridis256)
+        colours = LinearColorMapper(palette=list(Viridis256))
         drawn.quad("left", "right", "top", "bottom", source=self.cells, line_color=None,
                    fill_color={"field": name, "transform": colours})  # fmt: skip
         drawn.line("x", "y", source=self.edge, color="black")

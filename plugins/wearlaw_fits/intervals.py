@@ -68,8 +68,8 @@ def undetermined(jacobian: Array) -> NDArray[np.bool_]:
     unseen = size <= UNSEEN * np.maximum(size.max(axis=-1, keepdims=True), UNSEEN)
     scaled = jacobian * np.where(unseen, 0.0, 1.0 / np.where(unseen, 1.0, size))[:, None, :]
     _, singular, directions = np.linalg.svd(scaled, full_matrices=False)
-    found: NDArray[np.bool_] = ((singular < UNSEEN)[..., None] & (np.abs(directions) > INVOLVED)).any(axis=1)
-    return found
+    involved: NDArray[np.bool_] = (singular < UNSEEN)[..., None] & (np.abs(directions) > INVOLVED)
+    return np.asarray(involved.any(axis=1))
 
 
 def standard_errors(fits: Solutions) -> Array:

@@ -8,6 +8,7 @@ against x.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,7 +90,8 @@ class Patch:
         An element that sticks slips in its second half if the next one slips. That energy is counted there.
         """
         q, slips = self.rolling(bound, xi, eta, phi, self.guess(xi, eta, phi) if guess is None else guess)
-        energy, stuck = np.zeros((2, *self.inside.shape))
+        both: Array = np.zeros((2, *self.inside.shape))
+        energy, stuck = both[0, ...], both[1, ...]
         energy[self.inside] = (q * self.slip(q, xi, eta, phi)).sum(axis=0)
         stuck[self.inside] = ~slips
         energy[1:] += (energy * stuck)[:-1]
@@ -141,13 +143,14 @@ class Patch:
 
     def _matrix(self, at: NDArray[np.intp], *parts: Array) -> NDArray[np.float32]:
         """Return the derivative of what tractions miss along axes (x, y) at elements, a scale and a diagonal."""
-        x, y, scale, diagonal = (part.astype(np.float32) for part in parts)
+        x, y, scale, diagonal = (np.asarray(part, np.float32) for part in parts)
         place = at[:, None] * self.x.size + at
         along, across, mixed = (one.take(place) for one in self.single)
-        matrix: NDArray[np.float32] = (scale * x)[:, None] * (along * x + mixed * y)
+        matrix: Any = (scale * x)[:, None] * (along * x + mixed * y)
         matrix += (scale * y)[:, None] * (mixed * x + across * y)
         matrix[np.diag_indices_from(matrix)] += diagonal
-        return matrix
+        found: NDArray[np.float32] = matrix
+        return found
 
     def forces(self, q: Array) -> Array:
         """Return Fx, Fy and Mz of tractions."""

@@ -43,11 +43,11 @@ def flange(y: Array, z: Array, back: float) -> tuple[float, float, float]:
     outer = slice(tip, None)
     at = back + DATUM
     if not y[tip] < at <= y[-1]:
-        return (np.nan,) * 3
+        return np.nan, np.nan, np.nan
     tread = float(np.interp(at, y[outer], z[outer]))
     height = float(z[tip]) - tread
     if height <= ABOVE_TREAD + BELOW_TOP:
-        return (np.nan,) * 3
+        return np.nan, np.nan, np.nan
     flank, top = (_first_below(y[outer], z[outer], level) for level in (tread + ABOVE_TREAD, z[tip] - BELOW_TOP))
     return height, flank - back, flank - top
 

@@ -225,7 +225,9 @@ def _step(
             step = min(step, AIM * plan.conicity_step / now.change * now.step)
     body = pipeline.rig.bodies[plan.body]
     density, radius = wl.scalar_si(body.material.density, "kg/m^3"), float(np.asarray(body.rolling_radius))
-    for _ in range(TRIES):
+    tried = 0
+    while True:
+        tried += 1
         middle = _of_middle(wear, now.wear, step, now.step)
         removals = []
         for profile, depth, mass in zip(now.profiles, middle.depth, plan.of_profiles(middle.mass), strict=True):
@@ -243,6 +245,8 @@ def _step(
         elif share < 1.0 - 1e-6:
             step *= share
         else:
+            break
+        if tried == TRIES:
             break
     return State(after, row, wear, step, change)
 

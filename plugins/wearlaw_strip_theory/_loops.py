@@ -39,7 +39,8 @@ def stuck(v: Number, n_x: Number, n_y: Number, spin: Number, cosine: float, sine
     bound = root(ahead * (2.0 - ahead))
     q_x, q_y = n_x * (bound - inner), n_y * (bound - inner) + spin * inner
     within: Any = np.minimum(BELOW * bound / (root(q_x * q_x + q_y * q_y) + TINY), 1.0)
-    return ahead - 1.0, bound, within * q_x, within * q_y
+    found: Any = ahead - 1.0, bound, within * q_x, within * q_y
+    return found  # type: ignore[no-any-return]
 
 
 def energy(k: Number, p: Number, v: Number, behind: Number, angle: Number, sine: float, arc: float) -> Number:

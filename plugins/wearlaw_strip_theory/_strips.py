@@ -158,7 +158,7 @@ def _slip(rows: Array, table: Array, nodes: Array, stick_nodes: int) -> None:
     angle = 2.0 * np.arcsin(np.sqrt(0.5 * behind))
     half = _half_angle(n_x, n_y)
     if _compiled(rows, table):
-        kappa, lagging = np.empty((2, *angle.shape))
+        kappa, lagging = np.empty(angle.shape), np.empty(angle.shape)
         loops.lag_loop(rows, table, angle, kappa, lagging)
         loops.slip_loop(rows, table, half, np.exp(-kappa, out=kappa), lagging, stick_nodes, nodes)
         return

@@ -271,7 +271,7 @@ def _series(
                 yield _Series(variable, pair.label, data.sel(at), style)
     elif "contact_model" in dims:
         for model in chosen:
-            yield _Series(variable, model, data.sel(contact_model=model), (models.index(model),) * 2)
+            yield _Series(variable, model, data.sel(contact_model=model), (models.index(model), models.index(model)))
     else:
         yield _Series(variable, "", data, (0, 0))
 
@@ -349,8 +349,9 @@ def _over_sweep(
 
 
 def _values(one: xarray.DataArray, signed: bool) -> Array:
-    found: Array = one.values if signed else abs(one.values)
-    return found
+    found: Any = one.values if signed else abs(one.values)
+    values: Array = found
+    return values
 
 
 def _lines_of(sweep: xarray.Dataset, x: str, window: Window, axis: str) -> Iterator[tuple[Patch, xarray.Dataset]]:
@@ -544,7 +545,7 @@ def _maps(results: Results, spec: FigureSpec, units: Mapping[str, str]) -> tuple
     axes, places = [], []
     for name, chosen, given in ((x, spec.x_scale, spec.x_range), (y, spec.y_scale, spec.y_range)):
         at = _converted(plane[name].values, results.case.result_units[name], units[name])
-        spacing = (chosen or grid.spacing(name)) if (at > 0.0).all() else "linear"
+        spacing: Any = (chosen or grid.spacing(name)) if (at > 0.0).all() else "linear"
         axes.append(PlotAxis(label(name, units=units), spacing, _ends(name, units, given)))
         places.append(at)
     panels = []

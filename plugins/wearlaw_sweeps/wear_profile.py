@@ -113,7 +113,10 @@ class ProfileJob(Job):
             mass = np.nansum(mass, axis=list(self.dims).index(PATCH) - len(self.dims))
         share = part.kept[SHARE]
         shares = coefficient(share.given(share.values), SHARE, positive=False)
-        return {name: np.tensordot(shares, one, axes=1) for name, one in {**found, "mass": mass}.items()}
+        return {
+            name: np.asarray(np.tensordot(shares, one, axes=1), np.float64)
+            for name, one in {**found, "mass": mass}.items()
+        }
 
 
 def _any(problem: Problem) -> Any:

@@ -185,9 +185,11 @@ def pressed(gap: Array, dx: float, dy: float, modulus: float, approach: float, s
         return moved
 
     if start is None:
-        start = np.sqrt(np.maximum(0.5 * approach - gap, 0.0))
-        start *= (approach - gap.min()) / displaced(start).max()
-    pressure, rest, small = start, displaced(start) + gap - approach, ACCURACY * approach
+        pressure = np.sqrt(np.maximum(0.5 * approach - gap, 0.0))
+        pressure *= (approach - gap.min()) / displaced(pressure).max()
+    else:
+        pressure = start
+    rest, small = displaced(pressure) + gap - approach, ACCURACY * approach
     step, before = np.zeros_like(gap), np.inf
     for _ in range(ITERATIONS):
         touches = pressure > 0.0

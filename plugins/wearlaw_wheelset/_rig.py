@@ -425,10 +425,10 @@ class Wheelset(wl.Rig):
         """
         if conditions.get("axle_torque") is not None and conditions.get("angular_speed") is not None:
             raise wl.ConditionsError("give axle_torque or angular_speed, not both")
+        arrays = self.in_si(conditions, yaw=0.0, lateral_velocity=0.0, yaw_velocity=0.0, curve_radius=np.inf)
         sides = [conditions.get(f"vertical_load_{side}") is None for side in DIMS["side"]]
         if sides[0] != sides[1] or sides[0] == (conditions.get("vertical_load") is None):
             raise wl.ConditionsError("give vertical_load, or vertical_load_left and vertical_load_right")
-        arrays = self.in_si(conditions, yaw=0.0, lateral_velocity=0.0, yaw_velocity=0.0, curve_radius=np.inf)
         _check_given(arrays)
         shape = arrays["yaw"].shape
         flat = {name: array.reshape(-1) for name, array in arrays.items()}

@@ -75,7 +75,7 @@ def test_help_teaches_by_example(command: str) -> None:
 # plugins
 
 
-COMMANDS = ("case", "check", "compare", "fit", "life", "new-plugin", "run", "schema", "uncertainty", "wear")
+COMMANDS = ("case", "check", "compare", "explore", "fit", "life", "new-plugin", "run", "schema", "uncertainty", "wear")
 
 
 def test_all_models_are_listed_with_their_distribution_and_version() -> None:

@@ -263,7 +263,7 @@ def _bound(
     if axis_ratio is not None:
         return max_pressure * math.inf
     most, mu = _table(measure, nu, 0.0).most, _at_least(traction, friction)
-    row = FRICTIONS * (mu / (1.0 + mu))
+    row: Any = FRICTIONS * (mu / (1.0 + mu))
     greatest: Any = most[int(row)] if isinstance(row, float) else np.take(most, _places(row))
     bound: _Value = max_pressure * (1.0 + mu) * (ABOVE_ROUNDING * greatest)
     return bound

@@ -379,7 +379,8 @@ class Uncertainty:
         return tuple(values.reshape(shape) for values in found)
 
     def __repr__(self) -> str:
-        what = f"{len(self.outcomes)} outcomes" if len(self.outcomes) > 1 else f"the {name_of(self.outcomes[0])}"
+        first, *others = self.outcomes
+        what = f"{len(self.outcomes)} outcomes" if others else f"the {name_of(first)}"
         lines = [f"Uncertainty of {what}, {self.samples} samples"]
         for one in map(self.of, self.outcomes):
             median, (low, high) = one.median, one.interval()
