@@ -10,7 +10,7 @@ import pytest
 from pydantic import Field
 
 import wearlaw as wl
-from tests.core.fits import (
+from tests.plugins.fits.fits import (
     ALL,
     CREEPAGE,
     EXACT,

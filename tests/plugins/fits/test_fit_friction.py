@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.fits import CREEPAGE, EXACT, GLOBAL, PRESSURE, traction_tests, usfd
+from tests.plugins.fits.fits import CREEPAGE, EXACT, GLOBAL, PRESSURE, traction_tests, usfd
 from wearlaw import Q
 
 TRACTION = np.array([0.469, 0.449, 0.449, 0.450, 0.499])

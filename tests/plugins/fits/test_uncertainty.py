@@ -9,8 +9,8 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.fits import GLOBAL, in_microgram
-from tests.core.uncertain import FULL_SLIP, USFD
+from tests.plugins.fits.fits import GLOBAL, in_microgram
+from tests.plugins.fits.uncertain import FULL_SLIP, USFD
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_studies.uncertain_point import UncertainPoint

@@ -22,7 +22,7 @@ import xarray as xr
 from matplotlib import pyplot as plt
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, interrupted_after, predictor
+from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, interrupted_after, predictor
 from wearlaw import Q
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -214,7 +214,7 @@ def test_a_second_writer_is_refused(resume: bool, tmp_path: Path) -> None:
     wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=resume)
 
 
-EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "wear_map.py"
+EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "wear_map.py"
 
 
 def test_the_worked_example_draws_its_picture_from_what_it_stored(

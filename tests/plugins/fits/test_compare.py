@@ -10,7 +10,18 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.comparisons import CREEPAGE, EXACT, GLOBAL, RIG, TRACTION, by_label, made, order, scattered, usfd
+from tests.plugins.fits.comparisons import (
+    CREEPAGE,
+    EXACT,
+    GLOBAL,
+    RIG,
+    TRACTION,
+    by_label,
+    made,
+    order,
+    scattered,
+    usfd,
+)
 from tests.strategies import EPS
 from wearlaw import Q
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.fits import EXACT, GLOBAL
 from tests.core.outcome_laws import Damage, Heat
-from tests.core.test_fit_stages import Balanced, Choosy, Softer
-from tests.core.uncertain import FULL_SLIP, USFD
+from tests.plugins.fits.fits import EXACT, GLOBAL
+from tests.plugins.fits.test_fit_stages import Balanced, Choosy, Softer
+from tests.plugins.fits.uncertain import FULL_SLIP, USFD
 from wearlaw import Q
 from wearlaw_fits.uncertainties.inputs import check_samples
 

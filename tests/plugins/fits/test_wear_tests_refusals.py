@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.wear_tests import NAN, made
+from tests.plugins.fits.wear_tests import NAN, made
 from wearlaw import Q
 
 REFUSED: list[tuple[dict[str, Any], str]] = [

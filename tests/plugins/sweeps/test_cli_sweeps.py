@@ -15,7 +15,7 @@ import pytest
 import wearlaw as wl
 import wearlaw_studies.written as output
 from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
-from tests.core.sweeps import contents, interrupted_after
+from tests.plugins.sweeps.sweeps import contents, interrupted_after
 from wearlaw_sweeps import room
 
 pytestmark = pytest.mark.usefixtures("blank_figures")

@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, deadly, ending, predictor
+from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, deadly, ending, predictor
 from wearlaw_sweeps import workers
 
 distributed = pytest.importorskip("distributed")

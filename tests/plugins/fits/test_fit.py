@@ -11,7 +11,18 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.fits import ALL, EXACT, FRICTION, GLOBAL, PRESSURE, in_microgram, made_up, sloping, traction_tests, usfd
+from tests.plugins.fits.fits import (
+    ALL,
+    EXACT,
+    FRICTION,
+    GLOBAL,
+    PRESSURE,
+    in_microgram,
+    made_up,
+    sloping,
+    traction_tests,
+    usfd,
+)
 from wearlaw import Q
 
 KTH = GLOBAL | wl.wear_law("kth")

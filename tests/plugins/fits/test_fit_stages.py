@@ -13,7 +13,7 @@ from pydantic import Field
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.fits import EXACT, PRESSURE, RIG, refused, traction_tests
+from tests.plugins.fits.fits import EXACT, PRESSURE, RIG, refused, traction_tests
 from wearlaw import Array, Q
 
 CREEPAGE = np.array([0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 2.0, 3.0])

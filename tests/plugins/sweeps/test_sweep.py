@@ -16,7 +16,7 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.core.cases import Linear
-from tests.core.sweeps import CONDITIONS, OUTPUTS, predictor
+from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, predictor
 from wearlaw import Q
 from wearlaw_sweeps import room
 from wearlaw_sweeps.points import BLOCK, Points, Varying

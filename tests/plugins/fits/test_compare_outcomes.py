@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.fits import EXACT
 from tests.core.outcome_laws import CONDITIONS, MIXED, Damage, Heat, Volume
-from tests.core.test_fit_stages import SOFT, Softer, made_up
+from tests.plugins.fits.fits import EXACT
+from tests.plugins.fits.test_fit_stages import SOFT, Softer, made_up
 from wearlaw import Q
 
 FASTSIM = wl.contact_model("fastsim")

@@ -11,9 +11,9 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.fits import EXACT
 from tests.core.outcome_laws import MIXED, Damage, Heat, Volume
-from tests.core.test_fit_stages import Rubbed, Softer
+from tests.plugins.fits.fits import EXACT
+from tests.plugins.fits.test_fit_stages import Rubbed, Softer
 from wearlaw import Q
 from wearlaw.pipeline.pairs import Pair
 from wearlaw_studies.uncertainty import UncertainPair, uncertainty_of

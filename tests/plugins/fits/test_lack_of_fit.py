@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.fits import FRICTION, PRESSURE, usfd
+from tests.plugins.fits.fits import FRICTION, PRESSURE, usfd
 from wearlaw import Q
 from wearlaw_fits.lack_of_fit import lack_of_fit, repeats
 

@@ -14,7 +14,7 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.core.axles import KTH, Axle
-from tests.core.sweeps import interrupted_after, predictor
+from tests.plugins.sweeps.sweeps import interrupted_after, predictor
 from wearlaw import Q
 from wearlaw_sweeps import points
 

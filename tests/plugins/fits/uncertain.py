@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import wearlaw as wl
-from tests.core.fits import GLOBAL
+from tests.plugins.fits.fits import GLOBAL
 from wearlaw import Q
 
 USFD = GLOBAL | wl.wear_law("usfd")

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.comparisons import EXACT, GLOBAL, SCATTER, by_label, made, scattered, usfd
-from tests.core.fits import sloping
+from tests.plugins.fits.comparisons import EXACT, GLOBAL, SCATTER, by_label, made, scattered, usfd
+from tests.plugins.fits.fits import sloping
 from wearlaw import Q
 from wearlaw_fits.cross_validation import folds
 

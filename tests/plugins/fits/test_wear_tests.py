@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 
 import wearlaw as wl
-from tests.core.wear_tests import NAN, made
+from tests.plugins.fits.wear_tests import NAN, made
 from tests.strategies import EPS, log_uniform
 from wearlaw import Q
 from wearlaw_fits.wear_tests.reader import parse_tests

@@ -14,7 +14,7 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.core.axles import CREEP, GIVEN, KTH, PATCHES, Axle, Cut, Warns, Worn, lifted, of
-from tests.core.sweeps import interrupted_after
+from tests.plugins.sweeps.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_sweeps import sweep as sweeping

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.fits import (
+from tests.plugins.fits.fits import (
     ALL,
     CREEPAGE,
     EXACT,

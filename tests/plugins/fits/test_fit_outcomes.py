@@ -12,9 +12,9 @@ from scipy import stats
 
 import wearlaw as wl
 from tests.core.distributions import Install
-from tests.core.fits import EXACT, refused, sloping
 from tests.core.outcome_laws import CONDITIONS, MIXED, Damage, Heat, Volume
 from tests.core.test_stages import PLUGIN
+from tests.plugins.fits.fits import EXACT, refused, sloping
 from wearlaw import Q
 
 TRUE_HEAT, TRUE_DAMAGE = Heat(share=0.3), Damage(threshold=Q(40.0, "N"), slope=Q(2e-6, "1/N"))

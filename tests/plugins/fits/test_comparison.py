@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.comparisons import CREEPAGE, EXACT, GLOBAL, SCATTER, by_label, made, order, scattered, usfd
+from tests.plugins.fits.comparisons import CREEPAGE, EXACT, GLOBAL, SCATTER, by_label, made, order, scattered, usfd
 from tests.strategies import EPS
 from wearlaw import Q
 

@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.core.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, ending, predictor
+from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, ending, predictor
 from wearlaw import Q
 from wearlaw.arrays import kernels
 
