@@ -15,8 +15,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from tests.core import report_data as data
-from tests.core.report_data import ONE, THREE
+from tests.plugins.studies import report_data as data
+from tests.plugins.studies.report_data import ONE, THREE
 from wearlaw_output.curves import OUTSIDE, STRIP, Curve, FigureData, Map, Panel, PlotAxis, Shade, in_parts
 from wearlaw_output.drawing import BAND, LINES, MARKERS, PALE, PALETTE, THIN, draw, line_styles
 from wearlaw_studies.report.interactive import literal, plotly_figure

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests.core.report_data import EVIL
+from tests.plugins.studies.report_data import EVIL
 from wearlaw_output.styled import Marked, cell, html_table, latex_table
 
 TABLE = pd.DataFrame(

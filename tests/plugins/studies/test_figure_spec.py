@@ -10,7 +10,7 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import Table, case, table
-from tests.core.test_case_rigs import ON_RAIL
+from tests.plugins.studies.test_case_rigs import ON_RAIL
 from wearlaw_studies.case import Case
 
 WEAR = {"sweep": "creepage", "x": "wear_index", "y": "wear_rate"}

@@ -8,7 +8,7 @@ import pytest
 
 from tests.core import cases
 from tests.core.cases import case
-from tests.core.studies import LATTICE, MEASURED
+from tests.plugins.studies.studies import LATTICE, MEASURED
 from wearlaw_studies.study import evaluations, run
 
 

@@ -8,8 +8,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from tests.core.panels import assert_shows, by_label, by_name, one_panel
-from tests.plugins.sheffield import (
+from tests.plugins.sheffield.paper import (
     AREA,
     FORCE,
     FRICTION,
@@ -24,6 +23,7 @@ from tests.plugins.sheffield import (
     point,
     usfd,
 )
+from tests.plugins.studies.panels import assert_shows, by_label, by_name, one_panel
 from tests.strategies import EPS
 from wearlaw_output.curves import Curve, FigureData
 from wearlaw_sheffield import figures

@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 import wearlaw_sheffield
-from tests.plugins.sheffield import HEAT, SPEED, mean_speed
+from tests.plugins.sheffield.paper import HEAT, SPEED, mean_speed
 from wearlaw.models.labels import labels
 from wearlaw.plugins import loader
 from wearlaw_fits.wear_tests.reader import text_of_tests

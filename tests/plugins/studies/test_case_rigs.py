@@ -18,7 +18,7 @@ import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import OWN_TESTS, Table, changed, load, wearlaw
 from tests.core.distributions import Install
-from tests.core.panels import by_label, by_name
+from tests.plugins.studies.panels import by_label, by_name
 from tests.plugins.sweeps.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q

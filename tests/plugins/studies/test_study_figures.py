@@ -9,7 +9,7 @@ import pytest
 
 from tests.core import cases
 from tests.core.cases import InstallModel, case
-from tests.core.panels import LOADS, assert_shows, by_label, by_name, one_panel, shown
+from tests.plugins.studies.panels import LOADS, assert_shows, by_label, by_name, one_panel, shown
 from tests.strategies import EPS
 from wearlaw_studies.figures import spans_of
 from wearlaw_studies.report.main_result import main_figure, main_result

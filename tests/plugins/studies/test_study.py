@@ -13,7 +13,7 @@ import xarray
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import InstallModel, case
-from tests.core.studies import FRICTIONS, LOADS, MEASURED, lattice_study
+from tests.plugins.studies.studies import FRICTIONS, LOADS, MEASURED, lattice_study
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.pipeline.variables import OF_CONTACT, OF_POINT, offered

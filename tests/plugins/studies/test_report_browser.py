@@ -19,7 +19,7 @@ from selenium.webdriver import ActionChains, Keys
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
-from tests.core.report_data import EVIL, ODD, ONE, THREE, X, small_study
+from tests.plugins.studies.report_data import EVIL, ODD, ONE, THREE, X, small_study
 from wearlaw_studies.report.page import report
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")

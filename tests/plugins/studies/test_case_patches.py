@@ -20,7 +20,7 @@ from tests.core import axles, cases
 from tests.core.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE, PATCHES, SIDES, Axle
 from tests.core.cases import InstallModel, Table, assert_refused, changed, wearlaw
 from tests.core.distributions import Install
-from tests.core.panels import by_label, by_name, one_panel
+from tests.plugins.studies.panels import by_label, by_name, one_panel
 from tests.plugins.sweeps.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q

@@ -14,7 +14,7 @@ from scipy import optimize
 
 import wearlaw as wl
 from tests.core.cases import case
-from tests.plugins.sheffield import (
+from tests.plugins.sheffield.paper import (
     AREA,
     CORRECTED,
     FORCE,

@@ -11,7 +11,7 @@ import pytest
 
 from tests.core import cases
 from tests.core.cases import case
-from tests.core.panels import LOADS, by_name, one_panel, shown
+from tests.plugins.studies.panels import LOADS, by_name, one_panel, shown
 from tests.strategies import EPS
 from wearlaw_output.curves import Curve
 from wearlaw_output.drawing import draw

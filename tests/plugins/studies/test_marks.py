@@ -13,7 +13,7 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import case
-from tests.core.panels import by_label, by_name
+from tests.plugins.studies.panels import by_label, by_name
 from wearlaw import Q
 from wearlaw_output.styled import latex_table
 from wearlaw_studies.report.page import report

@@ -12,7 +12,7 @@ from scipy import optimize
 
 import wearlaw as wl
 from tests import reference
-from tests.plugins.sheffield import (
+from tests.plugins.sheffield.paper import (
     AREA,
     CORRECTED,
     FORCE,

@@ -16,7 +16,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.report_data import CLAIMS, EVIL, ODD, ONE, THREE, small_study
+from tests.plugins.studies.report_data import CLAIMS, EVIL, ODD, ONE, THREE, small_study
 from wearlaw_studies.report.interactive import plotly_figure
 from wearlaw_studies.report.main_result import main_figure, main_result
 from wearlaw_studies.report.page import counted, paragraphs, report

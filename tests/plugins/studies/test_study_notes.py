@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import InstallModel, case
-from tests.core.studies import lattice_study
+from tests.plugins.studies.studies import lattice_study
 from wearlaw import Array
 from wearlaw.pipeline.notes import grouped
 from wearlaw_studies.case import Case
