@@ -62,7 +62,10 @@ NOT_RUN = {
         'wearlaw life my-case.toml line.csv --over "100000 km" --until flange_thickness="25 mm"'
         " --set friction_coefficient=0.3",
     ): "takes minutes; tests/plugins/life/test_case.py runs the command",
-    ("docs/explore.md", 'python -m pip install "wearlaw[explore]"'): "tests/plugins/explore/test_explore.py opens the page",
+    (
+        "docs/explore.md",
+        'python -m pip install "wearlaw[explore]"',
+    ): "tests/plugins/explore/test_explore.py opens the page",
     (
         "docs/explore.md",
         'wearlaw explore twin_disc --set "normal_force=7 kN" --set "creepage=1 %"',
