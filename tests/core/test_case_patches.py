@@ -21,7 +21,7 @@ from tests.core.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE
 from tests.core.cases import InstallModel, Table, assert_refused, changed, wearlaw
 from tests.core.distributions import Install
 from tests.core.panels import by_label, by_name, one_panel
-from tests.core.sweeps import interrupted_after
+from tests.plugins.sweeps.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_output.drawing import draw

@@ -19,7 +19,7 @@ from tests.core import cases
 from tests.core.cases import OWN_TESTS, Table, changed, load, wearlaw
 from tests.core.distributions import Install
 from tests.core.panels import by_label, by_name
-from tests.core.sweeps import interrupted_after
+from tests.plugins.sweeps.sweeps import interrupted_after
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.units.variables import UNITS
