@@ -1,12 +1,3 @@
 """Fixtures of the core's tests, for the tests of studies."""
 
-from tests.core.conftest import (  # noqa: F401
-    blank_figures,
-    folder,
-    folder_with_tests,
-    install,
-    install_model,
-    point,
-    small_blocks,
-    validator,
-)
+from tests.core.conftest import blank_figures, folder_with_tests, point, small_blocks, validator  # noqa: F401

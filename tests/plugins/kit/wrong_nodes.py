@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 import wearlaw as wl
-from tests.testing.cells import Cells
-from tests.testing.strips import Strips
-from tests.testing.wrong_contacts import Wrapped
+from tests.plugins.kit.cells import Cells
+from tests.plugins.kit.strips import Strips
+from tests.plugins.kit.wrong_contacts import Wrapped
 
 Exact: Any = type(wl.contact_model("exact"))
 

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.plugins.test_life import GIVEN, line, pipeline
+from tests.plugins.life.test_life import GIVEN, line, pipeline
 from wearlaw_life import Life
 from wearlaw_life._removal import Profile
 

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 import wearlaw as wl
 import wearlaw_life
-from tests.plugins.test_life import line
+from tests.plugins.life.test_life import line
 from wearlaw_life import _section
 from wearlaw_life._command import life
 

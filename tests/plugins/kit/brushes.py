@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 import wearlaw as wl
-from tests.testing.cells import Cells
+from tests.plugins.kit.cells import Cells
 
 KINETIC = 0.5
 """Kinetic over static friction."""

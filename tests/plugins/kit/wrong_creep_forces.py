@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import wearlaw as wl
-from tests.testing.strips import Means
+from tests.plugins.kit.strips import Means
 
 
 class TooSoftForSpin(Means):

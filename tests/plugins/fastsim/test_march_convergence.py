@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.plugins.fastsim_march import CREEPAGES, marched, sample
-from tests.plugins.fastsim_marks import each_bound, each_way
+from tests.plugins.fastsim.march import CREEPAGES, marched, sample
+from tests.plugins.fastsim.marks import each_bound, each_way
 from tests.plugins.full_theory import spheres
 from wearlaw import Array
 from wearlaw_fastsim._march import Ellipses, forces, strip_centres

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import wearlaw as wl
-from tests.testing.strips import Strips
+from tests.plugins.kit.strips import Strips
 
 
 class Spoilt(Strips):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.fastsim_marks import COMPILED, each_bound
-from tests.plugins.fastsim_strips import CASE, ROUNDING, ellipses, limit, sample, solve, strips_at
+from tests.plugins.fastsim.marks import COMPILED, each_bound
+from tests.plugins.fastsim.strips import CASE, ROUNDING, ellipses, limit, sample, solve, strips_at
 from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_fastsim._march import Ellipses

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import wearlaw as wl
-from tests.testing.wrong_laws import SLOPE, Linear
+from tests.plugins.kit.wrong_laws import SLOPE, Linear
 
 
 class HiddenJump(Linear):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.fastsim_marks import each_bound
-from tests.plugins.fastsim_strips import CASE, ROUNDING, ellipses, limit, sample, solve
+from tests.plugins.fastsim.marks import each_bound
+from tests.plugins.fastsim.strips import CASE, ROUNDING, ellipses, limit, sample, solve
 from tests.plugins.full_theory import rows
 from wearlaw import Q
 from wearlaw_fastsim._strips import even_strips, forces, forces_alone, layout_on, strips

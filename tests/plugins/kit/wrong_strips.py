@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 import wearlaw as wl
-from tests.testing.strips import Strips
-from tests.testing.wrong_ellipses import Spoilt, slipping, times
+from tests.plugins.kit.strips import Strips
+from tests.plugins.kit.wrong_ellipses import Spoilt, slipping, times
 
 
 class LosesEnergyOfTranslation(Spoilt):

@@ -6,7 +6,7 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 
-from tests.plugins.fastsim_marks import each_bound
+from tests.plugins.fastsim.marks import each_bound
 from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_fastsim._first_slip import Growth, first_slip

@@ -13,21 +13,21 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.testing.cells import Cells
-from tests.testing.strips import Strips
-from tests.testing.wrong_contacts import Wrapped
-from tests.testing.wrong_declarations import NoReason, UnknownClaim
-from tests.testing.wrong_law_nodes import PairOfPoints
-from tests.testing.wrong_laws import Linear, Raises, WrongSign
-from tests.testing.wrong_rigs import Weight
-from tests.testing.wrong_stages import Lubricated
+from tests.plugins.kit.cells import Cells
+from tests.plugins.kit.strips import Strips
+from tests.plugins.kit.wrong_contacts import Wrapped
+from tests.plugins.kit.wrong_declarations import NoReason, UnknownClaim
+from tests.plugins.kit.wrong_law_nodes import PairOfPoints
+from tests.plugins.kit.wrong_laws import Linear, Raises, WrongSign
+from tests.plugins.kit.wrong_rigs import Weight
+from tests.plugins.kit.wrong_stages import Lubricated
 from wearlaw.models.contact_model import Claim
 from wearlaw_kit import Check, checks, conformance
 from wearlaw_kit.rules import RULES
 
 SUITE = """
-from tests.testing.wrong_declarations import HottestNode
-from tests.testing.wrong_laws import Linear, Offset, WrongSign
+from tests.plugins.kit.wrong_declarations import HottestNode
+from tests.plugins.kit.wrong_laws import Linear, Offset, WrongSign
 from wearlaw_kit import conformance
 
 @conformance(WrongSign(), expected_failures={"rate_is_never_negative": "material grows"})
@@ -53,7 +53,7 @@ def test_what_pytest_shows_of_expected_failures_exemptions_and_counter_examples(
     chosen = "never_negative or is_finite or no_slip or wears_by_itself"
     command = [sys.executable, "-m", "pytest", "-v", "-rA", "-k", chosen, "-p", "no:cacheprovider", str(tmp_path)]
     command += [f"--rootdir={tmp_path}", "-c", "/dev/null"]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=Path(__file__).parents[2], check=False)
+    done = subprocess.run(command, capture_output=True, text=True, cwd=Path(__file__).parents[3], check=False)
     report = done.stdout
     assert "test_wrong[rate_is_finite] PASSED" in report
     assert re.search(r"XFAIL \S+::test_known\[rate_is_never_negative\] - material grows", report), report

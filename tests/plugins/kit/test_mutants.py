@@ -14,7 +14,7 @@ import pytest
 import wearlaw as wl
 from tests.core import axles
 from tests.core.axle_case import Axle
-from tests.testing import (
+from tests.plugins.kit import (
     cells,
     strips,
     wrong_contacts,
@@ -162,7 +162,7 @@ PAGES = ("write-a-law", "validate-in-ci", "contact-model-plugin", "rig-plugin")
 @pytest.fixture(scope="module")
 def of_the_documentation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
     """Return the models that the pages about plugins write, by their modules."""
-    folder, docs = tmp_path_factory.mktemp("plugins"), Path(__file__).parents[2] / "docs"
+    folder, docs = tmp_path_factory.mktemp("plugins"), Path(__file__).parents[3] / "docs"
     text = "\n".join((docs / f"{page}.md").read_text(encoding="utf-8") for page in PAGES)
     for name, block in re.findall(r":caption: (?:[\w-]+/)?(\w+\.py)\n\n(.*?)\n```", text, re.DOTALL):
         (folder / name).write_text(block, encoding="utf-8")

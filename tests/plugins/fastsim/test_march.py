@@ -7,8 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from tests.plugins.fastsim_march import CREEPAGES, marched, sample
-from tests.plugins.fastsim_marks import COMPILED, each_bound, each_way
+from tests.plugins.fastsim.march import CREEPAGES, marched, sample
+from tests.plugins.fastsim.marks import COMPILED, each_bound, each_way
 from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_fastsim import _march
