@@ -61,12 +61,15 @@ NOT_RUN = {
         "docs/wheel-life.md",
         'wearlaw life my-case.toml line.csv --over "100000 km" --until flange_thickness="25 mm"'
         " --set friction_coefficient=0.3",
-    ): "takes minutes; tests/plugins/test_life_case.py runs the command",
-    ("docs/explore.md", 'python -m pip install "wearlaw[explore]"'): "tests/plugins/test_explore.py opens the page",
+    ): "takes minutes; tests/plugins/life/test_case.py runs the command",
+    (
+        "docs/explore.md",
+        'python -m pip install "wearlaw[explore]"',
+    ): "tests/plugins/explore/test_explore.py opens the page",
     (
         "docs/explore.md",
         'wearlaw explore twin_disc --set "normal_force=7 kN" --set "creepage=1 %"',
-    ): "tests/plugins/test_explore.py opens the page",
+    ): "tests/plugins/explore/test_explore.py opens the page",
     ("docs/conformance.md", STEEP): "the law is made up; tests/plugins/kit/test_check.py runs the option",
     ("CONTRIBUTING.md", ".venv/bin/python -m pytest tests/plugins/test_kth.py"): "runs with the suite as it is",
     ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
