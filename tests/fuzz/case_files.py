@@ -60,7 +60,7 @@ KNOWN = [
 @cache
 def valid() -> list[str]:
     """Return case files: those that ship, those of the documentation, and a small one."""
-    pages = ((ROOT / "docs" / page).read_text(encoding="utf-8") for page in ("case-files.md", "comparing.md"))
+    pages = ((ROOT / "docs" / page).read_text(encoding="utf-8") for page in ("case-files.md", "fitting.md"))
     blocks = [
         found for page in pages for found in re.findall(r"```\{code-block\} toml\n:caption.*\n\n([^`]*)```", page)
     ]
