@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.fits import made_up, usfd
+from tests.plugins.fits.fits import made_up, usfd
 from wearlaw import Array, Q
 from wearlaw.pipeline.variables import default_variables
 
