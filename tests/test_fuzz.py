@@ -155,7 +155,7 @@ def wider_batches(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def unchecked_values(monkeypatch: pytest.MonkeyPatch) -> None:
     """Take any number of a test."""
-    monkeypatch.setattr("wearlaw_fits.wear_tests.reader.faulty", lambda *_: [])
+    monkeypatch.setattr("wearlaw_fits.wear_tests._faulty_values", lambda *_: [])
 
 
 def lowered_copies(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -31,9 +31,9 @@ from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import numbers
 from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named
 from wearlaw_fits.fit import fit as fit_parameters
+from wearlaw_fits.read_tests import read_tests
 from wearlaw_fits.result import Fit
-from wearlaw_fits.wear_tests.reader import read_tests
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
 from wearlaw_fits.written import COMPARISON, FIT, write_comparison, write_fit
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import CommandT, written_formats

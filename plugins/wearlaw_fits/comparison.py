@@ -24,7 +24,7 @@ from wearlaw_fits.cross_validation import Folds, cross_validated, folds
 from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import repeats
 from wearlaw_fits.result import Fit
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.curves import BLACK, Curve, FigureData
 from wearlaw_output.parity import parity_panels
 from wearlaw_output.plot import plot

@@ -22,7 +22,7 @@ from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw_fits.fit import fit as fit_parameters
 from wearlaw_fits.observations import test_names
 from wearlaw_fits.result import Fit
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
 
 Folds: TypeAlias = int | Literal["leave-one-out"]
 """Number of folds, or one for each operating point."""

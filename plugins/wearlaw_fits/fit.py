@@ -22,7 +22,7 @@ from wearlaw_fits.observations import test_names
 from wearlaw_fits.result import Fit
 from wearlaw_fits.summary import summarise
 from wearlaw_fits.task import Task
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
 
 AT_BOUND = 1e-6
 """Distance from a bound, as a share of the range, up to which a fit counts as lying on it."""

@@ -20,7 +20,7 @@ from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, label
 from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
 """Scatter of measurements: by a factor, by an amount, or by their stated uncertainties."""

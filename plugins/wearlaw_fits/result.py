@@ -22,7 +22,7 @@ from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import SAME, LackOfFit
 from wearlaw_fits.law_files import write_law
 from wearlaw_fits.observations import TRACTION, Observations, Scatter, wear_index_density
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw_output.parity import parity_panels
 from wearlaw_output.plot import plot

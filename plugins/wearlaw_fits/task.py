@@ -24,7 +24,7 @@ from wearlaw_fits.free_parameters import FRICTION, FreeParameters, free_names, g
 from wearlaw_fits.intervals import undetermined
 from wearlaw_fits.least_squares import Bounds, Solutions, refine, search
 from wearlaw_fits.observations import Observations, Scatter, observe, wear_index_density
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
 
 NEAR = 10.0
 """Starting points lie within this factor of the first value, up and down."""
