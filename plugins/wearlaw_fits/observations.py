@@ -79,7 +79,7 @@ class Observations:
     @property
     def name(self) -> str:
         """Name of the measurement in words, such as "wear rate"."""
-        return name_of(self.observable)
+        return self.observable.replace("_", " ")
 
     @property
     def plural(self) -> str:
