@@ -5,6 +5,7 @@ import importlib
 import inspect
 from collections.abc import Iterator
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -73,12 +74,11 @@ def tree(module: str) -> list[ast.stmt]:
 
 def alias(module: str, name: str) -> str:
     """Return the docstring below the assignment of a name."""
-    body = tree(module)
-    for statement, after in zip(body, body[1:], strict=False):
+    for statement, after in pairwise(tree(module)):
         targets = getattr(statement, "targets", [getattr(statement, "target", getattr(statement, "name", None))])
-        if any(isinstance(one, ast.Name) and one.id == name for one in targets):
-            if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
-                return inspect.cleandoc(str(after.value.value))
+        names = {one.id for one in targets if isinstance(one, ast.Name)}
+        if name in names and isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
+            return inspect.cleandoc(str(after.value.value))
     return OF_LIBRARIES[name]
 
 

@@ -10,7 +10,7 @@ from docutils.parsers.rst import Directive
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.errors import ExtensionError
 
-import reference
+from docs import reference
 from wearlaw.cli import main
 from wearlaw.contact.conditions import declared
 
