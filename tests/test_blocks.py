@@ -75,10 +75,6 @@ NOT_RUN = {
     ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
     ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
-    (
-        "CONTRIBUTING.md",
-        ".venv/bin/python -m tests.fuzz --seconds 3600",
-    ): "takes an hour; tests/test_fuzz.py runs the fuzzer",
     ("CONTRIBUTING.md", HOUSE): "no code; tests/test_contributing.py compares it with the code",
     ("docs/validation.md", "nox -s bench"): NOX,
     ("docs/case-files.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
