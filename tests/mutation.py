@@ -46,7 +46,7 @@ TESTS = {
     "wearlaw_kth": "plugins/test_kth.py",
     "wearlaw_linear": "plugins/test_linear.py",
     "wearlaw_polach": "plugins/test_polach.py",
-    "wearlaw_sheffield": "plugins/test_sheffield_claims.py plugins/test_sheffield_tables.py",
+    "wearlaw_sheffield": "plugins/sheffield/test_claims.py plugins/sheffield/test_tables.py",
     "wearlaw_shen_hedrick_elkins": "plugins/test_shen_hedrick_elkins.py",
     "wearlaw_thermal": "plugins/test_thermal.py",
     "wearlaw_third_body": "plugins/test_third_body.py",

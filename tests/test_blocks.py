@@ -63,11 +63,11 @@ NOT_RUN = {
         " --set friction_coefficient=0.3",
     ): "takes minutes; tests/plugins/life/test_case.py runs the command",
     (
-        "docs/explore.md",
+        "docs/install.md",
         'python -m pip install "wearlaw[explore]"',
     ): "tests/plugins/explore/test_explore.py opens the page",
     (
-        "docs/explore.md",
+        "docs/install.md",
         'wearlaw explore twin_disc --set "normal_force=7 kN" --set "creepage=1 %"',
     ): "tests/plugins/explore/test_explore.py opens the page",
     ("docs/conformance.md", STEEP): "the law is made up; tests/plugins/kit/test_check.py runs the option",
@@ -75,17 +75,13 @@ NOT_RUN = {
     ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
     ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
-    (
-        "CONTRIBUTING.md",
-        ".venv/bin/python -m tests.fuzz --seconds 3600",
-    ): "takes an hour; tests/test_fuzz.py runs the fuzzer",
     ("CONTRIBUTING.md", HOUSE): "no code; tests/test_contributing.py compares it with the code",
-    ("docs/accuracy.md", "nox -s bench"): NOX,
-    ("docs/results.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
-    ("docs/results.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
+    ("docs/validation.md", "nox -s bench"): NOX,
+    ("docs/case-files.md", 'T = readtable("study/results.csv", VariableNamingRule="preserve");'): MATLAB,
+    ("docs/case-files.md", 'creepage = ncread("study/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
     (
-        "docs/results.md",
-        'provenance = jsondecode(ncreadatt("out/results.nc", "/sweeps/creepage", "provenance"));',
+        "docs/case-files.md",
+        'provenance = jsondecode(ncreadatt("study/results.nc", "/sweeps/creepage", "provenance"));',
     ): MATLAB,
 }
 """Blocks that no test runs, by page and first line, with the reason."""

@@ -19,7 +19,7 @@ from selenium.webdriver import Keys
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
-from tests.core.test_report_browser import BROWSER, DRIVER, FLAGS, PATIENCE_S
+from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, FLAGS, PATIENCE_S
 from wearlaw_explore._answer import Answer
 from wearlaw_explore._command import named
 from wearlaw_explore._figures import edge, nodes

@@ -156,7 +156,7 @@ FIELDS_OF_THE_DOCUMENTATION = {
     "Fatigue": {"slope": "2e-7 1/N", "threshold": "10 N"},
 }
 """Fields of classes without defaults."""
-PAGES = ("write-a-law", "validate-in-ci", "contact-model-plugin", "rig-plugin")
+PAGES = ("write-a-law", "validate-in-ci", "other-models")
 
 
 @pytest.fixture(scope="module")
