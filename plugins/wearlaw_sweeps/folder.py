@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -130,6 +131,8 @@ class Parts(Folder):
 
     def finish(self, results: xarray.Dataset) -> None:
         """Write results beside the parts, with attributes that mark the folder as complete."""
+        for name in results.variables:  # those of an earlier call
+            shutil.rmtree(self.path / str(name), ignore_errors=True)
         encoding = {name: {"compressors": (CHECKED,)} for name in results.variables}
         results.to_zarr(str(self.path), mode="a", consolidated=False, zarr_format=3, encoding=encoding)
 
