@@ -36,8 +36,9 @@ GROWTH = 2.0
 """Largest ratio of the distances of two steps: the extrapolation then weighs the latest wear at most twice."""
 
 CORRECTION = 2e3
-"""Largest share of `depth_step` by which extrapolation may change the wear of a step anywhere. Where contact leaves a
-place and comes back, longer steps would wear one place too deep, and then the other."""
+"""Largest depth by which extrapolation may change the wear of a step anywhere, over the square of `depth_step` [1/m]:
+all steps halve with it. Where contact leaves a place and comes back, longer steps would wear one place too deep,
+and then the other."""
 
 SHORTEST = 1.0 / 64.0
 """Smallest share of `depth_step` that a jump of the conicity makes a step; a jump stays one however short the step."""
