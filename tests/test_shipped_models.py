@@ -32,7 +32,6 @@ SLOW = {
     "half_space": {
         "force_grows_with_creepage",
         "forces_are_continuous",
-        "full_slip_is_met_from_both_sides",
         "full_slip_is_reached",
         "solution_is_in_double_precision",
         "units_of_parameters_do_not_matter",

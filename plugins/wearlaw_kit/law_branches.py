@@ -99,24 +99,6 @@ def rate_has_kinks_only_where_declared(law: Law) -> None:
         paths.assert_declared(breakpoints, path, (low, high), what)
 
 
-@rule(Law, applies=at_nodes_of_the_patch)
-def declared_jumps_exist(law: Law) -> None:
-    """Every value in `jumps` is a breakpoint too, and there is a contact at which the rate jumps there.
-
-    A variable of the law's own cannot be set, so that its jumps are not looked for.
-    """
-    breakpoints = law.breakpoints(law.numbers) or {}
-    contact = forward(random_contacts(512, seed=3, law=law))
-    for name, jumps in law.jumps(law.numbers).items():
-        missing = set(jumps) - set(breakpoints.get(name, ()))
-        assert not missing, f"`jumps` has {name} = {sorted(missing)}, which `breakpoints` lacks"
-        for jump in () if name in law.own_variables else jumps:
-            sides = (aimed(contact, name, jump * factor) for factor in (1.0 - STEP, 1.0 + STEP))
-            below, above = (np.abs(law.rate(side, law.numbers)) for side in sides)
-            steps = np.abs(above - below) > 1e3 * STEP * np.maximum(above, below)
-            assert steps.any(), f"`jumps` declares a jump at {name} = {jump:g}, but the rate is continuous there"
-
-
 @rule(Law, applies=lambda law: at_nodes_of_the_patch(law) and law.ramps(law.numbers) is not None)
 def ramps_sum_to_the_rate(law: Law) -> None:
     """The ramps are the law: Σ slope · max(q·s - threshold, 0), with thresholds at zero or at breakpoints."""
