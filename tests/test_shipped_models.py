@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from wearlaw.models.contact_model import Model
 from wearlaw_kit import checks
 
 NEEDED: dict[str, dict[str, Any]] = {
@@ -48,7 +47,7 @@ SHIPPED = {
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_the_model_conforms(name: str) -> None:
-    model: Model = SHIPPED[name](**getattr(SHIPPED[name], "example_fields", NEEDED.get(name, {})))
+    model: Any = SHIPPED[name](**getattr(SHIPPED[name], "example_fields", NEEDED.get(name, {})))
     for check in checks(model):
         if check.name not in SLOW.get(name, ()):
             check()
