@@ -77,11 +77,11 @@ NOT_RUN = {
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
     ("CONTRIBUTING.md", HOUSE): "no code; tests/test_contributing.py compares it with the code",
     ("docs/validation.md", "nox -s bench"): NOX,
-    ("docs/case-files.md", 'T = readtable("study/results.csv", VariableNamingRule="preserve");'): MATLAB,
-    ("docs/case-files.md", 'creepage = ncread("study/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
+    ("docs/case-files.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
+    ("docs/case-files.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
     (
         "docs/case-files.md",
-        'provenance = jsondecode(ncreadatt("study/results.nc", "/sweeps/creepage", "provenance"));',
+        'provenance = jsondecode(ncreadatt("out/results.nc", "/sweeps/creepage", "provenance"));',
     ): MATLAB,
 }
 """Blocks that no test runs, by page and first line, with the reason."""
