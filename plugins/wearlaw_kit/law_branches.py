@@ -25,9 +25,6 @@ AT_JUMP = 1e-10
 """Relative distance up to which a jump counts as declared: a position on a path that spans ten
 decades is known to 23 times rounding."""
 
-STEP = 1e-12
-"""Relative distance of the two sides of a jump: a continuous rate changes by a few times that."""
-
 
 def at_nodes_of_the_patch(law: Law) -> bool:
     """Return whether a law has a rate for each node, and no single value for the patch."""
