@@ -303,7 +303,7 @@ class Uncertainty:
         """Title of the prediction."""
         outcome = self._only
         name, law = name_of(outcome), self._laws[self._index(outcome)]
-        return f"{name[0].upper()}{name[1:]} by {law.name} on {self._predict.contact_model.name}"
+        return f"{name[0].upper()}{name[1:]} by {law.label or law.name} on {self._predict.contact_model.name}"
 
     @cached_property
     def known(self) -> dict[str, Known]:
