@@ -26,7 +26,7 @@ import xarray as xr
 from conftest import PAGES
 from tests.core.cases import table
 from tests.environments import ROOT
-from wearlaw.cli import main
+from wearlaw.cli import main  # private: the program, in this process
 
 FENCE = re.compile(r"^( *)(`{3,}|~{3,}|:{3,})([^\n`]*)\n(.*?)^\1\2 *$", re.MULTILINE | re.DOTALL)
 CAPTION = re.compile(r":caption: (\S+)\n")
@@ -76,7 +76,6 @@ NOT_RUN = {
     ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
     ("CONTRIBUTING.md", HOUSE): "no code; tests/test_contributing.py compares it with the code",
-    ("docs/validation.md", "nox -s bench"): NOX,
     ("docs/case-files.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
     ("docs/case-files.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
     (
