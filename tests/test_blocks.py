@@ -26,7 +26,7 @@ import xarray as xr
 from conftest import PAGES
 from tests.core.cases import table
 from tests.environments import ROOT
-from wearlaw.cli import main
+from wearlaw.cli import main  # private: the program, in this process
 
 FENCE = re.compile(r"^( *)(`{3,}|~{3,}|:{3,})([^\n`]*)\n(.*?)^\1\2 *$", re.MULTILINE | re.DOTALL)
 CAPTION = re.compile(r":caption: (\S+)\n")
@@ -71,7 +71,7 @@ NOT_RUN = {
         'wearlaw explore twin_disc --set "normal_force=7 kN" --set "creepage=1 %"',
     ): "tests/plugins/explore/test_explore.py opens the page",
     ("docs/conformance.md", STEEP): "the law is made up; tests/plugins/kit/test_check.py runs the option",
-    ("CONTRIBUTING.md", ".venv/bin/python -m pytest tests/plugins/test_kth.py"): "runs with the suite as it is",
+    ("CONTRIBUTING.md", ".venv/bin/python -m pytest tests/plugins/kth/test_kth.py"): "runs with the suite as it is",
     ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
     ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,

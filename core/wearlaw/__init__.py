@@ -91,7 +91,6 @@ from wearlaw.units.quantities import (
     parse,
     scalar_si,
 )
-from wearlaw.units.wear_coefficients import wear_coefficient
 from wearlaw.version import __version__
 
 __all__ = [
@@ -245,6 +244,7 @@ __all__ = [
 if TYPE_CHECKING:
     from wearlaw.pipeline.inverse import creepage_for
     from wearlaw.plugins.law_files import read_law, read_wear_law
+    from wearlaw_archard.coefficients import wear_coefficient
     from wearlaw_explore import explore
     from wearlaw_fits.comparison import Comparison, compare
     from wearlaw_fits.fit import fit
@@ -266,6 +266,7 @@ _LATE = {
     "creepage_for": "wearlaw.pipeline.inverse",
     "read_law": "wearlaw.plugins.law_files",
     "read_wear_law": "wearlaw.plugins.law_files",
+    "wear_coefficient": "wearlaw_archard.coefficients",
     "explore": "wearlaw_explore",
     "Comparison": "wearlaw_fits.comparison",
     "compare": "wearlaw_fits.comparison",
