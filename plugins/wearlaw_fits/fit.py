@@ -110,7 +110,7 @@ def fit(
         if bootstrap:
             replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
     if overload := task.overload(best):
-        overload.warn(stacklevel=2)
+        overload.warn()
     settings = {
         "predict": predict,
         "free": list(free),
@@ -161,7 +161,7 @@ def _warn_of_kept(task: Task) -> None:
             continue
         law, problem = predict.laws[one.law], one.problem
         if any((one.law, name) not in free for name in law.numbers):
-            warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law, 4)
+            warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law)
 
 
 def _at_bounds(task: Task, best: Solutions) -> Iterator[str]:

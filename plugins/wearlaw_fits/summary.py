@@ -13,9 +13,8 @@ from wearlaw.arrays.array import Array
 from wearlaw.errors import ConfigurationError, FitError
 from wearlaw.models.contact_model import Model
 from wearlaw.models.law import WEAR, Calibration
-from wearlaw.pipeline.named_numbers import changed_parts
+from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.pipeline.ranges import mean_over_patch
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import specification
 from wearlaw.settings.configuration import known_name
@@ -26,6 +25,7 @@ from wearlaw_fits.free_parameters import FRICTION, FreeParameters
 from wearlaw_fits.intervals import Replicates, covariance, leverage, student_intervals, studentised_intervals
 from wearlaw_fits.lack_of_fit import LackOfFit, lack_of_fit, repeats
 from wearlaw_fits.least_squares import Solutions
+from wearlaw_fits.named_numbers import changed_parts
 from wearlaw_fits.observations import FLOOR, Observations, test_names, wear_index_density
 from wearlaw_fits.result import Fit
 from wearlaw_fits.task import Task
@@ -135,8 +135,8 @@ def _calibration(task: Task, predict: Pipeline[...], one: Observations) -> Calib
     """Return the calibration of a fitted law."""
     problem = one.problem
     means = {
-        "pressure": mean_over_patch(problem, {}, "pressure"),
-        "slip_speed": mean_over_patch(problem, {}, "slip_speed"),
+        "pressure": Totals().mean(problem, "pressure"),
+        "slip_speed": Totals().mean(problem, "slip_speed"),
         "wear_index_density": wear_index_density(predict, problem),
     }
     of = f" of {task.tests.source}" if task.tests.source else ""

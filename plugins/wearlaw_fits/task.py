@@ -15,7 +15,6 @@ from wearlaw.contact.elastic_limit import Overload
 from wearlaw.errors import FitError, shown
 from wearlaw.models.law import named_outcomes
 from wearlaw.numerics.integrate import integrate_forces
-from wearlaw.pipeline.named_numbers import staged_models
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.ranges import overload_of
 from wearlaw.units.quantities import QuantityLike, coefficient, from_si
@@ -23,6 +22,7 @@ from wearlaw.units.variables import UNITS
 from wearlaw_fits.free_parameters import FRICTION, FreeParameters, free_names, give_bounds
 from wearlaw_fits.intervals import undetermined
 from wearlaw_fits.least_squares import Bounds, Solutions, refine, search
+from wearlaw_fits.named_numbers import staged_models
 from wearlaw_fits.observations import Observations, Scatter, observe, wear_index_density
 from wearlaw_fits.wear_tests.tests import WearTests
 

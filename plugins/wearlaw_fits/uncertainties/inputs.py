@@ -14,11 +14,11 @@ from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
-from wearlaw.pipeline.named_numbers import Kind, NamedNumbers, Place
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.units.quantities import Unit, coefficient, from_si
 from wearlaw.units.registry import symbol
+from wearlaw_fits.named_numbers import Kind, NamedNumbers, Place
 from wearlaw_fits.uncertainties.distributions import Distribution, PublishedRange, uniform
 
 
