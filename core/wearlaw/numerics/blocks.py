@@ -45,7 +45,7 @@ def by_block(
 ) -> ResultT:
     """Evaluate a function of a problem with at most one batch axis block by block, and return its results.
 
-    `kept` returns what is kept of the results of a block after `on_block` has seen them.
+    Of several blocks, `kept` returns what is kept of their results after `on_block` has seen them.
     """
     points = problem.size
     if points == 0:
@@ -58,10 +58,10 @@ def by_block(
         found = function(within, part)
         if on_block is not None:
             on_block(within, found)
-        if kept is not None:
-            found = kept(found)
         if points <= block:
             return found
+        if kept is not None:
+            found = kept(found)
         if whole is None:
             whole = each(lambda values: np.empty((points, *values.shape[1:])), found)
         each(lambda values, own, part=part: values.__setitem__(part, own), whole, found)

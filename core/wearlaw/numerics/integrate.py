@@ -165,7 +165,8 @@ def integrate_laws(
     numbered = list(zip(laws, map(_frozen, numbers) if numbers else [law.numbers for law in laws], strict=True))
     solver = Solver(model)
     over = _over_line if problem.geometry == "line" else _over_ellipse
-    return over(solver, numbered, problem, on_block)._replace(contact=solver.solved)
+    totals = over(solver, numbered, problem, on_block)
+    return totals if solver.solved is None else totals._replace(contact=solver.solved)
 
 
 def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlock[Totals] | None) -> Totals:

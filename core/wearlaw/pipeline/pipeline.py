@@ -507,7 +507,6 @@ class Pipeline(Configuration, Generic[P]):
         """Return a watch that sees whether operating points stay elastic and within the ranges of the laws."""
         return RangeWatch(*self.laws)
 
-    @steady
     def watched(
         self,
         problem: Problem,

@@ -126,6 +126,7 @@ class RangeWatch:
         return f"{outside} of {self.points} {self.counted} {'lies' if outside == 1 else 'lie'}"
 
 
+@steady
 def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
     """Return the operating point furthest beyond first yield of a body, or None if all are elastic.
 
