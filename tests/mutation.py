@@ -38,14 +38,15 @@ TESTS = {
     "wearlaw_contact_files": "plugins/test_contact_files.py plugins/test_contact_files_refusals.py",
     "wearlaw_energy": "plugins/test_energy.py",
     "wearlaw_exact": "plugins/test_exact_kernel.py plugins/test_exact.py test_numbers.py",
-    "wearlaw_fastsim": "plugins/test_fastsim_kernel.py plugins/test_fastsim_first_slip.py plugins/test_fastsim.py"
-    " plugins/test_fastsim_solution.py plugins/test_fastsim_strip_forces.py plugins/test_fastsim_strip_fields.py"
-    " plugins/test_fastsim_march.py plugins/test_fastsim_march_convergence.py",
+    "wearlaw_fastsim": "plugins/fastsim/test_kernel.py plugins/fastsim/test_first_slip.py"
+    " plugins/fastsim/test_fastsim.py plugins/fastsim/test_solution.py plugins/fastsim/test_strip_forces.py"
+    " plugins/fastsim/test_strip_fields.py"
+    " plugins/fastsim/test_march.py plugins/fastsim/test_march_convergence.py",
     "wearlaw_global": "plugins/test_global.py",
     "wearlaw_kth": "plugins/test_kth.py",
     "wearlaw_linear": "plugins/test_linear.py",
     "wearlaw_polach": "plugins/test_polach.py",
-    "wearlaw_sheffield": "plugins/test_sheffield_claims.py plugins/test_sheffield_tables.py",
+    "wearlaw_sheffield": "plugins/sheffield/test_claims.py plugins/sheffield/test_tables.py",
     "wearlaw_shen_hedrick_elkins": "plugins/test_shen_hedrick_elkins.py",
     "wearlaw_thermal": "plugins/test_thermal.py",
     "wearlaw_third_body": "plugins/test_third_body.py",
@@ -61,7 +62,7 @@ TESTS = {
     " core/test_uncertainty_refusals.py core/test_inverse.py core/test_wheel_rail.py core/test_wheel_rail_result.py"
     " core/test_models.py test_interface.py",
     "wearlaw.contact.contact": "core/test_records.py core/test_contact_from_arrays.py core/test_elliptic_contact.py"
-    " core/test_several_patches.py plugins/test_fastsim_given_strips.py",
+    " core/test_several_patches.py plugins/fastsim/test_given_strips.py",
     "wearlaw.units.wear_coefficients": "core/test_wear_coefficients.py",
     "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py",
 }

@@ -11,15 +11,15 @@ import pytest
 import tomli_w
 
 import wearlaw as wl
-from tests.testing.brushes import Brush, BrushOnCells
-from tests.testing.cells import Cells
-from tests.testing.grids import Grid
-from tests.testing.strips import Means, Strips, StripsOnStrips
-from tests.testing.wrong_contacts import Wrapped
-from tests.testing.wrong_declarations import HottestNode, Ramps, Smooth
-from tests.testing.wrong_law_nodes import Severe
-from tests.testing.wrong_laws import Linear
-from tests.testing.wrong_rigs import Delegating, Weight
+from tests.plugins.kit.brushes import Brush, BrushOnCells
+from tests.plugins.kit.cells import Cells
+from tests.plugins.kit.grids import Grid
+from tests.plugins.kit.strips import Means, Strips, StripsOnStrips
+from tests.plugins.kit.wrong_contacts import Wrapped
+from tests.plugins.kit.wrong_declarations import HottestNode, Ramps, Smooth
+from tests.plugins.kit.wrong_law_nodes import Severe
+from tests.plugins.kit.wrong_laws import Linear
+from tests.plugins.kit.wrong_rigs import Delegating, Weight
 from wearlaw.models.contact_model import Model
 from wearlaw_kit import Check, checks
 from wearlaw_kth import PUBLISHED

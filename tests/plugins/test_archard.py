@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
-from tests.core.fits import made_up
+from tests.plugins.fits.fits import made_up
 from tests.plugins.laws import contact_of
 from tests.strategies import EPS
 from wearlaw import Q

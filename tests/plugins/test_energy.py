@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
-from tests.core.fits import made_up
+from tests.plugins.fits.fits import made_up
 from tests.plugins.laws import around, contact_of
 from tests.roots import brentq
 from tests.strategies import EPS

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.core.cases import load, table
+from tests.plugins.kit.cells import Cells
 from tests.strategies import EPS, LINE_MODELS, line_problems, log_uniform, saturation_creepage, with_creepage
-from tests.testing.cells import Cells
 from wearlaw import Q
 from wearlaw_kit import checks
 

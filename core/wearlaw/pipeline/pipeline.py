@@ -524,7 +524,7 @@ class Pipeline(Configuration, Generic[P]):
             return solved(model, self.laws, problem, watch, on_block, given)
         forces = integrate_forces(model, problem)
         watch.points += problem.size
-        watch.see_overload(overload_of(problem, forces.tangential))
+        watch.overload = overload_of(problem, forces.tangential, watch.overload)
         if on_block is not None:
             on_block(problem.size)
         return Prediction(Solution(problem, model, (), Totals.of_forces(forces), given))

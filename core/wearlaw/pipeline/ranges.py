@@ -73,7 +73,7 @@ class RangeWatch:
             self._see_values(key, totals.mean(part, key.partition(" ")[2]), low, high)
         if totals.sliding is not None:
             self._see_values(SLIDING, totals.sliding, *SLIDING_RANGE)
-        self.see_overload(overload_of(part, totals.tangential_force()))
+        self.overload = overload_of(part, totals.tangential_force(), self.overload)
 
     def _see_values(self, key: str, values: Array, low: float, high: float) -> None:
         lowest, highest = extremes(values)
@@ -86,11 +86,6 @@ class RangeWatch:
         self.seen[key] = Seen(
             min(known.lowest, more.lowest), max(known.highest, more.highest), known.outside + more.outside
         )
-
-    def see_overload(self, overload: Overload | None) -> None:
-        """Record an operating point beyond first yield if none so far lies further beyond."""
-        if overload is not None:
-            self.overload = overload if self.overload is None else max(self.overload, overload)
 
     def warn(self) -> None:
         """Warn of points beyond first yield or out of range."""
@@ -127,7 +122,7 @@ class RangeWatch:
 
 
 @steady
-def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
+def overload_of(problem: Problem, tangential_force: Array, worst: Overload | None = None) -> Overload | None:
     """Return the operating point furthest beyond first yield of a body, or None if all are elastic.
 
     Parameters
@@ -135,10 +130,12 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
     problem : Problem
     tangential_force : ndarray
         Magnitude of the tangential force [N], of the batch shape; NaN where there is no patch.
+    worst : Overload, optional
+        The furthest of other points.
     """
     strengths = {body.strength for body in problem.bodies.values() if body.strength is not None}
     if not strengths:
-        return None
+        return worst
     if problem.exists is not None:
         tangential_force, problem = tangential_force[problem.exists], problem.existing()
     return overload(
@@ -147,6 +144,7 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
         tangential_force / problem.normal_force,
         problem.friction_coefficient,
         None if problem.geometry == "line" else problem.a / problem.b,
+        worst,
     )
 
 

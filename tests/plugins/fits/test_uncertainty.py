@@ -1,0 +1,248 @@
+"""Uncertain predictions, against distributions and variances in closed form."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import wearlaw as wl
+from tests.plugins.fits.fits import GLOBAL, in_microgram
+from tests.plugins.fits.uncertain import FULL_SLIP, USFD
+from tests.strategies import EPS
+from wearlaw import Q
+from wearlaw_studies.uncertain_point import UncertainPoint
+
+
+@wl.as_wear_law(
+    inputs={"wear_index_density": "N/mm^2"},
+    returns="ug/m/mm^2",
+    breakpoints={},
+    parameters={"first": "ug/m/N", "second": "ug/m/N"},
+    source="made up for the tests",
+)
+def linear(wear_index_density: Any, *, first: float = 4.0, second: float = 2.0) -> Any:
+    """Wear in proportion to the sum of two slopes."""
+    return (first + second) * wear_index_density
+
+
+def kth_global(k: float) -> float:
+    """Return ρ k p ξ / H at 1 % and 1500 MPa; physics of Archard's law, with π/4 of the pressure as its mean."""
+    return 7850.0 * k * (np.pi / 4 * 1500e6) * 0.01 / 2.625e9 * 1e3
+
+
+@pytest.mark.validates(
+    "fitting",
+    "A uniform parameter of a linear law: median and interval",
+    source="the quantiles of a uniform distribution",
+    held_to="{parts:g} of the samples' parts of the range",
+    parts=2.0,
+)
+def test_a_uniform_parameter_of_a_linear_law_gives_a_uniform_rate(parts: float) -> None:
+    u = wl.uncertainty(GLOBAL | linear, **FULL_SLIP, law={"first": wl.uniform("2 ug/m/N", "6 ug/m/N")}, samples=1024)
+    at = [float(in_microgram((GLOBAL | linear.model_copy(update={"first": Q(f, "ug/m/N")}))(**FULL_SLIP).wear_rate))
+          for f in (2.0, 6.0)]  # fmt: skip
+    low, high = (in_microgram(end) for end in u.interval(0.9))
+    # Each of 1024 equal parts of the range holds one sample, so that a quantile is within two parts of its place.
+    part = (at[1] - at[0]) / 1024
+    assert low == pytest.approx(at[0] + 0.05 * (at[1] - at[0]), abs=parts * part)
+    assert high == pytest.approx(at[0] + 0.95 * (at[1] - at[0]), abs=parts * part)
+    assert in_microgram(u.median) == pytest.approx(0.5 * (at[0] + at[1]), abs=parts * part)
+
+
+def test_each_sample_is_the_prediction_with_its_values() -> None:
+    u = wl.uncertainty(
+        USFD, normal_force=wl.normal("7 kN", "0.2 kN"), creepage=Q(4, "%"), friction_coefficient=0.4, samples=8
+    )
+    force = u.inputs[0].values(np.array([0.25]))["normal_force"][0]
+    assert force == pytest.approx(stats.norm(7000.0, 200.0).ppf(0.25), rel=8 * EPS)
+    rates = np.sort(in_microgram(u.wear_rate))
+    probability = np.sort(stats.qmc.Sobol(1, rng=np.random.default_rng(0)).random_base2(3)[:, 0])
+    each = USFD(
+        normal_force=Q(stats.norm(7000.0, 200.0).ppf(probability), "N"), creepage=Q(4, "%"), friction_coefficient=0.4
+    )
+    assert rates == pytest.approx(np.sort(in_microgram(each.wear_rate)), rel=64 * EPS)
+
+
+def test_a_lognormal_value_has_its_median_and_its_factor() -> None:
+    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.lognormal(0.3, 1.1)}, samples=8)
+    values = u.inputs[0].values(np.array([0.5, 0.9]))["friction_coefficient"]
+    assert values == pytest.approx(stats.lognorm(np.log(1.1), scale=0.3).ppf([0.5, 0.9]), rel=16 * EPS)
+
+
+@pytest.mark.validates(
+    "fitting",
+    "Sobol indices of a sum of two normal parameters",
+    source="variances add up",
+    held_to="{errors:g} standard errors, these below {most:g}",
+    errors=8.0,
+    most=0.01,
+)
+def test_variances_of_a_linear_law_add_up(errors: float, most: float) -> None:
+    u = wl.uncertainty(
+        GLOBAL | linear,
+        **FULL_SLIP,
+        law={"first": wl.normal("4 ug/m/N", "0.3 ug/m/N"), "second": wl.normal("2 ug/m/N", "0.4 ug/m/N")},
+        samples=2**12,
+    )
+    table = u.sobol()
+    for order in ("first_order", "total_order"):
+        # Variances of 0.3² and 0.4² in a sum. Eight sequences: with 7 degrees of freedom, 8 errors are passed by
+        # chance once in 10⁴.
+        due = np.array([0.09, 0.16]) / 0.25
+        assert np.all(np.abs(table[order] - due) < errors * table[f"{order}_error"])
+        assert np.all(table[f"{order}_error"] < most)
+    assert list(table.index) == ["first", "second"]
+
+
+@pytest.mark.validates(
+    "fitting",
+    "Sobol indices of a product of two uniform factors",
+    source="variance of a product, in closed form",
+    held_to="{errors:g} standard errors",
+    errors=8.0,
+)
+def test_inputs_of_a_product_share_a_part_of_the_variance(errors: float) -> None:
+    # In full slip, in the mild regime, the rate is m_m times something: of two uniform factors on 1 ± h the variance
+    # is v1 + v2 + v1 v2 with v = h²/3.
+    u = wl.uncertainty(
+        USFD,
+        max_pressure=Q(1500, "MPa"),
+        creepage=Q(2, "%"),
+        friction_coefficient=wl.uniform(0.2, 0.4),
+        law={"m_m": wl.uniform("2 ug/m/N", "4 ug/m/N")},
+        samples=2**12,
+    )
+    table = u.sobol()
+    v = np.full(2, (1 / 3) ** 2 / 3)
+    whole = v.sum() + v.prod()
+    assert np.all(np.abs(table["first_order"] - v / whole) < errors * table["first_order_error"])
+    assert np.all(np.abs(table["total_order"] - (v + v.prod()) / whole) < errors * table["total_order_error"])
+
+
+def test_the_published_range_of_kth_spans_its_band() -> None:
+    predict = GLOBAL | wl.wear_law("kth")
+    u = wl.uncertainty(
+        predict,
+        max_pressure=Q(1500, "MPa"),
+        creepage=Q(1, "%"),
+        friction_coefficient=0.46,
+        law={"coefficient": wl.published_range()},
+        samples=1024,
+    )
+    ends = kth_global(1e-4), kth_global(10e-4)
+    part = (ends[1] - ends[0]) / 1024
+    low, high = (in_microgram(end) for end in u.interval(0.5))
+    assert low == pytest.approx(ends[0] + 0.25 * (ends[1] - ends[0]), abs=2 * part)
+    assert high == pytest.approx(ends[0] + 0.75 * (ends[1] - ends[0]), abs=2 * part)
+
+
+def test_known_conditions_keep_their_shape() -> None:
+    u = wl.uncertainty(
+        USFD,
+        max_pressure=Q([[1000.0], [1500.0]], "MPa"),
+        creepage=Q([1.0, 2.0, 3.0], "%"),
+        friction_coefficient=wl.uniform(0.3, 0.5),
+        samples=16,
+    )
+    assert u.wear_rate.shape == (2, 3, 16)
+    assert u.median.shape == (2, 3)
+    one = wl.uncertainty(
+        USFD, max_pressure=Q(1500, "MPa"), creepage=Q(2, "%"), friction_coefficient=wl.uniform(0.3, 0.5), samples=16
+    )
+    assert in_microgram(u.wear_rate)[1, 1] == pytest.approx(in_microgram(one.wear_rate), rel=64 * EPS)
+
+
+@pytest.mark.validates(
+    "reproducibility",
+    "An uncertain prediction, made again with the same seed",
+    source="the first one",
+    held_to="to the bit",
+)
+def test_the_same_seed_gives_the_same_samples() -> None:
+    def rates(seed: int) -> Any:
+        uncertain = {**FULL_SLIP, "creepage": wl.uniform("1 %", "1.5 %")}
+        return in_microgram(wl.uncertainty(USFD, **uncertain, samples=64, seed=seed).wear_rate)
+
+    assert np.array_equal(rates(1), rates(1))
+    assert not np.array_equal(rates(1), rates(2))
+
+
+@pytest.mark.parametrize(("asked", "taken"), [(2, 2), (3, 4), (1000, 1024), (1024, 1024)])
+def test_samples_are_rounded_up_to_a_power_of_two(asked: int, taken: int) -> None:
+    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=asked)
+    assert u.samples == u.wear_rate.size == taken
+    assert f"{taken} samples" in repr(u)
+
+
+def test_the_figure_shows_median_and_interval() -> None:
+    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=64)
+    (panel,) = u.figure_data().panels
+    distribution, median = panel.curves
+    assert np.all(np.diff(distribution.x) >= 0)
+    assert all(not curve.points for curve in panel.curves), "only measurements have markers"
+    assert median.x == pytest.approx(2 * [in_microgram(u.median)])
+    (shade,) = panel.shades
+    (span,) = shade.spans
+    assert span == pytest.approx([in_microgram(end) for end in u.interval()])
+    assert u.figure_data().conditions == "64 samples of friction_coefficient uniform(0.3, 0.5)"
+    assert panel.x.label == "wear rate [µg/m/mm²]"
+    assert u.plot().axes[0].get_xlabel() == panel.x.label
+
+
+def test_the_figure_of_several_points_is_a_band_in_their_order() -> None:
+    u = wl.uncertainty(
+        USFD,
+        max_pressure=Q(1500, "MPa"),
+        creepage=Q([1.5, 0.5, 1.0], "%"),
+        friction_coefficient=wl.uniform(0.3, 0.5),
+        samples=64,
+    )
+    ((band,),) = (panel.curves for panel in u.figure_data().panels)
+    assert band.x == pytest.approx([0.5, 1.0, 1.5])
+    assert band.low is not None
+    assert np.all(band.low < band.y)
+
+
+def test_friction_that_falls_is_evaluated_at_each_sample_of_the_creepage() -> None:
+    friction = wl.FallingFriction(static_coefficient=0.55, limit_ratio=0.4, decay="6 s/m")
+    given: Any = {"max_pressure": Q([1000.0, 1500.0], "MPa"), "friction_coefficient": friction}
+    predict = GLOBAL | linear
+    u = wl.uncertainty(predict, **given, creepage=wl.uniform("2 %", "4 %"), samples=8)
+    probability = stats.qmc.Sobol(1, rng=np.random.default_rng(0)).random_base2(3)[:, 0]
+    given["max_pressure"] = given["max_pressure"][:, None]
+    each = predict(**given, creepage=Q(2.0 + 2.0 * probability, "%"))
+    assert each.friction_coefficient.shape == (2, 8)
+    assert in_microgram(u.wear_rate) == pytest.approx(in_microgram(each.wear_rate), rel=64 * EPS)
+
+
+def test_distributions_are_shown_with_units_as_everything_is() -> None:
+    assert str(wl.normal("55 ug/m/mm^2", Q(5, "ug/m/mm^2"))) == "normal(55.0 µg/m/mm², 5.0 µg/m/mm²)"
+    assert str(wl.uniform("0.01 dimensionless", "2 %")) == "uniform(0.01 dimensionless, 2.0 %)"
+
+
+def test_the_only_input_explains_all_of_the_variance() -> None:
+    u = wl.uncertainty(
+        USFD, **{**FULL_SLIP, "creepage": Q(0.5, "%"), "friction_coefficient": wl.uniform(0.3, 0.4)}, samples=64
+    )
+    assert u.sobol().loc["friction_coefficient"].to_dict() == {
+        "first_order": 1.0,
+        "first_order_error": 0.0,
+        "total_order": 1.0,
+        "total_order_error": 0.0,
+    }
+
+
+def test_every_distribution_of_a_case_is_the_one_of_python() -> None:
+    table: Any = {
+        "normal_force": {"normal": ["5 kN", "0.2 kN"]},
+        "creepage": {"uniform": ["1 %", "2 %"]},
+        "friction_coefficient": {"lognormal": [0.4, 1.2]},
+    }
+    assert {name: str(given) for name, given in UncertainPoint(**table).conditions().items()} == {
+        "normal_force": "normal(5.0 kN, 0.2 kN)",
+        "creepage": "uniform(1.0 %, 2.0 %)",
+        "friction_coefficient": "lognormal(0.4, 1.2)",
+    }
