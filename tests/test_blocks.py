@@ -76,7 +76,6 @@ NOT_RUN = {
     ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
     ("CONTRIBUTING.md", HOUSE): "no code; tests/test_contributing.py compares it with the code",
-    ("docs/validation.md", "nox -s bench"): NOX,
     ("docs/case-files.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
     ("docs/case-files.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
     (

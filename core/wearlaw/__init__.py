@@ -247,11 +247,11 @@ if TYPE_CHECKING:
     from wearlaw_explore import explore
     from wearlaw_fits.comparison import Comparison, compare
     from wearlaw_fits.fit import fit
+    from wearlaw_fits.read_tests import read_tests
     from wearlaw_fits.result import Fit
     from wearlaw_fits.uncertainties.distributions import lognormal, normal, published_range, uniform
     from wearlaw_fits.uncertainties.result import Uncertainty, uncertainty
-    from wearlaw_fits.wear_tests.reader import read_tests
-    from wearlaw_fits.wear_tests.tests import WearTests
+    from wearlaw_fits.wear_tests import WearTests
     from wearlaw_life import wear_out
     from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis
     from wearlaw_studies.case import Case, load_case
@@ -277,8 +277,8 @@ _LATE = {
     "uniform": "wearlaw_fits.uncertainties.distributions",
     "Uncertainty": "wearlaw_fits.uncertainties.result",
     "uncertainty": "wearlaw_fits.uncertainties.result",
-    "read_tests": "wearlaw_fits.wear_tests.reader",
-    "WearTests": "wearlaw_fits.wear_tests.tests",
+    "read_tests": "wearlaw_fits.read_tests",
+    "WearTests": "wearlaw_fits.wear_tests",
     "wear_out": "wearlaw_life",
     "Curve": "wearlaw_output.curves",
     "FigureData": "wearlaw_output.curves",

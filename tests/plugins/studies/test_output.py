@@ -14,8 +14,9 @@ from matplotlib.figure import Figure
 from packaging.version import Version
 
 import wearlaw as wl
-from tests.core import cases, report_data
+from tests.core import cases
 from tests.core.cases import case, tree
+from tests.plugins.studies import report_data
 from wearlaw.pipeline.variables import OF_CONTACT
 from wearlaw.units.variables import UNITS
 from wearlaw_studies.case import CASE_FILE, Case, load_case
