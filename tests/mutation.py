@@ -35,7 +35,7 @@ ROOT = Path(__file__).parents[1]
 TESTS = {
     "wearlaw_archard": "plugins/test_archard.py",
     "wearlaw_brr": "plugins/test_brr.py",
-    "wearlaw_contact_files": "plugins/test_contact_files.py plugins/test_contact_files_refusals.py",
+    "wearlaw_contact_files": "plugins/test_contact_files.py",
     "wearlaw_energy": "plugins/test_energy.py",
     "wearlaw_exact": "plugins/test_exact_kernel.py plugins/test_exact.py test_numbers.py",
     "wearlaw_fastsim": "plugins/fastsim/test_kernel.py plugins/fastsim/test_first_slip.py"
@@ -58,9 +58,9 @@ TESTS = {
     "wearlaw.contact.hertz_ellipse": "core/test_hertz_ellipse.py",
     "wearlaw.numerics.splits": "core/test_splits.py",
     "wearlaw.settings.parameters": "core/test_varying.py",
-    "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py core/test_uncertainty.py"
-    " core/test_uncertainty_refusals.py core/test_inverse.py core/test_wheel_rail.py core/test_wheel_rail_result.py"
-    " core/test_models.py test_interface.py",
+    "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py plugins/fits/test_uncertainty.py"
+    " plugins/fits/test_uncertainty_refusals.py core/test_inverse.py core/test_wheel_rail.py"
+    " core/test_wheel_rail_result.py core/test_models.py",
     "wearlaw.contact.contact": "core/test_records.py core/test_contact_from_arrays.py core/test_elliptic_contact.py"
     " core/test_several_patches.py plugins/fastsim/test_given_strips.py",
     "wearlaw.units.wear_coefficients": "core/test_wear_coefficients.py",

@@ -26,7 +26,7 @@ import xarray as xr
 from conftest import PAGES
 from tests.core.cases import table
 from tests.environments import ROOT
-from wearlaw.cli import main
+from wearlaw.cli import main  # private: the program, in this process
 
 FENCE = re.compile(r"^( *)(`{3,}|~{3,}|:{3,})([^\n`]*)\n(.*?)^\1\2 *$", re.MULTILINE | re.DOTALL)
 CAPTION = re.compile(r":caption: (\S+)\n")

@@ -21,9 +21,9 @@ from tests.benchmarks.report import Gate
 from tests.benchmarks.rivals import CHECK, FAST, PLAIN_LIBRARY, compilers
 from tests.benchmarks.timing import Times, in_mode, modes, side_by_side
 from tests.benchmarks.wheel_rail_rivals import RIVAL_CELLS, WORKLOAD, Compiled, MarchAndLaw, Outcome, ellipses, workload
-from wearlaw.numerics.integrate import integrate_laws
+from wearlaw.numerics.integrate import integrate_laws  # private: without the rig
 from wearlaw_fastsim import Fastsim
-from wearlaw_fastsim._march import Cells, march
+from wearlaw_fastsim._march import Cells, march  # private: timed without the rest
 
 ROUNDS = 15
 BLOCK = 128

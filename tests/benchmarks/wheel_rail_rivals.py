@@ -12,7 +12,7 @@ import numpy as np
 import wearlaw as wl
 from tests.benchmarks.rivals import FAST
 from wearlaw import Array
-from wearlaw_fastsim._march import Cells, Ellipses, forces, march
+from wearlaw_fastsim._march import Cells, Ellipses, forces, march  # private: timed without the rest
 
 AXIS_RATIOS = (0.2, 5.0)
 CREEPAGES = (1e-4, 3e-2)

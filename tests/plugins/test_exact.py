@@ -11,8 +11,9 @@ from scipy import integrate
 import wearlaw as wl
 from tests import line
 from tests.line import slip_zone
-from tests.strategies import EPS, line_problems, log_uniform, saturation_creepage, with_creepage
+from tests.strategies import EPS, log_uniform, saturation_creepage, with_creepage
 from wearlaw import Q
+from wearlaw_kit import line_problems
 
 EXACT = wl.contact_model("exact")
 PRINTED = wl.contact_model("exact", slip="as_printed")

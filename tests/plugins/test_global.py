@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.core.cases import load, table
 from tests.plugins.kit.cells import Cells
-from tests.strategies import EPS, LINE_MODELS, line_problems, log_uniform, saturation_creepage, with_creepage
+from tests.strategies import EPS, LINE_MODELS, log_uniform, saturation_creepage, with_creepage
 from wearlaw import Q
-from wearlaw_kit import checks
+from wearlaw_kit import checks, line_problems
 
 SUROS = wl.TwinDisc.suros()
 CONDITIONS = {"normal_force": Q(7.4143, "kN"), "friction_coefficient": 0.46}
