@@ -50,22 +50,19 @@ def volume_rate(solution: Solution, body: str) -> Array:
 def depth_per_distance(solution: Solution, body: str) -> Array:
     """Return the depth that the surface of a body loses per distance rolled [m/m]."""
     length = 0.5 * solution.patch_area / solution.problem.b
-    share = length / _circumference(solution.problem, body)
-    return volume_rate(solution, body) * share
+    return volume_rate(solution, body) * (length / _circumference(solution.problem, body))
 
 
 @steady
 def section_per_distance(solution: Solution, body: str) -> Array:
     """Return the area of a radial section that a body loses per distance rolled [m²/m]."""
-    turn = _circumference(solution.problem, body)
-    return volume_rate(solution, body) * solution.patch_area / turn
+    return volume_rate(solution, body) * solution.patch_area / _circumference(solution.problem, body)
 
 
 @steady
 def mass_per_cycle(solution: Solution, body: str) -> Array:
     """Return the mass that a body loses in one of its revolutions [kg]."""
-    turn = _circumference(solution.problem, body)
-    return mass_per_distance(solution, body) * turn
+    return mass_per_distance(solution, body) * _circumference(solution.problem, body)
 
 
 @steady
