@@ -21,6 +21,7 @@ TITLES = {
     "units": "Quantities and units",
     "wearlaw_twin_disc": "Two discs",
     "wearlaw_wheel_rail": "A wheel on a rail",
+    "wearlaw_archard": "Wear coefficients of papers",
     "contact": "Problems and contacts",
     "plugins": "Looking up models",
     "pipeline": "Pipelines and predictions",

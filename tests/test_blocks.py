@@ -71,7 +71,7 @@ NOT_RUN = {
         'wearlaw explore twin_disc --set "normal_force=7 kN" --set "creepage=1 %"',
     ): "tests/plugins/explore/test_explore.py opens the page",
     ("docs/conformance.md", STEEP): "the law is made up; tests/plugins/kit/test_check.py runs the option",
-    ("CONTRIBUTING.md", ".venv/bin/python -m pytest tests/plugins/test_kth.py"): "runs with the suite as it is",
+    ("CONTRIBUTING.md", ".venv/bin/python -m pytest tests/plugins/kth/test_kth.py"): "runs with the suite as it is",
     ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
     ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,

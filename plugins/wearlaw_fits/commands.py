@@ -99,6 +99,7 @@ stages_option = click.option(
     metavar="FIELDS",
     help="Parameters to fit: fields of the law or of a stage, or friction_coefficient.",
 )
+@click.option("--label", help="The name of the fitted law in tables and figures.")
 @click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
 @common
 @bounds_option
@@ -144,6 +145,7 @@ def _fit(
     stages: tuple[str, ...],
     law: str | None,
     free: str,
+    label: str | None,
     fixed: tuple[str, ...],
     bounds: tuple[str, ...],
     rig: Path | None,
@@ -155,6 +157,7 @@ def _fit(
 ) -> Fit:
     """Return the fit for these options."""
     names, given = listed("--free", free), values("--fixed", fixed)
+    given |= {"label": label} if label else {}
     both = [name for name in names if name in given]
     if both:
         raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
@@ -279,7 +282,8 @@ def _compare(
         raise click.UsageError("--cross-validate: say which parameters are free, as in --free usfd=q_s,m_c")
     tests = read_tests(path, sep=sep, decimal=decimal)
     _note_friction(tests, friction, notes)
-    named = {text: law_of(text) for text in listed("--laws", laws)}
+    given = {text: law_of(text) for text in listed("--laws", laws)}
+    named = {law.label or text: law for text, law in given.items()}
     around = [stage(text) for text in stages]
     suffix = f" with {' and '.join(stages)}" if stages else ""
     models = {f"{text}{suffix}": contact_model(text) for text in listed("--contacts", contacts)}

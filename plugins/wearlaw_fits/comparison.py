@@ -386,7 +386,8 @@ def _names(predictors: Sequence[Predictor], outcome: str) -> list[Names]:
     for one, model in zip(predictors, models, strict=True):
         named = [(stage, next(stages)) for stage in _pipeline(one).stages]
         contact = ", ".join([model, *("patch means" if stage.gives_means else name for stage, name in named)])
-        law = next(laws) if isinstance(one, Pipeline) else f"{_law(one, outcome).name} fitted"
+        own = _law(one, outcome)
+        law = next(laws) if isinstance(one, Pipeline) else own.label or f"{own.name} fitted"
         names.append(Names(f"{law} on {contact}", law, contact))
     return names
 

@@ -420,7 +420,7 @@ def _rounded(value: float, rounding: Callable[[float], int]) -> float:
 
 
 def _materials(rig: Rig) -> str:
-    names = [known_name(body.material) or repr(body.material) for body in rig.bodies.values()]
+    names = [known_name(body.material) or " ".join(repr(body.material).split()) for body in rig.bodies.values()]
     if len(set(names)) == 1:
         return f"both bodies {names[0]}"
     return " on ".join(names) or "unknown"

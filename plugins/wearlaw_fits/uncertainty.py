@@ -23,9 +23,10 @@ from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
 from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw_fits.distributions import Distribution, PublishedRange
 from wearlaw_fits.named_numbers import Kind, Place, check_loads_stay, staged_models
-from wearlaw_fits.uncertainties.distributions import Distribution, PublishedRange
-from wearlaw_fits.uncertainties.inputs import OTHERS, Uncertain, check_samples, numbers_of, split
+from wearlaw_fits.result import Fit
+from wearlaw_fits.uncertain_inputs import OTHERS, Uncertain, UncertainCondition, check_samples, numbers_of, of_fit
 from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis, Shade
 from wearlaw_output.plot import plot
 
@@ -53,7 +54,7 @@ INSIDE = 2.0**-54
 
 
 def uncertainty(
-    predict: Pipeline[...],
+    predict: Pipeline[...] | Fit,
     /,
     *,
     law: Mapping[str, Distribution | PublishedRange] | None = None,
@@ -66,8 +67,10 @@ def uncertainty(
 
     Parameters
     ----------
-    predict : Pipeline
-        A rig, a contact model and laws.
+    predict : Pipeline or Fit
+        A rig, a contact model and laws. With a fit, its parameters are drawn from its bootstrap replicates, all of one
+        replicate together, so that their correlation counts. A fitted friction coefficient is the condition of that
+        name unless you give it.
     law : mapping of str to distribution, optional
         Distributions of parameters of the laws by name, such as {"q_s": wl.normal("55 ug/m/mm^2", "5 ug/m/mm^2")} or
         {"coefficient": wl.published_range()}. A number that several laws have is written "usfd.m_m".
@@ -86,8 +89,26 @@ def uncertainty(
     InputError
         If nothing is distributed, or a distribution is impossible for its condition or parameter.
     """
-    expect_pipeline(predict)
-    return Uncertainty(predict, conditions, law or {}, samples, seed, stage or {})
+    of = [of_fit(predict, conditions)] if isinstance(predict, Fit) else []
+    pipeline = predict.predict if isinstance(predict, Fit) else predict
+    expect_pipeline(pipeline)
+    pipeline.rig.check_names({**conditions, **(of[0].conditions(np.array(0.5)) if of else {})})
+    given = {name: value for name, value in conditions.items() if value is not None}
+    of_conditions = [UncertainCondition.of(name, one) for name, one in given.items() if isinstance(one, Distribution)]
+    of_stages = numbers_of(pipeline, "stage", stage or {})
+    check_loads_stay(pipeline, "uncertainty", [one.name for one in of_stages])
+    inputs = [*of_conditions, *numbers_of(pipeline, "law", law or {}), *of_stages, *of]
+    if not inputs:
+        raise InputError(
+            'nothing is uncertain; give a condition as a distribution, such as creepage=wl.uniform("0.5 %", "1 %"),'
+            " or a parameter by law={...} or stage={...}"
+        )
+    places = [place for one in inputs for place in one.numbers(np.array(0.5))]
+    twice = [place.field for place in places if places.count(place) > 1]
+    if twice:
+        raise InputError(f"{' and '.join(one.name for one in inputs)}: {twice[0]} is given twice")
+    known = {name: value for name, value in given.items() if not isinstance(value, Distribution)}
+    return Uncertainty(pipeline, known, inputs, samples, seed)
 
 
 class Uncertainty:
@@ -110,31 +131,21 @@ class Uncertainty:
         self,
         predict: Pipeline[...],
         conditions: Mapping[str, Any],
-        law: Mapping[str, Distribution | PublishedRange],
+        inputs: Sequence[Uncertain],
         samples: int,
         seed: int,
-        stage: Mapping[str, Distribution] | None = None,
     ) -> None:
-        if isinstance(samples, bool) or not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
+        if not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
             raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {shown(samples)}")
-        if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        if not isinstance(seed, int) or seed < 0:
             raise InputError(f"seed: must be a whole number, zero or positive; got {shown(seed)}")
         if not predict.laws:
             predict.wear_law  # noqa: B018  raises
         self._predict = predict
         self._laws = tuple(law.explicit() for law in predict.laws)
         self.outcomes: tuple[str, ...] = tuple(named_outcomes(predict.laws))
-        self._given, uncertain = split(conditions, predict.rig)
-        uncertain += numbers_of(predict, "law", law)
-        of_stages = numbers_of(predict, "stage", stage or {})
-        check_loads_stay(predict, "uncertainty", [one.name for one in of_stages])
-        uncertain += of_stages
-        if not uncertain:
-            raise InputError(
-                'nothing is uncertain; give a condition as a distribution, such as creepage=wl.uniform("0.5 %", "1 %"),'
-                " or a parameter by law={...} or stage={...}"
-            )
-        self.inputs: tuple[Uncertain, ...] = tuple(uncertain)
+        self._given = conditions
+        self.inputs: tuple[Uncertain, ...] = tuple(inputs)
         self.samples = 1 << (samples - 1).bit_length()
         self._seed = seed
         self._whole = self
@@ -292,7 +303,7 @@ class Uncertainty:
         """Title of the prediction."""
         outcome = self._only
         name, law = name_of(outcome), self._laws[self._index(outcome)]
-        return f"{name[0].upper()}{name[1:]} by {law.name} on {self._predict.contact_model.name}"
+        return f"{name[0].upper()}{name[1:]} by {law.label or law.name} on {self._predict.contact_model.name}"
 
     @cached_property
     def known(self) -> dict[str, Known]:
@@ -304,9 +315,9 @@ class Uncertainty:
     def shape(self) -> tuple[int, ...]:
         """The shape of the conditions that are not distributed."""
         broadcast({name: one.values for name, one in self.known.items()})  # an error names shapes that do not fit
-        firsts = {one.name: one.distribution.first for one in self.inputs if one.part is None}
         # An error here is one of the conditions, not of single samples.
-        shape: tuple[int, ...] = self._predict.posed({**self._given, **firsts}, of_one_patch="uncertainty").batch_shape
+        medians = {name: value for one in self.inputs for name, value in one.conditions(np.array(0.5)).items()}
+        shape: tuple[int, ...] = self._predict.posed({**self._given, **medians}, of_one_patch="uncertainty").batch_shape
         return shape
 
     def _problem(self, sampled: Mapping[str, Any]) -> Problem:
@@ -341,33 +352,33 @@ class Uncertainty:
         shape = (*self.shape, count)
         inside = np.clip(probability, INSIDE, 1.0 - INSIDE)
         conditions: dict[str, Any] = {}
-        numbers: dict[tuple[Kind, int], dict[str, Array]] = {}
+        numbers: dict[Place, Array] = {}
         for one, row in zip(self.inputs, inside, strict=True):
-            if one.part is None:
-                conditions[one.name] = one.given(row)
-            else:
-                numbers.setdefault(one.part, {}).update(one.values(row))
-        for (kind, index), samples in numbers.items():
-            check_samples(self._laws[index] if kind == "law" else self._predict.stages[index], samples)
-        flat = self._problem(conditions).broadcast_to(shape).flatten()
+            conditions |= one.conditions(row)
+            numbers |= one.numbers(row)
         predict, laws = self._predict, tuple(self._laws[index] for index in indices)
+        for kind, parts in (("law", self._laws), ("stage", predict.stages)):
+            for index, part in enumerate(parts):
+                own = {
+                    place.field: values
+                    for place, values in numbers.items()
+                    if (place.kind, place.index) == (kind, index)
+                }
+                if own:
+                    check_samples(part, own)
+        flat = self._problem(conditions).broadcast_to(shape).flatten()
         watch = RangeWatch(*laws)
         check_traction(predict.contact_model, flat)
         watching = watch.see if warns else None
         points = np.arange(math.prod(shape)).reshape(-1, count)
-        of_stages = {
-            Place(kind, index, name): values
-            for (kind, index), samples in numbers.items()
-            for name, values in samples.items()
-        }
         found = np.empty((len(laws), flat.size))
-        for model, members in staged_models(predict, of_stages, count):
+        for model, members in staged_models(predict, numbers, count):
             chosen = points[:, members].reshape(-1) if members.size < count else slice(None)
             p: list[Numbers] = []
             for index, law in zip(indices, laws, strict=True):
                 varied = {
                     name: np.broadcast_to(values, shape).reshape(-1, 1)[chosen]
-                    for name, values in numbers.get(("law", index), {}).items()
+                    for name, values in _of_part(numbers, "law", index).items()
                 }
                 p.append({**law.numbers, **varied})
             part = flat[chosen] if members.size < count else flat
@@ -389,6 +400,11 @@ class Uncertainty:
                 f"{one.outcomes[0]:20} {f'medians {median.min()!r} to {median.max()!r}' if self.shape else spread}"
             )
         return "\n  ".join([*lines, *(f"{one.name:20} {one.shown}" for one in self.inputs)])
+
+
+def _of_part(numbers: Mapping[Place, Array], kind: Kind, index: int) -> dict[str, Array]:
+    """Return the numbers of one law or stage by their fields."""
+    return {place.field: values for place, values in numbers.items() if (place.kind, place.index) == (kind, index)}
 
 
 def _figure_data(uncertainty: Uncertainty) -> FigureData:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.contact_files import FILES, HEAD, PRINTED, SUBSURFACE, of_version, rows_of, turned, write_rows
+from tests.plugins.contact_files.files import FILES, HEAD, PRINTED, SUBSURFACE, of_version, rows_of, turned, write_rows
 from wearlaw import Q
 from wearlaw_contact_files import ContactMat
 from wearlaw_contact_files.subsurface import read_subsurface

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.contact_files import FILES, HEAD, SUBSURFACE, changed, of_version, rows_of, write_rows
+from tests.plugins.contact_files.files import FILES, HEAD, SUBSURFACE, changed, of_version, rows_of, write_rows
 from wearlaw import Array
 from wearlaw_contact_files.subsurface import read_subsurface
 

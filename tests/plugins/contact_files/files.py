@@ -9,7 +9,7 @@ import numpy as np
 
 from wearlaw import Array
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 RESULTS, EXAMPLES = Path(__file__).parent / "contact_results", ROOT / "docs" / "examples"
 
 FILES = {

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, overload
 
-from wearlaw.errors import InputError, UnitError, did_you_mean, shown
-from wearlaw.units.quantities import Quantity, QuantityLike, Unit, coefficient, from_si
+import wearlaw as wl
 
 PlainForm: TypeAlias = Literal["k", "k_of_3h"]
 
@@ -41,33 +39,33 @@ FORMS: Mapping[str, _Form] = {
 
 @overload
 def wear_coefficient(
-    value: QuantityLike | float,
+    value: wl.QuantityLike | float,
     form: PlainForm | FormWithUnit,
     *,
     to: PlainForm,
-    hardness: QuantityLike | None = ...,
-    density: QuantityLike | None = ...,
+    hardness: wl.QuantityLike | None = ...,
+    density: wl.QuantityLike | None = ...,
     friction_coefficient: float | None = ...,
 ) -> float: ...
 @overload
 def wear_coefficient(
-    value: QuantityLike | float,
+    value: wl.QuantityLike | float,
     form: PlainForm | FormWithUnit,
     *,
     to: FormWithUnit,
-    hardness: QuantityLike | None = ...,
-    density: QuantityLike | None = ...,
+    hardness: wl.QuantityLike | None = ...,
+    density: wl.QuantityLike | None = ...,
     friction_coefficient: float | None = ...,
-) -> Quantity: ...
+) -> wl.Quantity: ...
 def wear_coefficient(
-    value: QuantityLike | float,
+    value: wl.QuantityLike | float,
     form: str,
     *,
     to: str,
-    hardness: QuantityLike | None = None,
-    density: QuantityLike | None = None,
+    hardness: wl.QuantityLike | None = None,
+    density: wl.QuantityLike | None = None,
     friction_coefficient: float | None = None,
-) -> Quantity | float:
+) -> wl.Quantity | float:
     """Return a published wear coefficient in another form.
 
     A unit does not tell the form: m³/(N m), m²/N and 1/Pa are the same as m³/J, but a volume per load and sliding
@@ -118,31 +116,29 @@ def wear_coefficient(
     -----
     J. F. Archard, J. Appl. Phys. 24 (1953) 981-988.
     """
-    source, target = _known(form, "form"), _known(to, "to")
-    result = _value(value, form) * target.factor / source.factor
-    given = {"hardness": hardness, "density": density, "friction_coefficient": friction_coefficient}
-    in_si = {name: _property(one, name) for name, one in given.items() if one is not None}
+    source, target = _form(form, "form"), _form(to, "to")
+    try:
+        result = _scalar(value, source.unit, "value") * target.factor / source.factor
+    except wl.UnitError as error:
+        raise wl.UnitError(f"{form}, {source.formula}: {error}") from None
     missing = []
-    for name in given:
+    for name, given in {"hardness": hardness, "density": density, "friction_coefficient": friction_coefficient}.items():
         exponent = getattr(target, name) - getattr(source, name)
-        if exponent and name in in_si:
-            try:
-                result *= in_si[name] ** exponent
-            except (OverflowError, ZeroDivisionError):
-                result = math.inf
-        elif exponent:
-            missing.append(name)
-    if not 0.0 < result < math.inf and not missing:
-        raise InputError(
-            f"value: as {to}, {target.formula}, it is too small or too large for a float; check the values"
-        )
+        known = None if given is None else _scalar(given, UNITS[name], name)
+        if exponent and known is None:
+            missing.append(EXAMPLES[name])
+        elif exponent and known is not None:
+            result *= known**exponent
     if missing:
-        raise InputError(
-            f"{to}, {target.formula}, from {form}, {source.formula}, needs {_listed(missing)}; give the values of your"
-            f" source, as in {', '.join(EXAMPLES[name] for name in missing)}"
+        raise wl.InputError(
+            f"{to}, {target.formula}, from {form}, {source.formula}, needs values of your source: {', '.join(missing)}"
         )
-    return from_si(result, target.unit) if target.unit else float(result)
+    if not 0.0 < result < math.inf:
+        raise wl.InputError(f"value: as {to}, {target.formula}, it is too small or too large; check the values")
+    return wl.Q(result / wl.scalar_si(wl.Q(1.0, target.unit), target.unit), target.unit) if target.unit else result
 
+
+UNITS = {"hardness": "GPa", "density": "kg/m^3", "friction_coefficient": ""}
 
 EXAMPLES = {
     "hardness": 'hardness="2.6 GPa"',
@@ -152,45 +148,15 @@ EXAMPLES = {
 """Arguments in messages."""
 
 
-def _listed(words: Sequence[str]) -> str:
-    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
-
-
-def _known(form: str, argument: str) -> _Form:
-    if not isinstance(form, str) or form not in FORMS:
+def _form(form: str, argument: str) -> _Form:
+    if form not in FORMS:
         forms = "; ".join(f"{name}, {one.formula}" for name, one in FORMS.items())
-        raise InputError(f"{argument}: no form {shown(form)}{did_you_mean(str(form), FORMS)} There are: {forms}")
+        raise wl.InputError(f"{argument}: no form {wl.shown(form)}; there are: {forms}")
     return FORMS[form]
 
 
-def _value(value: Any, form: str) -> float:
-    try:
-        return _in_form(value, form)
-    except UnitError as error:
-        fits = " or ".join(_fitting(value))
-        hint = f". As given, its form could be {fits}" if fits else ""
-        raise UnitError(f"{form}, {FORMS[form].formula}: {error}{hint}") from None
-
-
-def _in_form(value: Any, form: str) -> float:
-    unit = FORMS[form].unit
-    return _scalar(Unit(unit).si(value, "value") if unit else coefficient(value, "value"), "value")
-
-
-def _fitting(value: Any) -> Iterator[str]:
-    """Yield the forms that a value can have."""
-    for name in FORMS:
-        with suppress(InputError):
-            _in_form(value, name)
-            yield name
-
-
-def _property(value: Any, name: str) -> float:
-    units = {"hardness": "GPa", "density": "kg/m^3"}
-    return _scalar(Unit(units[name]).si(value, name) if name in units else coefficient(value, name), name)
-
-
-def _scalar(array: Any, name: str) -> float:
+def _scalar(value: Any, unit: str, name: str) -> float:
+    array = wl.Unit(unit).si(value, name) if unit else wl.coefficient(value, name)
     if array.ndim:
-        raise InputError(f"{name}: must be one value, got an array of shape {array.shape}")
+        raise wl.InputError(f"{name}: must be one value, got an array of shape {array.shape}")
     return float(array)
