@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, get_args, get_o
 
 import pint
 from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
+from pydantic.json_schema import GenerateJsonSchema
 
 from wearlaw.errors import (
     ConfigurationError,
@@ -32,6 +33,13 @@ LINE = 100
 ConfigurationT = TypeVar("ConfigurationT", bound="Configuration")
 
 
+class _Schema(GenerateJsonSchema):
+    """JSON Schema in which a default that is a quantity is its text, as in a file."""
+
+    def encode_default(self, dft: Any) -> Any:
+        return full_text(dft) if isinstance(dft, pint.Quantity) else super().encode_default(dft)
+
+
 class Configuration(BaseModel):
     """A frozen, hashable, picklable record of settings; making one raises an error that names every wrong field.
 
@@ -46,6 +54,11 @@ class Configuration(BaseModel):
         defer_build=True,
         ser_json_inf_nan="strings",
     )
+
+    @classmethod
+    def model_json_schema(cls, *args: Any, **options: Any) -> dict[str, Any]:
+        """Return the JSON Schema of the record, with text for quantities."""
+        return super().model_json_schema(*args, **{"schema_generator": _Schema, **options})
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
