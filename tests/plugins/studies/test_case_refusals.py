@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Any
 
@@ -107,37 +106,11 @@ def test_the_schema_refuses_what_the_loader_refuses(validator: Any, path: str, v
     assert not validator.is_valid(changed(path, value)), message
 
 
-def test_every_wrong_field_is_named_once(tmp_path: Path) -> None:
-    content = changed("rig.diameter", 47, changed("contact_models", ["exat"], changed("wear_laws", ["usfd", "kht"])))
-    with pytest.raises(wl.CaseError) as refusal:
-        load(tmp_path, content)
-    where = [line.strip().split(":")[0] for line in str(refusal.value).splitlines()[1:]]
-    assert sorted(where) == ["contact_models.0", "rig.diameter", "wear_laws.1"]
-
-
 def places(content: Any, tmp_path: Path) -> list[str]:
     """Return the paths of the wrong fields of a case, in alphabetical order."""
     with pytest.raises(wl.CaseError) as refusal:
         load(tmp_path, content)
     return sorted(line.strip().split(":")[0] for line in str(refusal.value).splitlines()[1:])
-
-
-def test_conditions_that_cannot_be_read_are_named_in_every_sweep(tmp_path: Path) -> None:
-    content = table(
-        sweeps={
-            "two": {**cases.POINT, "creepage": {"from": "1 %", "to": "2 %", "points": 1}, "friction_coefficient": True},
-            "three": {**cases.POINT, "creepage": ["1 %", 2]},
-        },
-        uncertainty={"eight": {**cases.POINT, "creepage": {"normal": [1]}}},
-        sections=["nope"],
-    )
-    assert places(content, tmp_path) == [
-        "sections.0",
-        "sweeps.three.creepage",
-        "sweeps.two.creepage.points",
-        "sweeps.two.friction_coefficient",
-        "uncertainty.eight.creepage.normal.1",
-    ]
 
 
 def test_the_first_condition_that_the_rig_refuses_is_named_in_every_sweep_profile_and_uncertain_point(
@@ -163,66 +136,6 @@ def test_the_first_condition_that_the_rig_refuses_is_named_in_every_sweep_profil
         "sweeps.two.friction",
         "uncertainty.eight.friction_coefficient",
     ]
-
-
-def test_a_wrong_condition_lays_no_blame_on_the_others(tmp_path: Path) -> None:
-    """Without the wrong load, none is left, and without the misspelt friction none is given."""
-    loads = {"creepage": "1 %", "max_presure": "1 GPa", "friction_coefficient": 0.4}
-    assert places(table(sweeps={"one": loads}), tmp_path) == ["sweeps.one.max_presure"]
-    assert places(table(sweeps={"one": {**cases.POINT, "max_pressure": "1 N"}}), tmp_path) == [
-        "sweeps.one.max_pressure"
-    ]
-
-
-def test_what_does_not_fit_together_is_named_in_every_place(tmp_path: Path) -> None:
-    content = table(
-        uncertainty={
-            "one": {**cases.POINT, "laws": {"usdf": {"q_s": {"normal": [1, 2]}}, "kth": {"hard": {"normal": [1, 2]}}}}
-        },
-        figures={"a": {"sweep": "nope", "x": "creepage", "y": "wear_rate"}},
-    )
-    assert places(content, tmp_path) == [
-        "figures.a.sweep",
-        "uncertainty.one.laws.kth.hard",
-        "uncertainty.one.laws.usdf",
-    ]
-
-
-WHEEL_RAIL = {"type": "wheel_rail", "wheel_radius": "460 mm", "rail_head_radius": "300 mm", "material": "steel"}
-
-
-@pytest.mark.parametrize(
-    ("path", "value", "advice"),
-    [
-        ("sweeps.creepage.creepage", 1, 'such as "1 %"'),
-        ("sweeps.creepage.max_pressure", [1, 2], 'such as "1.0 MPa"'),
-        ("rig.track_width", 10, 'such as "1.0 mm"'),
-        ("wear_laws", [{"model": "usfd", "q_s": 3}], 'such as "1.0 ug/m/mm^2"'),
-        (
-            "rig",
-            {**WHEEL_RAIL, "rolling_speed": "1 m/s", "wheel_profile_radius": "0 mm"},
-            'a flat body has the radius "inf mm"',
-        ),
-        ("rig", {**WHEEL_RAIL, "rolling_speed": "1 m/s", "contact_angle": "95 deg"}, 'such as "70 deg" on a flange'),
-        ("uncertainty", {"one": {**cases.POINT, "creepage": {"normal": [1, 2]}}}, 'such as "1 %"'),
-        (
-            "uncertainty",
-            {"one": {**cases.POINT, "laws": {"usfd": {"q_s": {"normal": [1, 2]}}}}},
-            'such as "1.0 µg/m/mm**2"',
-        ),
-    ],
-)
-def test_advice_in_errors_of_a_case_is_toml_and_not_python(tmp_path: Path, path: str, value: Any, advice: str) -> None:
-    with pytest.raises(wl.CaseError) as refusal:
-        load(tmp_path, changed(path, value))
-    assert advice in str(refusal.value)
-    assert not re.search(r"\bQ\(|\bwl\.|\bnp\.", str(refusal.value))
-
-
-def test_every_missing_plugin_is_named(tmp_path: Path) -> None:
-    needed = {"wearlaw-one": ">=1", "wearlaw-two": "", "wearlaw": ">=99"}
-    expected = ["plugins.wearlaw", "plugins.wearlaw-one", "plugins.wearlaw-two"]
-    assert places(table(plugins=needed), tmp_path) == expected
 
 
 def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Path) -> None:
@@ -257,15 +170,3 @@ def test_a_file_that_is_no_case_is_refused(tmp_path: Path, content: bytes, messa
     with pytest.raises(wl.CaseError, match=message) as refusal:
         load_case(str(path))
     assert str(path) in str(refusal.value)
-
-
-def test_a_missing_file_is_refused_with_the_shipped_case_that_may_be_meant(tmp_path: Path) -> None:
-    with pytest.raises(wl.CaseError, match=r"there is no case file 'tasini2010'; did you mean 'tassini2010'\?"):
-        load_case("tasini2010")
-    with pytest.raises(wl.CaseError, match=r"there is no case file '.*x.toml'. Shipped cases: tassini2010"):
-        load_case(str(tmp_path / "x.toml"))
-
-
-def test_a_folder_is_no_case_file(tmp_path: Path) -> None:
-    with pytest.raises(wl.CaseError, match=f"cannot read the case file '{tmp_path}'"):
-        load_case(str(tmp_path))
