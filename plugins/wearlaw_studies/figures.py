@@ -363,8 +363,9 @@ def _panel(results: Results, data: xarray.Dataset, spec: FigureSpec, window: Win
         for number, name in enumerate(names):
             for one in _series(results, data.sel(patch), spec, name, x):
                 colour, dash = one.style
-                if "pair" not in data[name].dims and (len(names) > 1 or name in OF_PROFILE and spec.profile):
-                    colour = OF_PROFILE.index(name) if spec.profile else number
+                if "pair" not in data[name].dims:
+                    along_patch = bool(spec.profile) and name in OF_PROFILE
+                    colour = OF_PROFILE.index(name) if along_patch else number if len(names) > 1 else colour
                 curve = _curve(results, one, spec, window, x, units)
                 if not curve.x.size:  # a law for the other body
                     continue

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import Any, TypeVar
 
 import click
 
@@ -16,6 +18,11 @@ from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import read_law, read_toml
 from wearlaw.settings.configuration import Configuration
+
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+
+LINE, LEAST = 120, 80
+"""Letters of a note where there is no terminal, and the least."""
 
 
 class _WithRig(Configuration, extra="ignore"):
@@ -138,10 +145,28 @@ def echo_file(text: str) -> None:
         click.echo(text.encode(), nl=False)  # UTF-8, whatever the terminal speaks
 
 
+def verbose(command: CommandT) -> CommandT:
+    """Add the option that `print_notes` obeys to a command."""
+
+    def keep(context: click.Context, _: click.Parameter, value: bool) -> None:
+        context.meta["verbose"] = value
+
+    return click.option("--verbose", is_flag=True, expose_value=False, callback=keep, help="Print whole notes.")(
+        command
+    )
+
+
 def print_notes(notes: Iterable[str]) -> None:
-    """Print notes on standard error, a line each."""
+    """Print notes on standard error, a line each: as much as fits on a line, or the whole with `--verbose`."""
+    whole = click.get_current_context().meta.get("verbose", False)
+    width, cut = max(shutil.get_terminal_size((LINE, 24)).columns, LEAST), False
     for note in notes:
-        click.echo(f"note: {note}", err=True)
+        text = f"note: {note}"
+        if not whole and (len(text) > width or "\n" in text):
+            text, cut = f"{text.splitlines()[0][: width - 1].rstrip()}…", True
+        click.echo(text, err=True)
+    if cut:
+        click.echo("(--verbose prints whole notes)", err=True)
 
 
 def print_results(folder: Path, names: Iterable[str]) -> None:

@@ -13,12 +13,11 @@ import tomli_w
 import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import OWN_TESTS, STEEL, case, changed, load, table
-from wearlaw.models.labels import labels
-from wearlaw.plugins import loader
-from wearlaw_studies.case import Case, case_text, load_case, written
+from wearlaw.models.labels import labels  # private: the names of models in results, without running them
+from wearlaw_studies.case import written
 
 
-def rewritten(read: Case) -> str:
+def rewritten(read: wl.Case) -> str:
     return tomli_w.dumps(read.model_dump(mode="json", by_alias=True, exclude_none=True))
 
 
@@ -34,7 +33,7 @@ def test_tests_of_a_lab_are_found_from_the_folder_of_the_case_file(
     cases.write(studies / "my.toml", table(measured={"label": "m", "tests": "data/own.csv"}))
     monkeypatch.chdir(tmp_path)
     for where in ("studies/my.toml", str(studies / "my.toml")):
-        measured = load_case(where).measured
+        measured = wl.load_case(where).measured
         assert measured is not None
         np.testing.assert_allclose(measured.data.wear_rate.to("ug/m/mm^2").magnitude, [10.0, 40.0], rtol=1e-14)
         assert measured.data.source == "own.csv"
@@ -52,7 +51,7 @@ def test_a_case_can_be_written_with_its_tests_to_run_again_anywhere(tmp_path: Pa
     assert list(files) == ["case.toml", "tests.csv"]
     for name, content in files.items():
         (elsewhere / name).write_text(content, encoding="utf-8")
-    again = load_case(str(elsewhere / "case.toml"))
+    again = wl.load_case(str(elsewhere / "case.toml"))
     assert read.measured is not None
     assert again.measured is not None
     assert again.measured.data == read.measured.data
@@ -122,7 +121,7 @@ def test_a_case_written_with_all_its_defaults_reads_back_as_the_same_case(
     read = load(tmp_path, content)
     text = rewritten(read)
     (tmp_path / "again.toml").write_text(text, encoding="utf-8")
-    again = load_case(str(tmp_path / "again.toml"))
+    again = wl.load_case(str(tmp_path / "again.toml"))
     assert again == read
     assert labels(again.contact_models) == labels(read.contact_models)
     assert labels(again.wear_laws) == labels(read.wear_laws)
@@ -136,8 +135,8 @@ def test_the_schema_accepts_what_the_loader_accepts(validator: Any, content: cas
 
 
 def test_the_shipped_case_keeps_the_schema_and_reads_back_the_same(tmp_path: Path, validator: Any) -> None:
-    shipped = load_case("tassini2010")
-    validator.validate(tomllib.loads(case_text("tassini2010")))
+    shipped = wl.load_case("tassini2010")
+    validator.validate(tomllib.loads(cases.wearlaw("case", "tassini2010").stdout))
     assert load(tmp_path, tomllib.loads(rewritten(shipped))) == shipped
 
 
@@ -167,7 +166,7 @@ REQUIRED: dict[str, dict[str, Any]] = {"archard": {"coefficient": 1e-4}, "energy
 
 @pytest.mark.parametrize("kind", ["contact_models", "wear_laws"])
 def test_the_schema_accepts_each_installed_model_by_name_and_as_a_table(validator: Any, kind: str) -> None:
-    for name in getattr(loader, kind)():
+    for name in getattr(wl, kind)():
         given = REQUIRED.get(name, {})
         assert validator.is_valid(table(**{kind: [name]}))
         assert validator.is_valid(table(**{kind: [{"model": name, **given}]}))
