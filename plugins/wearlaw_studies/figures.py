@@ -331,7 +331,7 @@ def _series(results: Results, data: xarray.Dataset, spec: FigureSpec, variable: 
         return found
     if "contact_model" in dims and variable not in COMMON:
         styles = {model: (models.index(model),) * 2 for model in chosen}
-        return [_Series(variable, model, data.sel(contact_model=model), style) for model, style in styles.items()]  # type: ignore[arg-type]
+        return [_Series(variable, model, data.sel(contact_model=model), style) for model, style in styles.items()]
     one = data.sel(contact_model=chosen[0]) if variable in COMMON and "contact_model" in dims else data
     return [_Series(variable, "", one, (0, 0))]
 
@@ -351,7 +351,7 @@ def _panel(results: Results, data: xarray.Dataset, spec: FigureSpec, window: Win
     for axis, labels in (window.patches or {}).items():
         _choose("patches", labels, data[axis].values.tolist())
     if head:
-        units = units | {y: data[name].attrs["units"] for y, name in zip(window.shown, names, strict=True)}
+        units = {**units} | {y: data[name].attrs["units"] for y, name in zip(window.shown, names, strict=True)}
     if len({units[y] for y in window.shown}) > 1:
         each = ", ".join(sorted({units[y] for y in window.shown}))
         fault = Fault(("y",), f"one axis has one unit, but these are in {each}; give each a panel of its own")

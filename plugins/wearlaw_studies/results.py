@@ -76,7 +76,7 @@ class Results:
         (found,) = (pair for pair in self.pairs if pair.label == label)
         return found
 
-    def is_for_other_body(self, label: str, body: str | None) -> bool:
+    def is_for_other_body(self, label: str, body: str) -> bool:
         """Return whether the parameters of a pair's wear law were fitted to another body than this one."""
         return fitted_to_other_body(self.case.rig.bodies, self.pair(label).pipeline.wear_law, body)
 

@@ -92,7 +92,8 @@ def main_table(study: Study) -> NamedTable:
     rows = []
     for pair in map(study.pair, predicting(study, outcome, sweep.pair.values.tolist())):
         of_pair, law = sweep.sel(pair=pair.label), pair.pipeline.laws[0]
-        values, row = of_pair[outcome], {"pair": pair.label}
+        values = of_pair[outcome]
+        row: dict[str, Any] = {"pair": pair.label}
         known = bool(values.notnull().any())
         for word, find in (("least ", values.argmin), ("most ", values.argmax))[0 if axes else 1 :]:
             found: Any = find(...) if known else {}

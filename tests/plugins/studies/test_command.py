@@ -102,14 +102,14 @@ def test_of_two_runs_into_one_folder_the_second_to_end_replaces_the_first_only_w
     folder: Path, overwrite: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The second begins and ends while the first writes."""
-    import wearlaw_studies.commands as commands  # private: one run begins inside another
+    from wearlaw_studies import commands  # private: one run begins inside another
 
     for name in ("usfd", "kth"):
         write(folder / f"{name}.toml", table(contact_models=["global"], wear_laws=[name], profiles={}))
     if overwrite:
         assert wearlaw("run", "usfd.toml", "-o", "out").exit_code == 0
     options = ["-o", "out", "--figure-format", "svg", *(["--overwrite"] if overwrite else [])]
-    write_results = commands.write
+    write_results: Any = commands.write  # type: ignore[attr-defined]
     winners: list[Result] = []
 
     def late(*arguments: Any) -> list[str]:

@@ -255,7 +255,7 @@ def test_the_y_axis_shows_all_that_is_in_the_window_bands_too() -> None:
     panel = one_panel(shown({**WEAR, "x_range": ["0 N", "30 N"], "y_scale": "linear"}))
     inside = [end[(curve.x >= 0.0) & (curve.x <= 30.0)] for curve in panel.curves
               for end in (curve.y, curve.high) if end is not None]  # fmt: skip
-    assert panel.y.ends == (0.0, pytest.approx(1.05 * np.concatenate(inside).max()))
+    assert panel.y.ends == pytest.approx((0.0, 1.05 * np.concatenate(inside).max()))
 
 
 @pytest.mark.parametrize("x", ["max_pressure", "normal_force", "friction_coefficient", "creepage", "half_width"])

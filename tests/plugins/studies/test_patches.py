@@ -125,7 +125,7 @@ def test_the_mass_lost_can_be_added_over_patches() -> None:
         due = sweep.mass_per_distance.sel(pair=pair).fillna(0.0).sum(["side", "patch"])
         np.testing.assert_allclose(curve.y, due, rtol=8 * EPS)
         outside = sweep.outside_range.sel(pair=pair).max(["side", "patch"]).values > 0.0
-        assert np.array_equal(curve.outside, outside)
+        np.testing.assert_array_equal(curve.outside, outside)
     with pytest.raises(wl.ConfigurationError, match=r"figures\.one\.y: 'mass_per_distance' cannot be shown"):
         wl.run(cases.case(figures={"one": {"sweep": "creepage", "x": "creepage", "y": "mass_per_distance"}}))
 
