@@ -130,8 +130,8 @@ def test_points_have_error_bars(hollow: bool) -> None:
     x, y = np.array([0.0]), np.array([3.0])
     drawn, shown = both(panel(curve("one", x=x, y=y, low=y - 2.0, high=y + 4.0, points=True, hollow=hollow)))
     (bar,) = drawn.axes[0].collections
-    assert [np.asarray(part).tolist() for part in bar.get_segments()]  # type: ignore[attr-defined]
-    == [[[0.0, 1.0], [0.0, 7.0]]]
+    segments: Any = bar
+    assert np.asarray(segments.get_segments()).tolist() == [[[0.0, 1.0], [0.0, 7.0]]]
     (trace,) = shown["data"]
     assert (trace["error_y"]["array"], trace["error_y"]["arrayminus"]) == ([4.0], [2.0])
     assert trace["marker"]["symbol"].endswith("-open") == hollow
