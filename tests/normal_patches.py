@@ -16,7 +16,12 @@ import numpy as np
 from tests import wheel_on_rail
 from tests.normal_half_space import Contact, pressed
 from wearlaw import Array
-from wearlaw_wheelset._normal import HertzPatch, StripPatch, hertz, loaded
+from wearlaw_wheelset._normal import (  # private: the normal problem before patches are cut
+    HertzPatch,
+    StripPatch,
+    hertz,
+    loaded,
+)
 
 FILE = Path(__file__).parents[1] / "docs" / "wheelset" / "patches.csv"
 HEAD = ("gap", "N [kN]", "p0 [MPa]", "KPEC", "Hertz", "area [mm²]", "KPEC", "Hertz", "δ [µm]", "KPEC", "Hertz")

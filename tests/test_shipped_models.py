@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from wearlaw.models.contact_model import Model
 from wearlaw_kit import checks
 
 NEEDED: dict[str, dict[str, Any]] = {
@@ -32,7 +31,6 @@ SLOW = {
     "half_space": {
         "force_grows_with_creepage",
         "forces_are_continuous",
-        "full_slip_is_met_from_both_sides",
         "full_slip_is_reached",
         "solution_is_in_double_precision",
         "units_of_parameters_do_not_matter",
@@ -49,7 +47,7 @@ SHIPPED = {
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_the_model_conforms(name: str) -> None:
-    model: Model = SHIPPED[name](**getattr(SHIPPED[name], "example_fields", NEEDED.get(name, {})))
+    model: Any = SHIPPED[name](**getattr(SHIPPED[name], "example_fields", NEEDED.get(name, {})))
     for check in checks(model):
         if check.name not in SLOW.get(name, ()):
             check()

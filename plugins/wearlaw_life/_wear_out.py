@@ -6,7 +6,7 @@ import math
 import os
 import tempfile
 from collections.abc import Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -35,9 +35,10 @@ START = 0.25
 GROWTH = 2.0
 """Largest ratio of the distances of two steps: the extrapolation then weighs the latest wear at most twice."""
 
-CORRECTION = 0.1
-"""Largest share of `depth_step` by which extrapolation may change the wear of a step anywhere. Where contact leaves a
-place and comes back, longer steps would wear one place too deep, and then the other."""
+CORRECTION = 2e3
+"""Largest depth by which extrapolation may change the wear of a step anywhere, over the square of `depth_step` [1/m]:
+all steps halve with it. Where contact leaves a place and comes back, longer steps would wear one place too deep,
+and then the other."""
 
 SHORTEST = 1.0 / 64.0
 """Smallest share of `depth_step` that a jump of the conicity makes a step; a jump stays one however short the step."""
@@ -157,7 +158,7 @@ def wear_out(
         if store is not None:
             from wearlaw_life._store import Store  # zarr takes half a second
 
-            kept = stack.enter_context(Store(store, resume, predict, states, plan))
+            kept = stack.enter_context(closing(Store(store, resume, predict, states, plan)))
         unit = 1.0 if body == "rail" else 1e-3
         bar = stack.enter_context(Bar(round(unit * plan.over), progress))
         bar.stage("passages" if body == "rail" else "km")
@@ -168,7 +169,7 @@ def _run(
     predict: wl.Pipeline[...], line: Line, plan: Plan, first: tuple[Profile, ...], store: Store | None, bar: Bar,
     unit: float,
 ) -> Life:  # fmt: skip
-    states = [] if store is None else store.states()
+    states = [] if store is None else list(store.states)
     ended, done = "", 0
 
     def life() -> Life:
@@ -189,7 +190,7 @@ def _run(
                 _check_limits(plan, row)
             states.append(state)
             if store is not None:
-                store.add(state)
+                store.add(len(states) - 1, state)
             bar(round(unit * state.row[plan.along]) - done)
             done = round(unit * state.row[plan.along])
     except (wl.WearlawError, KeyboardInterrupt) as error:
@@ -220,7 +221,7 @@ def _step(
         step = min(step, GROWTH * now.step)
         if now.wear is not None:
             rise = float(np.abs(wear.depth - now.wear.depth).max())
-            step = min(step, math.sqrt(2.0 * CORRECTION * plan.depth_step * now.step / rise)) if rise else step
+            step = min(step, plan.depth_step * math.sqrt(2.0 * CORRECTION * now.step / rise)) if rise else step
         if now.change > 0.0:
             step = min(step, AIM * plan.conicity_step / now.change * now.step)
     body = pipeline.rig.bodies[plan.body]

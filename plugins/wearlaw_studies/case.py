@@ -50,6 +50,7 @@ from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
+from wearlaw.plugins.law_files import is_law_file
 from wearlaw.plugins.shelf import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
 from wearlaw.settings.text_files import beside, read_text, reading
@@ -98,7 +99,7 @@ def _other_law(value: Any) -> Any:
     wear = {*found.wear_laws.providers, *found.parameter_sets.providers}
     if name in wear or (isinstance(value, Law) and value.outcome.name == WEAR):
         raise InputError(f"{name or value.name} predicts the wear rate; list it under wear_laws")
-    if name:
+    if name and not is_law_file(name):
         found.laws.find(name, found.broken)
     return value
 
@@ -432,6 +433,12 @@ def case_schema() -> dict[str, Any]:
     for field, shelf in shelves.items():
         properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
     sets = found.parameter_sets
+    for laws in ("laws", "wear_laws"):
+        file = {"type": "string", "pattern": r"\.toml$"}
+        properties[laws]["items"]["anyOf"] += [
+            file,
+            {"type": "object", "properties": {"model": file}, "required": ["model"]},
+        ]
     properties["wear_laws"]["items"]["anyOf"] += [
         *({"const": name} for name in sets.items()),
         *({**table, "required": ["model"]} for table in _tables(sets, definitions)),

@@ -14,7 +14,7 @@ from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pairs import Pair
 from wearlaw.units.quantities import WEAR_RATE
 from wearlaw.units.variables import name_of
-from wearlaw_fits.uncertainties.result import CONFIDENCE, Uncertainty, uncertainty
+from wearlaw_fits.uncertainty import CONFIDENCE, Uncertainty, uncertainty
 from wearlaw_studies.case import Case
 from wearlaw_studies.pairs import pairs_of
 

@@ -101,7 +101,8 @@ def sweep(
         depth and the sliding distance of `Prediction.wear_profile` with `body` and `at`.
     share : str, optional
         For "wear_profile": the column of the table with the share of each row, which add up to one. The results are
-        then the weighted sums over all rows, with the mass, at constant memory for a file of any length.
+        then the weighted sums over all rows, with the mass, at constant memory for a file of any length. A store keeps
+        the sum of each block.
     body : str
         For "wear_profile": the body that wears.
     at : Quantity or str, optional
@@ -146,10 +147,8 @@ def sweep(
     as_csv = {"sep": sep, "decimal": decimal}
     profile = outputs in ([WEAR_PROFILE], (WEAR_PROFILE,))
     if share is not None:
-        if table is None or not profile or store is not None:
-            raise InputError(
-                'share: belongs to a table and outputs=["wear_profile"], without a store, which a sum does not need'
-            )
+        if table is None or not profile:
+            raise InputError('share: belongs to a table and outputs=["wear_profile"]')
         keep = {**(keep or {}), SHARE: share}
     summed = share is not None
     with (
@@ -169,13 +168,14 @@ def sweep(
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
         target: Memory | Sum | Store
+        folder = None if store is None else Path(store)
         if isinstance(job, ProfileJob) and job.summed:
-            target = Sum(job, points)
+            target = Sum(job, points, folder, resume)
         else:
-            target = target_of(job, points, None if store is None else Path(store), resume)
+            target = target_of(job, points, folder, resume)
         blocks = len(points.blocks())
-        if target.resumed and len(target.done) < blocks:
-            warnings.warn(kept(len(target.done), blocks, Path(target.store or "")), ResumeWarning, stacklevel=2)
+        if folder is not None and target.resumed and len(target.done) < blocks:
+            warnings.warn(kept(len(target.done), blocks, folder), ResumeWarning, stacklevel=2)
         with closing(target), Bar(points.size, progress) as bar:
             of_results = run(target, bar, workers, client)
             for warning in of_results:
@@ -216,7 +216,7 @@ def _points(
                 raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
         yield outer_product(conditions)
         return
-    beside = store if not summed else Path(tempfile.gettempdir(), "sum")  # a sum needs no store, but no memory
+    beside = Path(tempfile.gettempdir(), "sum") if summed and store is None else store  # a sum needs no memory
     on_disk = None if beside is None else Path(beside)
     check = predict.rig.check_names
     with from_table(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from collections.abc import Callable, Iterable, Mapping
@@ -16,7 +17,7 @@ from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
-from wearlaw.plugins.law_files import read_law, read_toml
+from wearlaw.plugins.law_files import is_law_file, read_law, read_toml
 from wearlaw.settings.configuration import Configuration
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
@@ -90,7 +91,7 @@ def stage(text: str) -> Stage:
 
 
 def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
-    """Return the law of "NAME", "NAME:FIELD=VALUE:..." or the path of a TOML file.
+    """Return the law of "NAME" or "NAME:FIELD=VALUE:...", where NAME may be the path of a TOML file.
 
     Parameters
     ----------
@@ -99,11 +100,10 @@ def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
     fixed : mapping of str to str or float, optional
         Further fields.
     """
-    if text.endswith(".toml"):
-        law = read_law(text)
-        return law.model_copy(update=fixed) if fixed else law
-    name, *settings = text.split(":")
+    name, *settings = re.split(r":(?![\\/])", text)  # not within "C:/law.toml"
     given = {**values(text, tuple(settings)), **(fixed or {})}
+    if is_law_file(name):
+        return read_law(name).changed(**given)
     try:
         return loader.law(name, **given)
     except ConfigurationError as error:

@@ -525,7 +525,7 @@ class Pipeline(Configuration, Generic[P]):
     ) -> Prediction:
         forces = integrate_forces(model, problem)
         watch.points += problem.size
-        watch.see_overload(overload_of(problem, forces.tangential))
+        watch.overload = overload_of(problem, forces.tangential, watch.overload)
         if on_block is not None:
             on_block(problem.size)
         return Prediction(problem, model, forces=forces)

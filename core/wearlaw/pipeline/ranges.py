@@ -62,7 +62,7 @@ class RangeWatch:
     def see_block(self, part: Problem, columns: Columns) -> None:
         """Record a block of operating points, with forces [N] and areas [m²] in columns."""
         self.see(part.size, partial(mean_over_patch, part, columns))
-        self.see_overload(overload_of(part, tangential_force(part, columns)))
+        self.overload = overload_of(part, tangential_force(part, columns), self.overload)
         if SLIDING in columns:
             self._see_outside_of(SLIDING, columns[SLIDING], 1.0 - SLIDING_TOLERANCE, 1.0 + SLIDING_TOLERANCE)
 
@@ -76,11 +76,6 @@ class RangeWatch:
         known = self.seen.get(key, more)
         outside = more.outside if known is more else known.outside + more.outside
         self.seen[key] = Seen(min(known.lowest, more.lowest), max(known.highest, more.highest), outside)
-
-    def see_overload(self, overload: Overload | None) -> None:
-        """Record an operating point beyond first yield if none so far lies further beyond."""
-        if overload is not None:
-            self.overload = overload if self.overload is None else max(self.overload, overload)
 
     def warn(self, stacklevel: int) -> None:
         """Warn of points beyond first yield or out of range; `stacklevel` 1 is the caller."""
@@ -151,7 +146,7 @@ def mean_over_patch(problem: Problem, columns: Columns, variable: str) -> Array:
     raise ModelError(f"`valid_range` names '{variable}', which is no variable of a contact that has a patch mean")
 
 
-def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
+def overload_of(problem: Problem, tangential_force: Array, worst: Overload | None = None) -> Overload | None:
     """Return the operating point furthest beyond first yield of a body, or None if all are elastic.
 
     Parameters
@@ -159,10 +154,12 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
     problem : Problem
     tangential_force : ndarray
         Magnitude of the tangential force [N], of the batch shape; NaN where there is no patch.
+    worst : Overload, optional
+        The furthest of other points.
     """
     strengths = {body.strength for body in problem.bodies.values() if body.strength is not None}
     if not strengths:
-        return None
+        return worst
     if problem.exists is not None:
         tangential_force, problem = tangential_force[problem.exists], problem.existing()
     return overload(
@@ -171,6 +168,7 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
         tangential_force / problem.normal_force,
         problem.friction_coefficient,
         None if problem.geometry == "line" else problem.a / problem.b,
+        worst,
     )
 
 

@@ -11,9 +11,10 @@ from scipy import integrate
 
 import wearlaw as wl
 from tests.line import crossings_meet, fields_at, slip_zone
-from tests.strategies import EPS, line_problems, saturation_creepage
+from tests.strategies import EPS, saturation_creepage
 from wearlaw import Array, Q
 from wearlaw.contact.quadrature import uniform_cells
+from wearlaw_kit import line_problems
 
 Bound = Literal["parabolic", "elliptic"]
 Flexibility = Literal["line", "kalker"]

@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.plugins.fits.fits import GLOBAL, in_microgram
+from tests.plugins.fits.fits import CREEPAGE, EXACT, FRICTION, GLOBAL, PRESSURE, in_microgram, made_up, usfd
 from tests.plugins.fits.uncertain import FULL_SLIP, USFD
 from tests.strategies import EPS
 from wearlaw import Q
@@ -56,8 +56,6 @@ def test_each_sample_is_the_prediction_with_its_values() -> None:
     u = wl.uncertainty(
         USFD, normal_force=wl.normal("7 kN", "0.2 kN"), creepage=Q(4, "%"), friction_coefficient=0.4, samples=8
     )
-    force = u.inputs[0].values(np.array([0.25]))["normal_force"][0]
-    assert force == pytest.approx(stats.norm(7000.0, 200.0).ppf(0.25), rel=8 * EPS)
     rates = np.sort(in_microgram(u.wear_rate))
     probability = np.sort(stats.qmc.Sobol(1, rng=np.random.default_rng(0)).random_base2(3)[:, 0])
     each = USFD(
@@ -68,7 +66,7 @@ def test_each_sample_is_the_prediction_with_its_values() -> None:
 
 def test_a_lognormal_value_has_its_median_and_its_factor() -> None:
     u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.lognormal(0.3, 1.1)}, samples=8)
-    values = u.inputs[0].values(np.array([0.5, 0.9]))["friction_coefficient"]
+    values = u.inputs[0].conditions(np.array([0.5, 0.9]))["friction_coefficient"]
     assert values == pytest.approx(stats.lognorm(np.log(1.1), scale=0.3).ppf([0.5, 0.9]), rel=16 * EPS)
 
 
@@ -246,3 +244,52 @@ def test_every_distribution_of_a_case_is_the_one_of_python() -> None:
         "creepage": "uniform(1.0 %, 2.0 %)",
         "friction_coefficient": "lognormal(0.4, 1.2)",
     }
+
+
+# Fits
+
+
+@pytest.fixture(scope="module")
+def fit() -> wl.Fit:
+    tests = made_up(usfd("exact"), 0.1)
+    return wl.fit(usfd("exact"), tests, ["q_s", "m_c", "tr_sc"], friction_coefficient=FRICTION, bootstrap=256)
+
+
+def test_the_parameters_of_a_fit_move_together_with_its_replicates(fit: wl.Fit) -> None:
+    """With as many samples as there are replicates, each is drawn once, and gives what its law predicts."""
+    conditions: Any = {"max_pressure": PRESSURE, "creepage": Q(19, "%"), "friction_coefficient": FRICTION}
+    u = wl.uncertainty(fit, **conditions, samples=256)
+    assert fit.law is not None
+    expected = [
+        (EXACT | fit.law.model_copy(update={name: fit.samples[name][i] for name in fit.samples}))(**conditions)
+        for i in range(256)
+    ]
+    rates = np.sort([one.wear_rate.to("ug/m/mm^2").magnitude for one in expected])
+    assert np.sort(in_microgram(u.wear_rate)) == pytest.approx(rates, rel=1e-12)
+    # Alone, these correlated parameters would give a much wider spread.
+    alone = {name: wl.normal(value, fit.standard_errors[name]) for name, value in fit.parameters.items()}
+    apart = wl.uncertainty(fit.predict, law=alone, **conditions, samples=256)
+    width, wider = (in_microgram(high - low) for low, high in (u.interval(), apart.interval()))
+    assert width < 0.8 * wider
+
+
+def test_a_fitted_friction_coefficient_is_a_condition_unless_it_is_given() -> None:
+    found = usfd("exact")(max_pressure=PRESSURE, creepage=Q(CREEPAGE, "%"), friction_coefficient=FRICTION)
+    traction = found.traction_coefficient.magnitude * np.linspace(0.95, 1.05, CREEPAGE.size)
+    tests = made_up(usfd("exact"), 0.1, traction_coefficient=traction)
+    fit = wl.fit(usfd("exact"), tests, ["q_s", "friction_coefficient"], bootstrap=64)
+    conditions: Any = {"max_pressure": PRESSURE, "creepage": Q(1, "%"), "samples": 64}
+    free, given = wl.uncertainty(fit, **conditions), wl.uncertainty(fit, **conditions, friction_coefficient=0.3)
+    assert np.median(in_microgram(free.wear_rate)) != pytest.approx(np.median(in_microgram(given.wear_rate)), rel=0.05)
+    assert "friction_coefficient" in repr(free)
+    both = wl.uncertainty(fit, **{**conditions, "creepage": wl.uniform("1 %", "2 %")})
+    assert set(both.sobol().index) == {"creepage", "fit"}
+
+
+def test_a_fit_without_replicates_and_a_number_given_twice_are_refused(fit: wl.Fit) -> None:
+    conditions: Any = {"max_pressure": PRESSURE, "creepage": Q(1, "%"), "friction_coefficient": FRICTION}
+    with pytest.raises(wl.InputError, match="q_s"):
+        wl.uncertainty(fit, **conditions, law={"q_s": wl.normal("50 ug/m/mm^2", "1 ug/m/mm^2")})
+    quick = wl.fit(usfd("exact"), fit.tests, ["q_s"], friction_coefficient=FRICTION, bootstrap=0)
+    with pytest.raises(wl.InputError, match="bootstrap"):
+        wl.uncertainty(quick, **conditions)

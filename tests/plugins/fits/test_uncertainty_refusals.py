@@ -13,7 +13,7 @@ from tests.plugins.fits.fits import EXACT, GLOBAL
 from tests.plugins.fits.test_fit_stages import Balanced, Choosy, Softer
 from tests.plugins.fits.uncertain import FULL_SLIP, USFD
 from wearlaw import Q
-from wearlaw_fits.uncertainties.inputs import check_samples
+from wearlaw_fits.uncertain_inputs import check_samples
 
 UNCERTAIN: Any = {"friction_coefficient": wl.uniform(0.3, 0.5), "samples": 4}
 HINT = r"(.|\n)*samples of its distribution"
@@ -35,7 +35,7 @@ def test_samples_outside_the_range_of_the_law_are_warned_of() -> None:
         ({"creepage": wl.uniform("1 mm", "2 mm")}, "creepage: .*not a ratio"),
         ({"creepage": wl.normal("1 %", "0 %")}, r"creepage: the standard deviation of normal\(1.0 %, 0.0 %\)"),
         ({"creepage": wl.lognormal("0 %", 1.2)}, r"creepage: the median of lognormal\(0.0 %, 1.2\)"),
-        ({"creepage": wl.uniform("1 %", "200 %")}, f"creepage: {HINT}"),
+        ({"creepage": wl.uniform("1 %", "200 %")}, "creepage: "),
         ({"creep": wl.normal("1 %", "0.1 %")}, "creep: .*'creepage'"),
         ({"creepage": wl.uniform("1 %", "2 %"), "max_pressur": None}, "max_pressur: "),
         ({"friction_coefficient": wl.normal(0.3, 0.0)}, "friction_coefficient: the standard deviation"),
@@ -76,7 +76,7 @@ BALANCED = Balanced(**dict(EXACT.rig)) | EXACT.contact_model | Softer() | Heat()
         (EXACT | Softer() | Heat(), {"stage": SHARE}, "stage: .*'share'.* reduction"),
         (EXACT | Heat(), {"stage": SHARE}, "stage: .*'share'.* none"),
         (EXACT | Softer() | Heat(), {"stage": {"reduction": wl.published_range()}}, "reduction: "),
-        (EXACT | Heat(), {"law": SHARE | {"heat.share": wl.uniform(0, 1)}}, "law: 'heat.share'"),
+        (EXACT | Heat(), {"law": SHARE | {"heat.share": wl.uniform(0, 1)}}, "share and heat.share: "),
         (EXACT | Choosy() | Heat(), {"stage": {"reduction": wl.uniform(0.1, 0.9)}}, f"too soft{HINT}"),
         (EXACT | Choosy() | Heat(), {"stage": {"reduction": wl.uniform(0.5, 1.1)}}, f"reduction{HINT}"),
         (EXACT, {"creepage": wl.uniform("1 %", "2 %")}, "no wear law"),

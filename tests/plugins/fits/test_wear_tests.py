@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 import pickle
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,10 +13,24 @@ import pytest
 from hypothesis import given
 
 import wearlaw as wl
-from tests.plugins.fits.wear_tests import NAN, made
 from tests.strategies import EPS, log_uniform
 from wearlaw import Q
-from wearlaw_fits.wear_tests.reader import parse_tests
+
+NAN = np.nan
+
+
+def made(**changes: Any) -> wl.WearTests:
+    """Return three tests, the second without wear and the third without traction, with some columns changed."""
+    columns: dict[str, Any] = {
+        "creepage": Q([0.5, 1.0, 5.0], "%"),
+        "normal_force": Q([7.0, 7.5, 8.0], "kN"),
+        "traction_coefficient": [0.2, 0.4, NAN],
+        "wear_rate": Q([10.0, NAN, 50.0], "ug/m/mm^2"),
+        "labels": ["a", "b", "c"],
+        "source": "a test",
+    }
+    return wl.WearTests.from_arrays(**{k: v for k, v in (columns | changes).items() if v is not None})
+
 
 RIG = wl.TwinDisc.suros()
 GLOBAL, EXACT = wl.contact_model("global"), wl.contact_model("exact")
@@ -176,20 +190,14 @@ def test_equal_tests_are_equal_also_with_gaps_and_others_are_not() -> None:
     assert made() != "tests"
 
 
-def test_tests_never_change_not_even_as_copies() -> None:
+def test_tests_are_copies_and_survive_pickling() -> None:
     rate = np.array([1.0, 2.0, 3.0])
     tests = made(wear_rate=Q(rate, "kg/m^3"))
     rate[0] = 9.0
-    again = pickle.loads(pickle.dumps(tests))
-    assert again == tests
-    for one in (tests, again, tests[:2]):
-        assert one.columns["wear_rate"][0] == 1.0
-        with pytest.raises(ValueError, match="read-only"):
-            one.columns["wear_rate"][0] = 9.0
-        with pytest.raises(TypeError):
-            one.columns["wear_rate"] = rate  # type: ignore[index]
-        with pytest.raises(dataclasses.FrozenInstanceError):
-            one.source = "changed"  # type: ignore[misc]
+    assert tests.columns["wear_rate"][0] == 1.0
+    assert pickle.loads(pickle.dumps(tests)) == tests
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        tests.source = "changed"  # type: ignore[misc]
 
 
 def test_the_repr_is_a_short_summary() -> None:
@@ -222,10 +230,160 @@ def test_the_table_has_units_in_its_head_and_reads_back() -> None:
         "wear_rate_uncertainty [ug/m/mm^2]",
     ]
     assert list(table["normal_force [kN]"]) == [7.0, 7.5, 8.0]
-    buffer = io.StringIO()
-    table.to_csv(buffer, index=False)
-    again = parse_tests(buffer.getvalue(), "a test")
+    again = wl.read_tests(table)
     assert again.labels == tests.labels
     for name, values in tests.columns.items():
         np.testing.assert_allclose(again.columns[name], values, rtol=4 * EPS)
     assert "label" not in made(labels=None).to_dataframe()
+
+
+# Files
+
+HEAD = "label,creepage [%],normal_force [kN],wear_rate [ug/m/mm^2]"
+GOOD = f"{HEAD}\na,1,7.4,30\nb,-2,7.4,40\n"
+HEAT = "creepage [%],normal_force [kN],frictional_heat [W],rolling_speed [km/h]"
+
+
+def read(text: str, folder: Path, **options: Any) -> wl.WearTests:
+    """Return the tests of a file."""
+    path = folder / "mine.csv"
+    path.write_text(text, encoding="utf-8")
+    return wl.read_tests(path, **options)
+
+
+@pytest.mark.parametrize(
+    ("text", "options"),
+    [
+        (GOOD, {}),
+        (GOOD.replace("[%]", "[permille]").replace("a,1", "a,10").replace("b,-2", "b,-20"), {}),
+        (GOOD.replace("[ug/m/mm^2]", "[kg/m^3]").replace("30", "0.03").replace("40", "0.04"), {}),
+        (GOOD.replace(",", ";").replace("7.4", "7,4"), {"decimal": ","}),
+        (GOOD.replace(",", "|"), {"sep": "|"}),
+        (f"# comment: words\n{GOOD}", {}),
+    ],
+)
+def test_units_separators_and_decimals_of_a_file(text: str, options: dict[str, str], tmp_path: Path) -> None:
+    tests = read(text, tmp_path, **options)
+    np.testing.assert_allclose(tests.columns["creepage"], [0.01, -0.02], rtol=4 * EPS)
+    np.testing.assert_allclose(tests.columns["normal_force"], 7400.0, rtol=4 * EPS)
+    np.testing.assert_allclose(tests.columns["wear_rate"], [0.03, 0.04], rtol=4 * EPS)
+    assert (tests.labels, tests.source) == (("a", "b"), "mine.csv")
+
+
+def test_the_source_and_gaps_of_a_file(tmp_path: Path) -> None:
+    tests = read(f"# Source:  a lab \n{GOOD}c,1,7,NA\n", tmp_path)
+    assert tests.source == "a lab"
+    np.testing.assert_array_equal(np.isnan(tests.wear_rate.magnitude), [False, False, True])
+
+
+def test_heat_of_a_file_is_traction(tmp_path: Path) -> None:
+    # T = 72 W / (0.02 × 1 m/s) = 3.6 kN, half the load.
+    tests = read(f"{HEAT}\n-2,7.2,72,3.6\n", tmp_path)
+    np.testing.assert_allclose(tests.traction_coefficient.magnitude, [0.5], rtol=8 * EPS)
+
+
+def test_other_conditions_and_outcomes_of_a_file(tmp_path: Path) -> None:
+    text = "mass [kg],spin [1/m],friction_coefficient,heat_flux [W/mm^2]\n20,0.1,0.3,2\n40,0.2,0.3,NA\n"
+    tests = read(text, tmp_path, outcomes=["heat_flux"])
+    assert (set(tests.other_conditions), set(tests.outcomes)) == ({"mass", "spin"}, {"heat_flux"})
+    np.testing.assert_array_equal(tests.measured("heat_flux", "W/m^2"), [2e6, NAN])
+    with pytest.raises(wl.DataError, match="heat_flux"):
+        tests.measured("heat_flux", "kg")
+    with pytest.raises(wl.DataError, match="heat_flux"):  # a condition must be known in every test
+        read(text, tmp_path)
+
+
+def test_shipped_tests_come_before_a_file_of_that_name(folder: Path) -> None:
+    Path("lewis2004").write_text(GOOD, encoding="utf-8")
+    assert "Dwyer-Joyce" in wl.read_tests("lewis2004").source
+    assert wl.read_tests("./lewis2004").labels == ("a", "b")
+    read(GOOD, folder)
+    with pytest.raises(wl.DataError, match=r"mine\.csv"):
+        wl.read_tests("mime.csv")
+
+
+FAULTY = [
+    *(
+        (GOOD.replace(old, new, 1), named)
+        for old, new, named in [
+            ("creepage [%]", "creepage", "creepage"),
+            ("creepage [%]", "creepage (%)", "creepage"),
+            ("creepage [%]", "crepage [%]", "did you mean 'creepage'"),
+            ("creepage [%]", "zzz", "zzz"),
+            ("[kN]", "[mm]", "normal_force"),
+            ("[kN]", "[weights]", "normal_force"),
+            ("label", "creepage [-]", "creepage"),
+            ("wear_rate [ug/m/mm^2]", "max_pressure [MPa]", "one load"),
+            ("label,", "frictional_heat [W],", "frictional_heat"),
+            ("wear_rate", "wear_rate_uncertainty", "wear_rate_uncertainty"),
+            (",wear_rate [ug/m/mm^2]\n", ",comment\n", "nothing is measured"),
+            ("40", "-40", "line 3, column 'wear_rate"),
+            ("-2,7.4", "-2,0", "line 3, column 'normal_force"),
+            ("-2,7.4", "-2,1e307", "line 3, column 'normal_force"),
+            ("-2", "2000", "line 3, column 'creepage"),
+            ("-2", "", "line 3, column 'creepage"),
+            ("-2", "two", "line 3, column 'creepage"),
+            ("7.4,40", "7,4,40", "line 3"),
+            ("b,-2,7.4,40", "b,-2,7.4", "line 3"),
+        ]
+    ),
+    (f"{HEAT}\n1,7.4,3,1\n0,7.4,2,1\n", "line 3, column 'frictional_heat"),
+    (f"{HEAT}\n1,7.4,3,1\n1,7.4,2,\n", "line 3, column 'frictional_heat"),
+    (HEAD, "no test"),
+]
+
+
+@pytest.mark.parametrize(("text", "named"), FAULTY)
+def test_what_is_wrong_with_a_file_is_named(text: str, named: str, tmp_path: Path) -> None:
+    with pytest.raises(wl.DataError, match=named):
+        read(text, tmp_path)
+
+
+def test_all_faults_of_a_file_are_named(tmp_path: Path) -> None:
+    with pytest.raises(wl.DataError) as refusal:
+        read(f"{HEAD}\na,1,-7,-30\na,200,7,1\n", tmp_path)
+    assert len(refusal.value.problems) == 3
+
+
+# Wrong arrays
+
+WRONG: list[tuple[str, dict[str, Any]]] = [
+    ("creepage", {"creepage": [0.5, 1.0, 5.0]}),
+    ("creepage", {"creepage": Q([1.0, NAN, 5.0], "%")}),
+    ("creepage", {"creepage": Q([1.0, 2.0, -101.0], "%")}),
+    ("creepage", {"creepage": "1 N"}),
+    ("creepage", {"creepage": "one"}),
+    ("one load", {"normal_force": None}),
+    ("one load", {"max_pressure": "1 GPa"}),
+    ("normal_force", {"normal_force": Q(0, "N")}),
+    ("normal_force", {"normal_force": Q([1, 2, np.inf], "N")}),
+    ("one length", {"normal_force": Q([1, 2], "N")}),
+    ("one length", {"normal_force": Q([[1, 2, 3]], "N")}),
+    ("wear_rate", {"wear_rate": Q([1, 2, -3], "ug/m/mm^2")}),
+    ("wear_rate", {"wear_rate": Q([1, 2, 3], "ug/m")}),
+    ("nothing is measured", {"wear_rate": None, "traction_coefficient": None}),
+    ("wear_rate_uncertainty", {"wear_rate_uncertainty": Q(0, "ug/m/mm^2")}),
+    ("wear_rate_uncertainty", {"wear_rate": None, "wear_rate_uncertainty": "1 ug/m/mm^2"}),
+    ("friction_coefficient", {"friction_coefficient": 0.0}),
+    ("friction_coefficient", {"friction_coefficient": [0.3, 0.4, NAN]}),
+    ("friction_coefficient", {"friction_coefficient": Q(0.4, "N")}),
+    ("traction_coefficient", {"traction_coefficient": -0.1}),
+    ("tangential_force", {"tangential_force": "1 N"}),
+    ("rolling_speed", {"rolling_speed": "1 m/s"}),
+    ("rolling_speed", {"traction_coefficient": None, "frictional_heat": "1 W"}),
+    (
+        "tangential_force",
+        {"traction_coefficient": None, "normal_force": None, "max_pressure": "1 GPa", "tangential_force": "1 N"},
+    ),
+    ("did you mean 'creepage'", {"crepage": Q([1.0, 2.0, 3.0], "%")}),
+    ("creepage", {"other_conditions": {"creepage": "1 %"}}),
+    ("heat", {"other_conditions": {"heat": "1 W"}, "outcomes": {"heat": "1 W"}}),
+    ("labels", {"labels": ["a", "b"]}),
+    ("labels", {"labels": "abc"}),
+]
+
+
+@pytest.mark.parametrize(("named", "changes"), WRONG)
+def test_wrong_arrays_are_refused_by_name(named: str, changes: dict[str, Any]) -> None:
+    with pytest.raises(wl.DataError, match=named):
+        made(**changes)

@@ -7,7 +7,7 @@ import pytest
 import scipy
 
 import wearlaw as wl
-from tests.plugins.contact_files import FILES
+from tests.plugins.contact_files.files import FILES
 from tests.plugins.full_theory import spheres
 from wearlaw import Array
 from wearlaw_kit.reduced import random_ellipses

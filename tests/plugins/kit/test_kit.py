@@ -5,11 +5,9 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-import tracemalloc
 from pathlib import Path
 from typing import Any, ClassVar
 
-import numpy as np
 import pytest
 
 import wearlaw as wl
@@ -17,13 +15,11 @@ from tests.plugins.kit.cells import Cells
 from tests.plugins.kit.strips import Strips
 from tests.plugins.kit.wrong_contacts import Wrapped
 from tests.plugins.kit.wrong_declarations import NoReason, UnknownClaim
-from tests.plugins.kit.wrong_law_nodes import PairOfPoints
 from tests.plugins.kit.wrong_laws import Linear, Raises, WrongSign
 from tests.plugins.kit.wrong_rigs import Weight
 from tests.plugins.kit.wrong_stages import Lubricated
-from wearlaw.models.contact_model import Claim
-from wearlaw_kit import Check, checks, conformance
-from wearlaw_kit.rules import RULES
+from wearlaw_kit import checks, conformance
+from wearlaw_kit.rules import RULES  # private: all claims, whatever the model
 
 SUITE = """
 from tests.plugins.kit.wrong_declarations import HottestNode
@@ -84,7 +80,7 @@ def exempt(base: Any, claim: str) -> Any:
 
 
 @pytest.mark.parametrize("claim", dict.fromkeys(claim for rule in RULES for claim in rule.claims[1:]))
-def test_an_exemption_leaves_out_the_checks_of_a_claim(claim: Claim) -> None:
+def test_an_exemption_leaves_out_the_checks_of_a_claim(claim: str) -> None:
     kept, left = ([check.name for check in checks(model)] for model in (Strips(), exempt(Strips, claim)))
     assert set(left) < set(kept)
     assert "no_node_gains_energy" in left
@@ -133,14 +129,6 @@ def test_a_rig_without_an_example_is_an_error_that_says_what_to_write(monkeypatc
         list(checks(Weight()))
 
 
-def test_an_error_in_the_model_is_a_failure_that_names_it() -> None:
-    def broken() -> None:
-        raise KeyError("a")
-
-    with pytest.raises(AssertionError, match=r"^the model raised KeyError: 'a'$"):
-        Check("broken", "", broken)()
-
-
 class FailsOnEllipses(Cells):
     """Right on a line, and with an error on an ellipse."""
 
@@ -155,13 +143,6 @@ def test_a_failure_names_the_shape_and_the_first_example_that_fails_alone() -> N
     assert "example=Problem(geometry='ellipse'" in "\n".join(failure.value.__notes__)
 
 
-class Batched(Wrapped):
-    """Repeats the batch: its arrays have the shape (batch, batch, nodes)."""
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        return contact.mapped(lambda array: np.broadcast_to(array, problem.batch_shape + array.shape).copy())
-
-
 class ShapedByCreepage(Wrapped):
     """Gives the force an axis too many at small creepages."""
 
@@ -173,23 +154,15 @@ class ShapedByCreepage(Wrapped):
         return contact.replaced(tangential_force=contact.tangential_force[..., None])
 
 
-@pytest.mark.parametrize(
-    "model", [Batched(), ShapedByCreepage(), PairOfPoints()], ids=lambda model: type(model).__name__
-)
-def test_after_a_wrong_shape_no_other_check_is_run_which_might_fill_the_memory(model: Any) -> None:
+def test_after_a_wrong_shape_no_other_check_is_run_which_might_fill_the_memory() -> None:
     failures = {}
-    tracemalloc.start()
-    for check in checks(model):
+    for check in checks(ShapedByCreepage()):
         try:
             check()
         except AssertionError as error:
             failures[check.name] = str(error)
-    _, peak = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    assert {*failures, "exemptions_are_claims"} == {check.name for check in checks(model)}
+    assert {*failures, "exemptions_are_claims"} == {check.name for check in checks(ShapedByCreepage())}
     assert len({*failures.values()}) == 1
-    # A single check without this would solve 512 lines on 48 nodes: 512² · 48 numbers of 8 bytes are 100 MB an array.
-    assert peak < 10e6
 
 
 def test_a_model_that_raises_has_no_wrong_shape() -> None:

@@ -9,7 +9,7 @@ import pytest
 from click.testing import Result
 
 from tests.core.cases import assert_refused, wearlaw
-from wearlaw_kit.scaffold import Kind
+from wearlaw_kit.scaffold import Kind  # private: the kinds that the command offers
 
 pytestmark = pytest.mark.usefixtures("folder")
 

@@ -119,13 +119,6 @@ class JumpsIntoFullSlip(_ForceScaled):
         return np.where(reduced(problem) < 1.0, 0.999, 1.0)
 
 
-class StepsIntoFullSlip(_ForceScaled):
-    """The force lacks a millionth just below full slip."""
-
-    def factor(self, problem: wl.Problem) -> Any:
-        return np.where(reduced(problem) < 1.0, 1.0 - 1e-6 * reduced(problem) ** 4, 1.0)
-
-
 class WrongInitialSlope(_ForceScaled):
     """Too soft at first by 1e-8, right in full slip."""
 
@@ -246,7 +239,6 @@ CAUGHT: dict[Any, str] = {
     NotQuiteFullSlip: "full_slip_is_reached",
     AboveFriction: "force_stays_below_friction",
     JumpsIntoFullSlip: "forces_are_continuous",
-    StepsIntoFullSlip: "full_slip_is_met_from_both_sides",
     WrongInitialSlope: "initial_slope_is_that_of_the_half_space",
     FallsWithCreepage: "force_grows_with_creepage",
     NotSimilar: "contacts_are_similar",

@@ -32,13 +32,6 @@ class JumpElsewhere(Linear):
         return np.where(w < 5e6, SLOPE, 2 * SLOPE) * w
 
 
-class JumpThatIsNone(JumpElsewhere):
-    """A declared jump at which nothing jumps."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        return SLOPE * contact.wear_index_density
-
-
 class Smooth(Linear):
     """The right one of those without a breakpoint: steep, saturating and turning in places, but smooth."""
 
@@ -133,7 +126,6 @@ class HottestNode(Linear):
 CAUGHT: dict[type[wl.WearLaw], str] = {
     HiddenJump: "rate_jumps_only_where_declared",
     JumpElsewhere: "rate_jumps_only_where_declared",
-    JumpThatIsNone: "declared_jumps_exist",
     HiddenKink: "rate_has_kinks_only_where_declared",
     RampIsTooSteep: "ramps_sum_to_the_rate",
     FallsWithSlip: "is_monotone_as_declared",

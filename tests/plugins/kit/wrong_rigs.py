@@ -270,7 +270,7 @@ CAUGHT: dict[type[wl.Rig], str] = {
     MeanOfTheBatch: "arrays_equal_single_calls",
     OtherCreepage: "conditions_are_declared",
     CreepageFromZero: "creepage_is_proportional_to_its_condition",
-    MagnitudeOfCreepage: "only_creepage_turns_with_its_sign",
+    MagnitudeOfCreepage: "creepage_is_proportional_to_its_condition",
     TakesBareNumbers: "units_of_conditions_are_checked",
     TakesBarePreloads: "units_of_conditions_are_checked",
     NumberWithoutUnit: "units_of_conditions_do_not_matter",

@@ -296,8 +296,8 @@ CAUGHT: dict[Any, str] = {
     HalfTheDigits: "contact_is_in_double_precision",
     ReadsItself: "parameters_may_vary",
     Unsigned: "rate_is_never_negative",
-    PlainMean: "splitting_a_node_does_not_matter",
-    FirstNode: "order_of_nodes_does_not_matter",
+    PlainMean: "listing_of_nodes_does_not_matter",
+    FirstNode: "listing_of_nodes_does_not_matter",
     SingleDamage: "precision_is_double",
 }
 """The check that must catch each."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,8 +13,9 @@ import pytest
 
 import wearlaw as wl
 from tests.plugins.life.test_life import GIVEN, line, pipeline
+from tests.plugins.wheelsets import cone, on_round_heads
 from wearlaw_life import Life
-from wearlaw_life._removal import Profile
+from wearlaw_wheelset import Profile
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::wearlaw.RangeWarning",
@@ -33,15 +36,30 @@ def height(profile: Profile) -> np.ndarray[Any, Any]:
     return np.asarray(np.interp(Y, curve.y[tread], curve.z[tread]))
 
 
-def test_error_falls_with_the_square_of_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Half the step leaves a quarter of the error, or a third where contacts jump; one of first order leaves half."""
-    monkeypatch.setattr("wearlaw_life._wear_out.CORRECTION", math.inf)  # the depth alone sets the steps
-    steps = (0.02, 0.01, 0.0025)
-    heights = [height(life(line(25, 2.0), "2000 km", depth_step=f"{step} mm").profile) for step in steps]
-    errors = [np.sqrt(((one - heights[-1]) ** 2).mean()) for one in heights[:-1]]
-    order = math.log2(errors[0] / errors[1])
-    print(f"order in the step {order:.2f}, errors {errors}")
-    assert order > 1.6
+def orders(steps: tuple[float, ...], run: Callable[[str], Life]) -> list[float]:
+    """Return the order of convergence over three runs each, of steps that halve [mm]."""
+    heights = [height(run(f"{step} mm").profile) for step in steps]
+    changes = [np.sqrt(((one - other) ** 2).mean()) for one, other in itertools.pairwise(heights)]
+    found = [math.log2(one / other) for one, other in itertools.pairwise(changes)]
+    print(f"orders {np.round(found, 2)} of the step, changes {changes}")
+    return found
+
+
+def test_smooth_wear_converges_in_second_order_of_the_step() -> None:
+    """A cone on round heads touches them once, at places that move smoothly as it wears."""
+    predict = on_round_heads(cone(0.05), 0.3) | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
+
+    def run(depth_step: str) -> Life:
+        given = {**GIVEN, "smoothing": "5 mm", "conicity_step": math.inf, "depth_step": depth_step}
+        return wl.wear_out(predict, line(9, 2.0), over="3000 km", **given)
+
+    assert orders((0.01, 0.005, 0.0025, 0.00125), run) == pytest.approx([2.0, 2.0], abs=0.1)
+
+
+def test_wear_with_jumps_converges_in_an_order_between_first_and_second() -> None:
+    """On S1002 contacts jump as the profile wears: each jump leaves an error of first order, of its state's share."""
+    (order,) = orders((0.04, 0.02, 0.01), lambda step: life(line(25, 2.0), "2000 km", depth_step=step))
+    assert order == pytest.approx(1.77, abs=0.1)
 
 
 def test_error_falls_with_the_square_of_the_spacing() -> None:

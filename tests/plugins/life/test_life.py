@@ -196,6 +196,18 @@ def test_several_processes_give_the_same_life(tmp_path: Path, short: Life, monke
     assert lives[0].rows[1]["mass"] == pytest.approx(short.rows[1]["mass"], rel=1e-12)
 
 
+def test_a_cluster_gives_the_same_life(short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as machines,
+        distributed.Client(machines) as client,
+    ):
+        found = wl.wear_out(pipeline(), line(), over="500 km", client=client, **GIVEN)
+    assert found.rows[1]["mass"] == pytest.approx(short.rows[1]["mass"], rel=1e-12)
+    assert found.table["distance [km]"].iloc[-1] == pytest.approx(500.0)
+
+
 def test_s1002_has_the_dimensions_of_its_name() -> None:
     """EN 13715 names it S1002/h28/e32,5/6,7%: height, thickness and the slope of its field side.
 
@@ -318,9 +330,9 @@ def test_profile_too_short_for_the_wear() -> None:
 def test_interrupted_life_goes_on(tmp_path: Path, short: Life) -> None:
     path = tmp_path / "life.zarr"
     wl.wear_out(pipeline(), line(), over="1500 km", store=path, **GIVEN)
-    last = sorted(path.glob("step_*"))[-1]
+    *_, before, last = sorted(path.glob("part_*"))
     shutil.rmtree(last)
-    (next(sorted(path.glob("step_*"))[-1].glob("profile_0/c/*"))).write_bytes(b"damaged")
+    next(before.glob("profile_0/c/*")).write_bytes(b"damaged")
     with pytest.raises(wl.OutputError, match="resume"):
         wl.wear_out(pipeline(), line(), over="1500 km", store=path, **GIVEN)
     with pytest.raises(wl.OutputError, match="smoothing"):

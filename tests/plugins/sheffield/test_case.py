@@ -12,7 +12,7 @@ import wearlaw_sheffield
 from tests.plugins.sheffield.paper import HEAT, SPEED, mean_speed
 from wearlaw.models.labels import labels
 from wearlaw.plugins import loader
-from wearlaw_fits.wear_tests.reader import text_of_tests
+from wearlaw_fits.read_tests import text_of_tests
 from wearlaw_studies.case import Case, case_text, load_case
 from wearlaw_studies.study import run
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import warnings
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 import wearlaw as wl
 from tests.plugins.wheelsets import wheelset
@@ -60,6 +62,25 @@ def test_sum_is_the_same_from_a_file_in_blocks_on_two_processes(
     assert np.array_equal(one["depth"], two["depth"])
     whole = wl.sweep(PREDICT, TABLE, share="share", **GIVEN)
     assert one["depth"].values == pytest.approx(whole["depth"].values, rel=1e-12)
+
+
+def test_sum_in_a_store_goes_on_after_an_interrupt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 300)
+    given, path = {**GIVEN, "share": "share [%]"}, tmp_path / "sum.zarr"
+    due = wl.sweep(PREDICT, TABLE, store=path, **given)
+    xr.testing.assert_identical(due, wl.sweep(PREDICT, TABLE, **given))
+    first, second, *others = sorted(path.glob("part_*"))
+    assert others
+    shutil.rmtree(first)
+    (second / "depth/c/0/0").write_bytes(b"damaged")
+    with pytest.raises(wl.OutputError, match="resume"):
+        wl.sweep(PREDICT, TABLE, store=path, **given)
+    with pytest.warns(wl.ResumeWarning, match=f"{len(others)} of {len(others) + 2} blocks are kept"):
+        xr.testing.assert_identical(due, wl.sweep(PREDICT, TABLE, store=path, resume=True, **given))
+    with xr.open_zarr(path, consolidated=False) as stored:
+        xr.testing.assert_identical(stored.load(), due)
+    with pytest.raises(wl.OutputError, match="kept"):
+        wl.sweep(PREDICT, TABLE.iloc[::-1], store=path, resume=True, **given)
 
 
 def test_profiles_in_a_store_are_those_in_memory(tmp_path: Path) -> None:
