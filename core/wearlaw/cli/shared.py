@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
@@ -22,8 +23,8 @@ from wearlaw.settings.configuration import Configuration
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
-LINE, LEAST = 120, 80
-"""Letters of a note where there is no terminal, and the least."""
+LINE = 120
+"""Letters of a note that is printed in short, if the terminal is not wider."""
 
 
 class _WithRig(Configuration, extra="ignore"):
@@ -157,13 +158,16 @@ def verbose(command: CommandT) -> CommandT:
 
 
 def print_notes(notes: Iterable[str]) -> None:
-    """Print notes on standard error, a line each: as much as fits on a line, or the whole with `--verbose`."""
-    whole = click.get_current_context().meta.get("verbose", False)
-    width, cut = max(shutil.get_terminal_size((LINE, 24)).columns, LEAST), False
+    """Print notes on standard error: without sources and as far as a line goes, or the whole with `--verbose`."""
+    whole, cut = click.get_current_context().meta.get("verbose", False), False
+    width = max(shutil.get_terminal_size((LINE, 24)).columns, LINE)
     for note in notes:
         text = f"note: {note}"
         if not whole and (len(text) > width or "\n" in text):
-            text, cut = f"{text.splitlines()[0][: width - 1].rstrip()}…", True
+            text, cut = (
+                textwrap.shorten(re.sub(r" \([^()]*(\([^()]*\)[^()]*)*\)", "", text), width, placeholder=" …"),
+                True,
+            )
         click.echo(text, err=True)
     if cut:
         click.echo("(--verbose prints whole notes)", err=True)

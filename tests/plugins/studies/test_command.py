@@ -49,7 +49,7 @@ def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> No
     notes = [line for line in result.stderr.splitlines() if line.startswith("note: ")]
     subjects = ["usfd on exact", "brr on exact is left out", "sweep 'creepage'", "profile 'partial_slip'"]
     assert [note.split(": ")[1] for note in notes] == subjects
-    assert max(map(len, notes)) <= 100
+    assert max(map(len, notes)) <= 120
     whole = wearlaw("run", "my case.toml", "-o", "again", "--verbose").stderr.splitlines()
     assert [line.split(": ")[1] for line in whole] == subjects
     assert whole[1].endswith('write stages = ["patch_mean"] in the case, or use the contact model "global"')
