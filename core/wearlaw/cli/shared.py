@@ -23,6 +23,9 @@ from wearlaw.settings.configuration import Configuration
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
+_SOURCE = re.compile(r" \((?:[^()]|\([^()]*\)){40,}\)")
+"""A remark in parentheses that is as long as a source of the literature."""
+
 LINE = 120
 """Letters of a note that is printed in short, if the terminal is not wider."""
 
@@ -164,10 +167,7 @@ def print_notes(notes: Iterable[str]) -> None:
     for note in notes:
         text = f"note: {note}"
         if not whole and (len(text) > width or "\n" in text):
-            text, cut = (
-                textwrap.shorten(re.sub(r" \([^()]*(\([^()]*\)[^()]*)*\)", "", text), width, placeholder=" …"),
-                True,
-            )
+            text, cut = textwrap.shorten(_SOURCE.sub("", text), width, placeholder=" …"), True
         click.echo(text, err=True)
     if cut:
         click.echo("(--verbose prints whole notes)", err=True)
