@@ -218,6 +218,9 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
         if left_out:
             more = f" {left_out} more are left out; choose among them with pairs, contact_models or patches."
     else:
+        if spec.profile and "y" not in data and not patch_axes(data):  # a level line
+            level = 100.0 * float(np.ravel(grid.problem(case.rig).longitudinal_creepage)[0])
+            data = data.assign(creepage=("x", np.full(data.sizes["x"], level)))
         if spec.sweep:
             axis = _axis_along(data, spec.x, case.rig.creepage)
             data, free = along(data, axis), {axis}

@@ -479,10 +479,7 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     (law,) = prediction.laws
     if prediction.problem.geometry == "line":
         local = [law.outcome.name] if law.outcome.of == "area mean" else []
-        profile = prediction.profile
-        creepage = float(prediction.creepage.m_as("%"))
-        level = {"creepage": (profile.x.dims, np.full(profile.x.shape, creepage), {"units": "%"})}
-        return [*local, *of_law], profile.assign(whole | of_law | level)
+        return [*local, *of_law], prediction.profile.assign(whole | of_law)
     bodies = [body for body in rig.bodies if law.body in (None, body)]
     across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS).reset_coords() for body in bodies}
     named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
