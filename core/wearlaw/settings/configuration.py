@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from threading import RLock
 from types import NoneType
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, get_args, get_origin
@@ -18,7 +17,7 @@ from wearlaw.errors import (
     did_you_mean,
     shown,
 )
-from wearlaw.settings.docstrings import field_docstrings, place_of_statement
+from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import full_text, plain_number
 
 if TYPE_CHECKING:
@@ -82,7 +81,6 @@ class Configuration(BaseModel):
         @classmethod
         def __pydantic_init_subclass__(cls, **options: Any) -> None:
             super().__pydantic_init_subclass__(**options)
-            cls._place = place_of_statement(cls)
             if not cls.__pydantic_complete__:
                 cls.__signature__ = _Signature()
 
@@ -154,11 +152,15 @@ class Configuration(BaseModel):
         return repr(self)
 
     def __repr__(self) -> str:
-        return _in_lines(super().__repr__())
-
-    def __repr_args__(self) -> Any:
-        for name, value in super().__repr_args__():
-            yield name, _Text(full_text(value)) if isinstance(value, pint.Quantity) else value
+        text = f"{self.__repr_name__()}("
+        for name, value in self.__repr_args__():
+            shown = full_text(value) if isinstance(value, pint.Quantity) else repr(value)
+            field = shown if name is None else f"{name}={shown}"
+            start = text.rfind("\n") + 1
+            if len(text) - start + len(field.partition("\n")[0]) >= LINE and text[start:].strip():
+                text = text.rstrip() + "\n    "
+            text += f"{field}, "
+        return text.removesuffix(", ") + ")"
 
 
 def _is_number(annotation: Any) -> bool:
@@ -205,28 +207,6 @@ def known_as(name: str, record: ConfigurationT) -> ConfigurationT:
 def known_name(record: Configuration) -> str | None:
     """Return the name under which a record was looked up, or None if it was not looked up."""
     return vars(record).get("_known_as")
-
-
-_FIELD = re.compile(r"""(?:'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*"|,(?!\s)|[^,])+(?:,\s+|$)""")
-"""A field of a record that is shown, up to the next one; a text between quotes may hold commas."""
-
-
-def _in_lines(shown: str) -> str:
-    """Break the text of a record between its fields, at any depth, so that lines are no longer than `LINE`."""
-    lines = [""]
-    for field in _FIELD.findall(shown):
-        if lines[-1].strip() and len(lines[-1]) + len(field.rstrip()) > LINE:
-            lines[-1] = lines[-1].rstrip()
-            lines.append(4 * " ")
-        lines[-1] += " ".join([field.rstrip(), ""]) if field != field.rstrip() else field
-    return "\n".join(lines)
-
-
-class _Text(str):
-    """A text with a repr without quotes."""
-
-    def __repr__(self) -> str:
-        return str(self)
 
 
 def configuration_error(subject: str, model: type[BaseModel], error: ValidationError) -> ConfigurationError:
