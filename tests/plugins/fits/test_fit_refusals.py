@@ -129,20 +129,6 @@ def test_wrong_arguments_are_refused_by_name(predict: Any, free: Any, settings: 
     refused(f"^{names}", predict, made_up(usfd("global"), 0.1), free, **settings)
 
 
-@pytest.mark.parametrize(("confidence", "least"), [(0.5, 4), (0.9, 20), (0.95, 40), (0.99, 200)])
-def test_replicates_too_few_for_the_ends_of_an_interval_are_refused(confidence: float, least: int) -> None:
-    predict, tests = usfd("global"), made_up(usfd("global"), 0.1)
-    refused(f"^bootstrap: .*{least}", predict, tests, ["q_s"], bootstrap=least - 1, confidence=confidence)
-    enough = wl.fit(predict, tests, ["q_s"], bootstrap=least, confidence=confidence)
-    assert len(enough.samples["q_s"].magnitude) == least
-
-
-def test_too_few_tests_are_refused() -> None:
-    predict, tests = usfd("global"), made_up(usfd("global"), 0.1)
-    refused("4 measurements cannot tell 4 parameters", predict, tests[[0, 8, 14, 19]], ALL)
-    refused("1 measurement cannot tell 1 parameter", predict, tests[[3]], ["m_m"])
-
-
 def test_rates_of_zero_are_refused_where_scatter_is_by_a_factor() -> None:
     predict, tests = usfd("global"), made_up(usfd("global"))
     rate = tests.wear_rate.magnitude.copy()
@@ -213,13 +199,6 @@ def test_a_fit_at_a_bound_is_warned_of_and_the_caller_is_named() -> None:
     with pytest.warns(wl.FitWarning, match="at a bound of q_s") as caught:
         wl.fit(predict, tests, free=["q_s"], bootstrap=0, bounds={"q_s": ("70 ug/m/mm^2", "80 ug/m/mm^2")})
     assert caught[0].filename == __file__
-
-
-def test_a_test_that_decides_a_parameter_alone_is_warned_of() -> None:
-    predict = usfd("global")
-    tests = made_up(predict, 0.1, creepage=ONE_CATASTROPHIC)
-    with pytest.warns(wl.FitWarning, match="meets test number 13 whatever is measured"):
-        wl.fit(predict, tests, free=["m_m", "q_s", "m_c"], bootstrap=0)
 
 
 def test_a_fit_that_does_not_converge_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
