@@ -35,7 +35,7 @@ ROOT = Path(__file__).parents[1]
 TESTS = {
     "wearlaw_archard": "plugins/archard/test_archard.py",
     "wearlaw_brr": "plugins/brr/test_brr.py",
-    "wearlaw_contact_files": "plugins/contact_files/test_contact_files.py plugins/contact_files/test_refusals.py",
+    "wearlaw_contact_files": "plugins/contact_files/test_contact_files.py",
     "wearlaw_energy": "plugins/energy/test_energy.py",
     "wearlaw_exact": "plugins/exact/test_kernel.py plugins/exact/test_exact.py test_numbers.py",
     "wearlaw_fastsim": "plugins/fastsim/test_kernel.py plugins/fastsim/test_first_slip.py"

@@ -242,7 +242,6 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from wearlaw.pipeline.inverse import creepage_for
     from wearlaw.plugins.law_files import read_law, read_wear_law
     from wearlaw_archard.coefficients import wear_coefficient
     from wearlaw_explore import explore
@@ -258,12 +257,13 @@ if TYPE_CHECKING:
     from wearlaw_studies.case import Case, load_case
     from wearlaw_studies.sections import CheckedClaim, Section, Verdict
     from wearlaw_studies.study import Study, run
+    from wearlaw_sweeps.inverse import creepage_for
     from wearlaw_sweeps.sweep import sweep
     from wearlaw_twin_disc import Disc, TwinDisc
     from wearlaw_wheel_rail import WheelRail
 
 _LATE = {
-    "creepage_for": "wearlaw.pipeline.inverse",
+    "creepage_for": "wearlaw_sweeps.inverse",
     "read_law": "wearlaw.plugins.law_files",
     "read_wear_law": "wearlaw.plugins.law_files",
     "wear_coefficient": "wearlaw_archard.coefficients",

@@ -10,7 +10,7 @@ from bokeh.palettes import Viridis256
 from bokeh.plotting import figure
 
 import wearlaw as wl
-from wearlaw.pipeline.profiles import POSITION
+from wearlaw.pipeline.worn import POSITION
 from wearlaw.units.variables import label
 from wearlaw_explore._answer import law_name, unwarned
 

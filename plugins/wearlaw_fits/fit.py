@@ -16,10 +16,10 @@ from wearlaw.arrays.array import Array, steadily
 from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown
 from wearlaw.models.law import Calibration, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces
+from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import warn_of_parameters
-from wearlaw.pipeline.named_numbers import changed_parts, staged_models
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.pipeline.ranges import mean_over_patch, overload_of
+from wearlaw.pipeline.ranges import overload_of
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import specification
 from wearlaw.settings.arguments import expect
@@ -39,6 +39,7 @@ from wearlaw_fits.intervals import (
 )
 from wearlaw_fits.lack_of_fit import LackOfFit, lack_of_fit, repeats
 from wearlaw_fits.least_squares import Bounds, Solutions, refine, search
+from wearlaw_fits.named_numbers import changed_parts, staged_models
 from wearlaw_fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests
@@ -163,7 +164,7 @@ def fit(
         found = _result(task, best, replicates, confidence, settings)
     overload = task.overload(best)
     if overload:
-        overload.warn(stacklevel=2)
+        overload.warn()
     poor = (one.warning for one in found.lack_of_fit if one.poor)
     for text in (*poor, *_at_bounds(task, best), *_unreliable(task, replicates)):
         warnings.warn(text, FitWarning, stacklevel=2)
@@ -386,8 +387,8 @@ def _calibration(task: _Task, predict: Pipeline[...], one: Observations) -> Cali
     """Return the calibration of a fitted law."""
     problem, model = one.problem, predict.contact_model
     means = {
-        "pressure": mean_over_patch(problem, {}, "pressure"),
-        "slip_speed": mean_over_patch(problem, {}, "slip_speed"),
+        "pressure": Totals().mean(problem, "pressure"),
+        "slip_speed": Totals().mean(problem, "slip_speed"),
         "wear_index_density": wear_index_density(predict, problem),
     }
     options = ((name, getattr(model, name)) for name in type(model).model_fields)
@@ -499,4 +500,4 @@ def _warn_of_kept(task: _Task) -> None:
             continue
         law, problem = predict.laws[one.law], one.problem
         if any((one.law, name) not in free for name in law.numbers):
-            warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law, 4)
+            warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law)

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import FitError, InputError, UnitError, did_you_mean, shown
-from wearlaw.pipeline.named_numbers import NamedNumbers, Place, part_at
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import allowed_range, number_in_si, number_like, numbers
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
 from wearlaw.units.registry import symbol
 from wearlaw_fits.least_squares import Bounds
+from wearlaw_fits.named_numbers import NamedNumbers, Place, part_at
 
 FRICTION = "friction_coefficient"
 """The only parameter that is a condition, not a number of a law or stage."""

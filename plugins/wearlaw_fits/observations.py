@@ -15,11 +15,11 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConfigurationError, FitError, ModelError
 from wearlaw.models.law import WEAR, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
-from wearlaw.pipeline.named_numbers import Place, check_loads_stay, staged_models
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
+from wearlaw_fits.named_numbers import Place, check_loads_stay, staged_models
 from wearlaw_fits.wear_tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]

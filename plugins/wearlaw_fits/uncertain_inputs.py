@@ -14,12 +14,12 @@ from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
-from wearlaw.pipeline.named_numbers import Kind, NamedNumbers, Place
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.units.quantities import Unit, coefficient, from_si
 from wearlaw.units.registry import symbol
 from wearlaw_fits.distributions import Distribution, PublishedRange, uniform
+from wearlaw_fits.named_numbers import Kind, NamedNumbers, Place
 from wearlaw_fits.result import Fit
 
 OTHERS = "\nThe values are samples of its distribution; choose one without such values, such as lognormal or uniform"

@@ -19,12 +19,12 @@ from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import WEAR, Numbers, named_outcomes
 from wearlaw.numerics.integrate import integrate_laws
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
-from wearlaw.pipeline.named_numbers import Kind, Place, check_loads_stay, staged_models
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
 from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw_fits.distributions import Distribution, PublishedRange
+from wearlaw_fits.named_numbers import Kind, Place, check_loads_stay, staged_models
 from wearlaw_fits.result import Fit
 from wearlaw_fits.uncertain_inputs import OTHERS, Uncertain, UncertainCondition, check_samples, numbers_of, of_fit
 from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis, Shade
@@ -274,7 +274,7 @@ class Uncertainty:
 
     def _samples_of(self, outcome: str) -> Quantity:
         index = self._index(outcome)
-        return from_si(self._whole._values(4)[index], self._laws[index].outcome.unit)
+        return from_si(self._whole._values()[index], self._laws[index].outcome.unit)
 
     def _index(self, outcome: str) -> int:
         """Return the index of the law of an outcome."""
@@ -328,16 +328,16 @@ class Uncertainty:
         except InputError as error:
             raise InputError(f"{error}{OTHERS}") from None
 
-    def _values(self, stacklevel: int) -> tuple[Array, ...]:
-        """Return the samples of all outcomes in SI; warn the first time, where `stacklevel` 1 is this method."""
+    def _values(self) -> tuple[Array, ...]:
+        """Return the samples of all outcomes in SI; warn the first time."""
         if self._found is None:
             with steadily():
                 sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
                 probability = sequence.random_base2(self.samples.bit_length() - 1).T
-                self._found = self._sampled(probability, range(len(self._laws)), stacklevel + 1)
+                self._found = self._sampled(probability, range(len(self._laws)), warns=True)
         return self._found
 
-    def _sampled(self, probability: Array, indices: Sequence[int], stacklevel: int | None = None) -> tuple[Array, ...]:
+    def _sampled(self, probability: Array, indices: Sequence[int], warns: bool = False) -> tuple[Array, ...]:
         """Return outcomes of laws in SI at probabilities (inputs, samples), samples along the last axis.
 
         Parameters
@@ -345,8 +345,8 @@ class Uncertainty:
         probability : ndarray, (inputs, samples)
         indices : sequence of int
             The laws.
-        stacklevel : int, optional
-            If given, warn of samples outside the range of the laws or of elastic contact.
+        warns : bool, optional
+            Whether to warn of samples outside the range of the laws or of elastic contact.
         """
         count = probability.shape[-1]
         shape = (*self.shape, count)
@@ -369,7 +369,7 @@ class Uncertainty:
         flat = self._problem(conditions).broadcast_to(shape).flatten()
         watch = RangeWatch(*laws)
         check_traction(predict.contact_model, flat)
-        watching = None if stacklevel is None else watch.see_block
+        watching = watch.see if warns else None
         points = np.arange(math.prod(shape)).reshape(-1, count)
         found = np.empty((len(laws), flat.size))
         for model, members in staged_models(predict, numbers, count):
@@ -383,10 +383,10 @@ class Uncertainty:
                 p.append({**law.numbers, **varied})
             part = flat[chosen] if members.size < count else flat
             found[:, chosen] = integrate_laws(model, laws, part, watching, p).values
-        if stacklevel is not None:
-            predict.warn_of_problem(flat, stacklevel + 1)
-            warn_of_unlike_materials(predict.contact_model, flat, stacklevel + 1)
-            watch.warn(stacklevel)
+        if warns:
+            predict.warn_of_problem(flat)
+            warn_of_unlike_materials(predict.contact_model, flat)
+            watch.warn()
         return tuple(values.reshape(shape) for values in found)
 
     def __repr__(self) -> str:

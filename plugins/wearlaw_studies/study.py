@@ -238,7 +238,7 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
         new = found_in.of_contact[pair.contact_model] if pair.contact_model not in contacts else ()
         outputs = [*_of_pair(pair, first), *new, *(found_in.of_point if not contacts else ())]
         with notes.of(f"sweep '{name}'"):
-            warn_of_unlike_materials(pair.pipeline.contact_model, first, stacklevel=1)
+            warn_of_unlike_materials(pair.pipeline.contact_model, first)
             found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first.dims)
         contacts.setdefault(pair.contact_model, found)
         band = _band(f"{name}-{number}", pair, points, first.dims, found, evaluator)

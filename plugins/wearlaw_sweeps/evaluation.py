@@ -171,7 +171,7 @@ def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
             watch.see_outside(name, Seen(*seen))
     watch.overload = max((one.overload for one in every if one.overload), default=None)
     with caught_warnings() as found:
-        watch.warn(stacklevel=1)
+        watch.warn()
     remark = next((text for one in every for text in one.remarks), None)
     return found if remark is None else [*found, RangeWarning(remark)]
 

@@ -26,8 +26,8 @@ from wearlaw.errors import (
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
-from wearlaw.pipeline.profiles import POSITION
 from wearlaw.pipeline.variables import default_variables
+from wearlaw.pipeline.worn import POSITION
 from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.settings.configuration import parts
@@ -310,8 +310,8 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
             slipperiest = min(slipperiest, one, key=lambda some: np.nanmin(some.friction_coefficient, initial=np.inf))
             if there is None and one.size:
                 there = one
-    pipeline.warn_of_problem(first, stacklevel=4)
-    warn_of_unlike_materials(pipeline.contact_model, slipperiest, stacklevel=4)
+    pipeline.warn_of_problem(first)
+    warn_of_unlike_materials(pipeline.contact_model, slipperiest)
     if there is None:
         raise ConditionsError(TOUCH_NOWHERE.format(pipeline.rig.name))
     return there

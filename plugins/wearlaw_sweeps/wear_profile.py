@@ -17,7 +17,7 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConditionsError, DataError, shown
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.profiles import PATCH, POSITION
+from wearlaw.pipeline.worn import PATCH, POSITION
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.units.quantities import Q, coefficient
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs

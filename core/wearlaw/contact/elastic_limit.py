@@ -41,7 +41,6 @@ Medusa (https://e6.ijs.si/medusa/wiki/index.php/Hertzian_contact); P. J. Vermeul
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
@@ -49,7 +48,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
 import numpy as np
 
 from wearlaw.arrays.array import Array, extremes
-from wearlaw.errors import InputError, PlasticityWarning, shown
+from wearlaw.errors import InputError, PlasticityWarning, shown, warn
 from wearlaw.units.quantities import coefficient
 
 if TYPE_CHECKING:
@@ -170,19 +169,18 @@ class Overload(NamedTuple):
     traction_coefficient: float
     """The transmitted traction, T/N [-]."""
 
-    def warn(self, stacklevel: int) -> None:
-        """Warn of this point; `stacklevel` 1 is the caller."""
+    def warn(self) -> None:
+        """Warn of this point."""
         pressure, limit = 1e-6 * self.max_pressure, 1e-6 * self.max_pressure / self.ratio
         passed, result = (
             ("the shakedown limit", "the material flows with every passage")
             if self.beyond_shakedown
             else ("first yield", "the material flows until residual stresses keep it elastic")
         )
-        warnings.warn(
+        warn(
             f"the maximum pressure of {pressure:.4g} MPa at T/N = {self.traction_coefficient:.3g} is beyond {passed},"
             f" {limit:.4g} MPa: {result}, which elastic contact models leave out",
             PlasticityWarning,
-            stacklevel=stacklevel + 1,
         )
 
 

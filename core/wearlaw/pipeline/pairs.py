@@ -73,7 +73,7 @@ def compose(
                 with notes.of(f"{law_label} on {contact_label}"):
                     pipeline = composed(rig, model, stages, law, geometry, remedy)
                     if problem is not None:
-                        pipeline.warn_of_problem(problem, stacklevel=1)
+                        pipeline.warn_of_problem(problem)
                     pairs.append(Pair(contact_label, law_label, pipeline))
             except CompositionError as error:
                 notes.add(f"{law_label} on {contact_label} is left out: {error}")

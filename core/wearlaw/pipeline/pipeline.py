@@ -25,6 +25,7 @@ from wearlaw.models.stage import Stage
 from wearlaw.numerics.integrate import integrate_forces, prepared
 from wearlaw.numerics.solving import check_problem
 from wearlaw.numerics.staged import staged
+from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import (
     check_geometry,
     check_laws,
@@ -39,6 +40,7 @@ from wearlaw.pipeline.composition import (
 )
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
+from wearlaw.pipeline.solution import Solution
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, Configuration
@@ -430,9 +432,7 @@ class Pipeline(Configuration, Generic[P]):
         if positional:
             first = next(iter(self.rig.conditions()), "creepage")
             raise ConditionsError(f"{shown(positional[0])}: is given without a name; write {first}=..., for example")
-        found = self.predict(self.posed(conditions), stacklevel=3)
-        found._given = conditions
-        return found
+        return self._predicted(self.posed(conditions), given=conditions)
 
     def posed(self, conditions: Mapping[str, Any], of_one_patch: str = "") -> Problem:
         """Return the rig's problem for these conditions, with loads that balance the forces.
@@ -458,13 +458,7 @@ class Pipeline(Configuration, Generic[P]):
             balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
         return rig._checked_balance(problem, balanced)
 
-    def predict(
-        self,
-        problem: Problem,
-        *,
-        on_block: Callable[[int], None] | None = None,
-        stacklevel: int = 2,
-    ) -> Prediction:
+    def predict(self, problem: Problem, *, on_block: Callable[[int], None] | None = None) -> Prediction:
         """Return the contact and the wear for a contact problem made by the rig.
 
         Parameters
@@ -473,62 +467,67 @@ class Pipeline(Configuration, Generic[P]):
             From the `problem` of the rig.
         on_block : callable, optional
             Called after each block with the number of its operating points, to show progress.
-        stacklevel : int
-            The caller that warnings name; 2 is the caller of this method.
         """
         if self.rig.patch_geometry not in (None, problem.geometry):
             raise InputError(
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
                 f" the geometry '{self.rig.patch_geometry}'; make it with the `problem` method of the rig"
             )
+        return self._predicted(problem, on_block)
+
+    def _predicted(
+        self,
+        problem: Problem,
+        on_block: Callable[[int], None] | None = None,
+        given: Mapping[str, Any] | None = None,
+    ) -> Prediction:
         if problem.exists is not None and not problem.exists.any():
             raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
-        self.warn_of_problem(problem, stacklevel + 1)
+        self.warn_of_problem(problem)
         watch = self.range_watch()
-        found = self.watched(problem, watch, on_block)
-        warn_of_unlike_materials(self.contact_model, problem, stacklevel + 1)
-        watch.warn(stacklevel)
+        found = self.watched(problem, watch, on_block, given)
+        warn_of_unlike_materials(self.contact_model, problem)
+        watch.warn()
         return found
 
-    def warn_of_problem(self, problem: Problem, stacklevel: int) -> None:
+    def warn_of_problem(self, problem: Problem) -> None:
         """Warn of parameters fitted for another shape of patch or other materials if only the problem shows them.
 
-        If the rig declares its geometry or its bodies, composing the pipeline gave the warning. `stacklevel` 1 is this
-        method.
+        If the rig declares its geometry or its bodies, composing the pipeline gave the warning.
         """
         rig, declared = self.rig, self.rig.patch_geometry is not None
         for law in self.laws:
             calibration = law.calibration
             if not declared and calibration is not None and calibration.geometry not in ("any", problem.geometry):
-                warn_of_calibration(problem.geometry, self.contact_model, self.scale, law, stacklevel + 1)
+                warn_of_calibration(problem.geometry, self.contact_model, self.scale, law)
             if not rig.bodies:
-                warn_of_materials(problem.bodies, law, stacklevel + 1)
+                warn_of_materials(problem.bodies, law)
 
     def range_watch(self) -> RangeWatch:
         """Return a watch that sees whether operating points stay elastic and within the ranges of the laws."""
         return RangeWatch(*self.laws)
 
-    def watched(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None = None) -> Prediction:
+    def watched(
+        self,
+        problem: Problem,
+        watch: RangeWatch,
+        on_block: Callable[[int], None] | None = None,
+        given: Mapping[str, Any] | None = None,
+    ) -> Prediction:
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         if problem.geometry == "line":
             check_traction(self.contact_model, problem)
         if problem.dims:
             watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
-        if not self.laws:
-            return self._without_law(model, problem, watch, on_block)
-        return solved(model, self.laws, problem, watch, on_block)
-
-    @steady
-    def _without_law(
-        self, model: ContactModel, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None
-    ) -> Prediction:
+        if self.laws:
+            return solved(model, self.laws, problem, watch, on_block, given)
         forces = integrate_forces(model, problem)
         watch.points += problem.size
         watch.overload = overload_of(problem, forces.tangential, watch.overload)
         if on_block is not None:
             on_block(problem.size)
-        return Prediction(problem, model, forces=forces)
+        return Prediction(Solution(problem, model, (), Totals.of_forces(forces), given))
 
 
 def expect_pipeline(predict: object) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw_fastsim._march import Cells, Ellipses, march
+from wearlaw_fastsim._march import Ellipses  # private: patches with any flexibilities
 
 CREEPAGES = ("longitudinal_creepage", "lateral_creepage", "spin")
 
@@ -28,12 +28,3 @@ def sample(points: int, elliptic: bool, **given: Any) -> Ellipses:
     }
     changed = {name: np.broadcast_to(np.asarray(value, dtype=np.float64), points) for name, value in given.items()}
     return Ellipses(**{**values, **changed}, elliptic=elliptic)
-
-
-def marched(ellipses: Ellipses, count: int, strips: int, compiled: bool = False) -> Cells:
-    """Return marched cells, none of which may keep what was in the memory before."""
-    cells = Cells.empty(ellipses.a.size, count, strips, compiled=compiled)
-    for array in cells.arrays:
-        array[:] = np.nan
-    march(ellipses, cells, compiled=compiled)
-    return cells

@@ -9,4 +9,3 @@ import pytest
 COMPILED = [False, True] if importlib.util.find_spec("numba") else [False]
 
 each_bound = pytest.mark.parametrize("elliptic", [False, True], ids=["parabolic", "elliptic"])
-each_way = pytest.mark.parametrize("compiled", COMPILED, ids=["NumPy", "numba"][: len(COMPILED)])

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_fastsim._march import Ellipses
-from wearlaw_fastsim._strips import StripFields, even_strips, forces, layout_on, strips
+from wearlaw_fastsim._march import Ellipses  # private: patches with any flexibilities
+from wearlaw_fastsim._strips import even_strips, forces, layout_on, strips  # private: with any number of nodes
+from wearlaw_fastsim._zones import Nodes  # private: as above
 
 ROUNDING = 100 * EPS
 
@@ -48,24 +49,30 @@ def sample(elliptic: bool, *, spin: bool = True, count: int = 60) -> Ellipses:
 
 
 class Solved(NamedTuple):
-    fields: StripFields
+    fields: Nodes
     forces: wl.CreepForces
     power: Array
     """∑ q·s dA [N]."""
 
 
+def by_points(nodes: Nodes) -> Nodes:
+    """Return nodes, (nodes, strips, points), as (points, nodes, strips)."""
+    return Nodes(*(array.transpose(2, 0, 1) for array in nodes))
+
+
 def solve(patches: Ellipses, count: int = 12, stick: int = 3, slip: int = 12) -> Solved:
     shares, widths = even_strips(count)
     layout = layout_on(patches, shares, widths)
-    fields = strips(patches, layout, stick, slip)
+    found = strips(patches, layout, stick, slip)
+    fields = by_points(found)
     energy = (fields.traction_x * fields.slip_x + fields.traction_y * fields.slip_y) * fields.length
     power = (energy.sum(axis=1) * widths).sum(axis=-1) * patches.b
-    return Solved(fields, forces(layout, fields), power)
+    return Solved(fields, forces(layout, found), power)
 
 
-def strips_at(patches: Ellipses, shares: Array, stick: int, slip: int) -> StripFields:
+def strips_at(patches: Ellipses, shares: Array, stick: int, slip: int) -> Nodes:
     """Return the fields of strips at y = b shares, whatever widths they stand for."""
-    return strips(patches, layout_on(patches, shares, np.zeros_like(shares)), stick, slip)
+    return by_points(strips(patches, layout_on(patches, shares, np.zeros_like(shares)), stick, slip))
 
 
 def limit(patches: Ellipses) -> Array:

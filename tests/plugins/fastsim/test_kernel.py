@@ -12,8 +12,8 @@ import pytest
 from tests.plugins.excess import DIGITS, Density, Real, copies, crowded, shares
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_fastsim import _kernel
-from wearlaw_fastsim._kernel import elliptic_excess, parabolic_excess
+from wearlaw_fastsim import _line  # private: its number of steps
+from wearlaw_fastsim._line import elliptic_excess, parabolic_excess  # private: of single points and of arrays
 
 
 def parabolic(reduced: Real) -> Density:
@@ -183,10 +183,10 @@ def test_the_roots_of_the_parabola_are_found_before_the_last_step(
     reduced = reduced[easy]
     level = share[easy] * np.where(reduced < 1.0, 2.0 * reduced, 1.0 + reduced)  # of the order of the maximum
     due = {copy: apply("parabolic", copy, reduced, level) for copy in KERNELS["parabolic"]}
-    monkeypatch.setattr(_kernel, "STEPS", steps)
+    monkeypatch.setattr(_line, "STEPS", steps)
     for copy, values in due.items():
         assert (apply("parabolic", copy, reduced, level) == values).all()
-    monkeypatch.setattr(_kernel, "STEPS", 1)
+    monkeypatch.setattr(_line, "STEPS", 1)
     for copy, values in due.items():
         assert not (apply("parabolic", copy, reduced, level) == values).all()
 

@@ -1,19 +1,23 @@
-"""Kalker's march: what holds in every cell, in blocks of patches, and in its compiled copy as in NumPy."""
+"""Kalker's march: what holds in every cell."""
 
 from __future__ import annotations
 
 import dataclasses
 
 import numpy as np
-import pytest
 
-from tests.plugins.fastsim.march import CREEPAGES, marched, sample
-from tests.plugins.fastsim.marks import COMPILED, each_bound, each_way
+from tests.plugins.fastsim.march import CREEPAGES, sample
+from tests.plugins.fastsim.marks import each_bound
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_fastsim import _march
-from wearlaw_fastsim._march import Cells, Ellipses, drop_gains, forces, march, strip_centres
-from wearlaw_fastsim._march_loops import WIDTH
+from wearlaw_fastsim._march import (  # private: patches with any flexibilities
+    Cells,
+    Ellipses,
+    drop_gains,
+    forces,
+    march,
+    strip_centres,
+)
 
 
 def power(cells: Cells) -> Array:
@@ -57,14 +61,10 @@ def assert_same_cells(found: Cells, expected: Cells, ellipses: Ellipses) -> None
         assert (np.abs(getattr(found, name) - getattr(expected, name)) <= near).all(), name
 
 
-# --- What holds in every cell ----------------------------------------------------------------------------------
-
-
-@each_way
 @each_bound
-def test_the_bound_is_kept_and_is_the_mean_of_both_ends(elliptic: bool, compiled: bool) -> None:
+def test_the_bound_is_kept_and_is_the_mean_of_both_ends(elliptic: bool) -> None:
     ellipses = sample(200, elliptic)
-    cells = marched(ellipses, 30, 7, compiled)
+    cells = march(ellipses, 30, 7)
     # q and the bound are sums of two terms each, of which q has another three roundings.
     assert (np.hypot(cells.traction_x, cells.traction_y) <= cells.bound * (1.0 + 8.0 * EPS)).all()
     half = 0.5 * ellipses.cell_lengths(30, 7)[:, None, :]
@@ -77,11 +77,10 @@ def test_the_bound_is_kept_and_is_the_mean_of_both_ends(elliptic: bool, compiled
     np.testing.assert_allclose(cells.bound, expected, atol=near * ellipses.bound_centre.max(), rtol=16.0 * EPS)
 
 
-@each_way
 @each_bound
-def test_slip_is_zero_in_stick_and_only_there(elliptic: bool, compiled: bool) -> None:
+def test_slip_is_zero_in_stick_and_only_there(elliptic: bool) -> None:
     ellipses = sample(200, elliptic, spin=0.0)
-    cells = marched(ellipses, 30, 7, compiled)
+    cells = march(ellipses, 30, 7)
     growth = np.hypot(
         ellipses.longitudinal_creepage / ellipses.longitudinal_flexibility,
         ellipses.lateral_creepage / ellipses.lateral_flexibility,
@@ -98,11 +97,10 @@ def test_slip_is_zero_in_stick_and_only_there(elliptic: bool, compiled: bool) ->
     assert 0.2 < slips.mean() < 0.9
 
 
-@each_way
 @each_bound
-def test_without_spin_the_cells_dissipate_what_the_forces_do(elliptic: bool, compiled: bool) -> None:
+def test_without_spin_the_cells_dissipate_what_the_forces_do(elliptic: bool) -> None:
     ellipses = sample(200, elliptic, spin=0.0)
-    cells = marched(ellipses, 30, 7, compiled)
+    cells = march(ellipses, 30, 7)
     found = forces(ellipses, cells)
     expected = ellipses.longitudinal_creepage * found.longitudinal + ellipses.lateral_creepage * found.lateral
     traction, slip = rounding(ellipses, cells)
@@ -112,17 +110,13 @@ def test_without_spin_the_cells_dissipate_what_the_forces_do(elliptic: bool, com
     assert (np.abs(summed(power(cells), ellipses) - expected) <= allowed).all()
 
 
-@each_way
 @each_bound
-def test_a_mirrored_problem_has_the_mirrored_solution(elliptic: bool, compiled: bool) -> None:
+def test_a_mirrored_problem_has_the_mirrored_solution(elliptic: bool) -> None:
     ellipses = sample(100, elliptic)
     mirrored = dataclasses.replace(ellipses, lateral_creepage=-ellipses.lateral_creepage, spin=-ellipses.spin)
-    cells, image = marched(ellipses, 30, 8, compiled), marched(mirrored, 30, 8, compiled)
+    cells, image = march(ellipses, 30, 8), march(mirrored, 30, 8)
     signs = {"traction_y": -1.0, "slip_y": -1.0}
-    back = {
-        field.name: signs.get(field.name, 1.0) * getattr(image, field.name)[..., ::-1]
-        for field in dataclasses.fields(Cells)
-    }
+    back = {name: signs.get(name, 1.0) * array[..., ::-1] for name, array in image._asdict().items()}
     assert_same_cells(Cells(**back), cells, ellipses)
     found, other = forces(ellipses, cells), forces(mirrored, image)
     limit = 8 * 30 * EPS * np.pi * ellipses.a * ellipses.b * ellipses.bound_centre
@@ -131,14 +125,13 @@ def test_a_mirrored_problem_has_the_mirrored_solution(elliptic: bool, compiled: 
     assert (np.abs(found.spin_moment + other.spin_moment) < limit * np.maximum(ellipses.a, ellipses.b)).all()
 
 
-@each_way
 @each_bound
-def test_without_creepage_or_friction_nothing_is_transmitted(elliptic: bool, compiled: bool) -> None:
-    at_rest = marched(sample(3, elliptic, **dict.fromkeys(CREEPAGES, 0.0)), 10, 5, compiled)
+def test_without_creepage_or_friction_nothing_is_transmitted(elliptic: bool) -> None:
+    at_rest = march(sample(3, elliptic, **dict.fromkeys(CREEPAGES, 0.0)), 10, 5)
     for name in ("traction_x", "traction_y", "slip_x", "slip_y"):
         assert (getattr(at_rest, name) == 0.0).all()
     smooth = sample(3, elliptic, bound_centre=0.0, spin=0.0)
-    cells = marched(smooth, 10, 5, compiled)
+    cells = march(smooth, 10, 5)
     assert (cells.traction_x == 0.0).all()
     assert (cells.traction_y == 0.0).all()
     # The growth over the length of a cell, and back.
@@ -148,32 +141,10 @@ def test_without_creepage_or_friction_nothing_is_transmitted(elliptic: bool, com
 
 @each_bound
 def test_no_cell_gains_energy_once_gains_are_dropped(elliptic: bool) -> None:
-    cells = marched(sample(400, elliptic, spin=3.0), 20, 20)
+    cells = march(sample(400, elliptic, spin=3.0), 20, 20)
     before, slip_x, slip_y = power(cells), cells.slip_x.copy(), cells.slip_y.copy()
     assert 0 < (before < 0.0).sum() < 1e-3 * before.size
     drop_gains(cells)
     np.testing.assert_array_equal(power(cells), np.maximum(before, 0.0))
     np.testing.assert_array_equal(cells.slip_x, np.where(before < 0.0, 0.0, slip_x))
     np.testing.assert_array_equal(cells.slip_y, np.where(before < 0.0, 0.0, slip_y))
-
-
-# --- Blocks and copies -----------------------------------------------------------------------------------------
-
-
-@each_bound
-def test_blocks_and_the_order_in_memory_do_not_matter(elliptic: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    ellipses = sample(11, elliptic)
-    whole = marched(ellipses, 12, 6)
-    monkeypatch.setattr(_march, "BLOCK", 4 * 6)
-    other = Cells.empty(11, 12, 6, compiled=True)
-    march(ellipses, other, compiled=False)
-    for found, expected in zip(other.arrays, whole.arrays, strict=True):
-        np.testing.assert_array_equal(found, expected)
-
-
-@pytest.mark.skipif(True not in COMPILED, reason="numba is not installed")
-@each_bound
-@pytest.mark.parametrize("strips", [1, 50, WIDTH, WIDTH + 1, 2 * WIDTH + 3])
-def test_the_compiled_march_is_the_march(elliptic: bool, strips: int) -> None:
-    ellipses = sample(40, elliptic)
-    assert_same_cells(marched(ellipses, 50, strips, True), marched(ellipses, 50, strips, False), ellipses)

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.plugins.fastsim.march import CREEPAGES, marched, sample
-from tests.plugins.fastsim.marks import each_bound, each_way
+from tests.plugins.fastsim.march import CREEPAGES, sample
+from tests.plugins.fastsim.marks import each_bound
 from tests.plugins.full_theory import spheres
 from wearlaw import Array
-from wearlaw_fastsim._march import Ellipses, forces, strip_centres
+from wearlaw_fastsim._march import Ellipses, forces, march, strip_centres  # private: patches with any flexibilities
 
 
 def without_spin(ellipses: Ellipses, strips: int) -> tuple[Array, Array]:
@@ -53,17 +53,16 @@ def orders(errors: list[Array]) -> Array:
     ellipse=1.5,
     off=0.25,
 )
-@each_way
 @each_bound
 def test_without_spin_forces_converge_to_the_closed_form(
-    elliptic: bool, compiled: bool, parabola: float, ellipse: float, off: float
+    elliptic: bool, parabola: float, ellipse: float, off: float
 ) -> None:
     ellipses = sample(400, elliptic, spin=0.0)
     exact = without_spin(ellipses, 3)
     share = np.pi * ellipses.a * ellipses.b * ellipses.bound_centre
     errors = []
     for count in (200, 400, 800, 1600):
-        found = forces(ellipses, marched(ellipses, count, 3, compiled))
+        found = forces(ellipses, march(ellipses, count, 3))
         errors.append(np.hypot(found.longitudinal - exact[0], found.lateral - exact[1]) / share)
     # Half way to the next order below and above; the cell where slip begins is met at random.
     assert (np.abs(orders(errors) - (ellipse if elliptic else parabola)) < off).all()
@@ -113,11 +112,8 @@ def by_differential_equation(patch: Ellipses, v: float) -> Any:
     order=1.0,
     off=0.25,
 )
-@each_way
 @each_bound
-def test_with_spin_tractions_converge_to_the_differential_equation(
-    elliptic: bool, compiled: bool, order: float, off: float
-) -> None:
+def test_with_spin_tractions_converge_to_the_differential_equation(elliptic: bool, order: float, off: float) -> None:
     patch = sample(
         1, elliptic, a=6e-3, b=4e-3, longitudinal_creepage=1e-3, lateral_creepage=-2e-3, spin=1.0, bound_centre=6e8,
         longitudinal_flexibility=4.6e-14, lateral_flexibility=5.3e-14, spin_flexibility=3.9e-14,
@@ -128,7 +124,7 @@ def test_with_spin_tractions_converge_to_the_differential_equation(
     paths = [by_differential_equation(patch, float(share)) for share in v]
     errors = []
     for count in (200, 400, 800, 1600):
-        cells = marched(patch, count, 2, compiled)
+        cells = march(patch, count, 2)
         x = cells.x[0] / half_length
         exact = np.stack([path(x[:, strip]) for strip, path in enumerate(paths)], axis=-1)
         found = np.stack([cells.traction_x[0], cells.traction_y[0]]) / greatest
@@ -142,16 +138,13 @@ def test_with_spin_tractions_converge_to_the_differential_equation(
 
 @pytest.mark.validates(
     "elliptic-contact",
-    "Kalker's march over even cells, NumPy and numba, on the same cases",
+    "Kalker's march over even cells",
     source="CONTACT's FASTSIM on 200 cells across, flexibilities not blended",
     held_to="{within:g} of μN",
     within=0.01,
 )
-@each_way
 @pytest.mark.parametrize(("method", "elliptic"), [("nb200", True), ("nbpar200", False)])
-def test_forces_meet_those_of_contact_with_three_flexibilities(
-    method: str, elliptic: bool, compiled: bool, within: float
-) -> None:
+def test_forces_meet_those_of_contact_with_three_flexibilities(method: str, elliptic: bool, within: float) -> None:
     reference = spheres(method)
     problem = reference.problem
     ellipses = Ellipses(
@@ -168,7 +161,7 @@ def test_forces_meet_those_of_contact_with_three_flexibilities(
         bound_centre=problem.friction_coefficient * problem.max_pressure * (1.0 if elliptic else 4.0 / 3.0),
         elliptic=elliptic,
     )
-    found = forces(ellipses, marched(ellipses, 400, 100, compiled))
+    found = forces(ellipses, march(ellipses, 400, 100))
     # The file has five digits, and 200 cells of one length for all strips, of which the first step is a whole one: of
     # first order, so that 1/200 of μN is what they may miss, and 1/400 what is missed here.
     apart = np.hypot(found.longitudinal - reference.force_x, found.lateral - reference.force_y)

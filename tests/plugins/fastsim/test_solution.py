@@ -10,7 +10,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, of_ratio
 from wearlaw import Array, Q
-from wearlaw_fastsim._solution import ellipses
+from wearlaw_fastsim._march import Ellipses  # private: the flexibilities
 
 Bound = Literal["elliptic", "parabolic"]
 BOUNDS: tuple[Bound, ...] = ("elliptic", "parabolic")
@@ -29,7 +29,7 @@ def test_flexibilities_and_bound_are_those_of_the_simplified_theory(
 ) -> None:
     c11, c22, c23, _ = TABLE_E3[axis_ratio, poisson_ratio]
     problem = of_ratio(axis_ratio, poisson_ratio).flatten()
-    found = ellipses(problem, elliptic)
+    found = Ellipses.of(problem, elliptic)
     a, b = 6e-3 * np.sqrt(axis_ratio), 6e-3 / np.sqrt(axis_ratio)
     # Kalker 1982: L1 = 8a/(3 C11 G), L2 = 8a/(3 C22 G), L3 = π a √(a/b)/(4 C23 G); some ten roundings
     assert found.longitudinal_flexibility == pytest.approx(8.0 * a / (3.0 * c11 * 80e9), rel=32 * EPS)
@@ -127,18 +127,6 @@ def test_what_rolls_freely_among_others_neither_slips_nor_drags(march: Literal["
         assert (contact(*creepages).slip[0] > 0.0).any()
 
 
-def test_a_march_is_compiled_by_its_number_of_cells(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[int] = []
-
-    def accelerated(points: int) -> bool:
-        asked.append(points)
-        return False
-
-    monkeypatch.setattr(wl, "accelerated", accelerated)
-    wl.contact_model("fastsim", march="uniform", strips=21).solve_ellipse(two_loads())
-    assert asked[0] == 55  # 2 × 21 × 21 / 16, rounded down
-
-
 def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch) -> None:
     random = np.random.default_rng(91)
     creepages = 10.0 ** random.uniform(-4.0, -1.5, (2, 200)) * random.choice([-1.0, 1.0], (2, 200))
@@ -149,7 +137,7 @@ def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch
         return float((contact.traction_x * contact.slip_x + contact.traction_y * contact.slip_y).min())
 
     assert least_power() >= 0.0
-    monkeypatch.setattr("wearlaw_fastsim._solution.drop_gains", lambda _: None)
+    monkeypatch.setattr("wearlaw_fastsim._march.drop_gains", lambda _: None)
     assert least_power() < 0.0
 
 

@@ -12,9 +12,9 @@ from tests.plugins.fastsim.marks import COMPILED, each_bound
 from tests.plugins.fastsim.strips import CASE, ROUNDING, ellipses, limit, sample, solve, strips_at
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_fastsim._march import Ellipses
-from wearlaw_fastsim._strips import even_strips
-from wearlaw_fastsim._zones import Zone, _where_it_sticks
+from wearlaw_fastsim._march import Ellipses  # private: patches with any flexibilities
+from wearlaw_fastsim._strips import even_strips  # private: with any number of nodes
+from wearlaw_fastsim._zones import Nodes, _where_it_sticks  # private: an excess that no patch has shown
 
 FIELDS = dataclasses.fields(Ellipses)[:-1]
 
@@ -296,7 +296,7 @@ def test_a_slip_zone_whose_excess_does_not_fall_to_zero_after_all_sticks_where_i
     x = np.array([0.1, 0.4, 0.7])[:, None]
     bound = 1.0 - x**2
     none = np.zeros((3, 1))
-    zone = Zone(x, none + 1.0, bound, 0.6 * bound, -0.8 * bound, none, none, np.array([[3.0], [0.5], [2.0]]))
+    zone = Nodes(x, none + 1.0, bound, 0.6 * bound, -0.8 * bound, none, none, np.array([[3.0], [0.5], [2.0]]))
     point = _where_it_sticks(zone, elliptic=False)
     assert np.cos(point.angle) == pytest.approx(0.4, rel=ROUNDING)
     assert (point.x[0], point.y[0]) == pytest.approx((0.6 * 0.84, -0.8 * 0.84), rel=ROUNDING)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 
 import wearlaw as wl
-from wearlaw import Contact, Material, Problem, TwinDisc, WheelRail
-from wearlaw_kit import conditions, elliptic_problems, wheel_rails
+from wearlaw import Contact, Problem
+from wearlaw_kit import elliptic_problems
 from wearlaw_kit.reduced import random_lines, wide_ellipses  # private: the batches that the checks try
 
 
@@ -44,24 +43,11 @@ def test_drawn_lines_are_of_hertz() -> None:
 
 
 @settings(max_examples=10)
-@given(contact=..., problem=..., rig=..., wheel_rail=..., material=...)
-def test_typed_arguments_are_drawn_by_hypothesis(
-    contact: Contact, problem: Problem, rig: TwinDisc, wheel_rail: WheelRail, material: Material
-) -> None:
+@given(contact=..., problem=..., ellipse=elliptic_problems())
+def test_typed_arguments_are_drawn_by_hypothesis(contact: Contact, problem: Problem, ellipse: Problem) -> None:
     assert contact.pressure.shape[0] == contact.rolling_speed.size
     assert problem.batch_shape == ()
-    assert rig.disc_1.material is not None
-    assert wheel_rail.bodies
-    assert material.density.check("[mass] / [length] ** 3")
-
-
-@settings(max_examples=10)
-@given(drawn=conditions(), rig=wheel_rails(), problem=elliptic_problems())
-def test_drawn_conditions_and_rigs_pose_problems(drawn: Any, rig: WheelRail, problem: Problem) -> None:
-    assert TwinDisc.suros().problem(**drawn).max_pressure > 0
-    posed = rig.problem(normal_force="1 N", longitudinal_creepage="1 %", friction_coefficient=0.3)
-    assert 0.01 < float(posed.a / posed.b) < 100.0
-    assert problem.geometry == "ellipse"
+    assert ellipse.geometry == "ellipse"
 
 
 @pytest.mark.parametrize(("first", "second"), [("wearlaw", "hypothesis"), ("hypothesis", "wearlaw")])

@@ -51,7 +51,7 @@ def forces_of(name: str, problem: wl.Problem) -> Callable[[wl.Problem], wl.Creep
     model = wl.contact_model(name)
     if problem.geometry != "line":
         return model.creep_forces
-    return lambda one: wl.CreepForces.of({"longitudinal": np.asarray(model.tangential_force(one))})
+    return lambda one: wl.CreepForces.of_line(np.asarray(model.tangential_force(one)))
 
 
 def hot(stage: Thermal, name: str, problem: wl.Problem) -> wl.Problem:

@@ -1,6 +1,6 @@
 """Pictures of a prediction: curves, a map or bars over its operating points, and the fields of a single patch.
 
-xarray and pandas draw, so that matplotlib is not loaded before the first picture.
+xarray and pandas draw. matplotlib is imported so that an error names the extra if it is missing.
 """
 
 from __future__ import annotations
@@ -8,17 +8,16 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
+import matplotlib as matplotlib
 import numpy as np
 
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
-from wearlaw.extras import needed_for
-from wearlaw.models.contact_model import Scale
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.datasets import Conditions, Named, dataset
-from wearlaw.pipeline.profiles import labelled
+from wearlaw.pipeline.datasets import Conditions, dataset, labelled
+from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.selection import in_words
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, label, name_of
@@ -54,26 +53,8 @@ FIELDS = ("traction", "pressure", "slip")
 """Fields of a patch that is not a line; the first is shown if none is named."""
 
 
-class Drawn(Named, Protocol):
-    """A prediction with the fields of its patch."""
-
-    scale: Scale
-
-    @property
-    def contact(self) -> Any:  # a Contact; pyright takes no cached property for one
-        """The solved contact."""
-        ...
-
-    @property
-    def profile(self) -> Any:
-        """The fields along the patch of a line, a dataset."""
-        ...
-
-
-def draw(prediction: Drawn, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
+def draw(prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
     """Draw a prediction; see `Prediction.plot`."""
-    with needed_for("a picture", "fits"):
-        import matplotlib  # noqa: F401  xarray would not say how to install it
     problem = prediction.problem
     points = problem.batch_shape[: len(problem.batch_shape) - len(problem.dims)]
     if math.prod(points) == 1 and x is None:
@@ -83,7 +64,9 @@ def draw(prediction: Drawn, conditions: Conditions, name: str | None, x: str | N
     return _over_points(prediction, conditions, name, x, ax)
 
 
-def _over_points(prediction: Drawn, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
+def _over_points(
+    prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None
+) -> Axes:
     """Draw a variable over the operating points: a map over two axes of many values, otherwise curves."""
     problem = prediction.problem
     found, variable = _found(prediction, conditions, name, x)
@@ -106,7 +89,7 @@ def _over_points(prediction: Drawn, conditions: Conditions, name: str | None, x:
 
 
 def _found(
-    prediction: Drawn, conditions: Conditions, name: str | None, x: str | None = None
+    prediction: Prediction, conditions: Conditions, name: str | None, x: str | None = None
 ) -> tuple[xarray.Dataset, str]:
     """Return the variables to draw, without axes of a single operating point, and the name of the one to draw."""
     outcomes = named_outcomes(prediction.laws)
@@ -176,7 +159,7 @@ def _map(found: xarray.Dataset, variable: str, along: str, up: str, problem: Pro
     return drawn
 
 
-def _bars(prediction: Drawn, conditions: Conditions, name: str | None, ax: Axes | None) -> Axes:
+def _bars(prediction: Prediction, conditions: Conditions, name: str | None, ax: Axes | None) -> Axes:
     """Draw a variable of each existing patch at one operating point."""
     found, variable = _found(prediction, conditions, name)
     dims = [str(dim) for dim in found[variable].dims]
@@ -195,7 +178,7 @@ def _bars(prediction: Drawn, conditions: Conditions, name: str | None, ax: Axes 
     return drawn
 
 
-def _of_patch(prediction: Drawn, name: str | None, ax: Axes | None) -> Axes:
+def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes:
     """Draw the fields of the only patch: along a line, otherwise as a map."""
     if prediction.scale == "patch":
         raise InputError(
@@ -228,7 +211,7 @@ def _of_patch(prediction: Drawn, name: str | None, ax: Axes | None) -> Axes:
     return drawn
 
 
-def _map_of_patch(prediction: Drawn) -> xarray.Dataset:
+def _map_of_patch(prediction: Prediction) -> xarray.Dataset:
     """Return the fields of a patch over its strips and their nodes."""
     contact = prediction.contact
     (*_, strips, nodes) = contact.pressure.shape
