@@ -59,13 +59,15 @@ def _located(
         middle = (low + high) // 2
         low, high = (low, middle) if fault(low, middle) else (middle, high)
     first = fault(low, high, single=True)
-    if first is None or (low == 0 and type(table) is Table and fault(len(numbers) - 1, len(numbers))):
-        return error  # wrong only beside other rows, or in memory and wrong from end to end
+    if first is None:  # wrong only beside other rows
+        return error
     message = str(first)
     name = next((name for name in points.varying if message.startswith(f"{name}: ")), None)
     if name is None:
         values = (f"{key} = {one.values[low]:.4g} {one.unit or ''}".rstrip() for key, one in points.varying.items())
         return DataError(f"{table.label}, {table.where(numbers[low])} ({', '.join(values)}): {message}")
+    if low == 0 and type(table) is Table and fault(len(numbers) - 1, len(numbers), single=True):
+        return error  # in memory, and wrong from end to end
     head = points.varying[name].origin.rpartition(" of ")[0]
     if points.varying[name].unit is None and "has no unit" in message:
         message += f"; the column {advice(name, head)}"
