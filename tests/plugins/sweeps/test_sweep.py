@@ -147,6 +147,7 @@ def test_wrong_tables_are_refused(table: Any, conditions: Any, named: str) -> No
         ("normal_force", {"normal_force": Q([1, -2], "kN")}),
         ("creepage", {"creepage": Q([[1, 2]], "%")}),
         ("creepage", {"creepage": [0.01, 0.02]}),
+        ("creepage", {"creepage": ["a"]}),
         ("did you mean 'creepage'", {"crepage": Q([1], "%")}),
         ("did you mean 'wear_rate'", {"outputs": ["wear_rat"]}),
         ("contact", {"outputs": ["contact"]}),
