@@ -73,7 +73,6 @@ NOT_RUN = {
     ("docs/conformance.md", STEEP): "the law is made up; tests/plugins/kit/test_check.py runs the option",
     ("CONTRIBUTING.md", ".venv/bin/python -m pytest tests/plugins/kth/test_kth.py"): "runs with the suite as it is",
     ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
-    ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
     ("CONTRIBUTING.md", HOUSE): "no code; tests/test_contributing.py compares it with the code",
     ("docs/case-files.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,

@@ -61,10 +61,11 @@ def _located(
     first, last = fault(low, high, single=True), fault(len(numbers) - 1, len(numbers), single=True)
     if first is None:  # wrong only beside other rows
         return error
-    if type(table) is Table and low == 0 and last is not None:  # in memory, and wrong from end to end
-        return error
     message = str(first)
     name = next((name for name in points.varying if message.startswith(f"{name}: ")), None)
+    throughout = low == 0 and last is not None and name is not None  # a condition that is wrong from end to end
+    if type(table) is Table and throughout:  # in memory
+        return error
     head = "" if name is None else points.varying[name].origin.rpartition(" of ")[0]
     column = f", column '{head}'" if head else ""
     if name is None:
@@ -72,7 +73,7 @@ def _located(
         column = f" ({', '.join(values)})"
     if name is not None and points.varying[name].unit is None and "has no unit" in message:
         message += f"; the column {advice(name, head)}"
-    if low == 0 and len(numbers) > 1 and last is not None and str(last) == str(first):  # so is every row
+    if throughout and len(numbers) > 1 and str(last) == str(first):
         return DataError(f"{table.label}{column}: {message}")
     return DataError(f"{table.label}, {table.where(numbers[low])}{column}: {message}")
 

@@ -2,25 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
-import linecache
-import sys
-import types
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
-import pytest
 from pydantic import Field
 
 import wearlaw as wl
 from wearlaw.settings.docstrings import field_docstrings  # private: what `show`, schemas and signatures say of fields
-
-CLASS = '''
-class Toy(wl.Configuration):
-    a: float = 1.0
-    """The a."""
-'''
 
 
 class Described(wl.Configuration):
@@ -51,23 +38,6 @@ class Inheriting(Described):
     """Said at last."""
 
 
-@pytest.fixture
-def notebook(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Any]:
-    """Run source as IPython does: in a module without a file, with the lines kept in `linecache`."""
-    module = types.ModuleType("a_notebook")
-    monkeypatch.setitem(sys.modules, module.__name__, module)
-    vars(module)["wl"] = wl
-    cells = itertools.count()
-
-    def run(source: str) -> Any:
-        name = f"<ipython-input-{next(cells)}>"
-        monkeypatch.setitem(linecache.cache, name, (len(source), None, source.splitlines(keepends=True), name))
-        exec(compile(source, name, "exec"), vars(module))
-        return module
-
-    return run
-
-
 def test_a_field_is_described_by_hand_or_by_the_literal_below_it() -> None:
     assert field_docstrings(Described) == {
         "below": "Said below\nin two lines.",
@@ -89,17 +59,9 @@ def test_the_schema_describes_the_fields_of_what_a_field_holds() -> None:
     assert schema["properties"]["disc_1"]["description"] == field_docstrings(wl.TwinDisc)["disc_1"] != ""
 
 
-def test_classes_of_a_notebook_are_described(notebook: Any) -> None:
-    assert field_docstrings(notebook(CLASS).Toy) == {"a": "The a."}
-    assert field_docstrings(notebook(CLASS.replace("The a", "Another a")).Toy) == {"a": "Another a."}
-
-
-@pytest.mark.parametrize("text", ["", "\nclass Other:\n    a: float\n    'The a.'\n"])
-def test_a_class_whose_source_is_gone_works_without_descriptions(tmp_path: Path, text: str) -> None:
-    file = tmp_path / "file.py"
-    file.write_text(text, encoding="utf-8")
+def test_a_class_whose_source_is_gone_works_without_descriptions() -> None:
     names: dict[str, Any] = {"wl": wl, "__name__": "a_module_that_is_gone"}
-    exec(compile(CLASS, str(file), "exec"), names)
+    exec("class Toy(wl.Configuration):\n    a: float = 1.0\n    'The a.'\n", names)
     assert field_docstrings(names["Toy"]) == {"a": ""}
     assert "description" not in names["Toy"].model_json_schema()["properties"]["a"]
     assert names["Toy"]().a == 1.0

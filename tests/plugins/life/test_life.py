@@ -303,6 +303,7 @@ def changed(**columns: Any) -> pd.DataFrame:
         (line(3).drop(columns="share"), {}, wl.DataError, "share"),
         (line(3).set_axis(["lateral_displacement", "share"], axis=1), {}, wl.UnitError, "lateral_displacement"),
         (changed(y=[0.0, 1.0, 7.0]), {}, wl.DataError, r"row 2 .*lateral_displacement = 7 mm.*climbs"),
+        (changed(y=[-7.0, 1.0, 7.0]), {}, wl.DataError, r"row 0 .*lateral_displacement = -7 mm.*climbs"),
         (changed(y=[0.0, 60.0, 1.0]), {}, wl.DataError, r"row 1 .*60 mm"),
         (line(3), {"over": "100"}, wl.UnitError, "over"),
         (line(3), {"depth_step": "0.2 mm"}, wl.InputError, "depth_step"),
