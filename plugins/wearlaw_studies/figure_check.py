@@ -10,9 +10,9 @@ from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import Fault, UnitError, WearlawError, WearlawWarning, did_you_mean, shown
 from wearlaw.models.law import WEAR
 from wearlaw.pipeline.notes import Notes
-from wearlaw.pipeline.pairs import Pair
 from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.units.variables import UNITS
+from wearlaw_fits.pairs import Pair
 from wearlaw_studies.figure_spec import ACROSS, BY_PATCH, OF_LOAD, OF_PROFILE, FigureSpec, Window, axis_along, ends
 from wearlaw_studies.measured import known_variables
 from wearlaw_studies.pairs import pairs_of

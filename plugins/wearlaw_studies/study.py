@@ -32,7 +32,6 @@ from wearlaw.models.law import WEAR
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.notes import Notes
-from wearlaw.pipeline.pairs import Pair
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
@@ -41,6 +40,7 @@ from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, known_name, parts
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
+from wearlaw_fits.pairs import Pair
 from wearlaw_studies.case import Case
 from wearlaw_studies.figures import figures_of
 from wearlaw_studies.pairs import pairs_of

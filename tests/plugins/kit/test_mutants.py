@@ -134,7 +134,6 @@ def test_right_models_pass(model: Any) -> None:
 MODELS_OF_THE_DOCUMENTATION = {
     "wearlaw_plateau": "Plateau",
     "wearlaw_ours": "Ours",
-    "pv_limit": "PvLimit",
     "wearlaw_fatigue": "Fatigue",
     "wearlaw_rigid": "Rigid",
     "wearlaw_rigid_ellipse": "RigidEllipse",
@@ -143,7 +142,6 @@ MODELS_OF_THE_DOCUMENTATION = {
 }
 """Classes of models by their modules."""
 FIELDS_OF_THE_DOCUMENTATION = {
-    "PvLimit": {"slope": "5 ug/m/N", "limit": "12 W/mm^2"},
     "Fatigue": {"slope": "2e-7 1/N", "threshold": "10 N"},
 }
 """Fields of classes without defaults."""

@@ -259,7 +259,7 @@ def test_wrong_tables_are_refused(table: Any, conditions: Any, message: str) -> 
         ({"normal_force": Q([1, -2], "kN")}, "normal_force: must be greater than zero"),
         ({"creepage": Q([[1, 2]], "%")}, r"creepage: must be one value or an axis of values, got .* shape \(1, 2\)"),
         ({"creepage": [0.01, 0.02]}, "creepage: got .*has no unit"),
-        ({"creepage": ["a"]}, "creepage: .* is not a real number"),
+        ({"creepage": ["a"]}, "creepage: .* is not a number with a unit"),
         ({"crepage": Q([1], "%")}, "crepage: unknown condition; did you mean 'creepage'"),
         ({"crepage": None}, "crepage: unknown condition; did you mean 'creepage'"),
         ({"outputs": ["wear_rat"]}, "outputs: there is no 'wear_rat' .*did you mean 'wear_rate'"),
