@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import textwrap
 import tomllib
 
 import pytest
@@ -65,7 +66,7 @@ def house() -> str:
             f"applications    {' -> '.join(arrow)}",
             *(f"  {name:22} {first_line(f'plugins/{name}')}" for name in [*inner, *apart]),
             "models",
-            *(f"  {name:22} {first_line(f'plugins/{name}')}" for name in models),
+            *(f"  {line}" for line in textwrap.wrap(", ".join(models), 112, break_on_hyphens=False)),
             "core",
             *(f"  {name:22} {first_line(f'core/wearlaw/{name}')}" for name in rooms),
         ]

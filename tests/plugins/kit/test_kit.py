@@ -6,14 +6,14 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import pytest
 
 import wearlaw as wl
 from tests.plugins.kit.cells import Cells
 from tests.plugins.kit.strips import Strips
-from tests.plugins.kit.wrong_contacts import Wrapped
+from tests.plugins.kit.wrong_contacts import Wrapped, changed
 from tests.plugins.kit.wrong_declarations import NoReason, UnknownClaim
 from tests.plugins.kit.wrong_laws import Linear, Raises, WrongSign
 from tests.plugins.kit.wrong_rigs import Weight
@@ -143,25 +143,21 @@ def test_a_failure_names_the_shape_and_the_first_example_that_fails_alone() -> N
     assert "example=Problem(geometry='ellipse'" in "\n".join(failure.value.__notes__)
 
 
-class ShapedByCreepage(Wrapped):
-    """Gives the force an axis too many at small creepages."""
-
-    exemptions: ClassVar = {}
-
-    def spoilt(self, contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-        if problem.creepage.max() > 1e-4:
-            return contact
-        return contact.replaced(tangential_force=contact.tangential_force[..., None])
+def shaped_by_creepage(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+    """Give the force an axis too many at small creepages."""
+    if problem.creepage.max() > 1e-4:
+        return contact
+    return contact.replaced(tangential_force=contact.tangential_force[..., None])
 
 
 def test_after_a_wrong_shape_no_other_check_is_run_which_might_fill_the_memory() -> None:
-    failures = {}
-    for check in checks(ShapedByCreepage()):
+    failures, model = {}, changed(Wrapped, shaped_by_creepage)()
+    for check in checks(model):
         try:
             check()
         except AssertionError as error:
             failures[check.name] = str(error)
-    assert {*failures, "exemptions_are_claims"} == {check.name for check in checks(ShapedByCreepage())}
+    assert {*failures, "exemptions_are_claims"} == {check.name for check in checks(model)}
     assert len({*failures.values()}) == 1
 
 

@@ -15,9 +15,17 @@ import wearlaw_wheelset as ws
 from tests.plugins.wheelsets import R0, cone, round_head, wheelset
 from wearlaw import Q
 from wearlaw_life import Life
-from wearlaw_life._line import Line
-from wearlaw_life._measures import flange, hollow
-from wearlaw_life._removal import conserving, even, normal_depth, positions, removed, smoothed, swept
+from wearlaw_life._line import Line  # private: a step that fails
+from wearlaw_life._measures import flange, hollow  # private: profiles in closed form
+from wearlaw_life._removal import (  # private: the parts of a step in closed form
+    conserving,
+    even,
+    normal_depth,
+    positions,
+    removed,
+    smoothed,
+    swept,
+)
 
 GIVEN: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
 
@@ -303,6 +311,7 @@ def changed(**columns: Any) -> pd.DataFrame:
         (line(3).drop(columns="share"), {}, wl.DataError, "share"),
         (line(3).set_axis(["lateral_displacement", "share"], axis=1), {}, wl.UnitError, "lateral_displacement"),
         (changed(y=[0.0, 1.0, 7.0]), {}, wl.DataError, r"row 2 .*lateral_displacement = 7 mm.*climbs"),
+        (changed(y=[-7.0, 1.0, 7.0]), {}, wl.DataError, r"row 0 .*lateral_displacement = -7 mm.*climbs"),
         (changed(y=[0.0, 60.0, 1.0]), {}, wl.DataError, r"row 1 .*60 mm"),
         (line(3), {"over": "100"}, wl.UnitError, "over"),
         (line(3), {"depth_step": "0.2 mm"}, wl.InputError, "depth_step"),
