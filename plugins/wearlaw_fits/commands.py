@@ -27,13 +27,13 @@ from wearlaw.cli.shared import (
 from wearlaw.errors import FitError, PlasticityWarning, shown
 from wearlaw.models.law import Law
 from wearlaw.pipeline.notes import Notes
-from wearlaw.pipeline.pairs import Pair, compose
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import numbers
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named
 from wearlaw_fits.fit import fit as fit_parameters
+from wearlaw_fits.pairs import Pair, compose
 from wearlaw_fits.read_tests import read_tests
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests

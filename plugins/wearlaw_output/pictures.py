@@ -19,6 +19,7 @@ from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.datasets import Conditions, dataset, labelled
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.selection import in_words
+from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, label, name_of
 
@@ -42,9 +43,6 @@ PALE = 0.35
 """Opacity of a curve outside the range of its law."""
 
 OUTSIDE = "outside the range of the law"
-
-OUTSIDE_RANGE = "outside_range"
-"""The variable that marks it."""
 
 ALONG = ("pressure", "traction", "traction_bound")
 """Fields along the patch of a line that are shown if none is named."""
@@ -192,7 +190,7 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
     if name is not None and name not in every:
         raise InputError(
             f"plot: there is one operating point, and {shown(name)} is no field of its patch"
-            f"{did_you_mean(name, every)} The fields are: {', '.join(every)}"
+            f"{did_you_mean(name, [*every, *default_variables(prediction)])} The fields are: {', '.join(every)}"
         )
     if not line:
         variable = name or FIELDS[0]

@@ -9,7 +9,7 @@ import dataclasses
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
-from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast
+from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast, overload
 
 import numpy as np
 import pint
@@ -18,7 +18,16 @@ from pydantic import model_validator
 from wearlaw.arrays.array import Array, read_only, steadily, steady, type_name
 from wearlaw.contact.conditions import Condition, FrictionLaw, broadcast, declared, friction_at, is_friction_law
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, shown
+from wearlaw.errors import (
+    CompositionError,
+    ConditionsError,
+    InputError,
+    ModelError,
+    RangeWarning,
+    did_you_mean,
+    shown,
+    warn,
+)
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, fault, with_origin
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.stage import Stage
@@ -40,12 +49,16 @@ from wearlaw.pipeline.composition import (
 )
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
+from wearlaw.pipeline.several import LAW, Pipelines
 from wearlaw.pipeline.solution import Solution
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, Configuration
 
 ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
+
+OTHER_NAMES = {"mu": "friction_coefficient", "cof": "friction_coefficient", "load": "normal_force", "slip": "creepage"}
+"""What people call conditions, and the names that most rigs have for them."""
 
 TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; check the conditions"
 
@@ -300,9 +313,10 @@ class Rig(Model):
             return
         for name in conditions:
             if name not in known:
-                raise ConditionsError(
-                    f"{name}: unknown condition{did_you_mean(name, known)} The conditions are: {', '.join(known)}"
-                )
+                hint = did_you_mean(name, known)
+                if hint == ".":
+                    hint = did_you_mean(OTHER_NAMES.get(name.lower(), name), known)
+                raise ConditionsError(f"{name}: unknown condition{hint} The conditions are: {', '.join(known)}")
         for names in cls.choices:
             given = [name for name in names if conditions.get(name) is not None]
             if len(given) != 1:
@@ -323,14 +337,20 @@ class Rig(Model):
             example = 'Q({}, "{}")'.format(*example.split(" ", 1))
         return f"give {name}={example}"
 
-    def __or__(self: Poses[P], model: ContactModel) -> Pipeline[P]:
-        """Return the pipeline that solves this rig's contact with a contact model."""
+    @overload
+    def __or__(self: Poses[P], model: ContactModel) -> Pipeline[P]: ...
+    @overload
+    def __or__(self: Poses[P], model: Sequence[ContactModel]) -> Pipelines[P]: ...
+    def __or__(self: Poses[P], model: ContactModel | Sequence[ContactModel]) -> Pipeline[P] | Pipelines[P]:
+        """Return the pipeline that solves this rig's contact with a contact model, or with each of a list of them."""
+        assert isinstance(self, Rig)
+        if isinstance(model, list | tuple):
+            return Pipelines(self, model)
         if not isinstance(model, ContactModel):
             raise CompositionError(
                 f"a rig is followed by a contact model, not by {shown(model)};"
                 ' for example rig | wl.contact_model("fastsim") | wl.wear_law("usfd")'
             )
-        assert isinstance(self, Rig)
         return Pipeline(rig=self, contact_model=model)
 
 
@@ -414,8 +434,14 @@ class Pipeline(Configuration, Generic[P]):
         line = " | ".join(parts)
         return line if len(line) <= LINE else "({})".format("\n | ".join(parts))
 
-    def __or__(self, part: Law | Stage) -> Pipeline[P]:
-        """Return the pipeline with one more law, or one more stage around the contact model."""
+    @overload
+    def __or__(self, part: Law | Stage) -> Pipeline[P]: ...
+    @overload
+    def __or__(self, part: Sequence[Law]) -> Pipelines[P]: ...
+    def __or__(self, part: Law | Stage | Sequence[Law]) -> Pipeline[P] | Pipelines[P]:
+        """Return the pipeline with one more law or stage around the contact model, or with each of a list of laws."""
+        if isinstance(part, list | tuple) and not self.laws:
+            return Pipelines(self.rig, [self.contact_model], self.stages, part, dims=[LAW])
         if isinstance(part, Stage):
             if self.laws:
                 raise CompositionError(f"a stage stands before the laws, not after them: {shown(part)}; {ORDER}")
@@ -493,8 +519,15 @@ class Pipeline(Configuration, Generic[P]):
     def warn_of_problem(self, problem: Problem) -> None:
         """Warn of parameters fitted for another shape of patch or other materials if only the problem shows them.
 
-        If the rig declares its geometry or its bodies, composing the pipeline gave the warning.
+        If the rig declares its geometry or its bodies, composing the pipeline gave the warning. A friction coefficient
+        above 1 gets a word too.
         """
+        if (problem.friction_coefficient > 1.0).any():
+            most = np.nanmax(problem.friction_coefficient)
+            warn(
+                f"friction_coefficient: reaches {most:.4g}; values above 1 are rare, is it in percent?",
+                RangeWarning,
+            )
         rig, declared = self.rig, self.rig.patch_geometry is not None
         for law in self.laws:
             calibration = law.calibration

@@ -15,7 +15,7 @@ from wearlaw.arrays.array import same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
-from wearlaw.errors import InputError
+from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
 from wearlaw.extras import load
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import Law, named_outcomes
@@ -189,7 +189,13 @@ class Prediction:
             value = getattr(self, name)
             if isinstance(value, pint.Quantity):
                 return value
-        return self.outcome(name)
+        if any(name == law.outcome.name for law in self.laws):
+            return self.outcome(name)
+        known = [*outcome_units(self.laws), *default_variables(self)]
+        raise CompositionError(
+            f"there is no variable {shown(name)} here{did_you_mean(name, known)} There are:"
+            f" {', '.join(dict.fromkeys(known))}"
+        )
 
     def __iter__(self) -> Iterator[Prediction]:
         """Iterate over the predictions along the first axis."""

@@ -58,7 +58,10 @@ OF_PATCH = ("lateral_creepage", "spin", "contact_angle", "lateral_displacement")
 MASS = "mass_per_distance"
 """The variable of a wear law that can be added over several patches, unlike the wear rate."""
 
-MORE = ("patch_area", "outside_range")
+OUTSIDE_RANGE = "outside_range"
+"""The variable that marks points outside the range of a law."""
+
+MORE = ("patch_area", OUTSIDE_RANGE)
 """Further variables of predictions and sweeps."""
 
 OF_OTHERS: Mapping[Geometry, frozenset[str]] = {

@@ -15,7 +15,7 @@ from tests.core.outcome_laws import MIXED, Damage, Heat, Volume
 from tests.plugins.fits.fits import EXACT
 from tests.plugins.fits.test_fit_stages import Rubbed, Softer
 from wearlaw import Q
-from wearlaw.pipeline.pairs import Pair
+from wearlaw_fits.pairs import Pair
 from wearlaw_studies.uncertainty import UncertainPair, uncertainty_of
 from wearlaw_studies.uncertainty_files import LONGEST_NAME, figure_files, write_uncertainty
 

@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from wearlaw.contact.problem import Geometry
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law, Outcome
 from wearlaw.models.stage import Stage
-from wearlaw.pipeline.composition import TAKE_MEANS, check_geometry, check_scale
+from wearlaw.pipeline.composition import TAKE_MEANS
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
+from wearlaw.pipeline.several import composed
 
 
 @dataclass(frozen=True)
@@ -81,26 +81,3 @@ def compose(
         kind = "wear laws" if all(law.kind == "wear law" for law in laws.values()) else "laws"
         raise InputError(f"no contact model can be used with any of the {kind}:\n" + "\n".join(notes.texts))
     return pairs
-
-
-def composed(
-    rig: Rig,
-    model: ContactModel,
-    stages: Sequence[Stage],
-    law: Law,
-    geometry: Geometry | None = None,
-    remedy: str = TAKE_MEANS,
-) -> Pipeline[...]:
-    """Return the pipeline of a pair.
-
-    Raises
-    ------
-    CompositionError
-        If its parts do not fit each other.
-    """
-    check_geometry(rig, model, geometry or rig.patch_geometry)
-    contact = rig | model
-    for stage in stages:
-        contact |= stage
-    check_scale(contact.scale, model, law, remedy)
-    return contact | law
