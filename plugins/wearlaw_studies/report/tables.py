@@ -17,12 +17,12 @@ import pandas as pd
 import pint
 import xarray
 from numpy.typing import NDArray
+from wearlaw.pipeline.pairs import Pair
 
 from wearlaw.errors import InputError, WearlawWarning
 from wearlaw.models.contact_model import Blame, Model
 from wearlaw.models.labels import labelled
 from wearlaw.models.law import WEAR, Law
-from wearlaw.pipeline.pairs import Pair
 from wearlaw.pipeline.variables import MASS
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
