@@ -22,7 +22,6 @@ from wearlaw.errors import InputError, WearlawWarning
 from wearlaw.models.contact_model import Blame, Model
 from wearlaw.models.labels import labelled
 from wearlaw.models.law import WEAR, Law
-from wearlaw.pipeline.pairs import Pair
 from wearlaw.pipeline.variables import MASS
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
@@ -30,6 +29,7 @@ from wearlaw.units.quantities import Q, from_si
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS, name_of, readable
 from wearlaw.units.variables import label as label_of
+from wearlaw_fits.pairs import Pair
 from wearlaw_output.styled import Marked
 from wearlaw_studies.figures import main_result
 from wearlaw_studies.results import (
