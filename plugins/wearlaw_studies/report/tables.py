@@ -17,7 +17,6 @@ import pandas as pd
 import pint
 import xarray
 from numpy.typing import NDArray
-from wearlaw.pipeline.pairs import Pair
 
 from wearlaw.errors import InputError, WearlawWarning
 from wearlaw.models.contact_model import Blame, Model
