@@ -13,8 +13,8 @@ from tests.core import cases
 from tests.core.cases import InstallModel, case
 from tests.plugins.studies.studies import lattice_study
 from wearlaw import Array
-from wearlaw.pipeline.notes import grouped
 from wearlaw_studies.case import Case
+from wearlaw_studies.notes import grouped
 from wearlaw_studies.study import evaluations, provenance, run
 
 STRONG = {"preset": "suros", "material": dict(wl.steel(shear_yield_stress=None))}
