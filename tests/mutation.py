@@ -66,7 +66,10 @@ TESTS = {
     "wearlaw_archard.coefficients": "plugins/archard/test_wear_coefficients.py",
     "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py",
 }
-"""The test files of each package or module; a plugin must pass the conformance kit too."""
+"""The test files of each package or module; a plugin must pass the conformance kit too, and each mutant the oracle."""
+
+ORACLE = "tests/test_oracle.py"
+"""Comes last, as it takes longest: it sees any number that moves."""
 
 BINARY = ["Add_Sub", "Sub_Add", "Mul_Div", "Div_Mul", "Pow_Mul", "FloorDiv_Div", "BitOr_BitAnd", "BitAnd_BitOr"]
 COMPARISON = ["Lt_LtE", "Lt_GtE", "LtE_Lt", "LtE_Gt", "Gt_GtE", "Gt_LtE", "GtE_Gt", "GtE_Lt"]
@@ -240,6 +243,7 @@ def main(names: list[str]) -> None:
             kit = name.removeprefix("wearlaw_")
             if name != "wearlaw_sheffield":
                 runs.append(["tests/test_shipped_models.py", "-k", f"test_the_model_conforms and {kit}"])
+        runs.append([ORACLE])
         for path in paths:
             report(path, runs)
 

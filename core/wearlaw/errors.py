@@ -15,13 +15,19 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+import numpy as np
+
 LONGEST = 400
 """Most characters that a message shows of a value."""
 
 
 def shown(value: object) -> str:
     """Return a value as a message shows it: its repr, cut if it is long; of a path, its text between quotes."""
-    text = repr(os.fspath(value) if isinstance(value, os.PathLike) else value)
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    elif isinstance(value, np.generic):
+        value = value.item()  # 20.0 rather than np.float64(20.0)
+    text = repr(value)
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}... ({len(text)} characters)"
 
 

@@ -138,6 +138,9 @@ def fit(
     expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
     if scatter not in ("relative", "absolute"):
         raise FitError(f'scatter: must be "relative" or "absolute", got {shown(scatter)}')
+    for name, count in {"starts": starts, "bootstrap": bootstrap, "seed": seed}.items():
+        if not isinstance(count, int) or count < 0:
+            raise FitError(f"{name}: must be a whole number, zero or positive, got {shown(count)}")
     if not 0.0 < confidence < 1.0:
         raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shown(confidence)}")
     if 0 < bootstrap < round(2.0 / (1.0 - confidence), 6):

@@ -153,7 +153,7 @@ def _is_other(column: Column, missing: Collection[str], known: Collection[str]) 
     It belongs to an installed rig or law, or has a unit and a name unlike those of missing columns.
     """
     if column.name.startswith("wear_rate_"):  # the wear rate of one body
-        return column.unit is not None
+        missing = [name for name in missing if name != "wear_rate"]
     unlike = column.unit is not None and not get_close_matches(column.name, missing, n=1)
     return column.name.isidentifier() and (column.name in known or unlike)
 

@@ -248,7 +248,7 @@ class WearTests:
         try:
             return plain(value) * si_factor(Q(1.0, _unit(value)), unit)
         except UnitError as error:
-            raise DataError(f"the tests give {name} in {_unit(value) or 'no unit'}, but {error}") from None
+            raise DataError(f"{name}: the tests give it in {_unit(value) or 'no unit'}, {error}") from None
 
     def digests(self, name: str, unit: str) -> tuple[str, ...]:
         """Return a digest of each test: of its conditions and one measurement, without labels and source.

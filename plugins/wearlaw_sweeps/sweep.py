@@ -23,9 +23,8 @@ from wearlaw.errors import (
     ResumeWarning,
     shown,
 )
-from wearlaw.models.contact_model import fault
 from wearlaw.pipeline.composition import warn_of_unlike_materials
-from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig, expect_pipeline
+from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.pipeline.worn import POSITION
@@ -300,7 +299,6 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
             return posed(line, lambda given: pipeline.rig.checked_problem({**not_given, **given}))
 
     first = along(points.dims[0], slice(0, SAMPLE))
-    _check_names(pipeline.rig, first, points)
     slipperiest, there = first, first if first.size else None
     known = points.sizes[points.dims[0]] <= SAMPLE
     for dim in points.dims[1 if known else 0 :]:
@@ -317,13 +315,6 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
     if there is None:
         raise ConditionsError(TOUCH_NOWHERE.format(pipeline.rig.name))
     return there
-
-
-def _check_names(rig: Rig, problem: Problem, points: Points) -> None:
-    """Raise an error if an axis of the rig has the name of a condition."""
-    taken = {*points.dims, *points.coordinates(), *points.fixed} & problem.dims.keys()
-    if taken:
-        raise fault(rig, f"has an axis and a condition named '{min(taken)}'; rename one of the two")
 
 
 def run(

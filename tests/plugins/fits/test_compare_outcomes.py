@@ -63,9 +63,7 @@ def test_one_of_several_outcomes_is_chosen_by_name() -> None:
         assert one.agreement.rms_error <= 1e-12 * np.abs(tests.measured(name, str(both[name].units))).max()
     with pytest.raises(wl.InputError, match=r'share wear_rate and heat_flux and rcf_damage, .* as in outcome="wear_'):
         wl.compare([predict], tests)
-    with pytest.raises(
-        wl.InputError, match="outcome: a predictor does not predict 'heat_flx'; did you mean 'heat_flux'"
-    ):
+    with pytest.raises(wl.InputError, match=r"outcome: .*'heat_flx'; did you mean 'heat_flux'"):
         wl.compare([predict], tests, outcome="heat_flx")
     with pytest.raises(wl.InputError, match="no outcome in common; they predict heat_flux, rcf_damage"):
         wl.compare([EXACT | Heat(), EXACT | Damage()], tests)

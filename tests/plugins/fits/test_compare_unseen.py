@@ -167,13 +167,6 @@ def test_tests_that_repeat_each_other_are_left_out_together(how: Any) -> None:
         wl.compare([fit], tests, cross_validate=5)
 
 
-@pytest.mark.parametrize("how", [1, 9, True, 2.5, "twice"])
-def test_an_impossible_number_of_folds_is_refused(how: Any) -> None:
-    fit = wl.fit(EXACT | usfd(), scattered(), ["q_s"], bootstrap=0)
-    with pytest.raises(wl.InputError, match=r"^cross_validate: "):
-        wl.compare([fit], scattered(), cross_validate=how)
-
-
 def test_cross_validation_needs_two_operating_points_and_a_fit() -> None:
     tests = made(creepage="0.5 %", wear_rate=Q(10.0 * SCATTER, "ug/m/mm^2"))
     fit = wl.fit(EXACT | usfd(), tests, ["m_m"], bootstrap=0)

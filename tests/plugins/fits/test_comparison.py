@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.plugins.fits.comparisons import CREEPAGE, EXACT, GLOBAL, SCATTER, by_label, made, order, scattered, usfd
+from tests.plugins.fits.comparisons import EXACT, GLOBAL, SCATTER, by_label, made, order, scattered, usfd
 from tests.strategies import EPS
 from wearlaw import Q
 
@@ -110,20 +110,3 @@ def test_a_table_holds_blanks_and_nothing_infinite_or_nan(with_zeros: wl.Compari
         numbers = table.drop(columns="predictor").astype("Float64")
         assert np.isfinite(numbers.stack().dropna().to_numpy(dtype=float)).all()
     assert "nan" not in repr(comparison) + repr(with_zeros)
-
-
-def test_a_figure_leaves_zero_rates_out_and_says_so(with_zeros: wl.Comparison) -> None:
-    (panel,) = with_zeros.figure_data().panels
-    shown = {curve.label: curve for curve in panel.curves if curve.points}
-    assert shown["far"].x.size == 7
-    worn = (by_label(with_zeros)["above"].predicted > 0) & (with_zeros.tests.columns["wear_rate"] > 0)
-    assert shown["above"].x.size == worn.sum() < 7
-    assert all((curve.x > 0).all() and (curve.y > 0).all() for curve in panel.curves)
-    assert "Not shown: wear rates of zero, in up to" in with_zeros.figure_data().caption
-
-
-def test_a_figure_of_nothing_but_zero_rates_can_be_drawn() -> None:
-    zero = made(wear_rate=Q([0.0] * len(CREEPAGE), "ug/m/mm^2"))[:1]
-    comparison = wl.compare({"nothing": GLOBAL | Above()}, zero)
-    assert comparison.compared[0].agreement.without_ratio == 0
-    comparison.plot()

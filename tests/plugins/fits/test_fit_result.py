@@ -121,35 +121,6 @@ def test_a_law_that_was_written_reads_back_equal(exact_fit: wl.Fit, tmp_path: Pa
     assert provenance["chi2"] == exact_fit.chi2
 
 
-def test_a_file_that_cannot_be_written_leaves_what_was_there(exact_fit: wl.Fit, tmp_path: Path) -> None:
-    with pytest.raises(wl.OutputError, match="No such file"):
-        exact_fit.to_toml(tmp_path / "no" / "folder.toml")
-    folder = tmp_path / "taken"
-    folder.mkdir()
-    with pytest.raises(wl.OutputError, match="taken"):
-        exact_fit.to_toml(folder)
-    assert [file.name for file in tmp_path.iterdir()] == ["taken"]
-
-
-@pytest.mark.parametrize(
-    ("text", "names"),
-    [
-        ("[wear_law", "law.toml"),
-        ("[case]", "wear_law"),
-        ("[wear_law]\nq_s = '55 ug/m/mm^2'", "name of the law"),
-        ("[wear_law]\nmodel = 'usdf'", "'usfd'"),
-        ("[wear_law]\nmodel = 'usfd'\nq_s = '55 N'", "q_s: "),
-        (None, "law.toml"),
-    ],
-)
-def test_a_file_that_describes_no_law_is_refused(text: str | None, names: str, tmp_path: Path) -> None:
-    path = tmp_path / "law.toml"
-    if text is not None:
-        path.write_text(text, encoding="utf-8")
-    with pytest.raises(wl.InputError, match=names):
-        wl.read_wear_law(path)
-
-
 def test_the_figure_holds_the_measurements_and_a_curve_through_the_fit_with_a_band(exact_fit: wl.Fit) -> None:
     (panel,) = exact_fit.figure_data().panels
     curve, points = panel.curves

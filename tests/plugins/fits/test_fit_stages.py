@@ -187,8 +187,8 @@ TWO, TWINS = EXACT | Softer() | Rubbed(), EXACT | Softer() | Softer(reduction=0.
         (TWO, ["reduction"], None, "free: .*'softer.reduction' or 'rubbed.reduction'"),
         (TWO, ["shore"], None, "free: .*'share'"),
         (TWO, ["layers"], None, "free: .*'layers'"),
-        (SOFT, ["reductio"], None, "free: stage 'softer' .*'reduction'"),
-        (SOFT, ["reduction", "softer.reduction"], None, "free: 'softer.reduction'"),
+        (SOFT, ["reductio"], None, "free: .*'reduction'"),
+        (SOFT, ["reduction", "softer.reduction"], None, "free: .*'softer.reduction'"),
         (SOFT, ["reduction"], {"reduction": (0.1, 2)}, "bounds: 'reduction' .*0.0 to 1.0"),
         (TWINS, ["reduction"], None, "free: .*'softer_1.reduction' or 'softer_2.reduction'"),
         (

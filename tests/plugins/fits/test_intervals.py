@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,6 @@ import pytest
 from scipy import stats
 
 from wearlaw_fits.intervals import (
-    Replicates,
     covariance,
     leverage,
     replicate,
@@ -59,14 +57,6 @@ def test_the_covariance_of_a_line_is_that_of_linear_regression(within: float) ->
     columns = np.stack([np.ones_like(X), X], axis=-1)
     variance = fit.cost[0] / (X.size - 2)
     np.testing.assert_allclose(covariance(fit)[0], variance * np.linalg.inv(columns.T @ columns), rtol=within)
-
-
-def test_student_intervals_of_a_line_are_those_of_the_textbook() -> None:
-    _, fit, target = straight(np.random.default_rng(0).standard_normal(X.size))
-    textbook: Any = stats.linregress(X, target)
-    reach = stats.t.ppf(0.95, X.size - 2) * textbook.stderr
-    low, high = student_intervals(fit, 0.9)
-    assert (low[1], high[1]) == pytest.approx((textbook.slope - reach, textbook.slope + reach), rel=1e-6)
 
 
 def test_the_leverage_of_a_line_is_that_of_the_textbook() -> None:
@@ -128,18 +118,6 @@ def test_residuals_are_drawn_as_large_as_the_scatter_is() -> None:
     np.testing.assert_allclose(np.cov(replicates.theta.T), exact, rtol=0.04, atol=0.02 * exact.max())
 
 
-def test_replicates_lie_about_the_fit_though_its_residuals_have_a_mean() -> None:
-    target = 5.0 + np.random.default_rng(6).standard_normal(X.size)  # a line through the origin misses them upwards
-
-    def through_origin(theta: Any) -> Any:
-        return theta * X - target
-
-    bounds = Bounds(np.array([-50.0]), np.array([50.0]))
-    fit = fitted(through_origin, [0.0], bounds)
-    theta = replicate(through_origin, fit, bounds, ONE_GROUP, 1000, 0).theta[:, 0]
-    assert abs(theta.mean() - fit.theta[0, 0]) < 4.0 * theta.std() / np.sqrt(1000)
-
-
 def test_residuals_are_drawn_within_their_group() -> None:
     groups = np.repeat([0, 1], 6)
     scatter = np.where(groups == 0, 1e-3, 10.0) * np.random.default_rng(2).standard_normal(12)
@@ -151,54 +129,6 @@ def test_residuals_are_drawn_within_their_group() -> None:
     spread = replicate(model, fit, WIDE, groups, 500, seed=0).theta.std(axis=0)
     assert spread[0] < 1e-3
     assert spread[1] > 1.0
-
-
-def test_progress_counts_every_replicate_once() -> None:
-    model, fit, _ = straight(np.random.default_rng(0).standard_normal(X.size))
-    told: list[int] = []
-    replicates = replicate(model, fit, WIDE, ONE_GROUP, 601, 0, told.append)
-    assert sum(told) == 601 == len(replicates.theta)
-    assert len(told) > 1
-    assert replicates.converged == 1.0
-
-
-def test_replicates_that_do_not_determine_a_parameter_have_no_say_in_its_interval() -> None:
-    model, fit, _ = straight(np.random.default_rng(0).standard_normal(X.size))
-    replicates = replicate(model, fit, WIDE, ONE_GROUP, 400, 0)
-    blind = np.arange(400) % 5 == 0
-    marked = dataclasses.replace(
-        replicates,
-        theta=np.where(blind[:, None], 40.0, replicates.theta),
-        standard_errors=np.where(blind[:, None], 0.0, replicates.standard_errors),
-    )
-    rest = Replicates(replicates.theta[~blind], replicates.standard_errors[~blind], 1.0)
-    for ours, theirs in zip(
-        studentised_intervals(fit, marked, 0.9), studentised_intervals(fit, rest, 0.9), strict=True
-    ):
-        assert np.array_equal(ours, theirs)
-
-
-def test_replicates_whose_parameters_cannot_be_told_apart_are_marked() -> None:
-    target = np.random.default_rng(0).standard_normal(X.size)
-
-    def twice(theta: Any) -> Any:
-        return (theta[:, :1] + theta[:, 1:]) * X - target
-
-    fit = fitted(twice, [0.0, 0.0])
-    assert (replicate(twice, fit, WIDE, ONE_GROUP, 50, 0).standard_errors == 0.0).all()
-
-
-def test_nothing_is_known_of_a_parameter_on_which_nothing_depends() -> None:
-    target = np.random.default_rng(0).standard_normal(X.size)
-
-    def first_alone(theta: Any) -> Any:
-        return theta[:, :1] * X + 0.0 * theta[:, 1:] - target
-
-    errors = standard_errors(fitted(first_alone, [0.0, 0.0]))[0]
-    slope = np.sum(X * target) / np.sum(X**2)
-    exact = np.sqrt(np.sum((slope * X - target) ** 2) / (X.size - 2) / np.sum(X**2))
-    assert errors[0] == pytest.approx(exact, rel=1e-6)
-    assert errors[1] == 0.0
 
 
 W = np.concatenate([np.geomspace(0.5, 9.0, 7), np.linspace(12.0, 72.0, 6), np.linspace(82.0, 130.0, 7)])

@@ -63,30 +63,6 @@ def test_p_is_uniform_if_the_model_is_right(known_scatter: bool) -> None:
     assert stats.kstest([one.p_value for one in checks if one], "uniform").pvalue > 0.001
 
 
-@pytest.mark.parametrize(
-    ("points", "parameters", "scatter", "tested"),
-    [
-        ([0, 0, 1, 1, 2], 2.0, 1.0, True),
-        ([0, 0, 1, 2], 1.0, 1.0, True),
-        ([0, 0, 1, 1], 2.0 - 1e-9, 1.0, False),  # no more points than parameters
-        ([0, 1, 2, 3], 1.0, 1.0, False),  # nothing repeats
-        ([0, 0, 1, 1, 2], 2.0, 1e-3, False),  # copies of tests
-    ],
-)
-def test_without_degrees_of_freedom_or_scatter_there_is_no_test(
-    points: Any, parameters: float, scatter: float, tested: bool
-) -> None:
-    residuals = scatter * np.array([0.1, -0.2, 0.3, 0.2, -0.1])[: len(points)]
-    assert (lack_of_fit("y", residuals, np.array(points), parameters, 0.95) is not None) == tested
-
-
-def test_tests_repeat_each_other_if_every_condition_agrees_to_its_thousandth() -> None:
-    force = [7000.0, 7006.9, 7007.1, 7000.0, 7000.0, 7006.9]  # [N]
-    creepage, lateral = [0.01, 0.01, 0.01, 0.01002, 0.01, 0.00999], [0.0, 0.0, 0.0, 0.0, 1e-9, 0.0]
-    conditions = {"normal_force": Q(force, "N"), "creepage": np.array(creepage), "lateral_creepage": np.array(lateral)}
-    assert repeats({**conditions, "friction_coefficient": 0.46}, 6).tolist() == [0, 0, 1, 2, 3, 0]
-
-
 @pytest.mark.parametrize("effect", [(0.0, 0.0, 0.0, 0.0), (0.3, -0.3, 0.2, -0.2)])
 def test_with_one_factor_free_it_is_the_one_way_analysis_of_variance(effect: Any) -> None:
     tests, predict = repeated(effect, 3, 0.05), usfd("exact")
@@ -116,10 +92,6 @@ def test_stated_uncertainties_are_held_against_the_residuals(share: float, poor:
     assert (check.method, check.poor) == ("uncertainty", poor)
     assert (check.degrees[0], 3.0 * check.value) == pytest.approx((3.0, expected), rel=1e-6)
     assert check.p_value == pytest.approx(stats.chi2.sf(expected, 3), rel=1e-4, abs=1e-300)
-
-
-def test_tests_that_tell_nothing_of_their_scatter_are_not_tested() -> None:
-    assert fitted(repeated((1.0, -1.0, -1.0, 1.0), 1, 0.0), poor=False).lack_of_fit == ()
 
 
 def test_each_kind_of_measurement_is_tested() -> None:

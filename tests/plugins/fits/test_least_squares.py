@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-from wearlaw_fits.least_squares import STEP, TOLERANCE, Bounds, fit_many, jacobian, refine, search
+from wearlaw_fits.least_squares import STEP, TOLERANCE, Bounds, fit_many, refine, search
 
 X = np.linspace(0.0, 3.0, 15)
 WIDE = Bounds(np.full(2, -5.0), np.full(2, 5.0))
@@ -63,16 +63,6 @@ def test_every_one_of_many_fits_is_that_of_scipy(tolerance: float) -> None:
         assert np.abs(theta - exact.x).max() <= quotient + tolerance
 
 
-def test_a_line_is_fitted_as_by_linear_algebra() -> None:
-    targets = noisy(line, [1.0, -2.0], 0.3, 20)
-    found = fit_many(line, targets, np.zeros((20, 2)), WIDE)
-    columns = np.stack([np.ones_like(X), X], axis=-1)
-    exact = np.linalg.lstsq(columns, targets.T, rcond=None)[0].T
-    np.testing.assert_allclose(found.theta, exact, atol=2.0 * TOLERANCE, rtol=0.0)
-    np.testing.assert_allclose(found.jacobian, np.broadcast_to(columns, (20, 15, 2)), atol=1e-7)
-    np.testing.assert_allclose(found.cost, np.sum((exact @ columns.T - targets) ** 2, axis=-1), rtol=1e-12)
-
-
 @pytest.mark.validates(
     "fitting",
     "Fits with bounds on the parameters",
@@ -105,14 +95,6 @@ def test_a_model_is_never_asked_beyond_the_bounds() -> None:
     search(watched, targets[0], np.array([0.4, 0.2]), bounds, WIDE, 20, 0)
 
 
-def test_derivatives_are_as_exact_as_difference_quotients_are() -> None:
-    theta = np.array([[1.5, 0.7], [-0.3, 2.0]])
-    found = jacobian(decay, theta, decay(theta), WIDE)
-    exact = np.stack([decay_slopes(one) for one in theta])
-    # Half a step times |f''| < 2 x²; the step is STEP max(|θ|, 1), and rounding of f over the step is as large.
-    assert np.abs(found - exact).max() <= 2.0 * STEP * 2.0 * X.max() ** 2
-
-
 def kinked(theta: Any) -> Any:
     """Pulled up to a kink at 0 by the first residual, and held there by the second."""
     return np.concatenate([theta - 1.0, 1.0 + 3.0 * np.maximum(theta, 0.0)], axis=-1)
@@ -129,14 +111,6 @@ def test_a_best_fit_on_a_kink_is_found() -> None:
     assert abs(refine(kinked, np.zeros(2), np.array([0.5]), bounds).theta[0, 0]) <= 1e-6
 
 
-def test_one_fit_does_not_know_of_the_others() -> None:
-    targets = noisy(decay, [1.5, 0.7], 0.3, 8)
-    together = fit_many(decay, targets, np.tile([1.0, 1.0], (8, 1)), WIDE)
-    for number in range(8):
-        alone = fit_many(decay, targets[number : number + 1], np.array([[1.0, 1.0]]), WIDE)
-        np.testing.assert_allclose(alone.theta[0], together.theta[number], rtol=1e-10)
-
-
 def wave(theta: Any) -> Any:
     return np.sin(theta * X)
 
@@ -149,19 +123,3 @@ def test_a_search_from_many_points_finds_what_one_start_does_not() -> None:
     best = min(found, key=lambda one: float(one.cost[0]))
     assert best.theta[0, 0] == pytest.approx(7.0, abs=2.0 * TOLERANCE)
     assert best.converged[0]
-
-
-def test_a_fit_that_runs_out_of_iterations_has_not_converged(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw_fits.least_squares.ITERATIONS", 2)
-    targets = noisy(decay, [1.5, 0.7], 0.1, 5)
-    assert not fit_many(decay, targets, np.tile([4.0, 4.0], (5, 1)), WIDE).converged.any()
-
-
-def test_a_parameter_on_which_nothing_depends_stays_where_it_is() -> None:
-    def first_alone(theta: Any) -> Any:
-        return decay(np.stack([theta[:, 0], np.full(len(theta), 0.7)], axis=-1))
-
-    targets = noisy(first_alone, [1.5, 0.0], 0.1, 5)
-    found = fit_many(first_alone, targets, np.tile([1.0, 0.3], (5, 1)), WIDE)
-    assert (found.theta[:, 1] == 0.3).all()
-    assert found.converged.all()

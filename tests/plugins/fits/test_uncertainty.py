@@ -168,13 +168,6 @@ def test_the_same_seed_gives_the_same_samples() -> None:
     assert not np.array_equal(rates(1), rates(2))
 
 
-@pytest.mark.parametrize(("asked", "taken"), [(2, 2), (3, 4), (1000, 1024), (1024, 1024)])
-def test_samples_are_rounded_up_to_a_power_of_two(asked: int, taken: int) -> None:
-    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=asked)
-    assert u.samples == u.wear_rate.size == taken
-    assert f"{taken} samples" in repr(u)
-
-
 def test_the_figure_shows_median_and_interval() -> None:
     u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=64)
     (panel,) = u.figure_data().panels
@@ -214,23 +207,6 @@ def test_friction_that_falls_is_evaluated_at_each_sample_of_the_creepage() -> No
     each = predict(**given, creepage=Q(2.0 + 2.0 * probability, "%"))
     assert each.friction_coefficient.shape == (2, 8)
     assert in_microgram(u.wear_rate) == pytest.approx(in_microgram(each.wear_rate), rel=64 * EPS)
-
-
-def test_distributions_are_shown_with_units_as_everything_is() -> None:
-    assert str(wl.normal("55 ug/m/mm^2", Q(5, "ug/m/mm^2"))) == "normal(55.0 µg/m/mm², 5.0 µg/m/mm²)"
-    assert str(wl.uniform("0.01 dimensionless", "2 %")) == "uniform(0.01 dimensionless, 2.0 %)"
-
-
-def test_the_only_input_explains_all_of_the_variance() -> None:
-    u = wl.uncertainty(
-        USFD, **{**FULL_SLIP, "creepage": Q(0.5, "%"), "friction_coefficient": wl.uniform(0.3, 0.4)}, samples=64
-    )
-    assert u.sobol().loc["friction_coefficient"].to_dict() == {
-        "first_order": 1.0,
-        "first_order_error": 0.0,
-        "total_order": 1.0,
-        "total_order_error": 0.0,
-    }
 
 
 def test_every_distribution_of_a_case_is_the_one_of_python() -> None:

@@ -13,7 +13,6 @@ from tests.plugins.fits.fits import EXACT, GLOBAL
 from tests.plugins.fits.test_fit_stages import Balanced, Choosy, Softer
 from tests.plugins.fits.uncertain import FULL_SLIP, USFD
 from wearlaw import Q
-from wearlaw_fits.uncertain_inputs import check_samples
 
 UNCERTAIN: Any = {"friction_coefficient": wl.uniform(0.3, 0.5), "samples": 4}
 HINT = r"(.|\n)*samples of its distribution"
@@ -98,14 +97,6 @@ def test_an_outcome_that_no_law_predicts_is_refused() -> None:
         _ = u.wear_rate
 
 
-def test_samples_may_have_extremes_that_do_not_go_together() -> None:
-    law = wl.wear_law("usfd")
-    samples = {"q_s": np.array([50e-3, 300e-3]), "tr_sc": np.array([20e6, 90e6])}  # 300/5.3 is 57 N/mm²
-    check_samples(law, samples)
-    with pytest.raises(wl.InputError, match="tr_sc must not lie below"):
-        check_samples(law, {**samples, "tr_sc": samples["tr_sc"][::-1]})
-
-
 @pytest.mark.parametrize("value", [Q([1, 2], "%"), [0.3, 0.4], "1", None])
 @pytest.mark.parametrize(
     ("name", "make"),
@@ -123,18 +114,6 @@ def test_what_is_no_value_is_refused_where_a_distribution_is_made(name: str, mak
         make(value)
 
 
-@pytest.mark.parametrize("factor", [1.0, np.inf, np.nan, Q(1.2, "mm")])
-def test_a_factor_that_is_none_is_refused(factor: Any) -> None:
-    with pytest.raises(wl.InputError, match=r"^geometric_standard_deviation: "):
-        wl.lognormal(0.3, factor)
-
-
-@pytest.mark.parametrize("confidence", [0.0, 1.0, 95])
-def test_a_confidence_that_is_none_is_refused(confidence: float) -> None:
-    with pytest.raises(wl.InputError, match=r"^confidence: "):
-        wl.uncertainty(USFD, **{**FULL_SLIP, **UNCERTAIN}).interval(confidence)
-
-
 TWO_AXES: Any = {"max_pressure": Q([[1000.0], [1500.0]], "MPa"), "creepage": Q([1.0, 2.0, 3.0], "%")}
 
 
@@ -146,16 +125,3 @@ def test_what_needs_one_point_or_one_axis_or_a_rate_that_varies_says_so() -> Non
         several.plot()
     with pytest.raises(wl.InputError, match=r"^sobol: .*the same in all samples"):
         wl.uncertainty(USFD, **{**FULL_SLIP, **UNCERTAIN}).sobol()  # all severe
-
-
-def test_known_conditions_whose_shapes_do_not_fit_are_named_with_the_shapes_they_were_given_in() -> None:
-    u = wl.uncertainty(USFD, **{**TWO_AXES, "max_pressure": Q([1000.0, 1500.0], "MPa"), **UNCERTAIN})
-    with pytest.raises(wl.ConditionsError, match=r"max_pressure \(2,\), creepage \(3,\)$"):
-        u.median  # noqa: B018
-
-
-def test_a_wrong_known_condition_is_not_laid_to_the_samples() -> None:
-    uncertain: Any = {"law": {"m_m": wl.uniform("4 ug/m/N", "6 ug/m/N")}}
-    with pytest.raises(wl.UnitError, match="creepage: ") as refusal:
-        wl.uncertainty(USFD, **{**FULL_SLIP, "creepage": "200 %"}, **uncertain).median  # noqa: B018
-    assert "samples" not in str(refusal.value)

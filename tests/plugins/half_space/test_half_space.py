@@ -101,7 +101,7 @@ def test_the_elements_of_a_cylinder_are_contacts(within: float) -> None:
 
 
 def test_pressure_times_slip_is_the_energy_over_friction() -> None:
-    problem = random_ellipses(12)
+    problem = random_ellipses(6)
     found = wl.contact_model("half_space", cells=16).solve(problem)
     slides = found.sum_over_nodes(found.pressure * found.slip * found.area) * problem.friction_coefficient
     # Rows that stick to the end slip in a part of their last element only, and do not count.
@@ -110,7 +110,7 @@ def test_pressure_times_slip_is_the_energy_over_friction() -> None:
 
 
 def test_friction_that_falls_is_that_of_the_slip_at_each_element() -> None:
-    problem = random_ellipses(8)
+    problem = random_ellipses(4)
     model = wl.contact_model("half_space", cells=12, limit_ratio=0.4, decay="2 s/m")
     found = model.solve(problem)
     speed = found.slip_speed

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import os
+import time
 from pathlib import Path
 from typing import Any
 
@@ -77,6 +78,27 @@ class Ending(Linear):
         if os.getpid() != self.spared:
             raise getattr(builtins, self.error)(0)
         return super().rate(contact, p)
+
+
+class Held(Linear):
+    """A law that waits, in a process other than that of the test, at the greatest slips until `gate` is there."""
+
+    name = "held"
+
+    gate: str
+    """A file, or a folder."""
+    spared: int
+    """The process of the test."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        while os.getpid() != self.spared and abs(contact.slip).max() > 0.07 and not Path(self.gate).exists():
+            time.sleep(0.01)
+        return super().rate(contact, p)
+
+
+def held(gate: Path) -> wl.Pipeline[...]:
+    """Return a pipeline whose last block of `CONDITIONS` waits in workers until a path is there."""
+    return predictor(Held(slope=Q(1.0, "mm"), gate=str(gate), spared=os.getpid()))
 
 
 def ending(error: str) -> wl.Pipeline[...]:

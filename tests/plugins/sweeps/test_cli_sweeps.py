@@ -13,7 +13,6 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-import wearlaw_studies.written as output
 from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
 from tests.plugins.sweeps.sweeps import contents, interrupted_after
 from wearlaw_sweeps import room
@@ -63,17 +62,6 @@ def test_a_resumed_run_writes_the_same_bytes_as_an_uninterrupted_one_on_any_numb
 
 
 @pytest.mark.usefixtures("small_blocks")
-def test_what_is_done_is_not_done_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    case = long_case(folder / "big.toml")
-    interrupted(case, monkeypatch)
-    seen: list[int] = []
-    monkeypatch.setattr("wearlaw_sweeps.progress.Bar.__call__", lambda _, points: seen.append(points))
-    wearlaw("run", case, "-o", "out", "--resume")
-    assert seen[0] == 100
-    assert sum(seen) == 300
-
-
-@pytest.mark.usefixtures("small_blocks")
 def test_a_damaged_block_of_a_run_is_computed_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     case = long_case(folder / "big.toml")
     interrupted(case, monkeypatch)
@@ -83,12 +71,6 @@ def test_a_damaged_block_of_a_run_is_computed_again(folder: Path, monkeypatch: p
     chunk.write_bytes(content)
     assert wearlaw("run", case, "-o", "out", "--resume").exit_code == 0
     assert contents(folder / "out") == whole()
-
-
-def test_resuming_where_nothing_was_left_is_running(folder: Path) -> None:
-    result = wearlaw("run", long_case(folder / "big.toml"), "--resume", "--figure-format", "svg")
-    assert result.exit_code == 0
-    assert (folder / "big-results" / "report.html").exists()
 
 
 @pytest.mark.usefixtures("small_blocks")
@@ -107,14 +89,6 @@ def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
     assert contents(folder / "out.partial") == before
 
 
-@pytest.mark.usefixtures("small_blocks", "blank_figures")
-def test_other_files_in_the_folder_of_finished_blocks_are_kept(folder: Path) -> None:
-    (folder / "out.partial").mkdir()
-    (folder / "out.partial" / "thesis.txt").touch()
-    assert wearlaw("run", long_case(folder / "big.toml"), "-o", "out", "--resume").exit_code == 0
-    assert contents(folder / "out.partial") == {"thesis.txt": b""}
-
-
 def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -128,11 +102,6 @@ def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts
     monkeypatch.setattr("shutil.disk_usage", lambda _: type("Usage", (), {"free": 2**30}))
     assert_refused(wearlaw("run", case, "--csv"), "the results need 6.71 GiB on disk, but")
     assert [path.name for path in folder.iterdir()] == ["big.toml"]
-
-
-def test_a_small_run_keeps_no_blocks(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw_sweeps.store.Store", None)
-    assert wearlaw("run", long_case(folder / "small.toml"), "--figure-format", "svg").exit_code == 0
 
 
 SCATTER = {
@@ -179,16 +148,6 @@ def test_uncertainty_of_a_case_is_that_of_its_pairs_with_samples_rounded_up_and_
     assert contents(folder / "out") == contents(folder / "again")
 
 
-def test_a_note_that_all_pairs_share_is_printed_once(folder: Path) -> None:
-    alike = {name: value for name, value in SCATTER.items() if name != "laws"}
-    path = write(
-        folder / "case.toml",
-        table(contact_models=["exact"], wear_laws=["kth", "usfd"], uncertainty={"scatter": alike}),
-    )
-    notes = wearlaw("uncertainty", str(path), "--samples", "64", "-o", "out").stderr.splitlines()
-    assert [note.partition(": the")[0] for note in notes if "shakedown" in note] == ["note: scatter"]
-
-
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -215,32 +174,12 @@ def test_what_cannot_be_uncertain_is_refused_with_its_place(
     assert_refused(wearlaw("uncertainty", uncertain(folder / "case.toml", changes)), message)
 
 
-def test_a_case_without_uncertainty_says_what_to_add(folder: Path) -> None:
-    assert_refused(wearlaw("uncertainty", long_case(folder / "case.toml")), "add a table such as [uncertainty.scatter]")
-
-
-def test_a_seed_that_is_none_is_refused(folder: Path) -> None:
-    result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--seed", "-1")
-    assert_refused(result, "seed: must be a whole number, zero or positive; got -1")
-
-
 def test_a_law_of_which_nothing_is_uncertain_is_left_out_and_said_so(folder: Path) -> None:
     certain = {"friction_coefficient": 0.46, "creepage": "1 %"}
     result = wearlaw("uncertainty", uncertain(folder / "case.toml", certain), "--samples", "64", "-o", "out")
     assert "note: scatter: usfd on exact is left out, since none of its inputs is uncertain" in result.stderr
     assert list(pd.read_csv(folder / "out" / "wear_rates.csv").pair) == ["kth on exact"]
     result = wearlaw("uncertainty", uncertain(folder / "case.toml", {**certain, "laws": {}}))
-    assert_refused(result, "nothing in the case is uncertain")
-
-
-def test_a_case_whose_only_uncertain_law_cannot_be_used_is_refused(folder: Path) -> None:
-    """BRR is stated for the whole patch, which the exact model resolves, so that no pair has it."""
-    fields = table(contact_models=["exact"], wear_laws=["usfd", "brr"], uncertainty={"scatter": SCATTER})
-    slope = {"normal": ["0.25 mm^3/km/N", "0.01 mm^3/km/N"]}
-    certain = {"friction_coefficient": 0.46, "creepage": "1 %", "laws": {"brr": {"mild_slope": slope}}}
-    for field, value in certain.items():
-        fields = changed(f"uncertainty.scatter.{field}", value, fields)
-    result = wearlaw("uncertainty", str(write(folder / "case.toml", fields)))
     assert_refused(result, "nothing in the case is uncertain")
 
 
@@ -259,10 +198,3 @@ def test_a_full_disk_is_one_clear_error_and_leaves_nothing_of_the_uncertainty(
     result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "64", "-o", "out")
     assert_refused(result, "output: cannot write the results: No space left on device")
     assert [path.name for path in folder.iterdir()] == ["case.toml"]
-
-
-def test_the_sizes_that_are_checked_are_those_of_the_files(folder: Path) -> None:
-    case = long_case(folder / "case.toml", sweeps={"long": changed("creepage.points", 5000, dict(LONG))})
-    wearlaw("run", case, "-o", "out", "--figure-format", "svg")
-    row = (folder / "out" / output.CSV).stat().st_size / 5000
-    assert 0.5 * output.ROW_ON_DISK < row < output.ROW_ON_DISK
