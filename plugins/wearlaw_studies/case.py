@@ -56,7 +56,6 @@ from wearlaw.settings.configuration import Configuration, known_as
 from wearlaw.settings.text_files import beside, read_text, reading
 from wearlaw.settings.toml_files import LARGEST, parse_toml
 from wearlaw.units.variables import UNITS
-from wearlaw_studies.figure_check import wrong_figures, wrong_name
 from wearlaw_studies.figure_spec import FigureSpec
 from wearlaw_studies.grid import Condition, Grid
 from wearlaw_studies.measured import MeasuredTests, check_rig
@@ -68,6 +67,9 @@ ModelT = TypeVar("ModelT", bound=Model)
 CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 """Names of the files that a run writes: its case, and its measured tests if they came from a file."""
 
+
+LONGEST_NAME = 100
+"""Most bytes of the name of a sweep, profile or figure; file systems allow 255 for it with what files add to it."""
 
 LISTED = "must be a list of names, or of tables with a name and options"
 """Error about a list of models."""
@@ -237,14 +239,22 @@ class Case(Configuration):
             raise InputError(f"{' and '.join(map(repr, twice))} is listed twice; leave one out")
         return sections
 
+    @field_validator("sweeps", "profiles", "uncertainty", "figures")
+    @classmethod
+    def _have_names_of_files(cls, given: dict[str, Any]) -> dict[str, Any]:
+        """Check the names, which are part of the names of files."""
+        fault = "must be made of letters, digits and underscores, at most 100 bytes of them"
+        wrong = [name for name in given if not name.isidentifier() or len(name.encode()) > LONGEST_NAME]
+        if wrong:
+            raise ConfigurationError(cls.subject(), [Fault((), f"the name {shown(name)} {fault}") for name in wrong])
+        return given
+
     @field_validator("sweeps", "profiles", "uncertainty")
     @classmethod
     def _fit_the_rig(cls, given: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
         """Let the rig check conditions when the case is read, not when it runs; a wrong rig checks none."""
         rig, wrong = info.data.get("rig"), []
         for name, point in given.items():
-            if fault := wrong_name(name):
-                wrong.append(Fault((), f"the name {shown(name)} {fault}"))
             if info.field_name == "profiles" and point.axes():
                 wrong.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
             if rig is not None:
@@ -332,7 +342,6 @@ class Case(Configuration):
                     check_rig(self.measured.data, self.rig)
                 except InputError as error:
                     yield Fault(("measured",), str(error))
-        yield from wrong_figures(self)
 
     def _wrong_axes(self) -> Iterator[Fault]:
         """Yield the axes of the rig's patches that results would mix up with other columns."""

@@ -197,11 +197,6 @@ def test_a_threshold_next_to_nothing_leaves_what_the_force_dissipates(
     assert model.excess_dissipation(problem, 1e-300) == pytest.approx(whole, rel=64 * EPS)
 
 
-def test_a_refined_model_is_the_same_with_twice_the_strips() -> None:
-    model = wl.contact_model("fastsim", bound="elliptic", strips=12)
-    assert model.refined() == wl.contact_model("fastsim", bound="elliptic", strips=24)
-
-
 @pytest.mark.validates(
     "line-contact",
     "With the parabolic bound, `fastsim` saturates at 1.5 times Carter's creepage",
@@ -245,14 +240,6 @@ def test_the_parabola_exceeds_friction_times_pressure_in_the_middle_only(problem
     t = contact.x / problem.half_width
     assert ratio == pytest.approx(3.0 * math.pi / 8.0 * np.sqrt(1.0 - t**2), rel=1e-12)
     assert ratio.max() > 1.17
-
-
-@every_configuration
-def test_the_pressure_of_the_record_is_that_of_hertz(bound: Bound, flexibility: Flexibility) -> None:
-    problem = problem_at(1.0)
-    contact = fastsim(bound, flexibility).at(problem, uniform_cells(problem.half_width, 50))
-    expected = float(problem.max_pressure) * np.sqrt(1.0 - (contact.x / float(problem.half_width)) ** 2)
-    assert contact.pressure == pytest.approx(expected, rel=1e-13)
 
 
 @pytest.mark.parametrize("edge", [-1.0, 1.0])

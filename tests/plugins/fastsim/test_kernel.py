@@ -12,7 +12,6 @@ import pytest
 from tests.plugins.excess import DIGITS, Density, Real, copies, crowded, shares
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_fastsim import _line  # private: its number of steps
 from wearlaw_fastsim._line import elliptic_excess, parabolic_excess  # private: of single points and of arrays
 
 
@@ -169,26 +168,6 @@ def test_copies_of_the_formula_agree(bound: str) -> None:
     for copy, found in results.items():
         apart = np.abs(found - results["arrays"])
         assert (apart <= 2.0 * ROUNDINGS[bound] * whole(bound, reduced)).all(), copy
-
-
-@pytest.mark.parametrize(("steps", "everywhere"), [(8, False), (200, True)])
-def test_the_roots_of_the_parabola_are_found_before_the_last_step(
-    steps: int, everywhere: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    random = np.random.default_rng(58)
-    reduced = crowded(random, 5_000)
-    share = shares(random, reduced.size)
-    # At full slip the density falls like a square, to which steps from below come close by doubling only.
-    easy = (np.abs(reduced - 1.0) > 0.1) & (share > 1e-6) | everywhere
-    reduced = reduced[easy]
-    level = share[easy] * np.where(reduced < 1.0, 2.0 * reduced, 1.0 + reduced)  # of the order of the maximum
-    due = {copy: apply("parabolic", copy, reduced, level) for copy in KERNELS["parabolic"]}
-    monkeypatch.setattr(_line, "STEPS", steps)
-    for copy, values in due.items():
-        assert (apply("parabolic", copy, reduced, level) == values).all()
-    monkeypatch.setattr(_line, "STEPS", 1)
-    for copy, values in due.items():
-        assert not (apply("parabolic", copy, reduced, level) == values).all()
 
 
 @every_copy

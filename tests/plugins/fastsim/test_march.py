@@ -13,7 +13,6 @@ from wearlaw import Array
 from wearlaw_fastsim._march import (  # private: patches with any flexibilities
     Cells,
     Ellipses,
-    drop_gains,
     forces,
     march,
     strip_centres,
@@ -137,14 +136,3 @@ def test_without_creepage_or_friction_nothing_is_transmitted(elliptic: bool) -> 
     # The growth over the length of a cell, and back.
     creepage = smooth.longitudinal_creepage[:, None, None]
     np.testing.assert_allclose(cells.slip_x, np.broadcast_to(creepage, cells.x.shape), rtol=8.0 * EPS)
-
-
-@each_bound
-def test_no_cell_gains_energy_once_gains_are_dropped(elliptic: bool) -> None:
-    cells = march(sample(400, elliptic, spin=3.0), 20, 20)
-    before, slip_x, slip_y = power(cells), cells.slip_x.copy(), cells.slip_y.copy()
-    assert 0 < (before < 0.0).sum() < 1e-3 * before.size
-    drop_gains(cells)
-    np.testing.assert_array_equal(power(cells), np.maximum(before, 0.0))
-    np.testing.assert_array_equal(cells.slip_x, np.where(before < 0.0, 0.0, slip_x))
-    np.testing.assert_array_equal(cells.slip_y, np.where(before < 0.0, 0.0, slip_y))

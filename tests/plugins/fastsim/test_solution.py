@@ -167,12 +167,6 @@ def test_as_many_strips_as_are_allowed_give_finite_tractions(bound: str) -> None
     assert contact.force_x == pytest.approx(fewer.force_x, rel=1.0 / 250**2)  # second order without spin
 
 
-def test_the_declared_accuracy_is_of_first_order_in_the_strips() -> None:
-    for march, share in (("adaptive", 0.5), ("uniform", 1.0)):
-        for strips in (10, 25):
-            assert wl.contact_model("fastsim", march=march, strips=strips).elliptic_accuracy == share / strips
-
-
 def test_exemptions_are_those_of_the_settings() -> None:
     exempt = {
         (): set(),
@@ -186,18 +180,3 @@ def test_exemptions_are_those_of_the_settings() -> None:
     }
     for settings, claims in exempt.items():
         assert set(wl.contact_model("fastsim", **dict(settings)).exemptions) == claims
-
-
-def test_settings_of_ellipses_are_shown_where_they_are_not_the_default() -> None:
-    shown = "Fastsim(bound='parabolic', flexibility='line'"
-    assert repr(wl.contact_model("fastsim")) == f"{shown})"
-    assert repr(wl.contact_model("fastsim", strips=12)) == f"{shown}, strips=12)"
-
-
-def test_strips_are_ten_or_a_whole_number_from_two_to_a_thousand() -> None:
-    assert wl.contact_model("fastsim") == wl.contact_model("fastsim", strips=10)
-    for strips in (2, 1000):
-        assert f"strips={strips}" in repr(wl.contact_model("fastsim", strips=strips))
-    for wrong in (1, 1001, 12.0, "12"):
-        with pytest.raises(wl.ConfigurationError, match="fastsim: strips: input should be"):
-            wl.contact_model("fastsim", strips=wrong)

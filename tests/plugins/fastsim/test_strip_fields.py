@@ -14,7 +14,6 @@ from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_fastsim._march import Ellipses  # private: patches with any flexibilities
 from wearlaw_fastsim._strips import even_strips  # private: with any number of nodes
-from wearlaw_fastsim._zones import Nodes, _where_it_sticks  # private: an excess that no patch has shown
 
 FIELDS = dataclasses.fields(Ellipses)[:-1]
 
@@ -263,26 +262,6 @@ def test_compiled_loops_are_the_same_as_numpy(elliptic: bool) -> None:
         np.testing.assert_allclose(compiled, plain, rtol=0.0, atol=1000 * EPS * np.abs(plain).max(), err_msg=name)
 
 
-def test_the_nodes_of_strips_say_whether_loops_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[int] = []
-
-    def accelerated(points: int) -> bool:
-        asked.append(points)
-        return False
-
-    monkeypatch.setattr(wl, "accelerated", accelerated)
-    strips_at(sample(elliptic=False, count=60), even_strips(7)[0], 3, 8)
-    assert asked == [1155]  # 60 × 7 × 11 / 4
-
-
-@each_bound
-def test_a_thousand_nodes_may_slip_from_the_leading_edge(elliptic: bool) -> None:
-    patches = ellipses(0.9, 0.0, 0.1, elliptic=elliptic)
-    fields = strips_at(patches, np.array([-0.5, 0.0]), 3, 1000)
-    # spin turns w by a tenth of a per cent only
-    np.testing.assert_allclose(fields.traction_x[:, 3:], fields.bound[:, 3:], rtol=1e-5)
-
-
 @each_bound
 def test_without_creepage_there_is_no_traction_and_no_slip(elliptic: bool) -> None:
     found = solve(ellipses(0.0, elliptic=elliptic))
@@ -290,15 +269,3 @@ def test_without_creepage_there_is_no_traction_and_no_slip(elliptic: bool) -> No
     assert not (np.hypot(found.fields.traction_x, found.fields.traction_y) > 1e-80).any()
     for total in (*dataclasses.astuple(found.forces), found.power):
         assert total[0] == pytest.approx(0.0, abs=1e-80)
-
-
-def test_a_slip_zone_whose_excess_does_not_fall_to_zero_after_all_sticks_where_it_is_least() -> None:
-    x = np.array([0.1, 0.4, 0.7])[:, None]
-    bound = 1.0 - x**2
-    none = np.zeros((3, 1))
-    zone = Nodes(x, none + 1.0, bound, 0.6 * bound, -0.8 * bound, none, none, np.array([[3.0], [0.5], [2.0]]))
-    point = _where_it_sticks(zone, elliptic=False)
-    assert np.cos(point.angle) == pytest.approx(0.4, rel=ROUNDING)
-    assert (point.x[0], point.y[0]) == pytest.approx((0.6 * 0.84, -0.8 * 0.84), rel=ROUNDING)
-    at_once = _where_it_sticks(zone._replace(excess=np.array([[-1.0], [-2.0], [2.0]])), elliptic=False)
-    assert np.cos(at_once.angle) == pytest.approx(0.1, rel=ROUNDING)

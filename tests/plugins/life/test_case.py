@@ -12,8 +12,8 @@ from click.testing import CliRunner
 import wearlaw as wl
 import wearlaw_life
 from tests.plugins.life.test_life import line
-from wearlaw_life import _section
-from wearlaw_life._command import life
+from wearlaw_life import _section  # private: a shorter distance
+from wearlaw_life._command import life  # private: the command
 
 TEXT = wearlaw_life.wearlaw_resources()["case"]["wheel_life"].replace('sections = ["life"]\n', "")
 

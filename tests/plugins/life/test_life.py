@@ -15,9 +15,17 @@ import wearlaw_wheelset as ws
 from tests.plugins.wheelsets import R0, cone, round_head, wheelset
 from wearlaw import Q
 from wearlaw_life import Life
-from wearlaw_life._line import Line
-from wearlaw_life._measures import flange, hollow
-from wearlaw_life._removal import conserving, even, normal_depth, positions, removed, smoothed, swept
+from wearlaw_life._line import Line  # private: a step that fails
+from wearlaw_life._measures import flange, hollow  # private: profiles in closed form
+from wearlaw_life._removal import (  # private: the parts of a step in closed form
+    conserving,
+    even,
+    normal_depth,
+    positions,
+    removed,
+    smoothed,
+    swept,
+)
 
 GIVEN: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
 

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pandas as pd
 import pytest
-from matplotlib.figure import Figure
 
 import wearlaw as wl
-from tests.core.cases import full_disk, tree
-from wearlaw_output.folder import FILES, results_folder
-from wearlaw_studies.study import Study
-from wearlaw_studies.written import CSV, RESULTS, write
+from tests.core.cases import tree
+from wearlaw_output.folder import FILES, results_folder  # private: what commands share
+
+RESULTS = "results.nc"
 
 
 def fill(folder: Path, *names: str, overwrite: bool = False) -> None:
@@ -30,14 +28,6 @@ def test_a_new_or_empty_folder_is_filled(there: bool, tmp_path: Path) -> None:
         out.mkdir(parents=True)
     fill(out, "tables/one.csv")
     assert tree(out).keys() == {RESULTS, "tables", "tables/one.csv", FILES}
-
-
-def test_a_link_to_a_folder_stays_a_link(tmp_path: Path) -> None:
-    (tmp_path / "real").mkdir()
-    (tmp_path / "link").symlink_to(tmp_path / "real")
-    fill(tmp_path / "link")
-    assert (tmp_path / "link").is_symlink()
-    assert (tmp_path / "real" / RESULTS).is_file()
 
 
 def test_earlier_results_are_replaced_when_asked_and_other_files_stay(tmp_path: Path) -> None:
@@ -67,39 +57,3 @@ def test_what_wearlaw_did_not_write_is_refused_and_kept(overwrite: bool, tmp_pat
         with pytest.raises(wl.OutputError, match=f"^output: .*{message}"):
             fill(tmp_path / name, overwrite=overwrite)
     assert tree(tmp_path) == before
-
-
-class InterruptionError(Exception):
-    """Not an error that the package knows."""
-
-
-@pytest.mark.parametrize("error", [InterruptionError, KeyboardInterrupt, OSError])
-@pytest.mark.parametrize("earlier", [False, True])
-def test_after_an_interruption_everything_is_as_before(
-    tmp_path: Path, point: Study, monkeypatch: pytest.MonkeyPatch, error: type[BaseException], earlier: bool
-) -> None:
-    if earlier:
-        fill(tmp_path / "out")
-    before = tree(tmp_path)
-
-    def break_off(*_: object) -> Figure:
-        assert list(tmp_path.rglob(CSV)), "the break must come in the middle of writing"
-        raise error
-
-    monkeypatch.setattr("wearlaw_output.files.draw", break_off)
-    expected = wl.OutputError if error is OSError else error
-    with pytest.raises(expected), results_folder(tmp_path / "out", True, RESULTS) as fresh:
-        write(point, fresh)
-    assert tree(tmp_path) == before
-
-
-def test_a_run_after_one_that_was_killed_fills_the_folder(tmp_path: Path) -> None:
-    (tmp_path / "out" / ".wearlaw-new-x" / "tables").mkdir(parents=True)
-    fill(tmp_path / "out")
-    assert (tmp_path / "out" / RESULTS).is_file()
-
-
-def test_a_full_disc_is_an_output_error(point: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pd.DataFrame, "to_csv", full_disk)
-    with pytest.raises(wl.OutputError, match="output: cannot write the results: No space left on device"):
-        write(point, tmp_path)

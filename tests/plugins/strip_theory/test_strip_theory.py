@@ -13,7 +13,7 @@ from docs.half_spaces import RATIOS, SPINS, classes, ellipses, errors, rms
 from tests.half_spaces import DRAWS, POISSON_RATIO, table
 from tests.half_spaces import contact as half_spaces
 from wearlaw import Array
-from wearlaw_strip_theory import StripTheory, _strips
+from wearlaw_strip_theory import StripTheory, _strips  # private: strips one by one
 
 MODEL, FASTSIM = wl.contact_model("strip_theory"), wl.contact_model("fastsim")
 INPUTS = ("ratio", "xi", "eta", "phi")

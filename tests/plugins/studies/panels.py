@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+import wearlaw as wl
 from tests.core.cases import case
-from wearlaw_output.curves import Curve, FigureData, Panel
-from wearlaw_studies.study import Study, run
+from wearlaw import Curve, FigureData, Panel, Study
 
 LOADS = {"from": "500 MPa", "to": "1500 MPa", "points": 3}
 """A range of maximum pressures."""
@@ -16,8 +16,7 @@ LOADS = {"from": "500 MPa", "to": "1500 MPa", "points": 3}
 
 def shown(spec: dict[str, Any], **changes: Any) -> FigureData:
     """Return the one figure of a small case that asks for it."""
-    (figure,) = run(case(**{"figures": {"one": spec}, **changes})).figures
-    return figure
+    return by_name(wl.run(case(**{"figures": {"one": spec}, **changes})))["one"]
 
 
 def by_name(study: Study) -> dict[str, FigureData]:

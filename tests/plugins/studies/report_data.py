@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+import wearlaw as wl
 from tests.core.cases import case
-from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis
-from wearlaw_studies.sections import CheckedClaim, Section
-from wearlaw_studies.study import Study, run
+from wearlaw import CheckedClaim, Curve, FigureData, Panel, PlotAxis, Section, Study
+from wearlaw_studies.report.page import report  # private: the page of a study with figures made by hand
 
 EVIL = "<script>alert(1)</script> <b>bold</b> $x_1$ %{y} & &amp; </script> {{ 7 * 7 }} \"'"
 """A text that HTML, plotly.js, MathJax or jinja would each make something else of."""
@@ -55,6 +55,11 @@ SECTION = Section(
 
 def small_study(title: str = "A small study") -> Study:
     """Return a study with one section, and with figures made by hand in the place of its own."""
-    study = replace(run(case(title=title)), sections=(SECTION,))
+    study = replace(wl.run(case(title=title)), sections=(SECTION,))
     study.__dict__["figures"] = (ONE, THREE)
     return study
+
+
+def page_of(study: Study, case_text: str = "") -> str:
+    """Return the report of a study."""
+    return report(study, case_text)

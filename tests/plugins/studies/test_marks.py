@@ -14,11 +14,10 @@ import wearlaw as wl
 from tests.core import cases
 from tests.core.cases import case
 from tests.plugins.studies.panels import by_label, by_name
+from tests.plugins.studies.report_data import page_of
 from wearlaw import Q
-from wearlaw_output.styled import latex_table
-from wearlaw_studies.report.page import report
-from wearlaw_studies.report.tables import FOOTNOTES, profiles, summaries
-from wearlaw_studies.study import Study, run
+from wearlaw_output.styled import latex_table  # private: the marks of a table for LaTeX
+from wearlaw_studies.report.tables import FOOTNOTES, summaries  # private: the marks of each number
 
 RIG = wl.TwinDisc.suros()
 BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.34, density="8800 kg/m^3")
@@ -33,14 +32,14 @@ def silently(pipeline: Any) -> Any:
 
 
 @pytest.fixture(scope="module")
-def study() -> Study:
+def study() -> wl.Study:
     by_load = {**cases.POINT, "max_pressure": LOADS}
-    return run(case(wear_laws=["usfd", "kth"], sweeps={"creepage": cases.SWEEP, "load": by_load}))
+    return wl.run(case(wear_laws=["usfd", "kth"], sweeps={"creepage": cases.SWEEP, "load": by_load}))
 
 
 @pytest.fixture(scope="module")
-def on_rail() -> Study:
-    return run(wl.load_case("wheel_on_rail"))
+def on_rail() -> wl.Study:
+    return wl.run(wl.load_case("wheel_on_rail"))
 
 
 # Predictions
@@ -118,7 +117,7 @@ def test_a_law_without_a_record_has_no_outside() -> None:
 # Results
 
 
-def test_results_hold_the_marks_of_each_pair_and_the_limits_of_each_contact_model(study: Study) -> None:
+def test_results_hold_the_marks_of_each_pair_and_the_limits_of_each_contact_model(study: wl.Study) -> None:
     sweep = study.sweeps["load"]
     for model in ("global", "exact"):
         predict = silently(lambda model=model: RIG | wl.contact_model(model) | wl.wear_law("usfd"))
@@ -131,7 +130,7 @@ def test_results_hold_the_marks_of_each_pair_and_the_limits_of_each_contact_mode
         np.testing.assert_allclose(limit, r.shakedown_limit.magnitude, rtol=1e-14)
 
 
-def test_the_wear_of_a_rail_is_outside_a_law_of_wheel_steel(on_rail: Study) -> None:
+def test_the_wear_of_a_rail_is_outside_a_law_of_wheel_steel(on_rail: wl.Study) -> None:
     elastic = on_rail.profiles["curve"].outside_range
     assert elastic.sel(pair="kth on strip_theory") == 0
     wheel, rail, *_ = by_name(on_rail)["curve_profile"].panels
@@ -149,7 +148,7 @@ def marks_of(frame: pd.DataFrame, row: str) -> list[str]:
     return [value.marks for value in found[1:]]
 
 
-def test_tables_mark_wear_rates_and_say_what_the_marks_mean(study: Study) -> None:
+def test_tables_mark_wear_rates_and_say_what_the_marks_mean(study: wl.Study) -> None:
     table = {one.name: one for one in summaries(study)}["wear_rate_load"]
     heads = [float(head) for head in table.frame.columns[1:]]
     sweep = study.sweeps["load"].sel(max_pressure=heads, method="nearest")
@@ -168,9 +167,9 @@ def test_tables_mark_wear_rates_and_say_what_the_marks_mean(study: Study) -> Non
     assert table.footnotes == tuple(f"{mark} {meaning}" for mark, meaning in FOOTNOTES.items())
 
 
-def test_marks_are_in_the_report_and_for_latex_but_not_in_numbers(study: Study) -> None:
+def test_marks_are_in_the_report_and_for_latex_but_not_in_numbers(study: wl.Study) -> None:
     table = {one.name: one for one in summaries(study)}["wear_rate_load"]
-    page = report(study, "")
+    page = page_of(study)
     assert "<sup>†‡</sup>" in page
     assert "‡ beyond shakedown" in page
     latex = latex_table(table.frame, table.footnotes)
@@ -181,10 +180,3 @@ def test_marks_are_in_the_report_and_for_latex_but_not_in_numbers(study: Study) 
     assert "†" not in numbers
     read = pd.read_csv(io.StringIO(numbers))
     np.testing.assert_array_equal(read.iloc[:, 1:], table.frame.iloc[:, 1:].astype(float))
-
-
-def test_the_table_of_a_profile_marks_the_rail(on_rail: Study) -> None:
-    table = {one.name: one for one in profiles(on_rail)}["profile_curve"]
-    rail = next(head for head in table.frame.columns if head.startswith("rail: greatest depth"))
-    assert [value.marks for value in table.frame[rail]] == ["†", ""]
-    assert table.footnotes == (f"† {FOOTNOTES['†']}",)
