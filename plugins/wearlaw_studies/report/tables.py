@@ -17,7 +17,6 @@ import pandas as pd
 import pint
 import xarray
 from numpy.typing import NDArray
-from wearlaw.pipeline.pairs import Pair
 
 from wearlaw.errors import InputError, WearlawWarning
 from wearlaw.models.contact_model import Blame, Model
@@ -30,6 +29,7 @@ from wearlaw.units.quantities import Q, from_si
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS, name_of, readable
 from wearlaw.units.variables import label as label_of
+from wearlaw_fits.pairs import Pair
 from wearlaw_output.styled import Marked
 from wearlaw_studies.figures import main_result
 from wearlaw_studies.results import (
