@@ -39,13 +39,6 @@ def deep(session: nox.Session) -> None:
 
 
 @nox.session(python="3.11", default=False)
-def fuzz(session: nox.Session) -> None:
-    """Call wearlaw in random ways and damage its files: `nox -s fuzz -- --seconds 3600`."""
-    session.install("-e", ".[test]", *FOR_SLOW)
-    session.run("python", "-m", "tests.fuzz", *session.posargs)
-
-
-@nox.session(python="3.11", default=False)
 def minimum(session: nox.Session) -> None:
     """Test with the lowest version of each dependency that is declared to do."""
     project = PYPROJECT["project"]
@@ -75,7 +68,6 @@ def bench(session: nox.Session) -> None:
     session.run("python", "-m", "tests.benchmarks.speed", *session.posargs)
     session.run("python", "-m", "tests.benchmarks.wheel_rail")
     session.run("python", "-m", "tests.benchmarks.wheelset")
-    session.run("python", "-m", "tests.benchmarks.checks")
     session.run("python", "-m", "tests.benchmarks.fit")
     session.run("python", "tests/benchmarks/study.py")
     session.run("python", "tests/benchmarks/importing.py")

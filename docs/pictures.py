@@ -62,12 +62,22 @@ def draw() -> None:
         save(drawing_of(figure), FOLDER / f"{figure.name}.png")
     for script in sorted(GALLERY.glob("*.py")):
         with tempfile.TemporaryDirectory() as folder:
+            style = Path(folder) / "matplotlibrc"  # matplotlib reads it there
+            style.write_text(matplotlibrc(), encoding="utf-8")
             subprocess.run([sys.executable, script], cwd=folder, env={**os.environ, "MPLBACKEND": "agg"}, check=True)
             shutil.copy(Path(folder) / f"{script.stem}.png", FOLDER / f"gallery_{script.stem}.png")
     if shutil.which("chromium") is None or shutil.which("chromedriver") is None:
         return
     with tempfile.TemporaryDirectory() as folder:
         photograph(Path(folder) / write(study, Path(folder), figure_formats=())[0])
+
+
+def matplotlibrc() -> str:
+    """Return the style of all other pictures for those of the gallery."""
+    colours = ", ".join(f"'{colour.removeprefix('#')}'" for colour in PALETTE)
+    return "\n".join(
+        [*(f"{key}: {value}" for key, value in STYLE.items()), f"axes.prop_cycle: cycler('color', [{colours}])"]
+    )
 
 
 def save(figure: Figure, path: Path) -> None:

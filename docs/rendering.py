@@ -10,6 +10,7 @@ from docutils.parsers.rst import Directive
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.errors import ExtensionError
 
+from docs import reference
 from wearlaw.cli import main
 from wearlaw.contact.conditions import declared
 
@@ -53,10 +54,17 @@ def list_conditions(_: Any, what: str, name: str, method: Any, __: Any, lines: l
         lines += [f":param {one.name}: {' '.join(one.meaning.split())}" for one in of_table]
 
 
+def write_reference(_: Any, page: str, source: list[str]) -> None:
+    """Put the entries of all public names into the page about the reference."""
+    if page == "reference":
+        source[0] = source[0].replace(reference.MARK, reference.page())
+
+
 def setup(app: Any) -> dict[str, bool]:
     app.add_html_math_renderer("mathml", inline_renderers=(mathml, None), block_renderers=(mathml, None))
     app.add_directive("command-line", CommandLine)
     app.connect("build-finished", check_offline)
     app.setup_extension("sphinx.ext.autodoc")
+    app.connect("source-read", write_reference)
     app.connect("autodoc-process-docstring", list_conditions, priority=600)  # after napoleon
     return {"parallel_read_safe": True, "parallel_write_safe": True}

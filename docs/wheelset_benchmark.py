@@ -1,4 +1,4 @@
-"""Writes the tables of wheelsets beside CONTACT: the Manchester benchmark A-2.2, and two patches at once.
+"""Writes the table of wheelsets beside CONTACT, in the Manchester benchmark A-2.2.
 
 `python -m docs.wheelset_benchmark` does so. Differences are those of wearlaw less CONTACT, in CONTACT's signs.
 """
@@ -25,7 +25,6 @@ DATA = Path(__file__).parents[1] / "tests" / "data"
 SIDES = ("left", "right")
 Pressure = Literal["kpec", "hertz", "half_space"]
 PRESSURES: tuple[Pressure, ...] = ("kpec", "hertz")
-HALF_SPACE: Pressure = "half_space"
 
 STEPS = 0.5 * np.arange(21)
 """Lateral displacements of the benchmark [mm]."""
@@ -152,22 +151,6 @@ def difference(ours: Array, contact: Array, factor: float | None) -> Array:
     return 100.0 * (ours - contact) / np.where(contact == 0.0, np.nan, contact)
 
 
-def shown(value: float, digits: int) -> str:
-    """Return a difference with its sign; zero has a plus."""
-    return "" if np.isnan(value) else f"{round(float(value), digits) + 0.0:+.{digits}f}"
-
-
-def table(pressure: Pressure) -> Rows:
-    """Return the table of the benchmark, a row for each wheel and case."""
-    found, patches = differences(pressure), blended(benchmark(pressure))["patches"]
-    rows: Rows = [("wheel", "displacement [mm]", "patches", *DIFFERENCES)]
-    for side, name in enumerate(SIDES):
-        for case, displacement in enumerate(STEPS):
-            cells = (shown(found[head][case, side], digits) for head, (_, _, digits) in DIFFERENCES.items())
-            rows.append((name, f"{displacement:g}", f"{patches[case, side]}", *cells))
-    return rows
-
-
 def summary() -> Rows:
     """Return the largest differences away from jumps, on the tread and on the flange."""
     at_jump = np.array([[(side, displacement) in JUMPS for side in SIDES] for displacement in STEPS])
@@ -180,89 +163,6 @@ def summary() -> Rows:
                 f"{np.nanmax(np.abs(found[head][there])):.{digits}f}" for head, (_, _, digits) in DIFFERENCES.items()
             )
             rows.append((place, f"`{pressure}`", f"{np.count_nonzero(there)}", *most))
-    return rows
-
-
-def service() -> Rows:
-    """Return the differences under 80 kN a wheel and 12 mrad of yaw, on the right wheel, at the roll of CONTACT.
-
-    A last column holds the roll that wearlaw finds without friction, as CONTACT did.
-    """
-    contact = pd.read_csv(DATA / "contact_service.csv", comment="#")
-    where: dict[str, Any] = {"lateral_displacement": Q(contact.displacement.to_numpy(), "mm"), "yaw": "12 mrad"}
-    where |= {"vertical_load": "80 kN", "angular_speed": Q(2.0 / 0.46, "rad/s")}
-    shares, rolls = {}, {}
-    for pressure in (*PRESSURES, HALF_SPACE):
-        predict: Any = wheelset(pressure) | wl.contact_model("fastsim")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wl.WearlawWarning)  # at 7 mm a wheel climbs, and steel yields
-            rolls[pressure] = predict(**where, friction_coefficient=1e-9).problem.roll[:, 1, 0]
-            r = predict(**where, friction_coefficient=0.3, roll=Q(contact.roll.to_numpy(), "rad"))
-        force = r.normal_force.m_as("N")[:, 1]
-        whole = np.nansum(force, axis=-1)
-        angle = np.nansum(force * r.contact_angle.m_as("rad")[:, 1], axis=-1) / whole
-        power = np.nansum(r.wear_index.m_as("N")[:, 1], axis=-1)
-        shares[pressure] = (
-            np.isfinite(force).sum(axis=-1), 1e3 * (angle - contact.delta), 100.0 * (whole / contact.fn - 1.0),
-            100.0 * (np.nanmax(r.max_pressure.m_as("MPa")[:, 1], axis=-1) / contact.pmax - 1.0),
-            100.0 * (-power / contact.tgamma - 1.0), 1e3 * (rolls[pressure] - contact.roll),
-        )  # fmt: skip
-    heads = ("patches", "δ [mrad]", "N [%]", "p_max [%]", "power [%]", "roll [mrad]")
-    rows: Rows = [("`pressure`", "displacement [mm]", *heads)]
-    for pressure in (*PRESSURES, HALF_SPACE):
-        for case, displacement in enumerate(contact.displacement):
-            patches, *cells = (column[case] for column in shares[pressure])
-            digits = zip(cells, (1, 1, 0, 1, 3), strict=True)
-            rows.append((f"`{pressure}`", f"{displacement:g}", f"{patches}", *(shown(one, n) for one, n in digits)))
-    return rows
-
-
-def of_two_patches() -> Rows:
-    """Return the results of both programs for two patches on one wheel."""
-    table = pd.read_csv(DATA / "contact_two_patches.csv", comment="#")
-    heads = ("y [mm]", "δ [rad]", "vertical load [N]", "FX [N]", "p_max [MPa]", "power [W]")
-    rows: Rows = [("displacement [mm]", "program", *heads)]
-    found = {pressure: two_patches(pressure) for pressure in PRESSURES}
-    for case, displacement in enumerate((5.1, 6.4)):
-        contact = table[table.displacement == displacement].sort_values("y")
-        of_right = {name: {key: array[case, 1] for key, array in one.items()} for name, one in found.items()}
-        order = np.argsort(of_right["kpec"]["y"][:2])
-        for patch in range(2):
-            rows.append((f"{displacement:g}", "CONTACT", *figures(dict(contact.iloc[patch]))))
-            for name, one in of_right.items():
-                ours = {key: array[order[patch]] for key, array in one.items()}
-                rows.append((f"{displacement:g}", f"wearlaw, `{name}`", *figures(ours)))
-    return rows
-
-
-def figures(one: dict[str, Any]) -> tuple[str, ...]:
-    """Return the results of a patch for the table."""
-    vertical = one["fn"] * np.cos(one["delta"]) + one["fs"] * np.sin(one["delta"])
-    return (
-        f"{one['y']:.1f}", f"{one['delta']:.3f}", f"{vertical:.0f}", f"{one['fx']:.0f}",
-        f"{one['pmax']:.0f}", f"{one['power']:.1f}",
-    )  # fmt: skip
-
-
-HUMPS = {"N [N]": 0, "p_max [MPa]": 0, "power [W]": 2}
-"""Heads and digits of the table of the two humps."""
-
-
-def humps() -> Rows:
-    """Return what the two humps of a right wheel in the middle of the track carry, and their power."""
-    table = pd.read_csv(DATA / "contact_two_humps.csv", comment="#")
-    valley = table.pmax[table.y.between(743.0, 748.0)].idxmin()
-    inner, outer = table[:valley], table[valley:]
-    found = {key: array[0, 1] for key, array in benchmark("kpec").items()}
-    order = np.argsort(found["y"][:2])
-    rows: Rows = [("program", *(f"{what}, {place}" for what in HUMPS for place in ("inner hump", "outer hump")))]
-    for name, parts in (
-        ("CONTACT", ([one.fn.sum() for one in (inner, outer)], [one.pmax.max() for one in (inner, outer)],
-                     [one.power.sum() for one in (inner, outer)])),
-        ("wearlaw, `kpec`", [found[key][order] for key in ("fn", "pmax", "power")]),
-    ):  # fmt: skip
-        values = zip(parts, HUMPS.values(), strict=True)
-        rows.append((name, *(f"{value:.{digits}f}" for pair, digits in values for value in pair)))
     return rows
 
 
@@ -320,10 +220,7 @@ def _two_humps(axes: Axes) -> None:
 
 def tables() -> dict[str, str]:
     """Return the tables by the names of their files."""
-    found = {"summary": summary(), "humps": humps(), "service": service(), "two_patches": of_two_patches()} | {
-        one: table(one) for one in PRESSURES
-    }
-    return {name: as_csv(rows) for name, rows in found.items()}
+    return {"summary": as_csv(summary())}
 
 
 def as_csv(rows: Rows) -> str:

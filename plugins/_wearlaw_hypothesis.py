@@ -1,4 +1,4 @@
-"""What hypothesis draws for arguments typed `Material`, and for rigs, contact problems and contacts.
+"""What hypothesis draws for arguments typed `Problem` and `Contact`.
 
 It stands beside the package, so that `import hypothesis` does not import wearlaw. Whichever of the two is imported
 last has the types registered.
@@ -14,9 +14,6 @@ from typing import Any
 from hypothesis import strategies as st
 
 STRATEGIES = {
-    "Material": "materials",
-    "TwinDisc": "rigs",
-    "WheelRail": "wheel_rails",
     "Problem": "problems",
     "Contact": "contacts",
 }

@@ -13,7 +13,7 @@ from typing import Any
 
 import wearlaw
 import wearlaw_kit
-from wearlaw import hookspecs
+from wearlaw import hookspecs  # private: hooks are an interface by name
 
 AGREED = Path(__file__).with_suffix(".txt")
 FIRST = f"INTERFACE_VERSION = {wearlaw.INTERFACE_VERSION}"

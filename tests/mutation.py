@@ -33,39 +33,43 @@ from parso.python.tree import Keyword, String  # pyright: ignore[reportMissingIm
 ROOT = Path(__file__).parents[1]
 
 TESTS = {
-    "wearlaw_archard": "plugins/test_archard.py",
-    "wearlaw_brr": "plugins/test_brr.py",
-    "wearlaw_contact_files": "plugins/test_contact_files.py plugins/test_contact_files_refusals.py",
-    "wearlaw_energy": "plugins/test_energy.py",
-    "wearlaw_exact": "plugins/test_exact_kernel.py plugins/test_exact.py test_numbers.py",
-    "wearlaw_fastsim": "plugins/test_fastsim_kernel.py plugins/test_fastsim_first_slip.py plugins/test_fastsim.py"
-    " plugins/test_fastsim_solution.py plugins/test_fastsim_strip_forces.py plugins/test_fastsim_strip_fields.py"
-    " plugins/test_fastsim_march.py plugins/test_fastsim_march_convergence.py",
-    "wearlaw_global": "plugins/test_global.py",
-    "wearlaw_kth": "plugins/test_kth.py",
-    "wearlaw_linear": "plugins/test_linear.py",
-    "wearlaw_polach": "plugins/test_polach.py",
-    "wearlaw_sheffield": "plugins/test_sheffield_claims.py plugins/test_sheffield_tables.py",
-    "wearlaw_shen_hedrick_elkins": "plugins/test_shen_hedrick_elkins.py",
-    "wearlaw_thermal": "plugins/test_thermal.py",
-    "wearlaw_third_body": "plugins/test_third_body.py",
-    "wearlaw_usfd": "plugins/test_usfd.py",
-    "wearlaw_wlrm": "plugins/test_wlrm.py",
+    "wearlaw_archard": "plugins/archard/test_archard.py",
+    "wearlaw_brr": "plugins/brr/test_brr.py",
+    "wearlaw_contact_files": "plugins/contact_files/test_contact_files.py",
+    "wearlaw_energy": "plugins/energy/test_energy.py",
+    "wearlaw_exact": "plugins/exact/test_kernel.py plugins/exact/test_exact.py test_numbers.py",
+    "wearlaw_fastsim": "plugins/fastsim/test_kernel.py plugins/fastsim/test_first_slip.py"
+    " plugins/fastsim/test_fastsim.py plugins/fastsim/test_solution.py plugins/fastsim/test_strip_forces.py"
+    " plugins/fastsim/test_strip_fields.py"
+    " plugins/fastsim/test_march.py plugins/fastsim/test_march_convergence.py",
+    "wearlaw_global": "plugins/global/test_global.py",
+    "wearlaw_kth": "plugins/kth/test_kth.py",
+    "wearlaw_linear": "plugins/linear/test_linear.py",
+    "wearlaw_polach": "plugins/polach/test_polach.py",
+    "wearlaw_sheffield": "plugins/sheffield/test_claims.py plugins/sheffield/test_tables.py",
+    "wearlaw_shen_hedrick_elkins": "plugins/shen_hedrick_elkins/test_shen_hedrick_elkins.py",
+    "wearlaw_thermal": "plugins/thermal/test_thermal.py",
+    "wearlaw_third_body": "plugins/third_body/test_third_body.py",
+    "wearlaw_usfd": "plugins/usfd/test_usfd.py",
+    "wearlaw_wlrm": "plugins/wlrm/test_wlrm.py",
     "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail.py"
     " core/test_wheel_rail_result.py core/test_unlike_materials.py core/test_several_patches.py",
     "wearlaw.contact.hertz": "core/test_hertz.py core/test_unlike_materials.py",
     "wearlaw.contact.hertz_ellipse": "core/test_hertz_ellipse.py",
     "wearlaw.numerics.splits": "core/test_splits.py",
     "wearlaw.settings.parameters": "core/test_varying.py",
-    "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py core/test_uncertainty.py"
-    " core/test_uncertainty_refusals.py core/test_inverse.py core/test_wheel_rail.py core/test_wheel_rail_result.py"
-    " core/test_models.py test_interface.py",
+    "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py plugins/fits/test_uncertainty.py"
+    " plugins/fits/test_uncertainty_refusals.py core/test_inverse.py core/test_wheel_rail.py"
+    " core/test_wheel_rail_result.py core/test_models.py",
     "wearlaw.contact.contact": "core/test_records.py core/test_contact_from_arrays.py core/test_elliptic_contact.py"
-    " core/test_several_patches.py plugins/test_fastsim_given_strips.py",
-    "wearlaw.units.wear_coefficients": "core/test_wear_coefficients.py",
+    " core/test_several_patches.py plugins/fastsim/test_given_strips.py",
+    "wearlaw_archard.coefficients": "plugins/archard/test_wear_coefficients.py",
     "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py",
 }
-"""The test files of each package or module; a plugin must pass the conformance kit too."""
+"""The test files of each package or module; a plugin must pass the conformance kit too, and each mutant the oracle."""
+
+ORACLE = "tests/test_oracle.py"
+"""Comes last, as it takes longest: it sees any number that moves."""
 
 BINARY = ["Add_Sub", "Sub_Add", "Mul_Div", "Div_Mul", "Pow_Mul", "FloorDiv_Div", "BitOr_BitAnd", "BitAnd_BitOr"]
 COMPARISON = ["Lt_LtE", "Lt_GtE", "LtE_Lt", "LtE_Gt", "Gt_GtE", "Gt_LtE", "GtE_Gt", "GtE_Lt"]
@@ -239,6 +243,7 @@ def main(names: list[str]) -> None:
             kit = name.removeprefix("wearlaw_")
             if name != "wearlaw_sheffield":
                 runs.append(["tests/test_shipped_models.py", "-k", f"test_the_model_conforms and {kit}"])
+        runs.append([ORACLE])
         for path in paths:
             report(path, runs)
 

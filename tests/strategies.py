@@ -1,24 +1,13 @@
-"""Contact models that several test files share, and where the kit's strategies crowd for them."""
+"""Contact models and strategies that several test files share."""
 
 from __future__ import annotations
 
 import numpy as np
+from hypothesis import strategies as st
 
 import wearlaw as wl
-from wearlaw_kit.examples import EPS
-from wearlaw_kit.reduced import saturation, with_creepage
-from wearlaw_kit.strategies import line_problems, log_uniform
 
-__all__ = [
-    "EPS",
-    "FULL_SLIP",
-    "LINE_MODELS",
-    "MODELS",
-    "line_problems",
-    "log_uniform",
-    "saturation_creepage",
-    "with_creepage",
-]
+EPS = float(np.finfo(np.float64).eps)
 
 MODELS: dict[str, wl.ContactModel] = {
     "exact": wl.contact_model("exact"),
@@ -49,4 +38,14 @@ FASTSIM: 3μPL/(2a²) with L = 4a/(πE*) or 32a/(3π²E*), and P/E* = πa²/(4R)
 
 def saturation_creepage(problem: wl.Problem) -> float:
     """Return μa/R."""
-    return float(saturation(problem))
+    return float(problem.friction_coefficient * problem.half_width / problem.relative_radius)
+
+
+def with_creepage(problem: wl.Problem, creepage: wl.Array | float) -> wl.Problem:
+    """Return the problem at another longitudinal creepage."""
+    return problem.replaced(longitudinal_creepage=np.asarray(creepage, dtype=np.float64))
+
+
+def log_uniform(low: float, high: float) -> st.SearchStrategy[float]:
+    """Return floats that are uniform in their logarithm."""
+    return st.floats(np.log10(low), np.log10(high)).map(lambda exponent: float(10.0**exponent))

@@ -26,13 +26,13 @@ import xarray as xr
 from conftest import PAGES
 from tests.core.cases import table
 from tests.environments import ROOT
-from wearlaw.cli import main
+from wearlaw.cli import main  # private: the program, in this process
 
 FENCE = re.compile(r"^( *)(`{3,}|~{3,}|:{3,})([^\n`]*)\n(.*?)^\1\2 *$", re.MULTILINE | re.DOTALL)
 CAPTION = re.compile(r":caption: (\S+)\n")
 ELSEWHERE = {
     r"\{literalinclude\} gallery/\w+\.py": "tests/test_gallery.py runs it",
-    r"\{literalinclude\} examples/wear_map\.py": "tests/core/test_sweep_store.py runs it",
+    r"\{literalinclude\} examples/wear_map\.py": "tests/plugins/sweeps/test_sweep_store.py runs it",
     r"\{literalinclude\} \.\./CITATION\.cff": "tests/test_release.py reads it",
     r"\{include\} \.\./CHANGELOG\.md": "no code",
     r"\{(csv-table|toctree|eval-rst|command-line)\}.*": "no code: the build of the documentation makes something of it",
@@ -61,27 +61,24 @@ NOT_RUN = {
         "docs/wheel-life.md",
         'wearlaw life my-case.toml line.csv --over "100000 km" --until flange_thickness="25 mm"'
         " --set friction_coefficient=0.3",
-    ): "takes minutes; tests/plugins/test_life_case.py runs the command",
-    ("docs/explore.md", 'python -m pip install "wearlaw[explore]"'): "tests/plugins/test_explore.py opens the page",
+    ): "takes minutes; tests/plugins/life/test_case.py runs the command",
     (
-        "docs/explore.md",
+        "docs/install.md",
+        'python -m pip install "wearlaw[explore]"',
+    ): "tests/plugins/explore/test_explore.py opens the page",
+    (
+        "docs/install.md",
         'wearlaw explore twin_disc --set "normal_force=7 kN" --set "creepage=1 %"',
-    ): "tests/plugins/test_explore.py opens the page",
-    ("docs/conformance.md", STEEP): "the law is made up; tests/core/test_cli_check.py runs the option",
-    ("CONTRIBUTING.md", ".venv/bin/python -m pytest tests/plugins/test_kth.py"): "runs with the suite as it is",
+    ): "tests/plugins/explore/test_explore.py opens the page",
+    ("docs/conformance.md", STEEP): "the law is made up; tests/plugins/kit/test_check.py runs the option",
+    ("CONTRIBUTING.md", ".venv/bin/python -m pytest tests/plugins/kth/test_kth.py"): "runs with the suite as it is",
     ("CONTRIBUTING.md", ".venv/bin/python -m pip install --upgrade pip"): INDEX,
-    ("CONTRIBUTING.md", "python -m pip install pre-commit"): "installs from an index, and into the clone's git",
     ("CONTRIBUTING.md", ".venv/bin/nox -s release"): NOX,
-    (
-        "CONTRIBUTING.md",
-        ".venv/bin/python -m tests.fuzz --seconds 3600",
-    ): "takes an hour; tests/test_fuzz.py runs the fuzzer",
     ("CONTRIBUTING.md", HOUSE): "no code; tests/test_contributing.py compares it with the code",
-    ("docs/accuracy.md", "nox -s bench"): NOX,
-    ("docs/results.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
-    ("docs/results.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
+    ("docs/case-files.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
+    ("docs/case-files.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
     (
-        "docs/results.md",
+        "docs/case-files.md",
         'provenance = jsondecode(ncreadatt("out/results.nc", "/sweeps/creepage", "provenance"));',
     ): MATLAB,
 }

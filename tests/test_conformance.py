@@ -6,21 +6,21 @@ import itertools
 import pickle
 import tomllib
 from importlib.metadata import distribution
+from typing import Any
 
 import pytest
 import tomli_w
 
 import wearlaw as wl
-from tests.testing.brushes import Brush, BrushOnCells
-from tests.testing.cells import Cells
-from tests.testing.grids import Grid
-from tests.testing.strips import Means, Strips, StripsOnStrips
-from tests.testing.wrong_contacts import Wrapped
-from tests.testing.wrong_declarations import HottestNode, Ramps, Smooth
-from tests.testing.wrong_law_nodes import Severe
-from tests.testing.wrong_laws import Linear
-from tests.testing.wrong_rigs import Delegating, Weight
-from wearlaw.models.contact_model import Model
+from tests.plugins.kit.brushes import Brush, BrushOnCells
+from tests.plugins.kit.cells import Cells
+from tests.plugins.kit.grids import Grid
+from tests.plugins.kit.strips import Means, Strips, StripsOnStrips
+from tests.plugins.kit.wrong_contacts import Wrapped
+from tests.plugins.kit.wrong_declarations import HottestNode, Ramps, Smooth
+from tests.plugins.kit.wrong_law_nodes import Severe
+from tests.plugins.kit.wrong_laws import Linear
+from tests.plugins.kit.wrong_rigs import Delegating, Weight
 from wearlaw_kit import Check, checks
 from wearlaw_kth import PUBLISHED
 from wearlaw_wheelset import Wheelset
@@ -95,7 +95,7 @@ RIGS: dict[str, wl.Rig] = {
 }
 
 
-def named(model: Model) -> str:
+def named(model: Any) -> str:
     options = (
         named(value) if isinstance(value, wl.ContactModel) else str(value)
         for _, value in model
@@ -107,7 +107,7 @@ def named(model: Model) -> str:
     return "-".join([name, *options, *own])
 
 
-RIGHT: list[Model] = [
+RIGHT: list[Any] = [
     *(Cells(), Strips(), StripsOnStrips(), Grid(), Means(), Wrapped(), Brush(), BrushOnCells()),
     *(Linear(), Smooth(), Ramps(), Severe(), HottestNode(), Weight(), Delegating()),
 ]
@@ -131,7 +131,7 @@ def test_the_model_conforms(check: Check) -> None:
 
 
 @pytest.mark.parametrize("model", [*CONTACT_MODELS, *WEAR_LAWS, *LAWS, *STAGES, *RIGS.values()], ids=named)
-def test_a_model_is_the_same_after_toml_json_and_pickle(model: Model) -> None:
+def test_a_model_is_the_same_after_toml_json_and_pickle(model: Any) -> None:
     fields = model.model_dump(mode="json", exclude_none=True, by_alias=True)
     assert type(model).model_validate(tomllib.loads(tomli_w.dumps(fields))) == model
     assert type(model).model_validate_json(model.model_dump_json(by_alias=True)) == model

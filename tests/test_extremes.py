@@ -1,8 +1,8 @@
-"""Operating points far from any test: every result is a number, none is negative, and nothing warns of arithmetic."""
+"""Operating points far from any test: numbers that make sense or refusals, also under `np.errstate(all="raise")`."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,15 +28,6 @@ LAWS = {
 }
 
 
-@pytest.fixture(params=[False, True], ids=["NumPy", "numba"])
-def _accelerated(request: pytest.FixtureRequest) -> Iterator[None]:
-    if request.param:
-        pytest.importorskip("numba")
-    wl.accelerate(request.param)
-    yield
-    wl.accelerate(None)
-
-
 def grid() -> tuple[Array, Array, Array]:
     creepage, friction, pressure = np.meshgrid(CREEPAGE, FRICTION, MAX_PRESSURE)
     return creepage.ravel(), friction.ravel(), pressure.ravel()
@@ -49,7 +40,6 @@ def grid() -> tuple[Array, Array, Array]:
     held_to="everywhere; alone and in a batch to {within:g} and the stated error",
     within=1e-12,
 )
-@pytest.mark.usefixtures("_accelerated")
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("name", MODELS)
 def test_every_result_is_a_number_that_makes_sense(name: str, law: str, within: float) -> None:
@@ -70,6 +60,56 @@ def test_every_result_is_a_number_that_makes_sense(name: str, law: str, within: 
         assert alone.wear_rate.m == pytest.approx(rate[i], rel=within, abs=2.0 * error[i] + 1e-290)
 
 
-def test_a_friction_that_no_contact_comes_near_is_refused() -> None:
-    with pytest.raises(wl.ConditionsError, match=r"friction_coefficient: must be at least 1e-12"):
-        wl.TwinDisc.suros().problem(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=[0.4, 1e-13])
+STEEP = wl.FallingFriction(static_coefficient=0.5, limit_ratio=0.4, decay="10000 s/m")
+"""exp(-B w) underflows from a creep speed of 75 mm/s."""
+
+DISCS = wl.TwinDisc.suros()
+WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+# Squares of creepages below 1e-154 underflow; products with forces do so below 1e-308.
+TINY = Q([0.0, 1e-300, 1e-160, 0.01], "")
+
+
+@pytest.mark.parametrize(
+    ("geometry", "model"),
+    [
+        *(("line", name) for name in ("exact", "fastsim", "global")),
+        *(("ellipse", name) for name in ("fastsim", "linear", "polach", "shen_hedrick_elkins")),
+    ],
+)
+@pytest.mark.parametrize("friction", [0.4, STEEP], ids=["constant", "falling"])
+def test_a_caller_that_raises_on_errors_of_floats_gets_the_same(geometry: str, friction: Any, model: str) -> None:
+    rig, creepage = (DISCS, "creepage") if geometry == "line" else (WHEEL, "longitudinal_creepage")
+    predict = rig | wl.contact_model(model) | wl.wear_law("usfd")
+    given: dict[str, Any] = {"normal_force": "7 kN", "friction_coefficient": friction, creepage: TINY}
+    expected = predict(**given).wear_rate
+    with np.errstate(all="raise"):
+        found = predict(**given).wear_rate
+    np.testing.assert_array_equal(found.magnitude, expected.magnitude)
+
+
+REFUSED: dict[str, tuple[type[wl.WearlawError], str, Any]] = {
+    "pressure beyond floats in SI": (wl.UnitError, "max_pressure", lambda: line(max_pressure="1e308 MPa")),
+    "force beyond floats in SI": (wl.UnitError, "normal_force", lambda: line(normal_force="1.7e308 kN")),
+    "force that no disc carries": (wl.ConditionsError, "max pressure", lambda: line(normal_force="1e300 kN")),
+    "friction of no contact": (wl.ConditionsError, "friction_coefficient", lambda: line(friction_coefficient=1e-13)),
+    "diameter of nothing": (wl.ConfigurationError, "diameter", lambda: wl.Disc(diameter="5e-324 mm", material="steel")),
+    "density beyond floats in SI": (
+        wl.ConfigurationError,
+        "density",
+        lambda: wl.Material(youngs_modulus="5 Pa", poisson_ratio=0.0, density="1e308 g/mm^3"),
+    ),
+}
+"""The type of the error and the word that it names, by what is wrong."""
+
+
+def line(**given: Any) -> wl.Problem:
+    load = {} if {"max_pressure", "normal_force"} & {*given} else {"max_pressure": "1500 MPa"}
+    return DISCS.problem(**{"creepage": "1 %", "friction_coefficient": 0.4, **load, **given})
+
+
+@pytest.mark.parametrize("what", REFUSED)
+@pytest.mark.parametrize("state", ["warn", "raise"])
+def test_a_number_that_cannot_be_is_refused_by_name(what: str, state: Any) -> None:
+    kind, name, make = REFUSED[what]
+    with np.errstate(all=state), pytest.raises(kind, match=name):
+        make()

@@ -20,7 +20,7 @@ from matplotlib import pyplot as plt
 
 import wearlaw as wl
 from tests import reference
-from tests.plugins.sheffield import FRICTION, MODULUS, RADIUS
+from tests.plugins.sheffield.paper import FRICTION, MODULUS, RADIUS
 
 DOCS = Path(__file__).parents[1] / "docs"
 SCRIPTS = sorted((DOCS / "gallery").glob("*.py"))

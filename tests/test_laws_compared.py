@@ -117,8 +117,7 @@ def test_the_table_is_what_is_computed() -> None:
 
 
 def test_the_words_have_the_numbers_of_the_curves() -> None:
-    mild, severe, beyond = at(DISCS, 10.0), at(DISCS, 70.0), at(DISCS, 77.26)
-    disc, wheel = at(DISCS, 5.0), at(VEHICLE, 5.0)
+    mild, severe = at(DISCS, 10.0), at(DISCS, 70.0)
     border, tested = ({case: case.friction * pressure(case) * limit for case in CASES} for limit in (0.2, 0.197))
     size = {case: 1e-6 * 100.0 / AREA[case] for case in CASES}
     said = [
@@ -126,11 +125,8 @@ def test_the_words_have_the_numbers_of_the_curves() -> None:
         f"from {mild['kth, low']:.3g} to {mild['kth, high']:.3g} µg/J",
         f"At 70 N/mm² on discs USFD wears {severe['usfd, global']:.3g} µg/J, KTH {severe['kth, mid']:.3g} µg/J and BRR"
         f" {severe['brr']:.3g} µg/J, {severe['brr'] / severe['usfd, global']:.0f} times as much",
-        f"from {mild['usfd, global']:.3g} to {beyond['usfd, global']:.3g} µg/J at 77.26 N/mm²",
         f"KTH jumps by a factor of {at(DISCS, 109.0)['kth, mid'] / at(DISCS, 108.0)['kth, mid']:.2g} at a slip speed",
         f"That is {border[DISCS]:.3g} N/mm² on discs, but {border[VEHICLE] / 20.0:.3g} N/mm² under the wheel",
-        f"KTH wears {disc['kth, mid'] / disc['usfd, global']:.2g} times as much as USFD on discs, and"
-        f" {wheel['kth, mid'] / wheel['usfd, global']:.2g} times as much under the wheel",
         f"at {size[DISCS]:.3g} N/mm² on discs and at {size[VEHICLE]:.3g} N/mm² under the wheel",
         f"a slip of {100.0 * 0.197 / 20.0:.3g} %, and {tested[VEHICLE] / 20.0:.3g} N/mm² under the wheel",
         f"of the {tested[DISCS]:.3g} N/mm² on discs",

@@ -14,7 +14,7 @@ import wearlaw as wl
 from docs import nomenclature
 from docs.nomenclature import Documented, read
 from tests.environments import ROOT
-from wearlaw.units.variables import VARIABLES
+from wearlaw.units.variables import VARIABLES  # private: the one table of variables
 
 SYMBOLS_OF_SEVERAL_NAMES = {
     "k": "KTH's map has a wear coefficient in each of its four fields",

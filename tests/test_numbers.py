@@ -16,7 +16,7 @@ from scipy import integrate
 
 import wearlaw as wl
 from tests import reference
-from tests.plugins.sheffield import (
+from tests.plugins.sheffield.paper import (
     AREA,
     CONDITIONS,
     FRICTION,

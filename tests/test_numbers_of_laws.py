@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests import reference
-from tests.plugins.sheffield import (
+from tests.plugins.sheffield.paper import (
     AREA,
     CONDITIONS,
     FRICTION,

@@ -16,9 +16,8 @@ import wearlaw as wl
 from tests.core.cases import wearlaw
 from tests.core.cli_data import rates, rows, write_tests
 from tests.environments import ROOT
-from wearlaw import hookspecs
-from wearlaw.plugins import loader
-from wearlaw_studies.case import load_case
+from wearlaw import hookspecs  # private: hooks are an interface by name
+from wearlaw.plugins import loader  # private: all that is installed, by kind
 
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 SENTENCES = " ".join(TEXT.split())
@@ -125,7 +124,7 @@ def test_the_commands_in_the_list_run(tmp_path: Path, monkeypatch: pytest.Monkey
     monkeypatch.chdir(tmp_path)
     write_tests(rows(rates()))
     Path("tests.csv").rename("my-tests.csv")
-    shutil.copy(ROOT / "tests/plugins/contact_results/carter.0001.mat", "case.0001.mat")
+    shutil.copy(ROOT / "tests/plugins/contact_files/contact_results/carter.0001.mat", "case.0001.mat")
     for command in COMMANDS:
         line, _, into = command.partition(" > ")
         words = shlex.split(line.replace("NAME", "usfd"))
@@ -134,7 +133,7 @@ def test_the_commands_in_the_list_run(tmp_path: Path, monkeypatch: pytest.Monkey
             assert result.exit_code == 0, f"{command}: {result.output}"
             if into:
                 Path(into).write_text(result.stdout, encoding="utf-8")
-    assert load_case("my-case.toml").title == load_case("tassini2010").title
+    assert wl.load_case("my-case.toml").title == wl.load_case("tassini2010").title
     found = {path.name for path in tmp_path.iterdir()}
     assert {"my-case.toml", "wearlaw-mine", "case.0001-wear"} <= found
     assert {line.split()[0] for line in COMMANDS} >= {"case", "show", "schema", "fit", "compare", "wear", *ELSEWHERE}

@@ -23,11 +23,6 @@ def test_the_page_shows_every_table_once() -> None:
     assert sorted(re.findall(r":file: validation/(\S+)\.csv", PAGE)) == sorted(validation.tables())
 
 
-def test_the_page_says_how_many_claims_and_tests_there_are() -> None:
-    found = list(validation.validations())
-    assert f"{len(found)} claims" in PAGE
-
-
 def test_a_number_of_a_mark_is_what_the_test_receives_and_what_the_page_shows() -> None:
     given = {"at": 2.0, "within": 1e-9, "share": 0.05}
     mark = pytest.mark.validates(

@@ -91,7 +91,6 @@ from wearlaw.units.quantities import (
     parse,
     scalar_si,
 )
-from wearlaw.units.wear_coefficients import wear_coefficient
 from wearlaw.version import __version__
 
 __all__ = [
@@ -243,42 +242,44 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from wearlaw.pipeline.inverse import creepage_for
     from wearlaw.plugins.law_files import read_law, read_wear_law
+    from wearlaw_archard.coefficients import wear_coefficient
     from wearlaw_explore import explore
     from wearlaw_fits.comparison import Comparison, compare
+    from wearlaw_fits.distributions import lognormal, normal, published_range, uniform
     from wearlaw_fits.fit import fit
+    from wearlaw_fits.read_tests import read_tests
     from wearlaw_fits.result import Fit
-    from wearlaw_fits.uncertainties.distributions import lognormal, normal, published_range, uniform
-    from wearlaw_fits.uncertainties.result import Uncertainty, uncertainty
-    from wearlaw_fits.wear_tests.reader import read_tests
-    from wearlaw_fits.wear_tests.tests import WearTests
+    from wearlaw_fits.uncertainty import Uncertainty, uncertainty
+    from wearlaw_fits.wear_tests import WearTests
     from wearlaw_life import wear_out
     from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis
     from wearlaw_studies.case import Case, load_case
     from wearlaw_studies.sections import CheckedClaim, Section, Verdict
     from wearlaw_studies.study import Study, run
+    from wearlaw_sweeps.inverse import creepage_for
     from wearlaw_sweeps.sweep import sweep
     from wearlaw_twin_disc import Disc, TwinDisc
     from wearlaw_wheel_rail import WheelRail
 
 _LATE = {
-    "creepage_for": "wearlaw.pipeline.inverse",
+    "creepage_for": "wearlaw_sweeps.inverse",
     "read_law": "wearlaw.plugins.law_files",
     "read_wear_law": "wearlaw.plugins.law_files",
+    "wear_coefficient": "wearlaw_archard.coefficients",
     "explore": "wearlaw_explore",
     "Comparison": "wearlaw_fits.comparison",
     "compare": "wearlaw_fits.comparison",
     "fit": "wearlaw_fits.fit",
     "Fit": "wearlaw_fits.result",
-    "lognormal": "wearlaw_fits.uncertainties.distributions",
-    "normal": "wearlaw_fits.uncertainties.distributions",
-    "published_range": "wearlaw_fits.uncertainties.distributions",
-    "uniform": "wearlaw_fits.uncertainties.distributions",
-    "Uncertainty": "wearlaw_fits.uncertainties.result",
-    "uncertainty": "wearlaw_fits.uncertainties.result",
-    "read_tests": "wearlaw_fits.wear_tests.reader",
-    "WearTests": "wearlaw_fits.wear_tests.tests",
+    "lognormal": "wearlaw_fits.distributions",
+    "normal": "wearlaw_fits.distributions",
+    "published_range": "wearlaw_fits.distributions",
+    "uniform": "wearlaw_fits.distributions",
+    "Uncertainty": "wearlaw_fits.uncertainty",
+    "uncertainty": "wearlaw_fits.uncertainty",
+    "read_tests": "wearlaw_fits.read_tests",
+    "WearTests": "wearlaw_fits.wear_tests",
     "wear_out": "wearlaw_life",
     "Curve": "wearlaw_output.curves",
     "FigureData": "wearlaw_output.curves",

@@ -9,9 +9,13 @@ from __future__ import annotations
 
 import os
 import re
+import sys
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
+
+import numpy as np
 
 LONGEST = 400
 """Most characters that a message shows of a value."""
@@ -19,7 +23,11 @@ LONGEST = 400
 
 def shown(value: object) -> str:
     """Return a value as a message shows it: its repr, cut if it is long; of a path, its text between quotes."""
-    text = repr(os.fspath(value) if isinstance(value, os.PathLike) else value)
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    elif isinstance(value, np.generic):
+        value = value.item()  # 20.0 rather than np.float64(20.0)
+    text = repr(value)
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}... ({len(text)} characters)"
 
 
@@ -182,6 +190,18 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     spelt = {name.lower(): name for name in reversed(names)}  # of equal names, the first counts
     near = [*whole, *longer, *(spelt[name] for name in get_close_matches(sought, spelt, n=1))]
     return f"; did you mean {shown(near[0])}?" if near else "."
+
+
+INSIDE = ("wearlaw", "numpy", "contextlib")
+"""What stands between the lines of a user and a warning: wearlaw with its plugins, and decorators."""
+
+
+def warn(message: str | Warning, category: type[Warning] | None = None) -> None:
+    """Warn at the nearest line that is not one of wearlaw or its plugins."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith(INSIDE):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(message, category, stacklevel=level)
 
 
 def message_of(error: BaseException) -> str:

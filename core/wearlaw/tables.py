@@ -1,4 +1,4 @@
-"""Tables of numbers with units: CSV, parquet, netCDF, zarr, and tables in memory, with the line of each row for errors.
+"""Tables of numbers with units: CSV files and tables of pandas and xarray, with the line of each row for errors.
 
 >>> import wearlaw as wl
 >>> table = wl.read_table("run.csv", {"normal_force": "Fz [kN]", "creepage": "-slip [%]"})
@@ -14,10 +14,10 @@ import itertools
 import os
 import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TextIO
+from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
 
 import numpy as np
 import pint
@@ -112,8 +112,6 @@ class Table:
     header : int
         The line of the header of a CSV file, from 1.
     """
-
-    kind: ClassVar[str] = "a table"
 
     def __init__(self, label: str) -> None:
         self.label = label
@@ -278,7 +276,8 @@ class Table:
 
     def _failed(self, error: Exception) -> DataError:
         reason = getattr(error, "strerror", None) or f"{type(error).__name__}: {error}"
-        return DataError(f"{self.label} cannot be read as {self.kind}: {reason}")
+        others = "open other files with pandas or xarray, and give the table"
+        return DataError(f"{self.label} cannot be read as CSV in UTF-8: {reason}; {others}")
 
 
 def read_table(
@@ -294,9 +293,10 @@ def read_table(
     Parameters
     ----------
     source : path, text file, pandas.DataFrame or xarray.Dataset
-        A file in CSV, parquet (with pyarrow), netCDF or zarr, or a table in memory. The unit of a column stands in its
-        head, as in "Fz [kN]", in its `attrs["units"]`, or in its type (pint). "[-]" is a ratio. If all cells of the
-        first row of a CSV file are numbers, it has no header, and the columns are "1", "2", ...
+        A CSV file, or a table of pandas or xarray, such as ``xarray.open_dataset("run.nc", decode_times=False)``, of
+        which one piece is read at a time. The unit of a column stands in its head, as in "Fz [kN]", in its
+        `attrs["units"]`, or in its type (pint). "[-]" is a ratio. If all cells of the first row of a CSV file are
+        numbers, it has no header, and the columns are "1", "2", ...
     columns : mapping of str to str, optional
         The columns to use by the names that they get, as in {"force": "Fz [kN]", "creepage": "-slip"}. A minus changes
         the sign. State the unit in brackets if the table does not. Default: all, by their heads without units.
@@ -325,22 +325,7 @@ def read_table(
 def open_table(source: Any, *, sep: str | None = None, decimal: str = ".", comment: str = "#") -> Table:
     """Return a table without columns in use; arguments as for `read_table`."""
     if isinstance(source, str | os.PathLike):
-        path = Path(source)
-        label = f"table {shown(path)}"
-        if path.is_dir():
-            return XarrayTable(label, path)
-        try:
-            with path.open("rb") as file:
-                start = file.read(8)
-        except (OSError, ValueError) as error:  # such as a name with a null character
-            raise DataError(f"{label} cannot be read: {getattr(error, 'strerror', None) or error}") from None
-        if start.startswith(b"PAR1"):
-            return ParquetTable(label, path)
-        if start.startswith((b"\x89HDF", b"CDF")):
-            return XarrayTable(label, path)
-        if start.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
-            raise DataError(f"{label} is a workbook; save it as CSV and give that file")
-        return CsvTable(label, path, sep, decimal, comment)
+        return CsvTable(f"table {shown(Path(source))}", Path(source), sep, decimal, comment)
     if hasattr(source, "read"):
         return CsvTable(f"table '{getattr(source, 'name', 'text')}'", source.read().encode(), sep, decimal, comment)
     pandas, xarray = sys.modules.get("pandas"), sys.modules.get("xarray")  # loaded already if the table is theirs
@@ -354,16 +339,15 @@ def open_table(source: Any, *, sep: str | None = None, decimal: str = ".", comme
 class CsvTable(Table):
     """A CSV file, or the bytes of one."""
 
-    kind = "CSV in UTF-8"
-
     def __init__(self, label: str, source: Path | bytes, sep: str | None, decimal: str, comment: str = "#") -> None:
         super().__init__(label)
         if decimal not in (".", ","):
             raise DataError(f'decimal: must be "." or ",", got {decimal!r}')
         self._source, self.decimal = source, decimal
-        self.size = len(source) if isinstance(source, bytes) else source.stat().st_size
         self._skip, header = 0, ""
-        with self._opened() as (file, _):
+        with self._opened() as (file, raw):
+            self.size = raw.seek(0, os.SEEK_END)
+            raw.seek(0)
             while header := file.readline():
                 if "".join(header.split()).strip(",;") and not header.lstrip('" ').startswith(comment):
                     break
@@ -479,98 +463,42 @@ class CsvTable(Table):
         return list(itertools.islice(rows, DataError.MOST))
 
 
-class ParquetTable(Table):
-    """A parquet file, which `pyarrow` reads."""
-
-    kind = "parquet"
-
-    def __init__(self, label: str, path: Path) -> None:
-        super().__init__(label)
-        self._path = path
-        with self._opened() as file:
-            self.heads = [Head(name) for name in file.schema_arrow.names]
-            self.size = file.metadata.num_rows
-
-    @contextmanager
-    def _opened(self) -> Iterator[Any]:
-        try:
-            import pyarrow.parquet
-        except ImportError:
-            raise DataError(
-                f"{self.label} is a parquet file, which pyarrow reads; install it with python -m pip install"
-                ' "wearlaw[parquet]", or give the table as CSV or netCDF'
-            ) from None
-        try:
-            with pyarrow.parquet.ParquetFile(self._path) as file:
-                yield file
-        except (OSError, pyarrow.ArrowException) as error:
-            raise self._failed(error) from None
-
-    def _raw(self, places: Sequence[int]) -> Iterator[tuple[Any, int]]:
-        names = list(dict.fromkeys(self.heads[place].text for place in places))
-        with self._opened() as file:
-            for batch in file.iter_batches(max(CELLS // len(names), 1), columns=names, use_threads=False):
-                yield {place: batch.column(self.heads[place].text).to_pandas() for place in places}, batch.num_rows
-
-
 class XarrayTable(Table):
-    """A netCDF file, a zarr store or an xarray.Dataset; the columns are variables along one dimension."""
+    """An xarray.Dataset, whose values may still be in its file; the columns are variables along one dimension."""
 
-    kind = "netCDF or zarr"
-
-    def __init__(self, label: str, source: Any) -> None:
+    def __init__(self, label: str, dataset: Any) -> None:
         super().__init__(label)
-        self._source = source
-        with self._opened() as dataset:
-            self._dims = [tuple(map(str, one.dims)) for one in dataset.variables.values()]
-            self.heads = [
-                Head(str(name), _unit_of(one.data if self._in_memory else None, one.attrs), name in dataset.data_vars)
-                for name, one in dataset.variables.items()
-            ]
-            sizes = {str(dim): size for dim, size in dataset.sizes.items()}
-            if self._in_memory:
-                self.labels = {str(dim): (dim, index.to_numpy()) for dim, index in dataset.indexes.items()}
-        if len(sizes) == 1:
-            ((self.dim, self.size),) = sizes.items()
-        self._sizes = sizes
-
-    @property
-    def _in_memory(self) -> bool:
-        return not isinstance(self._source, Path)
-
-    def _opened(self) -> Any:
-        if self._in_memory:
-            return nullcontext(self._source)
-        with needed_for("reading a netCDF file or a zarr store", "sweeps"):
-            import xarray
-
-        try:
-            if self._source.is_dir():
-                return xarray.open_zarr(self._source, chunks=None, consolidated=False, decode_times=False)
-            return xarray.open_dataset(self._source, decode_times=False)
-        except (OSError, ValueError, KeyError, ImportError) as error:
-            raise self._failed(error) from None
+        self._dataset = dataset
+        self._variables = list(dataset.variables.values())
+        for name, one in dataset.variables.items():
+            nothing = one.isel(dict.fromkeys(one.dims, slice(0))).data  # shows a unit of pint, and reads no values
+            self.heads.append(Head(str(name), _unit_of(nothing, one.attrs), name in dataset.data_vars))
+        self.labels = {str(dim): (dim, index.to_numpy()) for dim, index in dataset.indexes.items()}
+        if len(dataset.sizes) == 1:
+            self.dim, self.size = next((str(dim), size) for dim, size in dataset.sizes.items())
 
     def _raw(self, places: Sequence[int]) -> Iterator[tuple[Any, int]]:
-        dims = {self._dims[place] for place in places} - {()}
+        chosen = {place: self._variables[place] for place in places}
+        dims = {one.dims for one in chosen.values()} - {()}
         if len(dims) != 1 or len(next(iter(dims))) != 1:
             along = ", ".join(
-                f"'{self.heads[one].text}' along {' × '.join(self._dims[one]) or 'none'}" for one in places
+                f"'{self.heads[place].text}' along {' × '.join(map(str, one.dims)) or 'none'}"
+                for place, one in chosen.items()
             )
             raise DataError(f"{self.label}: its columns must all lie along one dimension, got {along}")
-        ((self.dim,),) = dims
-        self.size = self._sizes[self.dim]
+        ((dim,),) = dims
+        self.dim, self.size = str(dim), self._dataset.sizes[dim]
         step = max(CELLS // len(places), 1)
-        with self._opened() as dataset:
-            for start in range(0, self.size, step):
-                rows = slice(start, min(start + step, self.size))
-                yield {place: self._part(dataset, place, rows) for place in places}, rows.stop - start
+        for start in range(0, self.size, step):
+            rows = slice(start, min(start + step, self.size))
+            yield {place: _part(one, rows) for place, one in chosen.items()}, rows.stop - start
 
-    def _part(self, dataset: Any, place: int, rows: slice) -> Any:
-        variable = dataset.variables[self.heads[place].text]
-        data = variable.isel({self.dim: rows}).data if variable.dims else variable.data
-        values = np.asarray(getattr(data, "magnitude", data))
-        return values if values.ndim else np.full(rows.stop - rows.start, values)
+
+def _part(variable: Any, rows: slice) -> Any:
+    """Return some rows of a variable of xarray; one that has no dimension is the same in all."""
+    data = variable[rows].data if variable.dims else variable.data
+    values = np.asarray(getattr(data, "magnitude", data))
+    return values if values.ndim else np.full(rows.stop - rows.start, values)
 
 
 class FrameTable(Table):

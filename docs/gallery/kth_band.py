@@ -13,13 +13,11 @@ low, middle, high = (
     for law in wl.wear_law("kth").band()
 )
 
-plt.style.use("seaborn-v0_8-colorblind")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 axes.fill_between(creepage.m, low.m, high.m, alpha=0.2, label="published range of the coefficient")
 axes.plot(creepage.m, middle.m, label="middle of the range")
 
 axes.set(xscale="log", yscale="log", xlabel="creepage [%]", ylabel=f"wear rate [{middle.u:~P}]")
 axes.xaxis.set_major_formatter("{x:g}")
-axes.grid(alpha=0.3)
 axes.legend(loc="upper left")
 figure.savefig("kth_band.png", dpi=150)

@@ -21,7 +21,6 @@ def energy_law(wear_index_density, *, per_energy=5.3):
 solve = wl.TwinDisc.suros() | wl.contact_model("exact")
 creepage = Q(np.geomspace(0.1, 20, 400), "%")
 
-plt.style.use("seaborn-v0_8-colorblind")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 for law, line, name in ((wl.wear_law("usfd", fitted_for="exact"), "-", "USFD"), (energy_law, "--", "energy law")):
     result = (solve | law)(normal_force=Q(7.4, "kN"), creepage=creepage, friction_coefficient=0.46)
@@ -29,6 +28,5 @@ for law, line, name in ((wl.wear_law("usfd", fitted_for="exact"), "-", "USFD"), 
 
 axes.set(xscale="log", yscale="log", xlabel="creepage [%]", ylabel="wear rate [µg/m/mm²]")
 axes.xaxis.set_major_formatter("{x:g}")
-axes.grid(alpha=0.3)
 axes.legend()
 figure.savefig("own_law.png", dpi=150)

@@ -17,13 +17,11 @@ low, high = u.interval(0.95)
 shares = u.sobol()["first_order"].sort_values()
 names = {"normal_force": "load", "creepage": "creepage", "friction_coefficient": "friction", "m_m": "slope $m_m$"}
 
-plt.style.use("seaborn-v0_8-colorblind")
 figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 3.4), layout="constrained")
 left.ecdf(u.wear_rate.m)
 left.axvspan(low.m, high.m, alpha=0.2)
 left.set(xlabel=f"wear rate [{low.u:~P}]", ylabel="probability of less wear [-]")
 left.set_title("shaded: 95 % of the samples")
-left.grid(alpha=0.3)
 
 bars = right.barh([names[name] for name in shares.index], 100 * shares)
 right.bar_label(bars, fmt="%.1f", padding=3)

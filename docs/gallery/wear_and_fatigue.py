@@ -14,7 +14,6 @@ points = {"threshold": "20 N", "peak": "65 N", "balance": "175 N", "peak_damage"
 fatigue = wl.law("wlrm", **points, beyond="falls", traction="driving")
 predict = rig | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim") | fatigue
 
-plt.style.use("seaborn-v0_8-colorblind")
 figure, (above, below) = plt.subplots(2, 1, figsize=(6.4, 5.6), sharex=True, layout="constrained")
 creepage = np.linspace(0.0, 1.5, 301)
 for friction, line in ((0.35, "-"), (0.15, "--")):
@@ -26,6 +25,4 @@ below.axhline(0.0, color="black", lw=0.8)
 above.set(ylabel="wear rate [µg/m/mm²]")
 below.set(xlabel="creepage of a driving wheel [%]", ylabel="damage of a million passages [-]")
 above.legend()
-for axes in (above, below):
-    axes.grid(alpha=0.3)
 figure.savefig("wear_and_fatigue.png", dpi=150)

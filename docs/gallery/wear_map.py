@@ -13,7 +13,6 @@ creepage = np.geomspace(0.1, 18, 400)  # %
 result = predict(normal_force=Q(load, "kN"), creepage=Q(creepage[:, None], "%"), friction_coefficient=0.46)
 rate = result.wear_rate.m_as("ug/m/mm^2")
 
-plt.style.use("seaborn-v0_8-colorblind")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 levels = [0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]
 filled = axes.contourf(load, creepage, rate, levels, norm=LogNorm(), cmap="viridis", extend="both")

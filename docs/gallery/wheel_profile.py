@@ -16,7 +16,6 @@ def energy_law(wear_index_density):
 rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 predict = rig | wl.contact_model("fastsim") | energy_law
 
-plt.style.use("seaborn-v0_8-colorblind")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 for spin, line in zip((0.0, 0.3, 0.6), ("-", "--", ":"), strict=True):
     r = predict(
@@ -26,6 +25,5 @@ for spin, line in zip((0.0, 0.3, 0.6), ("-", "--", ":"), strict=True):
     axes.plot(profile.y, profile.depth, line, label=f"spin {spin} 1/m")
 
 axes.set(xlabel="y [mm]", ylabel="depth lost per distance rolled [µm/km]")
-axes.grid(alpha=0.3)
 axes.legend()
 figure.savefig("wheel_profile.png", dpi=150)

@@ -9,6 +9,8 @@ from pydantic import Field
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw_archard.coefficients import FORMS as FORMS
+from wearlaw_archard.coefficients import wear_coefficient as wear_coefficient
 
 PASCAL = wl.Unit("GPa")
 

@@ -10,7 +10,7 @@ from bokeh.palettes import Viridis256
 from bokeh.plotting import figure
 
 import wearlaw as wl
-from wearlaw.pipeline.profiles import POSITION
+from wearlaw.pipeline.worn import POSITION
 from wearlaw.units.variables import label
 from wearlaw_explore._answer import law_name, unwarned
 
@@ -27,6 +27,7 @@ APART = 15.0
 """Distance by which wheel and rail are drawn apart [mm]."""
 
 Data = dict[str, Any]
+NONE: Data = {"x": [], "y": []}
 
 
 def nodes(prediction: wl.Prediction) -> Data:
@@ -62,7 +63,7 @@ def nodes(prediction: wl.Prediction) -> Data:
 def edge(prediction: wl.Prediction) -> Data:
     """Return the true edge of an ellipse [mm]; that of strips is the edge of their cells."""
     if prediction.problem.geometry != "ellipse":
-        return {"x": [], "y": []}
+        return NONE
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
     problem = prediction.problem
     return {"x": 1e3 * problem.a * np.cos(angle), "y": 1e3 * problem.b * np.sin(angle)}
@@ -83,7 +84,7 @@ def contacts(prediction: wl.Prediction, side: str, profiles: Any) -> Data:
 def wear_across(prediction: wl.Prediction, side: str, profiles: Any) -> Data:
     """Return the depth worn off a wheel [µm/km] over y in the track [mm], with a gap between patches."""
     if prediction.scale == "patch":
-        return {"x": [], "y": []}
+        return NONE
     with unwarned():
         worn = prediction.sel(side=side).wear_profile("wheel")
     gap = {"strip": (0, 1)}
@@ -104,70 +105,64 @@ class Patch:
     """Figures of the fields of a patch: maps with equal axes, or curves along the patch of a line."""
 
     def __init__(self, line: bool) -> None:
-        self.cells, self.edge = ColumnDataSource(), ColumnDataSource({"x": [], "y": []})
-        self.figures = [self._curve(name) if line else self._map(name) for name in FIELDS]
-        self.line = line
+        self.places = ("x",) if line else ("left", "right", "top", "bottom")
+        self.cells, self.edge = ColumnDataSource(), ColumnDataSource()
+        self.figures = []
+        for name, text in FIELDS.items():
+            title, x = text.partition(" [")[0], "x, leading edge left [mm]"
+            if line:
+                drawn = plain(title, x, text)
+                drawn.line("x", name, source=self.cells, color=COLOURS[0], line_width=2)
+            else:
+                drawn = plain(title, x, "y [mm]", match_aspect=True)
+                colours = LinearColorMapper(palette=list(Viridis256))
+                drawn.quad(*self.places, source=self.cells, line_color=None,
+                           fill_color={"field": name, "transform": colours})  # fmt: skip
+                drawn.line("x", "y", source=self.edge, color="black")
+                drawn.hover.tooltips = [(text, f"@{name}")]
+                drawn.add_layout(ColorBar(color_mapper=colours, title=text, height=8), "below")
+            self.figures.append(drawn)
         self.show(None)
-
-    def _curve(self, name: str) -> Any:
-        drawn = plain(FIELDS[name].partition(" [")[0], "x, leading edge left [mm]", FIELDS[name])
-        drawn.line("x", name, source=self.cells, color=COLOURS[0], line_width=2)
-        return drawn
-
-    def _map(self, name: str) -> Any:
-        drawn = plain(FIELDS[name].partition(" [")[0], "x, leading edge left [mm]", "y [mm]", match_aspect=True)
-        colours = LinearColorMapper(palette=list(Viridis256))
-        drawn.quad("left", "right", "top", "bottom", source=self.cells, line_color=None,
-                   fill_color={"field": name, "transform": colours})  # fmt: skip
-        drawn.line("x", "y", source=self.edge, color="black")
-        drawn.hover.tooltips = [(FIELDS[name], f"@{name}")]
-        drawn.add_layout(ColorBar(color_mapper=colours, title=FIELDS[name], height=8), "below")
-        return drawn
 
     def show(self, prediction: wl.Prediction | None) -> None:
         """Show a prediction of one patch."""
         found = nodes(prediction) if prediction is not None else {}
-        places = ("x",) if self.line else ("left", "right", "top", "bottom")
-        self.cells.data = found or {name: [] for name in (*places, *FIELDS)}
-        self.edge.data = edge(prediction) if prediction is not None else {"x": [], "y": []}
+        self.cells.data = found or {name: [] for name in (*self.places, *FIELDS)}
+        self.edge.data = edge(prediction) if prediction is not None else NONE
 
 
 class Curves:
     """A figure of a curve for each law, with a mark at the present value."""
 
-    def __init__(self, title: str, x: str, y: str, laws: Any, **options: Any) -> None:
-        self.figure = plain(title, x, y, **options)
-        self.sources = {law: ColumnDataSource({"x": [], "y": []}) for law in laws}
-        self.mark = ColumnDataSource({"x": [], "y": []})
+    def __init__(self, title: str, x: str, y: str, laws: Any) -> None:
+        self.figure, self.mark = plain(title, x, y), ColumnDataSource(NONE)
+        self.sources = {law: ColumnDataSource(NONE) for law in laws}
         for (law, source), colour in zip(self.sources.items(), COLOURS * len(self.sources), strict=False):
             self.figure.line("x", "y", source=source, color=colour, line_width=2, legend_label=law_name(law))
         self.figure.scatter("x", "y", source=self.mark, color="black", size=8)
         self.figure.legend.background_fill_alpha = 0.6
 
     def show(self, curves: Any) -> None:
-        """Show curves, x and y by law; other laws have none."""
+        """Show curves by law; other laws have none."""
         for law, source in self.sources.items():
-            x, y = curves.get(law, ([], []))
-            source.data = {"x": x, "y": y}
+            source.data = curves.get(law, NONE)
 
 
 class OnProfiles:
     """Figures of the profiles of a wheel and its rail with their contacts, and of the wear across the wheel."""
 
     def __init__(self, profiles: Any, laws: Any) -> None:
-        self.profiles = profiles
-        self.touching = ColumnDataSource({"x": [], "y": []})
-        self.drawn = plain(f"wheel and rail, drawn {APART:.0f} mm apart", "y in the track [mm]", "height [mm]",
-                           match_aspect=True)  # fmt: skip
+        self.profiles, self.touching = profiles, ColumnDataSource(NONE)
+        drawn = plain(f"wheel and rail, drawn {APART:.0f} mm apart", "y in the track [mm]", "height [mm]",
+                      match_aspect=True)  # fmt: skip
         for y, z, up in ((profiles.wheel_y, profiles.wheel_z, APART), (profiles.rail_y, profiles.rail_z, 0.0)):
-            self.drawn.line(1e3 * y, up - 1e3 * z, color="black")
-        self.drawn.scatter("x", "y", source=self.touching, color=COLOURS[1], size=9)
+            drawn.line(1e3 * y, up - 1e3 * z, color="black")
+        drawn.scatter("x", "y", source=self.touching, color=COLOURS[1], size=9)
         self.wear = Curves("wear across the wheel", "y in the track [mm]", "depth [µm/km]", laws)
-        self.figures = [self.drawn, self.wear.figure]
+        self.figures = [drawn, self.wear.figure]
 
     def show(self, predictions: dict[str, wl.Prediction], side: str) -> None:
         """Show the contacts of a side, which the left wheel has in its mirror, and the wear by each law."""
         first = next(iter(predictions.values()))
         self.touching.data = contacts(first, side, self.profiles)
-        across = {law: wear_across(one, side, self.profiles) for law, one in predictions.items()}
-        self.wear.show({law: (data["x"], data["y"]) for law, data in across.items()})
+        self.wear.show({law: wear_across(one, side, self.profiles) for law, one in predictions.items()})

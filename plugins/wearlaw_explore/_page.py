@@ -9,11 +9,9 @@ from typing import Any
 import panel as pn
 
 import wearlaw as wl
-from wearlaw.cli.shared import fields, value
-from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.units.variables import name_of
-from wearlaw_explore._answer import Answer, Subject, law_name, noted, together, worst
+from wearlaw_explore._answer import Answer, Subject, law_name, together, worst
 from wearlaw_explore._figures import WIDE, Curves, OnProfiles, Patch
 
 LIVE = 0.25
@@ -56,42 +54,39 @@ def page(subject: Subject, given: Mapping[str, Any]) -> Any:
 
 class _Page:
     def __init__(self, subject: Subject, given: Mapping[str, Any]) -> None:
-        self.subject, self.start = subject, subject.start(given)
+        self.subject, self.start = subject, together(subject.rig.example, given)
         found = {name: subject.slider(name, self.start) for name in self.start}
         self.sliders = {name: slider for name, slider in found.items() if slider is not None}
+        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
         self.widgets = {
             name: pn.widgets.EditableFloatSlider(
                 label=one.label, start=one.low, end=one.high, value=one.start, step=(one.high - one.low) / 200.0,
-                format="0.[0000]", sizing_mode="stretch_width",
+                format="0.[0000]", **wide,
             )
             for name, one in self.sliders.items()
         }  # fmt: skip
         models = {law_name(code): code for code in subject.models}
         laws = {law_name(code): code for code in subject.laws}
-        first = [*subject.own_laws] or [code for code in laws.values() if law_name(code) == "usfd"]
-        self.model = pn.widgets.Select(label="Contact model", options=models, sizing_mode="stretch_width")
+        self.model = pn.widgets.Select(label="Contact model", options=models, **wide)
         self.laws = pn.widgets.CheckBoxGroup(label="Wear laws", options=laws, inline=True)
-        self.laws.value = [code for code in laws.values() if code in first] or [next(iter(laws.values()))]
-        self.other = pn.widgets.TextInput(
-            label="Other conditions", placeholder="such as rolled_distance = 5 km", sizing_mode="stretch_width"
-        )
-        self.patch = pn.widgets.Select(label="Patch", options=[""], visible=False, sizing_mode="stretch_width")
-        self.notes, self.numbers = pn.pane.HTML(sizing_mode="stretch_width"), pn.pane.HTML()
-        self.python = pn.pane.HTML(sizing_mode="stretch_width")
-        rig, along = subject.rig, self.sliders.get(subject.rig.creepage)
+        first = [code for code in laws.values() if code in subject.own_laws or law_name(code) == "usfd"]
+        self.laws.value = [code for code in first if code in subject.own_laws] or first or [*laws.values()][:1]
+        self.patch = pn.widgets.Select(label="Patch", options=[""], visible=False, **wide)
+        self.notes, self.python, self.numbers = pn.pane.HTML(**wide), pn.pane.HTML(**wide), pn.pane.HTML()
+        rig = subject.rig
         self.fields = Patch(rig.patch_geometry == "line")
-        title = f"wear over {name_of(rig.creepage)}"
-        self.curves = Curves(title, along.label if along else "", "wear rate [µg/m/mm²]", laws.values())
-        profiles = rig.profiles_in_track() if hasattr(rig, "profiles_in_track") else None
-        self.profiles = OnProfiles(profiles, laws.values()) if profiles else None
+        along = self.sliders[rig.creepage].label if rig.creepage in self.sliders else ""
+        self.curves = Curves(f"wear over {name_of(rig.creepage)}", along, "wear rate [µg/m/mm²]", laws.values())
+        self.profiles = (
+            OnProfiles(rig.profiles_in_track(), laws.values()) if hasattr(rig, "profiles_in_track") else None
+        )
         self.curve_of: Any = None
         self.answer: Answer | None = None
         for widget in self.widgets.values():
             widget.param.watch(self._moved, "value")
             widget.param.watch(self._changed, "value_throttled")
-        for widget in (self.model, self.laws, self.other):
+        for widget in (self.model, self.laws, self.patch):
             widget.param.watch(self._changed, "value")
-        self.patch.param.watch(self._changed, "value")
         self._update()
         self._update()  # for its time: the first answer loads and compiles
 
@@ -101,7 +96,7 @@ class _Page:
         figures = [*self.fields.figures, self.curves.figure, *(self.profiles.figures if self.profiles else ())]
         laws = pn.Column(pn.pane.HTML("Wear laws"), self.laws)
         controls = pn.Column(
-            *self.widgets.values(), self.other, self.model, laws, self.patch, styles={**WIDE, "max-width": "420px"}
+            *self.widgets.values(), self.model, laws, self.patch, styles={**WIDE, "max-width": "420px"}
         )
         right = pn.Column(
             self.notes, pn.FlexBox(*figures, sizing_mode="stretch_width"), self.numbers, self.python,
@@ -122,43 +117,29 @@ class _Page:
             document.add_next_tick_callback(self._update)
 
     def _update(self) -> None:
-        notes = Notes()
-        conditions = dict(self.start)
-        for name, widget in self.widgets.items():
-            conditions[name] = self.sliders[name].condition(widget.value)
-        with noted(notes, "Other conditions"):
-            texts = tuple(part for part in self.other.value.split(",") if part.strip())
-            given = fields("Other conditions", texts, "CONDITION=VALUE")
-            conditions = together(conditions, {name.strip(): value(text.strip(' "')) for name, text in given.items()})
-        answer = Answer(self.subject, self.model.value, tuple(self.laws.value), conditions, notes)
-        self.answer = answer
+        values = {name: self.sliders[name].condition(widget.value) for name, widget in self.widgets.items()}
+        conditions = {**self.start, **values}
+        self.answer = answer = Answer(self.subject, self.model.value, tuple(self.laws.value), conditions)
         self._show_curve(answer)
-        patches = list(answer.patches())
-        self.patch.param.update(options=patches or [""], visible=len(patches) > 1)
-        if self.patch.value not in patches and patches:
-            self.patch.value = patches[0]
-        self._show_patch(answer)
-        self.numbers.object = answer.numbers()
-        python = self.subject.python(answer.model, answer.laws, conditions)
-        self.python.object = (
-            f"<p>The same in Python:</p><pre tabindex=0 style='white-space: pre-wrap'>{escape(python)}</pre>"
-        )
-        self.notes.object = "".join(f"<p role=status>{escape(text)}</p>" for text in notes.texts)
-
-    def _show_curve(self, answer: Answer) -> None:
-        along = self.subject.rig.creepage
-        slider = self.sliders.get(along)
-        if slider is None:
-            return
-        others = {name: value for name, value in answer.conditions.items() if name != along}
-        if self.curve_of != (answer.model, answer.laws, others):  # along the curve itself it stays
-            self.curves.show(answer.curve(slider))
-            self.curve_of = answer.model, answer.laws, others
-        rates = [worst(one.wear_rate.magnitude, 1)[0] for one in answer.predictions.values()]
-        self.curves.mark.data = {"x": [self.widgets[along].value] * len(rates), "y": rates}
-
-    def _show_patch(self, answer: Answer) -> None:
         patches = answer.patches()
+        self.patch.param.update(options=[*patches] or [""], visible=len(patches) > 1)
+        if patches and self.patch.value not in patches:
+            self.patch.value = next(iter(patches))
         self.fields.show(patches.get(self.patch.value))
         if self.profiles and patches:
             self.profiles.show(answer.predictions, str(self.patch.value).partition(" ")[0])
+        self.numbers.object = answer.numbers()
+        python = escape(self.subject.python(answer.model, answer.laws, conditions))
+        self.python.object = f"<p>The same in Python:</p><pre tabindex=0 style='white-space: pre-wrap'>{python}</pre>"
+        self.notes.object = "".join(f"<p role=status>{escape(text)}</p>" for text in answer.notes.texts)
+
+    def _show_curve(self, answer: Answer) -> None:
+        along = self.subject.rig.creepage
+        if along not in self.sliders:
+            return
+        others = {name: value for name, value in answer.conditions.items() if name != along}
+        if self.curve_of != (answer.model, answer.laws, others):  # along the curve itself it stays
+            self.curves.show(answer.curve(self.sliders[along]))
+            self.curve_of = answer.model, answer.laws, others
+        rates = [worst(one.wear_rate.magnitude, 1)[0] for one in answer.predictions.values()]
+        self.curves.mark.data = {"x": [self.widgets[along].value] * len(rates), "y": rates}

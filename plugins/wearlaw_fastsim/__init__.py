@@ -10,8 +10,8 @@ from pydantic import Field
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_fastsim import _solution
-from wearlaw_fastsim._kernel import elliptic_excess, parabolic_excess
+from wearlaw_fastsim import _march, _strips
+from wearlaw_fastsim._line import elliptic_excess, parabolic_excess
 
 ON_ELLIPSE = ("march", "strips", "slip", "interpolation")
 """Settings that have no effect on a line."""
@@ -114,30 +114,33 @@ class Fastsim(wl.LineContactModel):
 
     def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
         """Return the contact on strips."""
-        solve = _solution.adaptive if self.march == "adaptive" else _solution.uniform
-        patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
-        contact = solve(problem, patches, self.strips)
-        return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
+        if self.march == "uniform":
+            return self._scaled(_march.solve(problem, self._ellipses(problem), self.strips))
+        return self.solve_strips(problem)
 
     def solve_strips(self, problem: wl.Problem) -> wl.Contact:
         """Return the contact on the strips of the problem, which do not feel each other."""
-        patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
-        contact = _solution.on_given_strips(problem, patches, self.strips)
-        return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
+        ellipses = self._ellipses(problem)
+        layout = _strips.layout_of(problem, ellipses, self.strips)
+        return self._scaled(_strips.solve(problem, ellipses, layout, self.strips))
 
     def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
         """Return the forces of an ellipse or of strips, without the fields that only wear needs."""
         if self.march == "uniform" and problem.geometry == "ellipse":
             return self.solve(problem).forces
-        patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
-        return _solution.forces(problem, patches, self.strips)
+        return _strips.creep_forces(problem, self._ellipses(problem), self.strips)
 
     def on_strips(self, problem: wl.Problem, shares: Array) -> wl.Contact | None:
         """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
         if self.march == "uniform" or problem.geometry == "strips":
             return None
-        patches = _solution.ellipses(problem.flatten(), self.bound == "elliptic", self.interpolation)
-        contact = _solution.on_strips(problem, patches, self.strips, shares)
+        ellipses = self._ellipses(problem)
+        return self._scaled(_strips.solve(problem, ellipses, _strips.layout_at(ellipses, shares), self.strips))
+
+    def _ellipses(self, problem: wl.Problem) -> _march.Ellipses:
+        return _march.Ellipses.of(problem.flatten(), self.bound == "elliptic", self.interpolation)
+
+    def _scaled(self, contact: wl.Contact) -> wl.Contact:
         return contact.scaled_to_wear_index() if self.slip == "scaled" else contact
 
     def slip_length(self, problem: wl.Problem) -> Array:

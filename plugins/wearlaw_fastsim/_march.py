@@ -17,17 +17,14 @@ All arrays hold half the traction, so that the sum from both ends of a cell is t
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_fastsim._march_loops import WIDTH, along, compiled_march, strip
-
-BLOCK = 12800
-"""Strips of a block in NumPy: its arrays fit in the cache, and are long enough for the calls to cost little."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,61 +58,62 @@ class Ellipses:
     bound_centre: Array
     elliptic: bool
 
+    @classmethod
+    def of(cls, problem: wl.Problem, elliptic: bool, interpolation: wl.kalker.Interpolation = "scaled") -> Self:
+        """Return the patches of a problem with one batch axis, with Kalker's three flexibilities.
+
+        L1 = 8a/(3 C11 G), L2 = 8a/(3 C22 G), L3 = π a √(a/b)/(4 C23 G) (Kalker 1982).
+        """
+        a, modulus = problem.a, problem.shear_modulus
+        ratio = a / problem.b
+        c = wl.kalker.coefficients(ratio, problem.poisson_ratio, interpolation)
+        return cls(
+            a=a,
+            b=problem.b,
+            longitudinal_creepage=problem.longitudinal_creepage,
+            lateral_creepage=problem.lateral_creepage,
+            spin=problem.spin,
+            longitudinal_flexibility=8.0 / 3.0 * a / (c.c11 * modulus),
+            lateral_flexibility=8.0 / 3.0 * a / (c.c22 * modulus),
+            spin_flexibility=0.25 * np.pi * a * np.sqrt(ratio) / (c.c23 * modulus),
+            bound_centre=(1.5 if elliptic else 2.0)
+            * problem.friction_coefficient
+            * problem.normal_force
+            / problem.patch_area,
+            elliptic=elliptic,
+        )
+
     @property
     def arrays(self) -> tuple[Array, ...]:
         """The arrays, in the order above."""
         return tuple(getattr(self, field.name) for field in dataclasses.fields(self)[:-1])
-
-    def part(self, part: slice) -> Self:
-        """Return some of the operating points."""
-        names = (field.name for field in dataclasses.fields(self)[:-1])
-        return dataclasses.replace(self, **{name: getattr(self, name)[part] for name in names})
 
     def cell_lengths(self, cells: int, strips: int) -> Array:
         """Return the length of the cells of each strip [m], of shape (points, strips)."""
         return self.a[:, None] * (2.0 / cells * np.sqrt(1.0 - strip_centres(strips) ** 2))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cells:
+class Cells(NamedTuple):
     """The result of a march, as SI arrays of shape (points, cells of a strip, strips).
 
     Attributes
     ----------
     x : ndarray
         Middle of the cell [m].
+    bound : ndarray
+        Bound of the traction, the mean of both ends [Pa].
     traction_x, traction_y : ndarray
         Traction, the mean of both ends of the cell [Pa].
     slip_x, slip_y : ndarray
         Relative slip, the mean over the cell [-].
-    bound : ndarray
-        Bound of the traction, the mean of both ends [Pa].
     """
 
     x: Array
+    bound: Array
     traction_x: Array
     traction_y: Array
     slip_x: Array
     slip_y: Array
-    bound: Array
-
-    @classmethod
-    def empty(cls, points: int, cells: int, strips: int, *, compiled: bool) -> Self:
-        """Return cells for marches to fill, in the memory order that a march fills fastest."""
-        names = [field.name for field in dataclasses.fields(cls)]
-        if compiled:
-            return cls(**{name: np.empty((points, cells, strips)) for name in names})
-        return cls(**{name: np.empty((cells, points, strips)).swapaxes(0, 1) for name in names})
-
-    @property
-    def arrays(self) -> tuple[Array, ...]:
-        """The arrays, in the order above."""
-        return tuple(getattr(self, field.name) for field in dataclasses.fields(self))
-
-    def part(self, part: slice) -> Self:
-        """Return the cells of some of the operating points."""
-        names = (field.name for field in dataclasses.fields(self))
-        return dataclasses.replace(self, **{name: getattr(self, name)[part] for name in names})
 
 
 def strip_centres(strips: int) -> Array:
@@ -123,21 +121,38 @@ def strip_centres(strips: int) -> Array:
     return (2.0 * np.arange(strips) + 1.0) / strips - 1.0
 
 
-def march(ellipses: Ellipses, cells: Cells, *, compiled: bool) -> None:
-    """March over every strip of ellipses and fill the cells, in NumPy or compiled by numba; both agree to rounding.
-
-    Patches of more than `WIDTH` strips always use NumPy.
-    """
-    if compiled and cells.x.shape[2] <= WIDTH:
-        compiled_march(np.stack(ellipses.arrays, axis=1), ellipses.elliptic, *cells.arrays)
-        return
-    points, _, strips = cells.x.shape
-    rows = BLOCK // strips
-    buffers = np.empty((8, min(rows, points), strips))
-    for first in range(0, points, rows):
-        part = slice(first, min(first + rows, points))
+def march(ellipses: Ellipses, count: int, strips: int) -> Cells:
+    """March over every strip of ellipses, from cell to cell."""
+    v = strip_centres(strips)
+    s = np.sqrt(1.0 - v * v)
+    a, b, creepage_x, creepage_y, spin, flexibility_x, flexibility_y, flexibility_spin, centre = (
+        array[:, None] for array in ellipses.arrays
+    )
+    half_length, length = a * s, ellipses.cell_lengths(count, strips)
+    half_spin = 0.5 * spin / flexibility_spin * length
+    grow_x = 0.5 * creepage_x / flexibility_x * length - half_spin * b * v
+    grow_y = 0.5 * creepage_y / flexibility_y * length
+    turn, bound = -half_spin * half_length, 0.5 * centre * (s if ellipses.elliptic else s * s)
+    over_x, over_y = 2.0 * flexibility_x / length, 2.0 * flexibility_y / length
+    found = Cells(*np.empty((len(Cells._fields), count, *length.shape)))
+    x = y = np.zeros(length.shape)
+    before = 0.0
+    for k, cell in enumerate(zip(*found, strict=True)):
+        to_x, to_bound, to_traction_x, to_traction_y, to_slip_x, to_slip_y = cell
+        middle, end = (2 * k + 1 - count) / count, 4.0 * (k + 1) * (count - k - 1) / (count * count)
+        end = math.sqrt(end) if ellipses.elliptic else end
+        free_x, free_y = x + grow_x, y + (turn * middle + grow_y)
         with np.errstate(divide="ignore", invalid="ignore"):  # where the traction has not grown
-            _march_block(ellipses.part(part), cells.part(part), buffers[:, : part.stop - first])
+            share = np.fmin(bound * end / np.sqrt(free_x * free_x + free_y * free_y), 1.0)
+        next_x, next_y = free_x * share, free_y * share
+        np.multiply(half_length, middle, out=to_x)
+        np.multiply(bound, before + end, out=to_bound)
+        np.add(x, next_x, out=to_traction_x)
+        np.add(y, next_y, out=to_traction_y)
+        np.multiply(free_x - next_x, over_x, out=to_slip_x)
+        np.multiply(free_y - next_y, over_y, out=to_slip_y)
+        x, y, before = next_x, next_y, end
+    return Cells(*(array.swapaxes(0, 1) for array in found))
 
 
 def drop_gains(cells: Cells) -> None:
@@ -160,37 +175,19 @@ def forces(ellipses: Ellipses, cells: Cells) -> wl.CreepForces:
     )
 
 
-def _march_block(ellipses: Ellipses, cells: Cells, buffers: Array) -> None:
-    count, strips = cells.x.shape[1:]
-    v = strip_centres(strips)
-    columns = [array[:, None] for array in ellipses.arrays]
-    half_length, grow_x, grow_y, turn, bound, over_x, over_y = strip(
-        columns, ellipses.elliptic, v, np.sqrt(1.0 - v * v), count
+def solve(problem: wl.Problem, ellipses: Ellipses, count: int) -> wl.Contact:
+    """Return the contact on `count` × `count` cells."""
+    flat, cells = problem.flatten(), march(ellipses, count, count)
+    drop_gains(cells)
+    contact = wl.Contact.from_strips(
+        flat,
+        forces(ellipses, cells),
+        x=cells.x,
+        y=flat.b[:, None] * strip_centres(count),
+        length=np.broadcast_to(ellipses.cell_lengths(count, count)[:, None, :], cells.x.shape),
+        strip_width=np.broadcast_to(2.0 / count * flat.b[:, None], (flat.size, count)),
+        traction=(cells.traction_x, cells.traction_y),
+        slip=(cells.slip_x, cells.slip_y),
+        traction_bound=cells.bound,
     )
-    x, y, next_x, next_y, free_x, free_y, share, work = buffers
-    x[:] = y[:] = before = 0.0
-    by_cell = zip(*(array.swapaxes(0, 1) for array in cells.arrays), strict=True)
-    for k, (to_x, to_traction_x, to_traction_y, to_slip_x, to_slip_y, to_bound) in enumerate(by_cell):
-        middle, end = along(k, count, ellipses.elliptic)
-        np.add(x, grow_x, out=free_x)
-        np.multiply(turn, middle, out=free_y)
-        np.add(free_y, grow_y, out=free_y)
-        np.add(free_y, y, out=free_y)
-        np.multiply(free_x, free_x, out=work)
-        np.multiply(free_y, free_y, out=share)
-        np.add(work, share, out=work)
-        np.sqrt(work, out=work)
-        np.multiply(bound, end, out=share)
-        np.divide(share, work, out=share)
-        np.fmin(share, 1.0, out=share)
-        np.multiply(free_x, share, out=next_x)
-        np.multiply(free_y, share, out=next_y)
-        np.add(x, next_x, out=to_traction_x)
-        np.add(y, next_y, out=to_traction_y)
-        np.subtract(free_x, next_x, out=free_x)
-        np.subtract(free_y, next_y, out=free_y)
-        np.multiply(free_x, over_x, out=to_slip_x)
-        np.multiply(free_y, over_y, out=to_slip_y)
-        np.multiply(half_length, middle, out=to_x)
-        np.multiply(bound, before + end, out=to_bound)
-        x, next_x, y, next_y, before = next_x, x, next_y, y, end
+    return contact.unflattened(problem)

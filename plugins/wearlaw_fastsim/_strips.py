@@ -1,4 +1,4 @@
-"""FASTSIM on an ellipse, strip by strip, with few nodes in stick and more in slip.
+"""FASTSIM on an ellipse or on given strips, with few nodes in stick and more in slip.
 
 A strip sticks from its leading edge to a point that a polynomial gives, and slips from there to its trailing edge.
 With spin a few strips stick once more, where w·q̂ falls below the slope of the bound, with w = dq/dx in stick. These
@@ -14,33 +14,10 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_fastsim._march import Ellipses
-from wearlaw_fastsim._zones import NODES, Strips, stick_and_slip, sums
+from wearlaw_fastsim._zones import NODES, Nodes, Strips, stick_and_slip, sums
 
-
-class StripFields(NamedTuple):
-    """Solution along strips, as SI arrays of shape (points, nodes of a strip, strips).
-
-    Attributes
-    ----------
-    x : ndarray
-        Position from the leading edge, x < 0, to the trailing edge [m].
-    length : ndarray
-        Length along x that a node represents, its weight in integrals [m].
-    traction_x, traction_y : ndarray
-        Traction [Pa].
-    slip_x, slip_y : ndarray
-        Relative slip [-], zero in stick.
-    bound : ndarray
-        Bound of the traction [Pa].
-    """
-
-    x: Array
-    length: Array
-    bound: Array
-    traction_x: Array
-    traction_y: Array
-    slip_x: Array
-    slip_y: Array
+STICK_NODES_PER_STRIP, SLIP_NODES_PER_STRIP = 0.4, 1.0
+"""Nodes along a strip over the number of strips: these make errors along and across strips about equal."""
 
 
 def even_strips(count: int) -> tuple[Array, Array]:
@@ -101,29 +78,80 @@ def given_layout(problem: wl.Problem, elliptic: bool) -> Layout:
     return Layout(y, width, half_length, problem.friction_coefficient * shape)
 
 
-def strips(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int) -> StripFields:
-    """Return the fields of strips.
+def nodes_along(count: int) -> tuple[int, int]:
+    """Return the numbers of nodes along one of `count` strips before it first slips, and from there on."""
+    return max(round(STICK_NODES_PER_STRIP * count), 4), max(round(SLIP_NODES_PER_STRIP * count), 8)
 
-    Each strip has `stick_nodes` nodes before it first slips and `slip_nodes` from there on. The last axis is the
-    axis of the strips, but in memory the axis of the nodes comes first.
+
+def layout_of(problem: wl.Problem, ellipses: Ellipses, count: int) -> Layout:
+    """Return the strips of the problem, or `count` even ones of ellipses."""
+    if problem.geometry == "strips":
+        return given_layout(problem.flatten(), ellipses.elliptic)
+    return layout_on(ellipses, *even_strips(count))
+
+
+def layout_at(ellipses: Ellipses, shares: Array) -> Layout:
+    """Return strips of ellipses at y = `shares` × b, each of which represents what is nearest to it."""
+    between = 0.5 * (shares[1:] + shares[:-1])
+    return layout_on(ellipses, shares, np.diff(np.concatenate([[-1.0], between, [1.0]])))
+
+
+def solve(problem: wl.Problem, ellipses: Ellipses, layout: Layout, count: int) -> wl.Contact:
+    """Return the contact on strips, with as many nodes on each as among `count` strips."""
+    found = strips(ellipses, layout, *nodes_along(count))
+    _clear(ellipses, found.traction_x, found.traction_y, found.slip_x, found.slip_y)
+    x, length, bound, q_x, q_y, s_x, s_y = (array.transpose(2, 0, 1) for array in found[:-1])
+    contact = wl.Contact.from_strips(
+        problem.flatten(),
+        forces(layout, found),
+        x=x,
+        y=layout.y.T,  # in the memory order of the nodes, strip by strip
+        length=length,
+        strip_width=layout.width.T,
+        traction=(q_x, q_y),
+        slip=(s_x, s_y),
+        traction_bound=bound,
+    )
+    return contact.unflattened(problem)
+
+
+def creep_forces(problem: wl.Problem, ellipses: Ellipses, count: int) -> wl.CreepForces:
+    """Return the forces of `solve`."""
+    found = forces_alone(ellipses, layout_of(problem, ellipses, count), *nodes_along(count))
+    totals = {name: getattr(found, name) for name in ("longitudinal", "lateral", "spin_moment")}
+    _clear(ellipses, *totals.values())
+    return wl.CreepForces(**{name: problem.unflatten(total) for name, total in totals.items()})
+
+
+def _clear(ellipses: Ellipses, *fields: Array) -> None:
+    """Set fields of patches that roll freely to zero, in place; nodes of no length at their trailing edge slip."""
+    creepages = ellipses.longitudinal_creepage, ellipses.lateral_creepage, ellipses.spin
+    rolls_freely = (creepages[0] == 0.0) & (creepages[1] == 0.0) & (creepages[2] == 0.0)
+    if rolls_freely.any():
+        for field in fields:
+            field[..., rolls_freely] = 0.0
+
+
+def strips(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int) -> Nodes:
+    """Return the nodes of strips, (nodes, strips, points).
+
+    Each strip has `stick_nodes` nodes before it first slips and `slip_nodes` from there on.
     """
-    zone = stick_and_slip(_strips(ellipses, layout, stick_nodes + slip_nodes), stick_nodes, slip_nodes)
-    return StripFields(*(getattr(zone, name).transpose(2, 0, 1) for name in StripFields._fields))
+    return stick_and_slip(_strips(ellipses, layout, stick_nodes + slip_nodes), stick_nodes, slip_nodes)
 
 
 def forces_alone(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int) -> wl.CreepForces:
     """Return the forces and the moment on the nodes of `strips`; compiled loops leave out the fields."""
     found = _strips(ellipses, layout, stick_nodes + slip_nodes)
     if not found.compiled:
-        return forces(layout, strips(ellipses, layout, stick_nodes, slip_nodes))
+        return forces(layout, stick_and_slip(found, stick_nodes, slip_nodes))
     along, across, turning = sums(found, slip_nodes) * (layout.half_length * layout.greatest)
     return _of_strips(layout, along, across, layout.half_length * turning)
 
 
-def forces(layout: Layout, fields: StripFields) -> wl.CreepForces:
+def forces(layout: Layout, nodes: Nodes) -> wl.CreepForces:
     """Return the forces and the moment that strips transmit."""
-    arrays = fields.length, fields.x, fields.traction_x, fields.traction_y
-    length, x, q_x, q_y = (array.transpose(1, 2, 0) for array in arrays)  # in memory order
+    length, x, q_x, q_y = nodes.length, nodes.x, nodes.traction_x, nodes.traction_y
     along, across = np.einsum("kjp,kjp->jp", length, q_x), np.einsum("kjp,kjp->jp", length, q_y)
     return _of_strips(layout, along, across, np.einsum("kjp,kjp,kjp->jp", length, x, q_y))
 
@@ -141,7 +169,7 @@ def _strips(ellipses: Ellipses, layout: Layout, nodes: int) -> Strips:
 
 
 def _rows(ellipses: Ellipses, layout: Layout) -> Array:
-    """Return strips as rows of an array, (7, strips, points), as in `_zone_loops`."""
+    """Return strips as rows of an array, (7, strips, points), as in `_loops`."""
     _, _, creepage_x, creepage_y, spin, l1, l2, l3, _ = ellipses.arrays
     y, _, half_length, greatest = layout
     unit = half_length / greatest

@@ -1,7 +1,9 @@
 """The zones of a strip of FASTSIM on an ellipse: it sticks, slips, and may stick and slip again.
 
-Lengths are over the half length a_y of a strip and tractions over its greatest bound, as in `_first_slip`. The angle β
-starts at the trailing edge, x = cos β.
+A strip at y has the half length a_y = a √(1 - y²/b²) and the greatest bound g_y. Lengths are over a_y, and tractions
+over g_y: U = 1 + X from the leading edge, V = 1 - X from the trailing edge, X = cos β. From the leading edge the
+traction grows as U (P, R + S V), with dq/dX = (P, R - 2 S X); it slips where it first meets the bound U V (parabola) or
+√(U V) (ellipse).
 
 Where a strip slips, |q| is the bound g, and the direction q̂ obeys dq̂/dx = (1 - q̂ q̂ᵀ) w/g, where w = dq/dx in stick: it
 turns towards w at the rate |w|/g per length. While w keeps its direction, half the angle θ of q̂ is a linear problem:
@@ -22,8 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw import Array
-from wearlaw_fastsim import _zone_loops as loops
-from wearlaw_fastsim._first_slip import Growth, first_slip
+from wearlaw_fastsim import _loops as loops
 
 LEAST_ANGLE = 1e-90
 """Slip zone of a strip without creepage [rad]; the powers of it in the formulas do not underflow to zero."""
@@ -32,8 +33,39 @@ NODES = 4
 """Nodes that take about as long as one operating point in the count of `accelerated`."""
 
 
-class Zone(NamedTuple):
-    """Nodes, of shape (nodes, ...), of a part of each strip that sticks or slips."""
+class Growth(NamedTuple):
+    """Growth of the traction of strips in stick, over g_y and per a_y, as arrays of one shape."""
+
+    along: Array
+    """P = (ξ/L1 - φy/L3) a_y/g_y."""
+    across: Array
+    """R = (η/L2) a_y/g_y."""
+    turning: Array
+    """S = φ/(2 L3) a_y²/g_y."""
+
+    def lateral_rate(self, x: Array) -> Array:
+        """Return the lateral part of dq/dX; the longitudinal part is P."""
+        return self.across - 2.0 * self.turning * x
+
+
+class Nodes(NamedTuple):
+    """Nodes of strips, as SI arrays of shape (nodes, ...).
+
+    Attributes
+    ----------
+    x : ndarray
+        Position from the leading edge, x < 0, to the trailing edge [m].
+    length : ndarray
+        Length along x that a node represents, its weight in integrals [m].
+    bound : ndarray
+        Bound of the traction [Pa].
+    traction_x, traction_y : ndarray
+        Traction [Pa].
+    slip_x, slip_y : ndarray
+        Relative slip [-], zero in stick.
+    excess : ndarray
+        w·q̂ - dg/dx, the growth of the traction that the bound takes off; zero in stick.
+    """
 
     x: Array
     length: Array
@@ -43,7 +75,6 @@ class Zone(NamedTuple):
     slip_x: Array
     slip_y: Array
     excess: Array
-    """w·q̂ - dg/dx, the growth of the traction that the bound takes off; zero in stick."""
 
 
 class Point(NamedTuple):
@@ -64,7 +95,7 @@ class Strips(NamedTuple):
     Attributes
     ----------
     rows : ndarray, (7, ...)
-        The strips, as in `_zone_loops`.
+        The strips, as in `_loops`.
     elliptic : bool
         Whether the bound is an ellipse; otherwise it is a parabola.
     compiled : bool
@@ -81,7 +112,7 @@ class Strips(NamedTuple):
         return Growth(*self.rows[:3])
 
 
-def stick_and_slip(strips: Strips, stick_nodes: int, slip_nodes: int) -> Zone:
+def stick_and_slip(strips: Strips, stick_nodes: int, slip_nodes: int) -> Nodes:
     """Return the nodes of strips: those before they first slip, then the rest, in which a few strips stick once more.
 
     The nodes are Gauss's: in x where a strip sticks, since q is a polynomial there, and in the angle where it slips,
@@ -92,10 +123,10 @@ def stick_and_slip(strips: Strips, stick_nodes: int, slip_nodes: int) -> Zone:
     nodes = _empty(stick_nodes + slip_nodes, edge.shape)
     _stick(strips, Point(edge, edge, edge, edge), start.u, nodes, slice(0, stick_nodes))
     _slip(strips, start, edge, nodes, slice(stick_nodes, None))
-    again = np.asarray((Zone(*nodes).excess[stick_nodes:] < 0.0).any(axis=0))
+    again = np.asarray((Nodes(*nodes).excess[stick_nodes:] < 0.0).any(axis=0))
     if again.any():
         nodes[:, stick_nodes:, again] = _split(*_some(again, strips, start), slip_nodes)
-    return Zone(*nodes)
+    return Nodes(*nodes)
 
 
 def sums(strips: Strips, slip_nodes: int) -> Array:
@@ -110,7 +141,7 @@ def sums(strips: Strips, slip_nodes: int) -> Array:
     loops.sum_loop(strips.elliptic, rows, *march, weight, flat)
     again = found[3] < 0.0
     if again.any():
-        zone = Zone(*_split(*_some(again, strips._replace(rows=_unscaled(strips.rows)), start), slip_nodes))
+        zone = Nodes(*_split(*_some(again, strips._replace(rows=_unscaled(strips.rows)), start), slip_nodes))
         x, y = zone.length * zone.traction_x, zone.length * zone.traction_y
         found[:3, again] = held[:, again] + np.stack([x, y, zone.x * y]).sum(axis=1)
     return found[:3]
@@ -122,6 +153,61 @@ def _first_slip(strips: Strips) -> Point:
     square = first_slip(growth, strips.elliptic)
     angle, u = np.maximum(2.0 * np.arctan(np.sqrt(square)), LEAST_ANGLE), 2.0 / (1.0 + square)
     return Point(angle, u, growth.along, growth.lateral_rate(0.5 * u - 1.0))
+
+
+def first_slip(growth: Growth, elliptic: bool) -> Array:
+    """Return tan² β/2 = V/U where a strip first slips: infinite at its leading edge, 0 if it never slips."""
+    return _elliptic(growth) if elliptic else _parabolic(growth)
+
+
+def _parabolic(growth: Growth) -> Array:
+    """Return V/U at the root of V² = P² + (R + S V)² in [0, 2], or infinity if there is none; there is at most one.
+
+    With D² = P² + R² - S²P² the root is (RS + D)/(1 - S²) = (P² + R²)/(D - RS); use the form that does not cancel.
+    """
+    p, r, s = growth
+    square, cross = p * p + r * r, r * s
+    root = np.sqrt(np.maximum(square - (s * p) ** 2, 0.0))
+    adds = cross > 0.0
+    over = np.where(adds, cross + root, square)
+    under = np.where(adds, (1.0 - s) * (1.0 + s), root - cross)
+    grows_slower = p * p + (r + 2.0 * s) ** 2 < 4.0
+    v = np.divide(over, under, out=np.zeros_like(over), where=grows_slower & (under > 0.0))
+    u = 2.0 - v
+    return np.divide(v, u, out=np.full_like(u, np.inf), where=grows_slower & (u > 0.0))
+
+
+def _elliptic(growth: Growth) -> Array:
+    """Return V/U at the largest root V of U (P² + (R + S V)²) = V below 2.
+
+    Z = 2/U = 1 + V/U is the largest root of Z³ - 3 m Z² + 2 n Z - l, with 3 m = 1 + P² + T², n = T c, l = c²,
+    T = R + c, c = 2 S. With Z = m (1 + z) the cubic is z³ - 3 p z - 2 q, which has three real roots or one.
+    """
+    c = 2.0 * growth.turning
+    t = growth.across + c
+    mean = (1.0 + growth.along**2 + t * t) / 3.0
+    slope = t * c / mean**2
+    p = 1.0 - 2.0 / 3.0 * slope
+    q = 1.0 - slope + 0.5 * (c / mean) ** 2 / mean
+    single = q * q - p**3
+    size = np.sqrt(np.maximum(p, 1e-100))
+    largest = 2.0 * size * np.cos(np.arccos(np.clip(q / size**3, -1.0, 1.0)) / 3.0)
+    radius = np.cbrt(np.abs(q) + np.sqrt(np.maximum(single, 0.0)))
+    only = np.copysign(radius + p / np.maximum(radius, 1e-100), q)
+    z = np.where(single > 0.0, only, largest)
+    return _without_rounding(growth, mean * (1.0 + z) - 1.0)
+
+
+def _without_rounding(growth: Growth, w: Array) -> Array:
+    """Return w = V/U after a step of Newton's method for w = P² + (R + 2 S w/(1+w))².
+
+    The step removes the rounding in w = Z - 1, which is small at small creepage.
+    """
+    lateral = growth.across + 2.0 * growth.turning * (w / (1.0 + w))
+    slope = 1.0 - 4.0 * growth.turning * lateral / (1.0 + w) ** 2
+    miss = w - growth.along**2 - lateral * lateral
+    step = np.divide(miss, slope, out=np.zeros_like(w), where=slope > 0.0)  # zero where nearby roots coincide
+    return np.maximum(w - step, 0.0)
 
 
 def _some(chosen: NDArray[np.bool_], strips: Strips, start: Point) -> tuple[Strips, Point]:
@@ -137,7 +223,7 @@ def _unscaled(rows: Array) -> Array:
 
 def _empty(count: int, shape: tuple[int, ...]) -> Array:
     """Return empty fields for a number of nodes of strips."""
-    return np.empty((len(Zone._fields), count, *shape))
+    return np.empty((len(Nodes._fields), count, *shape))
 
 
 @cache
@@ -164,13 +250,9 @@ def _bound(elliptic: bool, sine: Array) -> Array:
 
 def _stick(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) -> None:
     """Fill some of the nodes of strips that stick from a point up to a distance from the leading edge."""
-    zone = Zone(*nodes[:, part])
+    zone = Nodes(*nodes[:, part])
     share, weight = _gauss(len(zone.x))
     span = end - start.u
-    if strips.compiled:
-        begin = np.stack([start.u, span, start.x, start.y])
-        loops.stick_loop(strips.elliptic, _flat(strips.rows), _flat(begin), share, weight, part.start, _flat(nodes, 2))
-        return
     along, across, turning, half_length, greatest, *_ = strips.rows
     u = start.u + np.multiply.outer(share, span)
     traction = loops.stuck(along, across, turning, start.x, start.y, start.u, u)
@@ -185,7 +267,7 @@ def _stick(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) 
 
 def _slip(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) -> None:
     """Fill some of the nodes of strips that slip from a point up to an angle."""
-    zone = Zone(*nodes[:, part])
+    zone = Nodes(*nodes[:, part])
     share, weight = _gauss(len(zone.x))
     if strips.compiled:
         march = _compiled_march(strips, start, end, share)
@@ -252,7 +334,7 @@ def _split(strips: Strips, start: Point, count: int) -> Array:
     edge = np.zeros_like(start.angle)
     trial, nodes = _empty(2 * count, edge.shape), _empty(count, edge.shape)
     _slip(strips._replace(rows=_unscaled(strips.rows)), start, edge, trial, slice(0, None))
-    held = _where_it_sticks(Zone(*trial), strips.elliptic)
+    held = _where_it_sticks(Nodes(*trial), strips.elliptic)
     again = _where_it_slips(strips, held, 2 * count)
     stuck = count // 4
     first = (count - stuck) // 2
@@ -262,7 +344,7 @@ def _split(strips: Strips, start: Point, count: int) -> Array:
     return nodes
 
 
-def _where_it_sticks(zone: Zone, elliptic: bool) -> Point:
+def _where_it_sticks(zone: Nodes, elliptic: bool) -> Point:
     """Return the point where the excess of a slip zone falls to zero, or comes closest to it."""
     falls = zone.excess < 0.0
     after = np.where(falls.any(axis=0), falls.argmax(axis=0), zone.excess.argmin(axis=0))

@@ -6,7 +6,7 @@ import wearlaw as wl
 @wl.hookimpl
 def wearlaw_resources() -> dict[str, dict[str, wl.ResourceKind]]:
     """Return the kinds of resources that this plugin looks up."""
-    return {"kind": {"test set": wl.ResourceKind(str, "wearlaw_fits.wear_tests.reader:explain_tests")}}
+    return {"kind": {"test set": wl.ResourceKind(str, "wearlaw_fits.read_tests:explain_tests")}}
 
 
 @wl.hookimpl

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -26,19 +27,23 @@ from wearlaw.cli.shared import (
 from wearlaw.errors import FitError, PlasticityWarning, shown
 from wearlaw.models.law import Law
 from wearlaw.pipeline.notes import Notes
-from wearlaw.pipeline.pairs import Pair, compose
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import numbers
+from wearlaw.units.quantities import text_of
+from wearlaw.version import __version__
 from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named
 from wearlaw_fits.fit import fit as fit_parameters
+from wearlaw_fits.pairs import Pair, compose
+from wearlaw_fits.read_tests import read_tests
 from wearlaw_fits.result import Fit
-from wearlaw_fits.wear_tests.reader import read_tests
-from wearlaw_fits.wear_tests.tests import WearTests
-from wearlaw_fits.written import COMPARISON, FIT, write_comparison, write_fit
+from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import CommandT, written_formats
+from wearlaw_output.files import CommandT, named, write_files, written_formats
 from wearlaw_output.folder import results_folder
 from wearlaw_sweeps.progress import Bar
+
+FIT, COMPARISON, LAW = "fit.json", "comparison.json", "law.toml"
+"""Files of results."""
 
 
 def common(command: CommandT) -> CommandT:
@@ -94,6 +99,7 @@ stages_option = click.option(
     metavar="FIELDS",
     help="Parameters to fit: fields of the law or of a stage, or friction_coefficient.",
 )
+@click.option("--label", help="The name of the fitted law in tables and figures.")
 @click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
 @common
 @bounds_option
@@ -125,7 +131,7 @@ def fit(
     with results_folder(folder, overwrite, FIT) as fresh:
         fitted = _fit(tests, notes, **options)
         with notes.of("figure"):
-            names = write_fit(fitted, notes.texts, fresh, figure_formats, latex)
+            names = _write_fit(fitted, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     echo(repr(fitted))
     print_results(folder, names)
@@ -139,6 +145,7 @@ def _fit(
     stages: tuple[str, ...],
     law: str | None,
     free: str,
+    label: str | None,
     fixed: tuple[str, ...],
     bounds: tuple[str, ...],
     rig: Path | None,
@@ -150,11 +157,13 @@ def _fit(
 ) -> Fit:
     """Return the fit for these options."""
     names, given = listed("--free", free), values("--fixed", fixed)
+    given |= {"label": label} if label else {}
     both = [name for name in names if name in given]
     if both:
         raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
     tests = read_tests(path, sep=sep, decimal=decimal)
-    _note_friction(tests, friction, "friction_coefficient" in names, notes)
+    if "friction_coefficient" not in names:
+        _note_friction(tests, friction, notes)
     around = _rig(rig, notes) | contact_model(contact)
     for text in stages:
         around = around | stage(text)
@@ -245,7 +254,7 @@ def compare(
     with results_folder(folder, overwrite, COMPARISON) as fresh:
         comparison = _compare(tests, notes, **options)
         with notes.of("figure"):
-            names = write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
+            names = _write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     echo(repr(comparison))
     print_results(folder, names)
@@ -272,8 +281,9 @@ def _compare(
     if parts and not free:
         raise click.UsageError("--cross-validate: say which parameters are free, as in --free usfd=q_s,m_c")
     tests = read_tests(path, sep=sep, decimal=decimal)
-    _note_friction(tests, friction, False, notes)
-    named = {text: law_of(text) for text in listed("--laws", laws)}
+    _note_friction(tests, friction, notes)
+    given = {text: law_of(text) for text in listed("--laws", laws)}
+    named = {law.label or text: law for text, law in given.items()}
     around = [stage(text) for text in stages]
     suffix = f" with {' and '.join(stages)}" if stages else ""
     models = {f"{text}{suffix}": contact_model(text) for text in listed("--contacts", contacts)}
@@ -343,13 +353,49 @@ def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **
     return found
 
 
+def _write_fit(
+    fit: Fit, notes: Sequence[str], folder: Path, figure_formats: Sequence[FigureFormat], latex: bool
+) -> list[str]:
+    """Write a fit into an empty folder and return the names of the files, the fitted law first."""
+    record = {
+        "parameters": {name: text_of(value) for name, value in fit.parameters.items()},
+        "intervals": {name: [text_of(end) for end in ends] for name, ends in fit.intervals.items()},
+        "interval_method": fit.interval_method,
+        "aic": fit.aic,
+        "lack_of_fit": [asdict(one) for one in fit.lack_of_fit],
+        "provenance": fit.provenance,
+        "predict": fit.predict.model_dump(mode="json"),
+        "notes": list(notes),
+    }
+    if fit.law is not None:
+        fit.to_toml(folder / LAW)
+    tables = {"parameters": fit.table(), "residuals": fit.residuals}
+    names = write_files(folder, FIT, record, tables, named(fit.figure_data()), figure_formats, latex)
+    return [LAW, *names] if fit.law is not None else names
+
+
+def _write_comparison(
+    comparison: Comparison, notes: Sequence[str], folder: Path, figure_formats: Sequence[FigureFormat], latex: bool
+) -> list[str]:
+    """Write a comparison into an empty folder and return the names of the files, the ranking first."""
+    record = {
+        "wearlaw": __version__,
+        "tests": comparison.tests.source,
+        "cross_validated": comparison.cross_validated,
+        "predictors": {one.names.label: one.pipeline.model_dump(mode="json") for one in comparison.compared},
+        "notes": list(notes),
+    }
+    tables = {"ranking": comparison.table(), "predictions": comparison.predictions()}
+    return write_files(folder, COMPARISON, record, tables, named(comparison.figure_data()), figure_formats, latex)
+
+
 def _rig(path: Path | None, notes: Notes) -> Any:
     if path is None:
         notes.add("the rig is taken to be SUROS, 47 mm steel discs and a track of 10 mm; give yours with --rig")
     return read_rig(path)
 
 
-def _note_friction(tests: WearTests, friction: float | None, fitted: bool, notes: Notes) -> None:
+def _note_friction(tests: WearTests, friction: float | None, notes: Notes) -> None:
     """Note an option --friction that the tests do not need."""
-    if friction is not None and not fitted and tests.friction_coefficient is not None:
+    if friction is not None and tests.friction_coefficient is not None:
         notes.add(f"--friction {friction:g} is not used, since the tests have a column friction_coefficient")

@@ -4,27 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 import pandas as pd
 
 from wearlaw.arrays.array import Array, steady
-from wearlaw.errors import InputError, did_you_mean, shown
+from wearlaw.errors import (
+    CalibrationWarning,
+    FitError,
+    FitWarning,
+    InputError,
+    PlasticityWarning,
+    RangeWarning,
+    did_you_mean,
+    shown,
+)
 from wearlaw.models.contact_model import Model
 from wearlaw.models.labels import labels
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.arguments import expect
+from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
 from wearlaw.units.variables import label, name_of
 from wearlaw_fits.agreement import Agreement, Information, agreement
-from wearlaw_fits.cross_validation import Folds, cross_validated, folds
+from wearlaw_fits.fit import fit as refit
 from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import repeats
+from wearlaw_fits.observations import test_names
 from wearlaw_fits.result import Fit
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.curves import BLACK, Curve, FigureData
 from wearlaw_output.parity import parity_panels
 from wearlaw_output.plot import plot
@@ -37,6 +48,12 @@ if TYPE_CHECKING:
 
 Predictor: TypeAlias = Pipeline[...] | Fit
 """A pipeline with a law, or a fit of one."""
+
+Folds: TypeAlias = int | Literal["leave-one-out"]
+"""Number of folds, or one for each operating point."""
+
+SEED = 0
+"""Seed of the random order in which operating points are dealt to folds, so that a comparison can be repeated."""
 
 COLUMNS = {
     "predictor": "object",
@@ -300,7 +317,13 @@ def compare_named(
     compared = [task.compared(*one) for one in named]
     how = ""
     if cross_validate is not None:
-        compared, how = task.cross_validated(compared, given, cross_validate, progress)
+        parts, how = task.folds(given, cross_validate)
+        with Bar(len(parts) * sum(isinstance(one, Fit) for one in given), progress) as bar:
+            bar.stage("cross-validating")
+            compared = [
+                task.unseen(old, one, parts, bar) if isinstance(one, Fit) else old
+                for old, one in zip(compared, given, strict=True)
+            ]
     if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
         notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
         compared = [replace(one, information=None) for one in compared]
@@ -323,18 +346,17 @@ def _outcome(given: Sequence[Predictor], tests: WearTests, outcome: str | None) 
         If a predictor does not predict it, or if it is not given and the predictors share none or several.
     """
     predicted = [list(named_outcomes(_pipeline(one).laws)) for one in given]
+    every = list(dict.fromkeys(name for names in predicted for name in names))
+    shared = [name for name in every if all(name in names for names in predicted)]
     if outcome is not None:
-        for names in predicted:
-            if outcome not in names:
-                hint = did_you_mean(outcome, names)
-                raise InputError(
-                    f"outcome: a predictor does not predict {shown(outcome)}{hint} It predicts {', '.join(names)}"
-                )
+        if outcome not in shared:
+            raise InputError(
+                f"outcome: not all predictors predict {shown(outcome)}{did_you_mean(outcome, shared)} They predict"
+                f" {', '.join(every)}"
+            )
         return outcome
-    shared = [name for name in predicted[0] if all(name in names for names in predicted)]
     if not shared:
-        every = ", ".join(dict.fromkeys(name for names in predicted for name in names))
-        raise InputError(f"the predictors have no outcome in common; they predict {every}")
+        raise InputError(f"the predictors have no outcome in common; they predict {', '.join(every)}")
     tests = tests.measuring(shared)
     measured = [name for name in shared if not np.isnan(tests.measured(name, _law(given[0], name).outcome.unit)).all()]
     if len(measured) > 1:
@@ -364,7 +386,8 @@ def _names(predictors: Sequence[Predictor], outcome: str) -> list[Names]:
     for one, model in zip(predictors, models, strict=True):
         named = [(stage, next(stages)) for stage in _pipeline(one).stages]
         contact = ", ".join([model, *("patch means" if stage.gives_means else name for stage, name in named)])
-        law = next(laws) if isinstance(one, Pipeline) else f"{_law(one, outcome).name} fitted"
+        own = _law(one, outcome)
+        law = next(laws) if isinstance(one, Pipeline) else own.label or f"{own.name} fitted"
         names.append(Names(f"{law} on {contact}", law, contact))
     return names
 
@@ -404,12 +427,42 @@ class _Task:
         information = self._information(names.label, predictor) if isinstance(predictor, Fit) else None
         return Compared(names, _pipeline(predictor), predicted, errors, self._in_sample(law), information)
 
-    def cross_validated(
-        self, compared: Sequence[Compared], given: Sequence[Predictor], how: Folds, progress: bool
-    ) -> tuple[list[Compared], str]:
-        """Return the predictors, with fits predicting each test from fits to other folds, and how in words."""
-        fits = sum(isinstance(one, Fit) for one in given)
-        if not fits:
+    def unseen(self, old: Compared, fit: Fit, parts: Sequence[NDArray[np.intp]], bar: Bar) -> Compared:
+        """Return a fit with its predictions of each test by fits to the tests of other folds.
+
+        Raises
+        ------
+        FitError
+            If the tests outside a fold do not determine the parameters.
+        """
+        name, predicted = old.names.label, np.empty(len(self.tests))
+        for held in parts:
+            there = np.isin(np.arange(len(self.tests)), held)
+            friction = self.friction if np.ndim(self.friction) == 0 else coefficient(self.friction, FRICTION)[held]
+            try:
+                # The fit to all tests has warned already; test after test at the edge of the range would repeat it.
+                with caught_warnings(FitWarning, RangeWarning, PlasticityWarning, CalibrationWarning):
+                    again = refit(tests=self.tests[~there], bootstrap=0, **fit.settings)
+                    predicted[held] = self._predicted(name, again, self.tests[held], friction, Notes())
+            except FitError as error:
+                raise FitError(
+                    f"{name}: cannot be fitted without {test_names(self.tests, there)}: {error}; choose another number"
+                    " of folds, or free fewer parameters"
+                ) from error
+            bar(1)
+        measured = self.tests.measured(self.outcome, _law(fit, self.outcome).outcome.unit)
+        return replace(old, predicted=predicted, agreement=agreement(predicted, measured), in_sample=0)
+
+    def folds(self, given: Sequence[Predictor], how: Folds) -> tuple[list[NDArray[np.intp]], str]:
+        """Return the indices of the tests in each fold, and the way in words.
+
+        Tests that repeat each other are in one fold, since a fit that has seen one of them has seen the others.
+
+        Notes
+        -----
+        M. Stone, J. R. Stat. Soc. B 36 (1974) 111-147.
+        """
+        if not any(isinstance(one, Fit) for one in given):
             raise InputError(
                 "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
                 ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
@@ -417,32 +470,21 @@ class _Task:
         conditions = self._conditions(given[0], self.tests, self.friction)
         conditions.pop("traction_coefficient", None)  # measured tractions of repeated tests scatter
         points = repeats(conditions, len(self.tests))
-        parts, distinct = folds(points, how), int(points.max()) + 1
-        if distinct < len(self.tests):
+        count = int(points.max()) + 1
+        if count < len(self.tests):
             self.notes.add(
-                f"the {len(self.tests)} tests are at {distinct} operating points; cross-validation leaves out repeated"
+                f"the {len(self.tests)} tests are at {count} operating points; cross-validation leaves out repeated"
                 " tests together"
             )
-        with Bar(len(parts) * fits, progress) as bar:
-            bar.stage("cross-validating")
-            found = [
-                self._unseen(old, one, parts, bar) if isinstance(one, Fit) else old
-                for old, one in zip(compared, given, strict=True)
-            ]
-        return found, "leave-one-out" if len(parts) == distinct else f"{len(parts)} folds"
-
-    def _unseen(self, old: Compared, fit: Fit, parts: list[NDArray[np.intp]], bar: Bar) -> Compared:
-        """Return a fit with its predictions of each test by fits to tests of other folds."""
-        name = old.names.label
-
-        def predict(again: Fit, held: NDArray[np.intp]) -> Array:
-            friction = self.friction
-            own = friction if np.ndim(friction) == 0 else coefficient(friction, FRICTION)[held]
-            return self._predicted(name, again, self.tests[held], own, Notes())
-
-        predicted = cross_validated(name, fit, self.tests, parts, predict, bar)
-        measured = self.tests.measured(self.outcome, _law(fit, self.outcome).outcome.unit)
-        return replace(old, predicted=predicted, agreement=agreement(predicted, measured), in_sample=0)
+        number: Any = count if how == "leave-one-out" else how
+        if isinstance(number, bool) or not isinstance(number, int) or not 2 <= number <= count:
+            raise InputError(
+                f'cross_validate: give "leave-one-out" or a number of folds from 2 to {count}, the number of operating'
+                f" points; got {shown(how)}"
+            )
+        dealt = np.random.default_rng(SEED).permutation(count)
+        parts = [np.flatnonzero(np.isin(points, dealt[fold::number])) for fold in range(number)]
+        return parts, "leave-one-out" if number == count else f"{number} folds"
 
     def _conditions(self, predictor: Predictor, tests: WearTests, friction: Any) -> dict[str, Any]:
         pipeline = _pipeline(predictor)

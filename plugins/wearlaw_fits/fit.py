@@ -2,33 +2,68 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from numbers import Integral
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from wearlaw.arrays.array import steadily
-from wearlaw.errors import FitError, FitWarning, shown
+from wearlaw.arrays.array import Array, steadily
+from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown
+from wearlaw.models.law import Calibration, named_outcomes
+from wearlaw.numerics.integrate import integrate_forces
+from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import warn_of_parameters
-from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.pipeline import Pipeline, Rig
+from wearlaw.pipeline.ranges import overload_of
+from wearlaw.plugins import loader
+from wearlaw.plugins.fields import specification
 from wearlaw.settings.arguments import expect
-from wearlaw.units.quantities import QuantityLike
-from wearlaw_fits.intervals import DECIDED_ALONE, Replicates, leverage, replicate
-from wearlaw_fits.least_squares import Solutions
-from wearlaw_fits.observations import test_names
+from wearlaw.settings.configuration import known_name
+from wearlaw.units.quantities import Quantity, QuantityLike, coefficient, in_unit
+from wearlaw.units.variables import UNITS
+from wearlaw.version import __version__
+from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
+from wearlaw_fits.intervals import (
+    Replicates,
+    covariance,
+    leverage,
+    replicate,
+    student_intervals,
+    studentised_intervals,
+    undetermined,
+)
+from wearlaw_fits.lack_of_fit import LackOfFit, lack_of_fit, repeats
+from wearlaw_fits.least_squares import Bounds, Solutions, refine, search
+from wearlaw_fits.named_numbers import changed_parts, staged_models
+from wearlaw_fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
 from wearlaw_fits.result import Fit
-from wearlaw_fits.summary import summarise
-from wearlaw_fits.task import Task
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
+
+NEAR = 10.0
+"""Starting points lie within this factor of the first value, up and down."""
+
+ROUNDS = 3
+"""Iterations in which the scatter about the fit sets the weights of two kinds of measurement."""
+
+LEAST_SCATTER = 1e-5
+"""Least scatter for a weight; made-up tests without scatter would otherwise hide each other's parameters."""
+
+LEAST_GROUP = 4
+"""Least number of measurements of a kind to estimate their scatter."""
 
 AT_BOUND = 1e-6
 """Distance from a bound, as a share of the range, up to which a fit counts as lying on it."""
 
 USABLE = 0.95
 """Share of the replicates that must converge and determine each parameter, for reliable intervals."""
+
+DIGITS = 4
+"""Significant digits of the stated range of a fitted law, rounded outwards."""
 
 
 def fit(
@@ -94,26 +129,25 @@ def fit(
     CalibrationWarning
         If parameters that are not free were fitted for another contact or other materials.
     FitWarning
-        If the law does not fit the tests (see `LackOfFit`), the fit ends at a bound, a test decides a parameter alone,
-        or the bootstrap is unreliable.
+        If the law does not fit the tests (see `LackOfFit`), the fit ends at a bound, or the bootstrap is unreliable.
 
     Notes
     -----
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
     expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
-    _check_settings(scatter, confidence, starts=starts, bootstrap=bootstrap, seed=seed)
-    with steadily():
-        task = Task.of(predict, tests, free, friction_coefficient, scatter, {} if bounds is None else bounds)
-        best = task.solve(starts, seed)
-        replicates = None
-        if bootstrap:
-            replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
-    if overload := task.overload(best):
-        overload.warn(stacklevel=2)
+    if scatter not in ("relative", "absolute"):
+        raise FitError(f'scatter: must be "relative" or "absolute", got {shown(scatter)}')
+    for name, count in {"starts": starts, "bootstrap": bootstrap, "seed": seed}.items():
+        if not isinstance(count, int) or count < 0:
+            raise FitError(f"{name}: must be a whole number, zero or positive, got {shown(count)}")
+    if not 0.0 < confidence < 1.0:
+        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shown(confidence)}")
+    if 0 < bootstrap < round(2.0 / (1.0 - confidence), 6):
+        raise FitError(f"bootstrap: must be 0 or at least 2/(1 - confidence), got {shown(bootstrap)}")
     settings = {
         "predict": predict,
-        "free": list(free),
+        "free": [free] if isinstance(free, str) else list(free),
         "friction_coefficient": friction_coefficient,
         "scatter": scatter,
         "bounds": bounds,
@@ -122,49 +156,319 @@ def fit(
         "confidence": confidence,
     }
     with steadily():
-        found = summarise(task, best, replicates, confidence, settings)
-    _warn(task, best, replicates, found)
+        task = _Task.of(predict, tests, settings["free"], friction_coefficient, scatter, bounds or {})
+        best = task.solve(starts, seed)
+        replicates = None
+        if bootstrap:
+            replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
+        found = _result(task, best, replicates, confidence, settings)
+    overload = task.overload(best)
+    if overload:
+        overload.warn()
+    poor = (one.warning for one in found.lack_of_fit if one.poor)
+    for text in (*poor, *_at_bounds(task, best), *_unreliable(task, replicates)):
+        warnings.warn(text, FitWarning, stacklevel=2)
     _warn_of_kept(task)
     return found
 
 
-def _check_settings(scatter: object, confidence: object, **counts: object) -> None:
-    if not isinstance(scatter, str) or scatter not in ("relative", "absolute"):
-        raise FitError(f'scatter: must be "relative" or "absolute", got {shown(scatter)}')
-    if not (isinstance(confidence, float | np.floating) and 0.0 < confidence < 1.0):
-        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shown(confidence)}")
-    for name, value in counts.items():
-        if isinstance(value, bool) or not isinstance(value, Integral) or value < 0:
-            raise FitError(f"{name}: must be a whole number that is not negative, got {shown(value)}")
-    bootstrap: Any = counts["bootstrap"]
-    least = math.ceil(round(2.0 / (1.0 - float(confidence)), 6))  # since 1 - 0.9 is rounded
-    if 0 < bootstrap < least:
+@dataclass
+class _Task:
+    """The free parameters, the measurements, and the weights of the residuals."""
+
+    predict: Pipeline[...]
+    tests: WearTests
+    scatter: Scatter
+    free: FreeParameters
+    observations: list[Observations]
+    weights: Array
+
+    @classmethod
+    def of(
+        cls,
+        predict: Pipeline[...],
+        tests: WearTests,
+        free: Sequence[str],
+        friction: float | None,
+        scatter: Literal["relative", "absolute"],
+        bounds: Mapping[str, Any],
+    ) -> _Task:
+        """Return the task for the arguments of `fit`."""
+        if not isinstance(predict, Pipeline):
+            raise FitError(f"predict: give a rig with a contact model, and laws or none, not {shown(predict)}")
+        if friction is not None:
+            given = coefficient(friction, FRICTION)
+            if given.ndim:
+                raise FitError(f"{FRICTION}: must be one number; one for each test can stand in a column of the tests")
+            friction = float(given)
+        predict = predict.with_law(*(law.explicit() for law in predict.laws)) if predict.laws else predict
+        first = _first_friction(tests, friction) if FRICTION in free else friction
+        parameters = FreeParameters.of(predict, free, first, bounds)
+        observations = observe(predict, tests.measuring(named_outcomes(predict.laws)), parameters, first, scatter)
+        stated = any(one.scatter == "uncertainty" for one in observations)
+        count = sum(one.measured.size for one in observations)
+        if count <= len(parameters.names):
+            raise FitError(
+                f"tests: {count} measurement{'s' if count > 1 else ''} cannot tell {len(parameters.names)} parameters"
+                f" ({', '.join(parameters.names)}) and their scatter; give more tests, or free fewer parameters"
+            )
+        return cls(predict, tests, "uncertainty" if stated else scatter, parameters, observations, np.ones(count))
+
+    @property
+    def groups(self) -> NDArray[np.intp]:
+        """The index of the kind of each measurement, (n,)."""
+        return np.repeat(np.arange(len(self.observations)), [one.measured.size for one in self.observations])
+
+    def model(self, theta: Array) -> Array:
+        """Return the weighted residuals (sets, n) of scaled parameters (sets, p)."""
+        values = self.free.columns(theta)
+        return np.concatenate([one.residuals(values) for one in self.observations], axis=-1) * self.weights
+
+    def residuals(self, best: Solutions) -> Array:
+        """Return the residuals of a fit without their weights, (n,)."""
+        found: Array = best.residuals[0] / self.weights
+        return found
+
+    def solve(self, starts: int, seed: int) -> Solutions:
+        """Return the best fit.
+
+        Raises
+        ------
+        FitError
+            If the fit has not converged, or the tests do not determine it.
+        """
+        bounds, first = self.free.bounds, np.zeros(len(self.free.names))
+        target = np.zeros(self.weights.size)
+        reach = np.where(self.free.positive, math.log(NEAR), NEAR)
+        near = Bounds(bounds.clip(-reach), bounds.clip(reach))
+        fits = search(self.model, target, first, bounds, near, starts, seed)
+        best = min(fits, key=lambda one: float(one.cost[0]))
+        if len(self.observations) > 1:
+            for _ in range(ROUNDS):
+                self._weigh(best)
+                best = refine(self.model, target, best.theta[0], bounds)
+        if not best.converged[0]:
+            advice = give_bounds(self.free.names[0])
+            raise FitError(f"the fit has not converged; {advice}, or a law whose parameters are nearer to the tests")
+        names = [name for name, left in zip(self.free.names, undetermined(best.jacobian)[0], strict=True) if left]
+        if names:
+            combined = ", or determine only a combination of them" if len(names) > 1 else ""
+            raise FitError(
+                f"free: the tests do not determine {' and '.join(names)}{combined}; fix some of these parameters, or"
+                " add tests in other regimes"
+            )
+        return best
+
+    def overload(self, best: Solutions) -> Any:
+        """Return the test that is furthest beyond first yield, with the traction that the best fit predicts."""
+        problem, values = self.observations[0].problem, self.free.columns(best.theta[:1])
+        if FRICTION in values:
+            problem = problem.replaced(friction_coefficient=np.full(problem.batch_shape, values[FRICTION][0]))
+        at_places = {place: values[name] for name, place in self.free.places.items()}
+        ((model, _),) = staged_models(self.predict, at_places, 1)
+        return overload_of(problem, integrate_forces(model, problem).tangential)
+
+    def _weigh(self, best: Solutions) -> None:
+        """Weigh each kind of measurement by its scatter about the fit."""
+        residuals, groups = self.residuals(best), self.groups
+        for group in np.unique(groups):
+            own = residuals[groups == group]
+            scatter = math.sqrt(float(np.mean(own**2)))
+            if own.size >= LEAST_GROUP and scatter > 0.0:
+                self.weights[groups == group] = 1.0 / max(scatter, LEAST_SCATTER)
+
+
+def _first_friction(tests: WearTests, given: float | None) -> float:
+    """Return a starting value of the friction coefficient: given, from the tests, or the greatest traction."""
+    traction = tests.columns.get("traction_coefficient")
+    if traction is None or np.isnan(traction).all():
         raise FitError(
-            f"bootstrap: must be at least {least}, for replicates beyond both ends of an interval of confidence"
-            f" {confidence:.6g}, or 0 for intervals by Student's t; got {bootstrap}"
+            "free: the friction coefficient is fitted to measured traction, and the tests hold none; add a column"
+            " 'traction_coefficient', 'tangential_force [N]' or 'frictional_heat [W]', or give friction_coefficient"
         )
+    if given is not None:
+        return given
+    if tests.friction_coefficient is not None:
+        return float(np.mean(tests.friction_coefficient))
+    return float(np.nanmax(traction))
 
 
-def _warn(task: Task, best: Solutions, replicates: Replicates | None, found: Fit) -> None:
-    """Warn the caller of `fit` if the fit is less certain than its intervals say."""
-    poor = (one.warning for one in found.lack_of_fit if one.poor)
-    for text in (*poor, *_at_bounds(task, best), *_decided_alone(task, best), *_unreliable(task, replicates)):
-        warnings.warn(text, FitWarning, stacklevel=3)
+def _result(
+    task: _Task, best: Solutions, replicates: Replicates | None, confidence: float, settings: Mapping[str, Any]
+) -> Fit:
+    """Return the result of a fit.
+
+    Raises
+    ------
+    FitError
+        If the fitted parameters are not valid for the law, or predict no wear where some was measured.
+    """
+    free, values = task.free, task.free.columns(best.theta)
+    observations = tuple(_with_friction(one, values) for one in task.observations)
+    predict = _fitted_pipeline(task, values, observations)
+    by_student = student_intervals(best, confidence)
+    ends = by_student if replicates is None else studentised_intervals(best, replicates, confidence)
+    samples = {} if replicates is None else free.columns(replicates.theta)
+    slopes = free.slopes(best.theta[0])
+    chi2, aic = _sums(task, best)
+    return Fit(
+        parameters={name: free.quantity(name, float(value[0])) for name, value in values.items()},
+        intervals=_pairs(free, ends),
+        covariance_intervals=_pairs(free, by_student),
+        interval_method="Student's t" if replicates is None else "studentised bootstrap",
+        confidence=confidence,
+        covariance=covariance(best)[0] * np.outer(slopes, slopes),
+        law=predict.laws[0] if len(predict.laws) == 1 else None,
+        predict=predict,
+        tests=task.tests,
+        scatter=task.scatter,
+        chi2=chi2,
+        aic=aic,
+        samples={name: free.quantity(name, one) for name, one in samples.items()},
+        provenance=_provenance(task, predict, replicates, settings["seed"], chi2, confidence),
+        observations=observations,
+        lack_of_fit=tuple(_lack_of_fit(task, best, confidence)),
+        settings=settings,
+    )
 
 
-def _warn_of_kept(task: Task) -> None:
-    """Warn the caller of `fit` if a law keeps parameters that were fitted for another contact."""
-    predict = task.predict
-    free = {(place.index, place.field) for place in task.free.places.values() if place.kind == "law"}
-    for one in task.observations:
-        if one.law is None:
-            continue
-        law, problem = predict.laws[one.law], one.problem
-        if any((one.law, name) not in free for name in law.numbers):
-            warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law, 4)
+def _lack_of_fit(task: _Task, best: Solutions, confidence: float) -> Iterator[LackOfFit]:
+    """Yield a test for each kind of measurement whose scatter is known."""
+    residuals, leverages = task.residuals(best), leverage(best)
+    for number, one in enumerate(task.observations):
+        own = task.groups == number
+        points, spent = repeats(one.conditions, one.measured.size), float(leverages[own].sum())
+        found = lack_of_fit(one.observable, residuals[own], points, spent, confidence, one.scatter == "uncertainty")
+        if found is not None:
+            yield found
 
 
-def _at_bounds(task: Task, best: Solutions) -> Iterator[str]:
+def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Quantity, Quantity]]:
+    low, high = (free.values(free.bounds.clip(end)) for end in ends)  # the search did not go beyond the bounds
+    return {
+        name: (free.quantity(name, float(low[i])), free.quantity(name, float(high[i])))
+        for i, name in enumerate(free.names)
+    }
+
+
+def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observations:
+    if FRICTION not in values:
+        return one
+    friction = np.broadcast_to(values[FRICTION], one.measured.shape)
+    return dataclasses.replace(one, problem=one.problem.replaced(friction_coefficient=friction))
+
+
+def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:
+    """Return the pipeline with the fitted numbers; laws record their tests, and those with free numbers the fit."""
+    given = task.predict
+    at_places = {place: float(values[name][0]) for name, place in task.free.places.items()}
+    for one in observations:
+        nothing = one.predicted(values)[0] <= FLOOR
+        if one.law is not None and one.scatter == "relative" and nothing.any():
+            raise FitError(
+                f"the best fit predicts no {one.name} in {test_names(one.tests, nothing)}; leave these tests out"
+            )
+    try:
+        stages = changed_parts(given.stages, "stage", at_places)
+        laws = list(changed_parts(given.laws, "law", at_places))
+    except ConfigurationError as error:
+        raise FitError(f"the best fit has parameters that the model does not accept; try bounds: {error}") from None
+    predict = given.model_copy(update={"stages": stages})
+    for one in observations:
+        if one.law is not None:
+            law = laws[one.law]
+            if one.law in task.free.freed_laws:
+                law = law.model_copy(update={"fitted_for": _calibration(task, predict, one)})
+            laws[one.law] = law.with_tests(one.tests.digests(one.observable, one.unit))
+    return predict.with_law(*laws) if laws else predict
+
+
+def _calibration(task: _Task, predict: Pipeline[...], one: Observations) -> Calibration:
+    """Return the calibration of a fitted law."""
+    problem, model = one.problem, predict.contact_model
+    means = {
+        "pressure": Totals().mean(problem, "pressure"),
+        "slip_speed": Totals().mean(problem, "slip_speed"),
+        "wear_index_density": wear_index_density(predict, problem),
+    }
+    options = ((name, getattr(model, name)) for name in type(model).model_fields)
+    of = f" of {task.tests.source}" if task.tests.source else ""
+    with_stages = f", with {' and '.join(map(repr, predict.stages))}" if predict.stages else ""
+    return Calibration(
+        contact_model=model.name,
+        scale=predict.scale,
+        options=tuple((name, value) for name, value in options if isinstance(value, str)),
+        geometry=problem.geometry,
+        materials=_materials(predict.rig),
+        bodies=tuple(body.material for body in problem.bodies.values()),
+        stated_range=tuple((name, *_ends(name, values)) for name, values in means.items()),
+        source=f"fitted to {one.measured.size} tests{of}{with_stages}",
+    )
+
+
+def _ends(variable: str, values: Array) -> tuple[str, str]:
+    """Return the least and the greatest value with the unit, rounded outwards."""
+    unit = UNITS[variable]
+    shown = in_unit(values, unit)
+    low, high = _rounded(float(shown.min()), math.floor), _rounded(float(shown.max()), math.ceil)
+    return f"{low!r} {unit}", f"{high!r} {unit}"
+
+
+def _rounded(value: float, rounding: Callable[[float], int]) -> float:
+    """Return a value with few significant digits, rounded up or down."""
+    if value == 0.0:
+        return 0.0
+    place = DIGITS - 1 - math.floor(math.log10(abs(value)))
+    return float(f"{rounding(value * 10.0**place)}e{-place}")
+
+
+def _materials(rig: Rig) -> str:
+    names = [known_name(body.material) or " ".join(repr(body.material).split()) for body in rig.bodies.values()]
+    if len(set(names)) == 1:
+        return f"both bodies {names[0]}"
+    return " on ".join(names) or "unknown"
+
+
+def _sums(task: _Task, best: Solutions) -> tuple[float, float]:
+    """Return the sum of squares and Akaike's criterion, with a separate scatter for each kind of measurement."""
+    squares = task.residuals(best) ** 2
+    parameters = len(task.free.names)
+    if task.scatter == "uncertainty" and len(task.observations) == 1:
+        return float(squares.sum()), float(squares.sum()) + 2.0 * parameters
+    kinds = [squares[task.groups == number] for number in range(len(task.observations))]
+    tiny = float(np.finfo(np.float64).tiny)
+    likelihood = sum(kind.size * math.log(max(float(kind.mean()), tiny)) for kind in kinds)
+    return float(squares.sum()), likelihood + 2.0 * (parameters + len(kinds))
+
+
+def _provenance(
+    task: _Task, predict: Pipeline[...], replicates: Replicates | None, seed: int, chi2: float, confidence: float
+) -> dict[str, Any]:
+    """Return the provenance of a fit, as a TOML table; it holds the stages with their fitted numbers."""
+    model = predict.contact_model
+    found = loader.installed()
+    origins = [(law, found.of_kind(law.kind).distribution(law.name, type(law))) for law in predict.laws]
+    origin: dict[str, Any] = {law.kind.replace(" ", "_"): where for law, where in origins[:1]}
+    if len(origins) > 1:
+        origin = {"laws": {law.name: where for law, where in origins}}
+    stages = [specification(stage) for stage in predict.stages]
+    return {
+        "wearlaw": __version__,
+        **origin,
+        "contact_model": found.contact_models.distribution(model.name, type(model)),
+        **({"stages": stages} if stages else {}),
+        "tests": task.tests.source,
+        "measurements": {one.observable: one.measured.size for one in task.observations},
+        "free": list(task.free.names),
+        "scatter": task.scatter,
+        "chi2": chi2,
+        "seed": seed,
+        "bootstrap": 0 if replicates is None else len(replicates.theta),
+        "confidence": confidence,
+    }
+
+
+def _at_bounds(task: _Task, best: Solutions) -> Iterator[str]:
     bounds, theta = task.free.bounds, best.theta[0]
     margin = AT_BOUND * (bounds.high - bounds.low)
     ended = (theta <= bounds.low + margin) | (theta >= bounds.high - margin)
@@ -176,25 +480,24 @@ def _at_bounds(task: Task, best: Solutions) -> Iterator[str]:
         )
 
 
-def _decided_alone(task: Task, best: Solutions) -> Iterator[str]:
-    alone = leverage(best) > DECIDED_ALONE
-    for number, one in enumerate(task.observations):
-        which = alone[task.groups == number]
-        if which.any():
-            yield (
-                f"the fit meets {test_names(one.tests, which)} whatever is measured there: so few tests decide a"
-                " parameter that nothing checks it, and its interval rests on the scatter of the others"
-            )
-
-
-def _unreliable(task: Task, replicates: Replicates | None) -> Iterator[str]:
+def _unreliable(task: _Task, replicates: Replicates | None) -> Iterator[str]:
     if replicates is None:
         return
     usable = np.mean(replicates.standard_errors > 0.0, axis=0)
-    lost = [
-        f"{name} ({1.0 - share:.0%})" for name, share in zip(task.free.names, usable, strict=True) if share < USABLE
-    ]
+    lost = [name for name, share in zip(task.free.names, usable, strict=True) if share < USABLE]
     if lost:
         yield f"some bootstrap replicates do not determine {', '.join(lost)}; their intervals may be too narrow"
     if replicates.converged < USABLE:
         yield f"only {replicates.converged:.0%} of the bootstrap replicates have converged; the intervals are rough"
+
+
+def _warn_of_kept(task: _Task) -> None:
+    """Warn the caller of `fit` if a law keeps parameters that were fitted for another contact."""
+    predict = task.predict
+    free = {(place.index, place.field) for place in task.free.places.values() if place.kind == "law"}
+    for one in task.observations:
+        if one.law is None:
+            continue
+        law, problem = predict.laws[one.law], one.problem
+        if any((one.law, name) not in free for name in law.numbers):
+            warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law)

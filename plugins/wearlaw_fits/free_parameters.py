@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import FitError, InputError, UnitError, did_you_mean, shown
-from wearlaw.pipeline.named_numbers import NamedNumbers, Place, part_at
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import allowed_range, number_in_si, number_like, numbers
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
 from wearlaw.units.registry import symbol
 from wearlaw_fits.least_squares import Bounds
+from wearlaw_fits.named_numbers import NamedNumbers, Place, part_at
 
 FRICTION = "friction_coefficient"
 """The only parameter that is a condition, not a number of a law or stage."""
@@ -72,8 +72,6 @@ class FreeParameters:
         FitError
             If a name is unknown, ambiguous or given twice, or its bounds are invalid.
         """
-        if not isinstance(bounds, Mapping):
-            raise FitError(f"bounds: give {{name: (low, high)}}, got {shown(bounds)}")
         places = _places(predict, tuple(free))
         like: dict[str, Quantity | float] = {}
         ranges: dict[str, tuple[float, float, bool]] = {}
@@ -144,40 +142,20 @@ def _places(predict: Pipeline[...], free: tuple[str, ...]) -> dict[str, Place]:
     """Return the places of the free numbers of laws and stages by name."""
     named = NamedNumbers(predict)
     known = [*named.known, FRICTION]
-    if not free:
-        raise FitError(f"free: name at least one parameter of {', '.join(known)}")
     places: dict[str, Place] = {}
-    taken: dict[Place | None, str] = {}
-    for name in free:
+    for name in (one for one in free if one != FRICTION):
         try:
-            place = None if name == FRICTION else named.place(name)
+            place = named.place(name)
         except InputError as error:
             raise FitError(f"free: {error}") from None
-        if name != FRICTION:
-            places[name] = _checked(predict, named, name, place)
-        if place in taken:
-            also = "" if taken[place] == name else f", as {shown(taken[place])} too"
-            raise FitError(f"free: {shown(name)} is given twice{also}")
-        taken[place] = name
+        if place is None or place.field not in numbers(part_at(predict, place)):
+            raise FitError(
+                f"free: no number is called {shown(name)}{did_you_mean(name, known)} There are: {', '.join(known)}"
+            )
+        places[name] = place
+    if not free or len(set(places.values())) + (FRICTION in free) < len(free):
+        raise FitError(f"free: name each parameter once, at least one of {', '.join(known)}; got {shown(free)}")
     return places
-
-
-def _checked(predict: Pipeline[...], named: NamedNumbers, name: str, place: Place | None) -> Place:
-    """Return the place of a number, or raise an error for a name that is not one of a number."""
-    if place is not None and place.field in numbers(part_at(predict, place)):
-        return place
-    known = [*named.known, FRICTION]
-    has = "has" if len(named.parts) == 1 else "have"
-    owners = f"{named.owners()} {has}" if named.known else "without a wear law or a stage the pipeline has"
-    raise FitError(f"free: {owners} no number {shown(name)}{did_you_mean(name, known)} There are: {', '.join(known)}")
-
-
-def free_names(free: Any) -> Sequence[str]:
-    """Return the names of free parameters as a sequence; one name may be given as a text."""
-    names = [free] if isinstance(free, str) else free
-    if not (isinstance(names, Sequence) and all(isinstance(name, str) for name in names)):
-        raise FitError(f'free: give names of parameters, such as ["q_s", "m_c"], got {shown(free)}')
-    return names
 
 
 def give_bounds(name: str) -> str:
@@ -191,35 +169,34 @@ def _ends(
     """Return the bounds of a parameter in SI."""
     first = number_in_si(like)
     least, most, positive = allowed
-    inward = tuple(
-        end + away * ROUNDINGS * abs(end) if np.isfinite(end) else end for end, away in ((least, 1.0), (most, -1.0))
-    )
     if given is None:
         if first == 0.0:
             raise FitError(
                 f"bounds: the first value of {shown(name)} is zero, which says nothing of its size; {give_bounds(name)}"
             )
-        low, high = (
-            (first / FACTOR, first * FACTOR) if positive else (first - FACTOR * abs(first), first + FACTOR * abs(first))
-        )
-        return max(low, inward[0]), min(high, inward[1])
-    if not (isinstance(given, tuple | list) and len(given) == 2):
-        raise FitError(f"bounds: {shown(name)} must have two values, low and high, got {shown(given)}")
-    try:
-        low, high = (_end_in_si(name, like, end) for end in given)
-    except UnitError as error:
-        raise FitError(f"bounds: {error}") from None
-    if not (low < high and (low > 0.0 or not positive)):
-        rule = "greater than zero and in ascending order" if positive else "in ascending order"
-        raise FitError(f"bounds: {shown(name)} must have two values {rule}, got {shown(given)}")
-    if low < least or high > most:
-        ends = " to ".join(repr(number_like(like, end)) for end in (least, most))
-        raise FitError(f"bounds: {shown(name)} takes values in the range {ends}, got {shown(given)}")
-    return max(low, inward[0]), min(high, inward[1])
-
-
-def _end_in_si(name: str, like: Quantity | float, end: Any) -> float:
-    unit = symbol(like.units, "~C") if isinstance(like, pint.Quantity) else ""
-    if not unit and isinstance(end, float | int) and not isinstance(end, bool):
-        return float(end)
-    return float(Unit(unit, positive=False).si(end, name))
+        reach = FACTOR * abs(first)
+        low, high = (first / FACTOR, first * FACTOR) if positive else (first - reach, first + reach)
+    else:
+        unit = symbol(like.units, "~C") if isinstance(like, pint.Quantity) else ""
+        try:
+            low, high = (
+                float(end)
+                if not unit and isinstance(end, float | int)
+                else float(Unit(unit, positive=False).si(end, name))
+                for end in given
+            )
+        except (UnitError, TypeError, ValueError) as error:
+            raise FitError(
+                f"bounds: {shown(name)} must have two values, low and high, got {shown(given)}: {error}"
+            ) from None
+        if not least <= low < high <= most or (positive and low <= 0.0):
+            ends = " to ".join(repr(number_like(like, end)) for end in (least, most))
+            raise FitError(
+                f"bounds: {shown(name)} must have two values in ascending order in the range {ends}"
+                f"{', greater than zero' if positive else ''}; got {shown(given)}"
+            )
+    if np.isfinite(least):
+        low = max(low, least + ROUNDINGS * abs(least))
+    if np.isfinite(most):
+        high = min(high, most - ROUNDINGS * abs(most))
+    return low, high

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConfigurationError, FitError, ModelError
-from wearlaw.models.law import WEAR, Law, named_outcomes
+from wearlaw.models.law import WEAR, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
-from wearlaw.pipeline.named_numbers import Place, check_loads_stay, staged_models
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
-from wearlaw.units.variables import UNITS, label
+from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.named_numbers import Place, check_loads_stay, staged_models
+from wearlaw_fits.wear_tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
 """Scatter of measurements: by a factor, by an amount, or by their stated uncertainties."""
@@ -75,6 +75,16 @@ class Observations:
     def unit(self) -> str:
         """Unit of the measurement in tables and figures."""
         return UNITS[TRACTION] if self.law is None else self.pipeline.laws[self.law].outcome.unit
+
+    @property
+    def name(self) -> str:
+        """Name of the measurement in words, such as "wear rate"."""
+        return self.observable.replace("_", " ")
+
+    @property
+    def plural(self) -> str:
+        """The measurements in words, such as "wear rates"."""
+        return f"{self.name}s" if self.observable in (WEAR, TRACTION) else f"values of {self.name}"
 
     @property
     def head(self) -> str:
@@ -174,95 +184,68 @@ def observe(
     """
     of_contact = free.of_contact
     check_loads_stay(pipeline, "fit", of_contact)
-    found = [
-        _observe(name, index, pipeline, tests, free, friction, scatter)
-        for name, index in named_outcomes(pipeline.laws).items()
-        if index in free.freed_laws or (of_contact and _is_measured(name, pipeline.laws[index], tests))
-    ]
-    if FRICTION in free.names or (of_contact and _is_measured(TRACTION, None, tests)):
-        found.append(_observe(TRACTION, None, pipeline, tests, free, friction, scatter))
+    outcomes: dict[str, int | None] = {**named_outcomes(pipeline.laws), TRACTION: None}
+    found = []
+    for name, index in outcomes.items():
+        law = None if index is None else pipeline.laws[index]
+        values = tests.measured(name, UNITS[TRACTION] if law is None else law.outcome.unit)
+        measured = not np.isnan(values).all()
+        needed = FRICTION in free.names if index is None else index in free.freed_laws
+        if needed and not measured:
+            raise FitError(f"tests: none of the {len(tests)} tests has a {name_of(name)}, which is fitted")
+        if needed or (of_contact and measured):
+            found.append(_observe(name, index, values, pipeline, tests, free, friction, scatter))
     if not found:
-        outcomes = [name.replace("_", " ") for name in named_outcomes(pipeline.laws)]
         raise FitError(
-            f"tests: none of the {len(tests)} tests has a measured {' or '.join([*outcomes, 'traction'])}, to which"
+            f"tests: none of the {len(tests)} tests has a measured {' or '.join(map(name_of, outcomes))}, to which"
             f" {' and '.join(of_contact)} could be fitted"
         )
     return found
 
 
-def _measured(name: str, law: Law | None, tests: WearTests) -> Array:
-    """Return the measurements of an outcome or of the traction in SI, NaN where there is none."""
-    return tests.measured(name, UNITS[TRACTION] if law is None else law.outcome.unit)
-
-
-def _is_measured(name: str, law: Law | None, tests: WearTests) -> bool:
-    return not np.isnan(_measured(name, law, tests)).all()
-
-
 def _observe(
     observable: str,
     index: int | None,
+    values: Array,
     pipeline: Pipeline[...],
     tests: WearTests,
     free: FreeParameters,
     friction: float | None,
     scatter: Literal["relative", "absolute"],
 ) -> Observations:
-    law = None if index is None else pipeline.laws[index]
-    values = _measured(observable, law, tests)
     there = ~np.isnan(values)
-    if not there.any():
-        raise FitError(f"tests: none of the {len(tests)} tests has a {observable.replace('_', ' ')}, which is fitted")
     labels = tuple(label or f"number {number}" for number, label in enumerate(tests.labels, 1))
     selected, measured = dataclasses.replace(tests, labels=labels)[there], values[there]
     stated = observable == WEAR and tests.wear_rate_uncertainty is not None
     chosen: Scatter = "uncertainty" if stated else scatter
-    if chosen == "relative":
-        _refuse_zeros(observable, selected, measured)
     conditions = selected.conditions(pipeline.contact_model, friction, pipeline.rig)
     if FRICTION in free.names:
         conditions = {**conditions, FRICTION: friction}
     if free.of_contact:  # else the measured traction would replace the one that follows from the parameters
-        conditions.pop("traction_coefficient", None)
+        conditions.pop(TRACTION, None)
     problem = pipeline.posed(conditions, of_one_patch="fit")
-    if chosen == "relative" and (law is None or law.zero_in_stick):
-        _refuse_rest(observable, selected, problem)
-    divisor = _divisor(selected, measured, chosen)
+    divisor = np.ones_like(measured)
+    if chosen == "relative":
+        zero = measured <= 0.0
+        if index is None or pipeline.laws[index].zero_in_stick:
+            zero = zero | (problem.rigid_slip == 0.0)
+        if zero.any():
+            raise FitError(
+                f"{observable}: is zero or negative, or the creepage is zero, in {test_names(selected, zero)}, which no"
+                ' scatter by a factor can express; leave these tests out, or fit with scatter="absolute"'
+            )
+    elif chosen == "absolute":
+        divisor = np.full_like(measured, np.sqrt(np.mean(measured**2)) or 1.0)
+    else:
+        divisor = selected.columns["wear_rate_uncertainty"]
+        if np.isnan(divisor).any():
+            raise FitError(
+                f"wear_rate_uncertainty: is missing in {test_names(selected, np.isnan(divisor))}; give it for all tests"
+                " with a wear rate, or for none"
+            )
     return Observations(
         observable, index, pipeline, free.places, selected, measured, conditions, problem, chosen, divisor
     )
-
-
-def _divisor(tests: WearTests, measured: Array, scatter: Scatter) -> Array:
-    if scatter == "relative":
-        return np.ones_like(measured)
-    if scatter == "absolute":
-        return np.full_like(measured, np.sqrt(np.mean(measured**2)) or 1.0)
-    stated = tests.columns["wear_rate_uncertainty"]
-    if np.isnan(stated).any():
-        raise FitError(
-            f"wear_rate_uncertainty: is missing in {test_names(tests, np.isnan(stated))}; give it for every test with a"
-            " wear rate, or for none"
-        )
-    return stated
-
-
-def _refuse_zeros(observable: str, tests: WearTests, measured: Array) -> None:
-    wrong = measured <= 0.0
-    if wrong.any():
-        raise FitError(
-            f"{observable}: is zero or negative in {test_names(tests, wrong)}, but is taken to scatter by a factor;"
-            ' leave these tests out, or fit with scatter="absolute"'
-        )
-
-
-def _refuse_rest(observable: str, tests: WearTests, problem: Problem) -> None:
-    still = problem.rigid_slip == 0.0
-    if still.any():
-        raise FitError(
-            f"creepage: is zero in {test_names(tests, still)}, where the predicted {observable.replace('_', ' ')} is"
-            " zero, whatever the parameters; leave these tests out"
-        )
 
 
 def test_names(tests: WearTests, which: NDArray[np.bool_]) -> str:

@@ -5,24 +5,29 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from uuid import uuid4
 
 import numpy as np
 import pandas as pd
 import pint
+import tomli_w
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import FitError
-from wearlaw.models.law import WEAR, Law
+from wearlaw.errors import FitError, OutputError, shown
+from wearlaw.models.law import Law
+from wearlaw.plugins.fields import specification
+from wearlaw.plugins.law_files import DIGESTS
+from wearlaw.settings.text_files import reason_of
 from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor
 from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import SAME, LackOfFit
-from wearlaw_fits.law_files import write_law
 from wearlaw_fits.observations import TRACTION, Observations, Scatter, wear_index_density
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw_output.parity import parity_panels
 from wearlaw_output.plot import plot
@@ -125,7 +130,7 @@ class Fit:
         scatter it has the unit of the measurement.
         """
         first = self.observations[0]
-        mean = float(np.sqrt(np.mean(first.compare(self._fitted(first)) ** 2)))
+        mean = float(np.sqrt(np.mean(first.compare(self.fitted(first)) ** 2)))
         if first.scatter == "absolute":
             return from_si(mean * float(first.divisor[0]), first.unit)
         return from_si(mean, "")
@@ -138,7 +143,7 @@ class Fit:
         """
         rows = []
         for one in self.observations:
-            predicted = self._fitted(one)
+            predicted = self.fitted(one)
             shown = one.unit
             ratio = np.full(predicted.shape, np.nan)
             np.divide(predicted, one.measured, out=ratio, where=(predicted > 0.0) & (one.measured > 0.0))
@@ -190,11 +195,29 @@ class Fit:
             raise FitError("a file holds one law, and this fit has several; they are in fit.predict.laws")
         if self.law is None:
             raise FitError("a fit without a wear law has no law to write; its parameters are in fit.parameters")
-        write_law(path, self.law, self.provenance)
+        target, law = Path(path), self.law
+        tests = {DIGESTS: list(law.fitted_to)} if law.fitted_to else {}
+        provenance = {**self.provenance, **tests}
+        text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": provenance})
+        temporary = target.with_name(f".{uuid4().hex}")  # short, since the name may be as long as names can be
+        try:
+            try:
+                temporary.write_text(text, encoding="utf-8", newline="\n")
+                os.replace(temporary, target)
+            finally:
+                temporary.unlink(missing_ok=True)
+        except (OSError, ValueError) as error:
+            raise OutputError(f"cannot write {shown(target)}: {reason_of(error)}") from None
 
     def figure_data(self) -> FigureData:
-        """Return measured and fitted values, with the band of the bootstrap replicates."""
-        return _figure_data(self)
+        """Return measured and fitted values, a panel for each kind of measurement.
+
+        They are drawn over Tγ/A or over the one condition that varies, with the band of the bootstrap replicates. If
+        several vary, measured values are drawn against fitted ones.
+        """
+        panels = tuple(_panel(self, one) for one in self.observations)
+        names, band = ", ".join(self.parameters), f"{self.confidence:.0%} of the bootstrap replicates"
+        return FigureData("fit", f"Fit of {names}", panels, f"{names} fitted to {self.tests.source or 'tests'}.", band)
 
     def plot(self) -> Figure:
         """Return a drawing of `figure_data`."""
@@ -213,13 +236,15 @@ class Fit:
             name: np.atleast_1d(value.magnitude) * si_factor(value, str(value.units)) for name, value in chosen.items()
         }
 
-    def _fitted(self, one: Observations) -> Array:
+    def fitted(self, one: Observations) -> Array:
+        """Return the fitted values of a kind of measurement in SI, (tests,)."""
         predicted: Array = one.predicted(self.values_in_si())[0]
         return predicted
 
     def __repr__(self) -> str:
         degrees = sum(one.measured.size for one in self.observations) - len(self.parameters)
-        lines = [f"Fit to {self._count()}, {degrees} degrees of freedom, {self.scatter} scatter"]
+        counts = " and ".join(f"{one.measured.size} {one.plural}" for one in self.observations)
+        lines = [f"Fit to {counts}, {degrees} degrees of freedom, {self.scatter} scatter"]
         for name, value in self.parameters.items():
             low, high = (f"{end.magnitude:.3g}" for end in self.intervals[name])
             unit = repr(value).partition(" ")[2]
@@ -233,72 +258,43 @@ class Fit:
         lines.append(f"  intervals             {self.confidence:.0%}, {self.interval_method}")
         return "\n".join(lines)
 
-    def _count(self) -> str:
-        return " and ".join(_counted(one) for one in self.observations)
-
-
-def _counted(one: Observations) -> str:
-    name = one.observable.replace("_", " ")
-    plural = f"{name}s" if one.observable in (WEAR, TRACTION) else f"values of {name}"
-    return f"{one.measured.size} {plural}"
-
-
-def _figure_data(fit: Fit) -> FigureData:
-    """Return a panel for each kind of measurement: outcomes over Tγ/A, tractions over creepage, or parity."""
-    panels = tuple(_panel(fit, one) for one in fit.observations)
-    single = all(_varied(one) for one in fit.observations)
-    apart = "" if single else "; the tests differ in several conditions, so no curve runs through them"
-    names = ", ".join(fit.parameters)
-    replicates = f"{fit.confidence:.0%} of the bootstrap replicates"
-    band = f"; band: {replicates}" if fit.samples and any(len(panel.curves) == 2 for panel in panels) else ""
-    source = fit.tests.source or "tests"
-    return FigureData("fit", f"Fit of {names}", panels, f"{names} fitted to {source}{band}{apart}.", replicates)
-
 
 def _panel(fit: Fit, one: Observations) -> Panel:
-    """Return measured and fitted values against the one condition that varies, or else against each other."""
-    name = _varied(one)
-    if name is None:
-        return _parity(fit, one)
-    values = _numbers(one.conditions[name])
+    """Return measured and fitted values: along the one condition that varies, with a band, or else side by side."""
+    numbers = {name: _numbers(value) for name, value in one.conditions.items() if name != TRACTION}
+    varied = [name for name, values in numbers.items() if np.ptp(values) > SAME * np.abs(values).mean()]
+    if len(varied) != 1:
+        return _parity(one, fit.fitted(one))
+    name, values = varied[0], numbers[varied[0]]
     order = np.argsort(values, kind="stable")
     problem = one.pipeline.posed(
         {other: _between_tests(value, order) for other, value in one.conditions.items()}, of_one_patch="fit"
     )
     if FRICTION in fit.parameters:
-        fitted = np.full(problem.batch_shape, one.problem.friction_coefficient[0])
-        problem = problem.replaced(friction_coefficient=fitted)
-    if "creepage" in name and ((values >= 0.0).all() or (values <= 0.0).all()):
-        axis = "creepage" if one.observable == TRACTION else "wear_index_density"
+        friction = np.full(problem.batch_shape, one.problem.friction_coefficient[0])
+        problem = problem.replaced(friction_coefficient=friction)
+    if "creepage" in name and one.law is not None and (abs(np.sign(values).sum()) == values.size):
+        axis = "wear_index_density"
         at_tests, along = (
-            in_unit(some.rigid_slip if axis == "creepage" else wear_index_density(fit.predict, some), UNITS[axis])
-            for some in (one.problem, problem)
+            in_unit(wear_index_density(fit.predict, some), UNITS[axis]) for some in (one.problem, problem)
         )
-        head, is_log = label(axis), axis != "creepage" and bool((one.measured > 0.0).all())
+        x = PlotAxis(label(axis), "log" if (one.measured > 0.0).all() else "linear")
     else:
         given = one.conditions[name]
         unit = f"{given.units:~P}" if isinstance(given, pint.Quantity) else ""
-        at_tests, along, head, is_log = values, _finer(values[order]), label(name, units={name: unit}), False
-    scale: Literal["log", "linear"] = "log" if is_log else "linear"
+        at_tests, along = values, _finer(values[order])
+        x = PlotAxis(label(name, units={name: unit}))
     measured = Curve("measured", at_tests, in_unit(one.measured, one.unit), colour=BLACK, points=True)
-    axes = PlotAxis(head, scale), PlotAxis(one.label, scale)
-    return Panel(*axes, (_curve(fit, one, problem, along), measured))
+    return Panel(x, PlotAxis(one.label, x.scale), (_curve(fit, one, problem, along), measured))
 
 
-def _parity(fit: Fit, one: Observations) -> Panel:
+def _parity(one: Observations, fitted: Array) -> Panel:
     """Return measured against fitted values."""
-    fitted, measured = (in_unit(values, one.unit) for values in (fit._fitted(one), one.measured))
-    tests = Curve("tests", fitted, measured, points=True, hollow=True)
-    values = np.concatenate([fitted, measured])
+    x, y = (in_unit(values, one.unit) for values in (fitted, one.measured))
+    values = np.concatenate([x, y])
+    tests = Curve("tests", x, y, points=True, hollow=True)
     (panel,) = parity_panels(one.label, [("", [tests])], values, bool((values <= 0.0).any()))
     return panel
-
-
-def _varied(one: Observations) -> str | None:
-    """Return the only condition that differs between the tests, apart from a measured traction, or None."""
-    numbers = {name: _numbers(value) for name, value in one.conditions.items() if name != TRACTION}
-    names = [name for name, values in numbers.items() if np.ptp(values) > SAME * np.abs(values).mean()]
-    return names[0] if len(names) == 1 else None
 
 
 def _numbers(value: Any) -> Array:
@@ -321,18 +317,16 @@ def _finer(values: Array) -> Array:
 
 
 def _curve(fit: Fit, one: Observations, problem: Problem, along: Array) -> Curve:
-    """Return the fitted values at operating points, with their band."""
+    """Return the fitted values at operating points, with the band of the bootstrap replicates."""
     order = np.argsort(along, kind="stable")
 
     def at(values: dict[str, Array]) -> Array:
         return in_unit(one.predicted(values, problem), one.unit)[:, order]
 
-    best = at(fit.values_in_si())[0]
     low = high = None
     if fit.samples:
         values = fit.values_in_si(fit.samples)
-        count = len(next(iter(values.values())))
-        chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).round().astype(int))
+        step = max(len(next(iter(values.values()))) // MOST_SAMPLES, 1)
         tail = 0.5 - 0.5 * fit.confidence
-        low, high = np.quantile(at({name: some[chosen] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
-    return Curve("fitted", along[order], best, low=low, high=high)
+        low, high = np.quantile(at({name: some[::step] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
+    return Curve("fitted", along[order], at(fit.values_in_si())[0], low=low, high=high)

@@ -1,7 +1,7 @@
 """The conformance kit: the rules for every rig, contact model and wear law, and strategies for testing your own code.
 
 `checks` yields the checks of a model, `conformance` makes pytest tests of them. The strategies are also what
-hypothesis draws from for arguments typed `Material`, `TwinDisc`, `WheelRail`, `Problem` and `Contact`.
+hypothesis draws from for arguments typed `Problem` and `Contact`.
 """
 
 from collections.abc import Iterable
@@ -13,28 +13,20 @@ import wearlaw as wl
 if TYPE_CHECKING:
     from wearlaw_kit.kit import Check, checks, conformance
     from wearlaw_kit.strategies import (
-        conditions,
         contacts,
         elliptic_problems,
         line_problems,
-        materials,
         problems,
-        rigs,
-        wheel_rails,
     )
 
 __all__ = [
     "Check",
     "checks",
-    "conditions",
     "conformance",
     "contacts",
     "elliptic_problems",
     "line_problems",
-    "materials",
     "problems",
-    "rigs",
-    "wheel_rails",
 ]
 
 

@@ -19,7 +19,6 @@ from wearlaw_kit import (  # each registers its rules  # noqa: F401
     contact_forces,
     law,
     law_branches,
-    line_fields,
     rig,
     stage,
     units,

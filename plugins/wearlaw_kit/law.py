@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Any, TypeVar
 
@@ -22,13 +22,11 @@ from wearlaw_kit.examples import SAME, assert_close
 from wearlaw_kit.law_contacts import (
     NODE_FIELDS,
     aimed,
-    arrays_of,
     at_nodes,
     borders,
     for_each_contact,
     forward,
     on_contacts,
-    on_nodes,
     random_contacts,
     retotalled,
 )
@@ -231,54 +229,28 @@ def position_does_not_matter(law: Law, contact: Contact) -> None:
             assert_close(law.rate(moved, law.numbers), rate, f"the rate with {name} {message}")
 
 
-@on_nodes(Law, applies=of_cells)
-def order_of_nodes_does_not_matter(law: Law, contact: Contact) -> None:
-    """Each node keeps its rate when nodes or strips are listed in another order, and a patch its value."""
-    rate = law.rate(contact, law.numbers)
-    for axis in _axes(contact):
-        count = contact.pressure.shape[axis]
-        for order in (np.arange(count)[::-1], np.random.default_rng(count).permutation(count)):
-            listed: Callable[[Array], Array] = partial(np.take, indices=order, axis=axis)
-            found = law.rate(_nodes(contact, listed, axis), law.numbers)
-            message = f"the rate with the nodes in the order {order.tolist()}"
-            due = rate if law.outcome.of == "patch" else listed(rate)
-            assert_close(found, due, message, of_patch(law, SUMS, SAME))
-
-
-@on_nodes(Law, applies=of_cells)
-def splitting_a_node_does_not_matter(law: Law, contact: Contact) -> None:
-    """Two parts of a node wear at the rate of the whole, as do two parts of a strip; the rest stays the same.
+@on_contacts(Law, several=True, applies=of_cells)
+def listing_of_nodes_does_not_matter(law: Law, contact: Contact) -> None:
+    """Nodes and strips in another order, and a node or strip in two parts, wear as before.
 
     So a mean over the nodes has to be weighted by their areas.
     """
     rate = law.rate(contact, law.numbers)
-    for axis in _axes(contact):
-        count = contact.pressure.shape[axis]
-        split: Callable[[Array], Array] = partial(np.repeat, repeats=[2, *[1] * (count - 1)], axis=axis)
-        parts, share = _nodes(contact, split, axis), np.array([0.25, 0.75, *[1.0] * (count - 1)])
-        width = share * parts.strip_width if _of_strips(contact, axis) else parts.strip_width
-        parts = parts.replaced(area=share.reshape(-1, *[1] * (-1 - axis)) * parts.area, strip_width=width)
-        found, due = law.rate(parts, law.numbers), rate if law.outcome.of == "patch" else split(rate)
-        assert_close(found, due, "the rate with a node in two parts", of_patch(law, SUMS, SAME))
+    for axis in (-2, -1) if contact.on_strips else (-1,):
+        nodes = np.arange(contact.pressure.shape[axis])
+        parts, share = np.array([0, *nodes]), np.array([0.25, 0.75, *np.ones(nodes.size - 1)])
+        for order, sizes in ((nodes[::-1], np.ones(nodes.size)), (parts, share)):
+            listed = {name: np.take(getattr(contact, name), order, axis=axis) for name in NODE_FIELDS}
+            listed["area"] = listed["area"] * sizes.reshape(-1, *[1] * (-1 - axis))
+            if contact.on_strips and axis == -1:
+                listed["strip_width"] = contact.strip_width[..., order] * sizes
+            found = law.rate(contact.replaced(**listed), law.numbers)
+            due = rate if law.outcome.of == "patch" else np.take(rate, order, axis=axis)
+            message = f"the rate with the nodes {order.tolist()} of shares {sizes.tolist()}"
+            assert_close(found, due, message, of_patch(law, SUMS, SAME))
 
 
-def _of_strips(contact: Contact, axis: int) -> bool:
-    """Return whether an axis is that of the strips."""
-    return contact.on_strips and axis == -1
-
-
-def _axes(contact: Contact) -> tuple[int, ...]:
-    """Return the axes of nodes; the first of them runs along a strip."""
-    return (-2, -1) if contact.on_strips else (-1,)
-
-
-def _nodes(contact: Contact, change: Callable[[Array], Array], axis: int) -> Contact:
-    """Return the contact with its arrays of nodes changed along an axis, and its totals kept."""
-    names = (*NODE_FIELDS, "strip_width") if _of_strips(contact, axis) else NODE_FIELDS
-    return contact.replaced(**{name: change(getattr(contact, name)) for name in names})
-
-
-@on_nodes(Law, applies=at_each_node)
+@on_contacts(Law, several=True, applies=at_each_node)
 def each_node_wears_by_itself(law: Law, contact: Contact) -> None:
     """The rate at a node depends on its own values and the totals of the patch, not on its neighbours."""
     rate = law.rate(contact, law.numbers)
@@ -290,7 +262,7 @@ def each_node_wears_by_itself(law: Law, contact: Contact) -> None:
         assert_close(found, rate[at], f"the rate at node {node} among others like it")
 
 
-@on_nodes(Law, applies=at_each_node)
+@on_contacts(Law, several=True, applies=at_each_node)
 def strips_wear_as_lines_do(law: Law, contact: Contact) -> None:
     """Nodes on strips wear at the rate of the same nodes on a line, where traction and slip are parallel to x."""
     if not contact.on_strips:
@@ -310,31 +282,18 @@ def is_monotone_as_declared(law: Law) -> None:
 
     The wear-index density grows by the traction and by the slip.
     """
-    start = _many(law)
-    rate = law.rate(start, law.numbers)
-    for name in law.monotone_in:
-        for by, factor in itertools.product(GROWN_BY.get(name, (name,)), 1.0 + np.logspace(-6, 2, 17)):
-            after = law.rate(_grown(start, by, factor), law.numbers)
-            fell = after < rate * (1.0 - SAME)
-            assert not fell.any(), (
-                f"the rate falls from {rate[fell][0]!r} to {after[fell][0]!r} as {name} grows from"
-                f" {at_nodes(start, name)[fell][0]:g} by a factor of {factor:g} in {by}"
-            )
-
-
-def _many(law: Law, points: int = 512) -> Contact:
-    """Return many contacts of one node, a third of them at the breakpoints of the law."""
-    contact = forward(random_contacts(points, law=law))
-    targets = [(name, value) for name, values in (law.breakpoints(law.numbers) or {}).items() for value in values]
-    for number, (name, value) in enumerate(targets):
-        chosen = np.arange(points) % (3 * len(targets)) == number
-        near = arrays_of(aimed(contact, name, value * np.random.default_rng(number).uniform(0.7, 1.1, (points, 1))))
-        mixed = {
-            name: np.where(chosen.reshape(points, *[1] * (old.ndim - 1)), near[name], old)
-            for name, old in arrays_of(contact).items()
-        }
-        contact = contact.replaced(**mixed)
-    return contact
+    contact, random = forward(random_contacts(256, law=law)), np.random.default_rng(0)
+    near = [aimed(contact, name, value * random.uniform(0.7, 1.1, (256, 1))) for name, value in borders(law)]
+    for start in (contact, *near):
+        rate = law.rate(start, law.numbers)
+        for name in law.monotone_in:
+            for by, factor in itertools.product(GROWN_BY.get(name, (name,)), 1.0 + np.logspace(-6, 2, 17)):
+                after = law.rate(_grown(start, by, factor), law.numbers)
+                fell = after < rate * (1.0 - SAME)
+                assert not fell.any(), (
+                    f"the rate falls from {rate[fell][0]!r} to {after[fell][0]!r} as {name} grows from"
+                    f" {at_nodes(start, name)[fell][0]:g} by a factor of {factor:g} in {by}"
+                )
 
 
 def _grown(contact: Contact, name: str, factor: float) -> Contact:
@@ -350,7 +309,10 @@ def _grown(contact: Contact, name: str, factor: float) -> Contact:
 
 @rule(Law, applies=lambda law: law.outcome.of != "patch")
 def declared_names_are_variables(law: Law) -> None:
-    """`breakpoints`, `jumps`, `monotone_in` and `valid_range` name variables of a contact, with finite values."""
+    """`breakpoints`, `jumps`, `monotone_in` and `valid_range` name variables of a contact, with finite values.
+
+    Every value in `jumps` is a breakpoint too.
+    """
     of_law = (*LAW_VARIABLES, *law.own_variables)
     declared: dict[str, tuple[Mapping[str, Any], tuple[str, ...]]] = {
         "breakpoints": (law.breakpoints(law.numbers) or {}, of_law),
@@ -363,6 +325,9 @@ def declared_names_are_variables(law: Law) -> None:
             assert name in known, f"`{subject}` names '{name}'; the variables are: {', '.join(known)}"
             bad = np.isnan(values).any() or (subject != "valid_range" and not np.isfinite(values).all())
             assert not bad, f"`{subject}` has {name} = {values}"
+    for name, values in declared["jumps"][0].items():
+        missing = {*values} - {*declared["breakpoints"][0].get(name, ())}
+        assert not missing, f"`jumps` has {name} = {sorted(missing)}, which `breakpoints` lacks"
     for name, (low, high) in law.valid_range.items():
         assert low < high, f"`valid_range` of {name} goes from {low:g} to {high:g}"
 

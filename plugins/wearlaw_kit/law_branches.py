@@ -25,9 +25,6 @@ AT_JUMP = 1e-10
 """Relative distance up to which a jump counts as declared: a position on a path that spans ten
 decades is known to 23 times rounding."""
 
-STEP = 1e-12
-"""Relative distance of the two sides of a jump: a continuous rate changes by a few times that."""
-
 
 def at_nodes_of_the_patch(law: Law) -> bool:
     """Return whether a law has a rate for each node, and no single value for the patch."""
@@ -97,24 +94,6 @@ def rate_has_kinks_only_where_declared(law: Law) -> None:
     for path, low, high, change in find_kinks(paths.rate, KINK * paths.e_folds()):
         what = f"the slope of the rate jumps by {change:.2g} of the rate per path, not declared in `breakpoints`"
         paths.assert_declared(breakpoints, path, (low, high), what)
-
-
-@rule(Law, applies=at_nodes_of_the_patch)
-def declared_jumps_exist(law: Law) -> None:
-    """Every value in `jumps` is a breakpoint too, and there is a contact at which the rate jumps there.
-
-    A variable of the law's own cannot be set, so that its jumps are not looked for.
-    """
-    breakpoints = law.breakpoints(law.numbers) or {}
-    contact = forward(random_contacts(512, seed=3, law=law))
-    for name, jumps in law.jumps(law.numbers).items():
-        missing = set(jumps) - set(breakpoints.get(name, ()))
-        assert not missing, f"`jumps` has {name} = {sorted(missing)}, which `breakpoints` lacks"
-        for jump in () if name in law.own_variables else jumps:
-            sides = (aimed(contact, name, jump * factor) for factor in (1.0 - STEP, 1.0 + STEP))
-            below, above = (np.abs(law.rate(side, law.numbers)) for side in sides)
-            steps = np.abs(above - below) > 1e3 * STEP * np.maximum(above, below)
-            assert steps.any(), f"`jumps` declares a jump at {name} = {jump:g}, but the rate is continuous there"
 
 
 @rule(Law, applies=lambda law: at_nodes_of_the_patch(law) and law.ramps(law.numbers) is not None)

@@ -69,52 +69,34 @@ def borders(law: Law) -> tuple[Border, ...]:
     return tuple(sorted(found, key=lambda border: border[0] == "wear_index"))
 
 
-def for_each_contact(law: Law, examine: Callable[[Contact], None]) -> None:
-    """Run a function on contacts of the scale of a law."""
-    of_law, means = borders(law), [means_of(borders(law), 0, POINTS)]
-    if law.scale == "patch":
-        _run(law, "", [on_line(of_law, 0, POINTS, 1)], examine)
-    else:
-        _run_on_nodes(law, of_law, examine)
-    _run(law, "on the means of an ellipse: ", means, examine)
+def for_each_contact(law: Law, examine: Callable[[Contact], None], several: bool = False) -> None:
+    """Run a function on contacts of the scale of a law.
 
-
-def for_each_of_nodes(law: Law, examine: Callable[[Contact], None]) -> None:
-    """Run a function on contacts whose nodes can be listed anew; the means of an ellipse have one node only.
-
-    A law of the patch, which may sum over the nodes, is not tried at its borders, which a sum meets but for rounding.
+    With `several`, on those alone whose nodes can be listed anew, which leaves out the means of an ellipse. A law of
+    the patch, which may sum over the nodes, is then not tried at its borders, which a sum meets but for rounding.
     """
-    _run_on_nodes(law, borders(law) if law.outcome.of != "patch" else (), examine)
-
-
-def _run_on_nodes(law: Law, of_law: tuple[Border, ...], examine: Callable[[Contact], None]) -> None:
-    _run(law, "", [on_line(of_law, seed, POINTS, nodes) for seed, nodes in enumerate(LINES)], examine)
-    _run(law, "on strips: ", [on_strips(of_law, seed, POINTS, axes) for seed, axes in enumerate(AXES)], examine)
-
-
-def _run(law: Law, where: str, found: list[Contact], examine: Callable[[Contact], None]) -> None:
-    with failing(where):
-        for contact in found:
+    of_law = () if several and law.outcome.of == "patch" else borders(law)
+    if law.scale == "patch":
+        found = [("", on_line(of_law, 0, POINTS, 1))]
+    else:
+        found = [("", on_line(of_law, seed, POINTS, nodes)) for seed, nodes in enumerate(LINES)]
+        found += [("on strips: ", on_strips(of_law, seed, POINTS, axes)) for seed, axes in enumerate(AXES)]
+    if not several:
+        found.append(("on the means of an ellipse: ", means_of(of_law, 0, POINTS)))
+    for where, contact in found:
+        with failing(where):
             for_each(with_problem(contact, law), examine)
 
 
-def on_contacts(kind: type, **options: Any) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
-    """Register a check of a law on contacts of its scale."""
-    return _on(for_each_contact, kind, options)
-
-
-def on_nodes(kind: type, **options: Any) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
-    """Register a check of a law on contacts whose nodes can be listed anew."""
-    return _on(for_each_of_nodes, kind, options)
-
-
-def _on(
-    run: Callable[[Law, Callable[[Contact], None]], None], kind: type, options: dict[str, Any]
+def on_contacts(
+    kind: type, several: bool = False, **options: Any
 ) -> Callable[[Callable[[Any, Contact], None]], Callable[[Any], None]]:
+    """Return a decorator that registers a check of a law on the contacts of `for_each_contact`."""
+
     def decorate(check: Callable[[Any, Contact], None]) -> Callable[[Any], None]:
         @functools.wraps(check)
         def on_all(law: Any) -> None:
-            run(law, functools.partial(check, law))
+            for_each_contact(law, functools.partial(check, law), several)
 
         return rule(kind, **options)(on_all)
 

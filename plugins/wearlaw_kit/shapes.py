@@ -176,7 +176,7 @@ SHAPES = (LINE, ELLIPSE, PATCH)
 def forces_alone(model: ContactModel, problem: Problem) -> CreepForces:
     """Return what `tangential_force` or `creep_forces` gives, for less than the contact."""
     if problem.geometry == "line":
-        return CreepForces.of({"longitudinal": model.tangential_force(problem)})
+        return CreepForces.of_line(model.tangential_force(problem))
     return model.creep_forces(problem)
 
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,8 +16,7 @@ from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import Points
 from wearlaw_sweeps.sweep import checked_profile, run
-from wearlaw_sweeps.tables import from_table
-from wearlaw_sweeps.wear_profile import SHARE, ProfileJob, Sum, check_shares
+from wearlaw_sweeps.wear_profile import ProfileJob, Sum, check_shares
 
 
 class Wear(NamedTuple):
@@ -71,6 +68,24 @@ class Line:
     workers: int
     client: Any
 
+    @classmethod
+    def of(
+        cls, predict: wl.Pipeline[...], points: Points, share: str, body: str, at: Array, workers: int, client: Any
+    ) -> Line:
+        """Return the states of a table that has its shares in the column `share`.
+
+        Raises
+        ------
+        DataError
+            If a share is missing or negative, or they do not add up to one.
+        """
+        check_shares(points, share)
+        with caught_warnings():  # the first step gives them
+            first = posed(points.part([slice(0, 1)]), predict.rig.checked_problem)
+        elsewhere = workers > 1 or client is not None
+        job = checked_profile(predict, first, body, wl.Q(1e3 * at, "mm"), True, elsewhere, LineJob)
+        return cls(dataclasses.replace(points, weight=job.weight(first)), job, workers, client)
+
     @property
     def sides(self) -> int:
         """Number of sides of the rig."""
@@ -92,37 +107,3 @@ class Line:
         depth, mass = (wl.Q(total.totals[name], job.units[name]) for name in ("depth", "mass"))
         turns = "/" in job.units["depth"]
         return Wear(np.atleast_2d(depth.m_as("m/m" if turns else "m")), np.atleast_1d(mass.m_as("kg/m")))
-
-
-@contextmanager
-def read_line(
-    predict: wl.Pipeline[...],
-    table: Any,
-    share: str,
-    columns: Mapping[str, str] | None,
-    conditions: Mapping[str, Any],
-    body: str,
-    at: Array,
-    on_disk: Path,
-    progress: bool,
-    workers: int,
-    client: Any,
-) -> Iterator[Line]:
-    """Give the states of a table or file; the numbers of a file are kept beside the path `on_disk`.
-
-    Raises
-    ------
-    DataError
-        If the table is wrong, has no column with the shares, or they do not sum to one.
-    """
-    if not isinstance(share, str):
-        raise wl.InputError(f"share: must be the name of the column with the shares, got {wl.shown(share)}")
-    keep, check = {SHARE: share}, predict.rig.check_names
-    read = from_table(table, conditions, columns=columns, keep=keep, check=check, on_disk=on_disk, progress=progress)
-    with read as points:
-        check_shares(points, share)
-        with caught_warnings():  # the first step gives them
-            first = posed(points.part([slice(0, 1)]), predict.rig.checked_problem)
-        elsewhere = workers > 1 or client is not None
-        job = checked_profile(predict, first, body, wl.Q(1e3 * at, "mm"), True, elsewhere, LineJob)
-        yield Line(dataclasses.replace(points, weight=job.weight(first)), job, workers, client)

@@ -101,19 +101,9 @@ def swept(old: Profile, new: Profile, radius: float | None) -> float:
 
 
 class Removal(NamedTuple):
-    """A profile after a step.
-
-    Attributes
-    ----------
-    profile : Profile
-    volume : float
-        Volume [m³] or, per metre of rail, area [m²] that was removed.
-    factor : float
-        What the depths were multiplied by so that the removed mass is the predicted one.
-    """
+    """A profile after a step, and what the depths were multiplied by so that the removed mass is the predicted one."""
 
     profile: Profile
-    volume: float
     factor: float
 
 
@@ -136,7 +126,7 @@ def conserving(profile: Profile, at: Array, depth: Array, volume: float, radius:
             break
         slope = (found - before[1]) / (factor - before[0])
         before, factor = (factor, found), factor + (volume - found) / slope
-    return Removal(new, found, factor)
+    return Removal(new, factor)
 
 
 def normal_depth(first: Profile, now: Profile, s: Array) -> Array:

@@ -6,7 +6,7 @@ import math
 import os
 import tempfile
 from collections.abc import Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -17,11 +17,13 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw_life._life import SIDES, UNITS, Life, unit_of
-from wearlaw_life._line import Line, Wear, read_line
+from wearlaw_life._line import Line, Wear
 from wearlaw_life._measures import NAMES, flange, hollow
 from wearlaw_life._removal import Profile, conserving, even, normal_depth, positions, smoothed, swept
 from wearlaw_life._state import Plan, State
 from wearlaw_sweeps.progress import Bar
+from wearlaw_sweeps.tables import from_table
+from wearlaw_sweeps.wear_profile import SHARE
 
 if TYPE_CHECKING:
     from wearlaw_life._store import Store
@@ -35,9 +37,10 @@ START = 0.25
 GROWTH = 2.0
 """Largest ratio of the distances of two steps: the extrapolation then weighs the latest wear at most twice."""
 
-CORRECTION = 0.1
-"""Largest share of `depth_step` by which extrapolation may change the wear of a step anywhere. Where contact leaves a
-place and comes back, longer steps would wear one place too deep, and then the other."""
+CORRECTION = 2e3
+"""Largest depth by which extrapolation may change the wear of a step anywhere, over the square of `depth_step` [1/m]:
+all steps halve with it. Where contact leaves a place and comes back, longer steps would wear one place too deep,
+and then the other."""
 
 SHORTEST = 1.0 / 64.0
 """Smallest share of `depth_step` that a jump of the conicity makes a step; a jump stays one however short the step."""
@@ -148,16 +151,21 @@ def wear_out(
     plan = _plan(predict, body, over, depth_step, smoothing, spacing, conicity_step, amplitude, sides, until)
     first = tuple(even(one) for one in _given(predict.rig, plan))
     count = math.ceil(max(np.ptp(one.curve.s) for one in first) / plan.spacing) + 1
+    at = positions(first, count)
+    if not isinstance(share, str):
+        raise wl.InputError(f"share: must be the name of the column with the shares, got {wl.shown(share)}")
+    beside = Path(tempfile.gettempdir(), "line") if store is None else Path(store)
+    read = from_table(
+        line, conditions, columns=columns, keep={SHARE: share}, check=predict.rig.check_names, on_disk=beside,
+        progress=progress,
+    )  # fmt: skip
     with ExitStack() as stack:
-        on_disk = Path(tempfile.gettempdir(), "line") if store is None else Path(store)
-        at = positions(first, count)
-        read = read_line(predict, line, share, columns, conditions, body, at, on_disk, progress, workers, client)
-        states = stack.enter_context(read)
+        states = Line.of(predict, stack.enter_context(read), share, body, at, workers, client)
         kept = None
         if store is not None:
             from wearlaw_life._store import Store  # zarr takes half a second
 
-            kept = stack.enter_context(Store(store, resume, predict, states, plan))
+            kept = stack.enter_context(closing(Store(store, resume, predict, states, plan)))
         unit = 1.0 if body == "rail" else 1e-3
         bar = stack.enter_context(Bar(round(unit * plan.over), progress))
         bar.stage("passages" if body == "rail" else "km")
@@ -168,7 +176,7 @@ def _run(
     predict: wl.Pipeline[...], line: Line, plan: Plan, first: tuple[Profile, ...], store: Store | None, bar: Bar,
     unit: float,
 ) -> Life:  # fmt: skip
-    states = [] if store is None else store.states()
+    states = [] if store is None else list(store.states)
     ended, done = "", 0
 
     def life() -> Life:
@@ -189,7 +197,7 @@ def _run(
                 _check_limits(plan, row)
             states.append(state)
             if store is not None:
-                store.add(state)
+                store.add(len(states) - 1, state)
             bar(round(unit * state.row[plan.along]) - done)
             done = round(unit * state.row[plan.along])
     except (wl.WearlawError, KeyboardInterrupt) as error:
@@ -220,7 +228,7 @@ def _step(
         step = min(step, GROWTH * now.step)
         if now.wear is not None:
             rise = float(np.abs(wear.depth - now.wear.depth).max())
-            step = min(step, math.sqrt(2.0 * CORRECTION * plan.depth_step * now.step / rise)) if rise else step
+            step = min(step, plan.depth_step * math.sqrt(2.0 * CORRECTION * now.step / rise)) if rise else step
         if now.change > 0.0:
             step = min(step, AIM * plan.conicity_step / now.change * now.step)
     body = pipeline.rig.bodies[plan.body]
@@ -262,52 +270,51 @@ def _of_middle(wear: Wear, before: Wear | None, step: float, step_before: float)
     return Wear(np.maximum(middle.depth, 0.0), middle.mass)
 
 
+def _limits(plan: Plan, row: Mapping[str, float]) -> list[tuple[str, float]]:
+    """Return the limits by the columns of their measures: a column of its own, or those of both sides."""
+    return [
+        (column, limit)
+        for name, limit in plan.until.items()
+        for column in ([name] if name in row else [f"{name}{side}" for side in SIDES[2]])
+        if column in row
+    ]
+
+
 def _share_to_limit(plan: Plan, before: Mapping[str, float], after: Mapping[str, float]) -> float:
     """Return the share of a step at which the first measure reaches its limit, one if none does."""
-    shares = [1.0]
-    for name, limit in plan.until.items():
-        for column in columns_of(name, after):
-            start, end = before[column], after[column]
-            if (start - limit) * (end - limit) < 0.0:
-                shares.append((limit - start) / (end - start))
-    return min(shares)
+    passed = (
+        (limit - before[column]) / (after[column] - before[column])
+        for column, limit in _limits(plan, after)
+        if (before[column] - limit) * (after[column] - limit) < 0.0
+    )
+    return min(passed, default=1.0)
 
 
 def _reached(plan: Plan, first: Mapping[str, float], now: Mapping[str, float]) -> str:
     """Return why a life ends, "" if it goes on."""
-    for name, limit in plan.until.items():
-        for column in columns_of(name, now):
-            start, end = first[column], now[column]
-            if (start - limit) * (end - limit) <= NEAR * (start - limit) ** 2:
-                return column
+    for column, limit in _limits(plan, now):
+        if (first[column] - limit) * (now[column] - limit) <= NEAR * (first[column] - limit) ** 2:
+            return column
     return "over" if now[plan.along] >= plan.over * (1.0 - 1e-12) else ""
-
-
-def columns_of(name: str, row: Mapping[str, float]) -> list[str]:
-    """Return the columns of a measure: its own, or those of both sides."""
-    return [name] if name in row else [column for column in row if column in {f"{name}{side}" for side in SIDES[2]}]
 
 
 def _given(rig: Any, plan: Plan) -> tuple[Profile, ...]:
     """Return the profiles of a rig, one or those of the left and the right side."""
-    right, left = getattr(rig, plan.body), getattr(rig, f"left_{plan.body}", None)
-    if not plan.each:
-        if left is not None:
-            raise wl.InputError(
-                f"sides: the rig has a left_{plan.body} of its own, which has no mean with the right one; give 'each'"
-            )
-        return (right,)
-    if f"left_{plan.body}" not in type(rig).model_fields:
+    right, left, fields = getattr(rig, plan.body), f"left_{plan.body}", type(rig).model_fields
+    if plan.each and left not in fields:
         raise wl.InputError(f"sides: the rig {rig.name!r} has one profile for both sides; give 'mean'")
-    return left or right, right
+    if not plan.each and getattr(rig, left, None) is not None:
+        raise wl.InputError(
+            f"sides: the rig has a {left} of its own, which has no mean with the right one; give 'each'"
+        )
+    return (getattr(rig, left) or right, right) if plan.each else (right,)
 
 
 def with_profiles(predict: wl.Pipeline[...], plan: Plan, profiles: tuple[Profile, ...]) -> wl.Pipeline[...]:
     """Return the pipeline with other profiles of a body."""
     rig = predict.rig
-    fields = {name: getattr(rig, name) for name in type(rig).model_fields} | {plan.body: profiles[-1]}
-    if plan.each:
-        fields[f"left_{plan.body}"] = profiles[0]
+    worn = {plan.body: profiles[-1]} | ({f"left_{plan.body}": profiles[0]} if plan.each else {})
+    fields = {name: getattr(rig, name) for name in type(rig).model_fields} | worn
     return wl.Pipeline(
         rig=type(rig)(**fields), contact_model=predict.contact_model, stages=predict.stages, laws=predict.laws
     )
@@ -353,12 +360,13 @@ def _check_ends(profile: Profile, at: Array, depth: Array, body: str) -> None:
 
 
 def _check_limits(plan: Plan, row: Mapping[str, float]) -> None:
-    for name, limit in plan.until.items():
-        columns = columns_of(name, row)
-        if not columns or any(math.isnan(row[column]) for column in columns):
-            known = ", ".join(key for key, value in row.items() if math.isfinite(value) and "factor" not in key)
-            raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {known}")
-        if any(row[column] == limit for column in columns):
+    """Raise an error for a limit of a measure that this profile lacks, or has reached."""
+    there = {name: value for name, value in row.items() if math.isfinite(value)}
+    for name in plan.until:
+        columns = _limits(replace(plan, until={name: plan.until[name]}), there)
+        if not columns:
+            raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
+        if any(there[column] == limit for column, limit in columns):
             raise wl.InputError(f"until: {name} has its limit already; give another one")
 
 
@@ -384,31 +392,28 @@ def _plan(
         raise wl.InputError(f"sides: must be 'mean' or 'each', got {wl.shown(sides)}")
     if body == "rail" and (isinstance(over, str | wl.Quantity) or not over > 0.0):
         raise wl.InputError(f"over: a rail wears by passages; give their number, such as 1e6, got {wl.shown(over)}")
-    if not conicity_step > 0.0:
-        raise wl.InputError(f"conicity_step: must be positive, got {wl.shown(conicity_step)}")
-    length = wl.Unit("mm")
+    length, limits = wl.Unit("mm"), {}
+    for name, value in (until or {}).items():
+        unit = unit_of(name) if name != "factor" else None
+        if unit is None:
+            raise wl.InputError(f"until: there is no measure {wl.shown(name)}; there are {', '.join(UNITS)}")
+        limits[name] = float(wl.Unit(unit).si(value, f"until: {name}")) if unit else float(value)
     plan = Plan(
-        body,
-        float(over) if body == "rail" else float(wl.Unit("km").si(over, "over")),
-        float(length.si(depth_step, "depth_step")),
-        float(wl.Unit("mm", positive=False).si(smoothing, "smoothing")),
-        float(length.si(spacing, "spacing")),
-        float(conicity_step),
-        float(length.si(amplitude, "amplitude")),
-        sides == "each",
-        {},
+        body=body,
+        over=float(over) if body == "rail" else float(wl.Unit("km").si(over, "over")),
+        depth_step=float(length.si(depth_step, "depth_step")),
+        smoothing=float(wl.Unit("mm", positive=False).si(smoothing, "smoothing")),
+        spacing=float(length.si(spacing, "spacing")),
+        conicity_step=float(conicity_step),
+        amplitude=float(length.si(amplitude, "amplitude")),
+        each=sides == "each",
+        until=limits,
     )
     if plan.depth_step > DEEPEST:
         raise wl.InputError(
             f"depth_step: must be at most {1e3 * DEEPEST:g} mm, since contacts move as a profile wears; got"
             f" {1e3 * plan.depth_step:.4g} mm"
         )
-    if plan.smoothing < 0.0:
-        raise wl.InputError(f"smoothing: must not be negative, got {1e3 * plan.smoothing:.4g} mm")
-    limits = {}
-    for name, value in (until or {}).items():
-        unit = unit_of(name) if name != "factor" else None
-        if unit is None:
-            raise wl.InputError(f"until: there is no measure {wl.shown(name)}; there are {', '.join(UNITS)}")
-        limits[name] = float(wl.Unit(unit).si(value, f"until: {name}")) if unit else float(value)
-    return replace(plan, until=limits)
+    if not (plan.conicity_step > 0.0 and plan.smoothing >= 0.0):
+        raise wl.InputError("conicity_step and smoothing: must be positive; only smoothing may be zero")
+    return plan

@@ -31,7 +31,7 @@ class Curve:
     colour, dash : int
         Index of its colour and marker, and of its line style; the same throughout a report.
     low, high : ndarray, (points,), or None
-        Ends of a band around it; of points, ends of error bars, along x where the y axis has names.
+        Ends of a band around it; of points, ends of error bars.
     points : bool
         Whether it is a set of points, not joined by a line. Predictions are lines, measurements points.
     hollow : bool
@@ -102,7 +102,7 @@ STRIP = 0.025
 """Height of a strip along the x axis, as a share of the panel."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class PlotAxis:
     """An axis of a panel.
 
@@ -116,15 +116,12 @@ class PlotAxis:
         The lower and the higher end; None if the curves set them.
     inverted : bool
         Whether values grow from right to left or from top to bottom, as for a depth.
-    names : tuple of str
-        Names of the values 0, 1, 2 and so on, which stand on the axis in place of numbers.
     """
 
     label: str
     scale: Literal["linear", "log"] = "linear"
     ends: tuple[float, float] | None = None
     inverted: bool = False
-    names: tuple[str, ...] = ()
 
     def shows(self, values: Array) -> NDArray[np.bool_]:
         """Return which values lie between the ends."""

@@ -57,8 +57,6 @@ STYLE: Any = {
 }
 WIDTH, ROW_HEIGHT = 7.4, 3.6
 """Width of a figure and height of a row of panels, in inches."""
-NAME, LEAST = 0.36, 1.6
-"""Height that a name on the y axis takes, and least height of a panel of names, in inches."""
 AROUND = 0.9
 """Height and width that the labels of a panel take, in inches."""
 TITLE, LINE = 0.26, 0.17
@@ -116,9 +114,7 @@ def draw(figure: FigureData) -> Figure:
 
 
 def _height(panel: Panel, width: float) -> float:
-    """Return the height of a panel of a width, in inches; a shape or names take as much as they need."""
-    if panel.y.names:
-        return max(LEAST, AROUND + NAME * len(panel.y.names))
+    """Return the height of a panel of a width, in inches; a shape takes as much as it needs."""
     if not panel.equal:
         return ROW_HEIGHT
     across, up = (
@@ -152,7 +148,7 @@ def _fill(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: An
         for low, high in shade.spans:
             axes.axvspan(low, high, 0.0, STRIP if shade.strip else 1.0, color=_grey(shade), lw=0, zorder=0)
     for curve in panel.curves:
-        _plot(axes, curve, styles.get((curve.colour, curve.dash), 0), flat=bool(panel.y.names))
+        _plot(axes, curve, styles.get((curve.colour, curve.dash), 0))
     axes.set_title(_literal("\n".join(textwrap.wrap(panel.title, letters))))
     axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label))
     axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
@@ -160,9 +156,7 @@ def _fill(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: An
     for axis, drawn in ((panel.x, axes.xaxis), (panel.y, axes.yaxis)):
         if axis.inverted:
             drawn.set_inverted(True)
-        if axis.names:
-            drawn.set_ticks(range(len(axis.names)), [_literal(name) for name in axis.names])
-        elif axis.scale == "log":
+        if axis.scale == "log":
             _label_ticks(drawn)
     if panel.equal:
         axes.set_aspect("equal", adjustable="box")
@@ -204,8 +198,8 @@ def plain(value: float) -> str:
     return f"${factor}10^{{{int(power)}}}$"
 
 
-def _plot(axes: Axes, curve: Curve, style: int, flat: bool) -> None:
-    """Draw a curve with its band, or points with their error bars, which lie along x if `flat`."""
+def _plot(axes: Axes, curve: Curve, style: int) -> None:
+    """Draw a curve with its band, or points with their error bars."""
     number = curve.colour % len(PALETTE)
     colour = PALETTE[number]
     looks: dict[str, Any] = {"color": colour, "linestyle": LINES[style], "zorder": 2.0 + 0.1 * style}
@@ -221,9 +215,8 @@ def _plot(axes: Axes, curve: Curve, style: int, flat: bool) -> None:
     if curve.low is None or curve.high is None:
         return
     if curve.points:
-        values = curve.x if flat else curve.y
-        bars: Any = {"xerr" if flat else "yerr": (values - curve.low, curve.high - values)}
-        axes.errorbar(curve.x, curve.y, **bars, fmt="none", ecolor=colour, elinewidth=1.0, capsize=2.0)
+        bars = curve.y - curve.low, curve.high - curve.y
+        axes.errorbar(curve.x, curve.y, bars, fmt="none", ecolor=colour, elinewidth=1.0, capsize=2.0)
     else:
         axes.fill_between(
             curve.x, curve.low, curve.high, facecolor=(colour, BAND), edgecolor=(colour, EDGE), lw=0.5, zorder=1
@@ -244,12 +237,11 @@ def _draw_map(axes: Axes, drawn: Map, norm: Any) -> None:
 
 
 def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
-    """Add one legend for all panels, with each label once; the names on an axis need none."""
+    """Add one legend for all panels, with each label once."""
     entries: dict[str, Any] = {}
     for one, panel in zip(axes, figure.panels, strict=True):
         labelled = ((artist, str(artist.get_label())) for artist in one.get_lines())
-        entries |= {label: artist for artist, label in labelled
-                    if not label.startswith("_") and label.strip() not in map(_literal, panel.y.names)}  # fmt: skip
+        entries |= {label: artist for artist, label in labelled if not label.startswith("_")}
         for shade in panel.shades:
             entries[_literal(shade.label)] = Patch(facecolor=_grey(shade), edgecolor="0.6", linewidth=0.5)
         for label, (number, _) in borders_of(panel.map).items():

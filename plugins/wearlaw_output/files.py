@@ -13,6 +13,7 @@ import click
 import matplotlib as mpl
 import pandas as pd
 
+from wearlaw.cli.shared import verbose
 from wearlaw.errors import OutputError
 from wearlaw.settings.text_files import FULL, reason_of
 from wearlaw_output.curves import FigureData, FigureFormat
@@ -107,7 +108,7 @@ def write_files(
 
 
 def written_formats(command: CommandT) -> CommandT:
-    """Add the options `figure_formats` and `latex` to a command."""
+    """Add the options `figure_formats`, `latex` and `--verbose` to a command that writes results and prints notes."""
     formats = click.option(
         "--figure-format",
         "figure_formats",
@@ -118,4 +119,4 @@ def written_formats(command: CommandT) -> CommandT:
         help="Format of the figures; may be repeated.",
     )
     latex = click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
-    return formats(latex(command))
+    return formats(latex(verbose(command)))

@@ -50,12 +50,12 @@ from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
+from wearlaw.plugins.law_files import is_law_file
 from wearlaw.plugins.shelf import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
 from wearlaw.settings.text_files import beside, read_text, reading
 from wearlaw.settings.toml_files import LARGEST, parse_toml
 from wearlaw.units.variables import UNITS
-from wearlaw_studies.figure_check import wrong_figures, wrong_name
 from wearlaw_studies.figure_spec import FigureSpec
 from wearlaw_studies.grid import Condition, Grid
 from wearlaw_studies.measured import MeasuredTests, check_rig
@@ -67,6 +67,9 @@ ModelT = TypeVar("ModelT", bound=Model)
 CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 """Names of the files that a run writes: its case, and its measured tests if they came from a file."""
 
+
+LONGEST_NAME = 100
+"""Most bytes of the name of a sweep, profile or figure; file systems allow 255 for it with what files add to it."""
 
 LISTED = "must be a list of names, or of tables with a name and options"
 """Error about a list of models."""
@@ -96,7 +99,7 @@ def _other_law(value: Any) -> Any:
     wear = {*found.wear_laws.providers, *found.parameter_sets.providers}
     if name in wear or (isinstance(value, Law) and value.outcome.name == WEAR):
         raise InputError(f"{name or value.name} predicts the wear rate; list it under wear_laws")
-    if name:
+    if name and not is_law_file(name):
         found.laws.find(name, found.broken)
     return value
 
@@ -236,14 +239,22 @@ class Case(Configuration):
             raise InputError(f"{' and '.join(map(repr, twice))} is listed twice; leave one out")
         return sections
 
+    @field_validator("sweeps", "profiles", "uncertainty", "figures")
+    @classmethod
+    def _have_names_of_files(cls, given: dict[str, Any]) -> dict[str, Any]:
+        """Check the names, which are part of the names of files."""
+        fault = "must be made of letters, digits and underscores, at most 100 bytes of them"
+        wrong = [name for name in given if not name.isidentifier() or len(name.encode()) > LONGEST_NAME]
+        if wrong:
+            raise ConfigurationError(cls.subject(), [Fault((), f"the name {shown(name)} {fault}") for name in wrong])
+        return given
+
     @field_validator("sweeps", "profiles", "uncertainty")
     @classmethod
     def _fit_the_rig(cls, given: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
         """Let the rig check conditions when the case is read, not when it runs; a wrong rig checks none."""
         rig, wrong = info.data.get("rig"), []
         for name, point in given.items():
-            if fault := wrong_name(name):
-                wrong.append(Fault((), f"the name {shown(name)} {fault}"))
             if info.field_name == "profiles" and point.axes():
                 wrong.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
             if rig is not None:
@@ -331,7 +342,6 @@ class Case(Configuration):
                     check_rig(self.measured.data, self.rig)
                 except InputError as error:
                     yield Fault(("measured",), str(error))
-        yield from wrong_figures(self)
 
     def _wrong_axes(self) -> Iterator[Fault]:
         """Yield the axes of the rig's patches that results would mix up with other columns."""
@@ -423,6 +433,12 @@ def case_schema() -> dict[str, Any]:
     for field, shelf in shelves.items():
         properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
     sets = found.parameter_sets
+    for laws in ("laws", "wear_laws"):
+        file = {"type": "string", "pattern": r"\.toml$"}
+        properties[laws]["items"]["anyOf"] += [
+            file,
+            {"type": "object", "properties": {"model": file}, "required": ["model"]},
+        ]
     properties["wear_laws"]["items"]["anyOf"] += [
         *({"const": name} for name in sets.items()),
         *({**table, "required": ["model"]} for table in _tables(sets, definitions)),

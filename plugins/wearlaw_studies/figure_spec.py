@@ -6,13 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConfigurationError, Fault
 from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import Unit, from_si
-from wearlaw.units.variables import UNITS
-from wearlaw_studies.grid import Grid
 
 OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")
 """Variables along the patch of a line contact; the creepage of the operating point is a horizontal line."""
@@ -20,11 +17,8 @@ OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "cr
 ACROSS = ("depth", "sliding_distance")
 """Variables across the patch of an elliptic contact, for one of the bodies."""
 
-OF_LOAD = (*LOADS, "half_width", "semi_axis_a", "semi_axis_b")
-"""The variables that the load alone determines."""
-
-BY_PATCH = "patch"
-"""The `x` of a figure with bars for each patch, if the rig makes several."""
+COMMON = ("pressure", "creepage")
+"""Variables along the patch that are the same for all contact models: Hertz's pressure, and the creepage."""
 
 Scale = Literal["linear", "log"]
 
@@ -92,9 +86,8 @@ class FigureSpec(Window):
     """The sweep to show; give this or `profile`."""
     profile: str | None = None
     """The profile to show."""
-    x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", BY_PATCH, *OF_CONTACT, *OF_POINT, *OF_PATCH]})] = "x"
-    """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it. If the rig
-    makes several patches, "patch" shows bars for each."""
+    x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", *OF_CONTACT, *OF_POINT, *OF_PATCH]})] = "x"
+    """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The pairs whose wear rates or other outcomes are shown, such as "usfd on exact". Default: all."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
@@ -125,11 +118,6 @@ class FigureSpec(Window):
             raise ConfigurationError("figure", wrong)
         return self
 
-    @property
-    def of_values(self) -> set[str]:
-        """The variables that the figure shows along the y axis or in colours."""
-        return {self.map} if self.map else {variable for window in self.windows() for variable in window.shown}
-
     def windows(self) -> tuple[Window, ...]:
         """Return the panels, each with the fields that it inherits."""
         inherited = ("y", "patches", "body", "x_range", "y_range", "x_scale", "y_scale")
@@ -153,22 +141,3 @@ def ends(variable: str, unit: str, given: Range) -> tuple[float, float]:
         for end, bare in zip(given, plain, strict=True)
     )
     return float(low), float(high)
-
-
-def axis_along(grid: Grid, x: str, creepage: str | None) -> str:
-    """Return the axis of a grid along which a figure runs: its x, else the creepage, else the longest axis.
-
-    For an x that depends on the load, the axis is the load, or the first condition that only the rig knows. A figure by
-    patch runs along none, "".
-    """
-    if x == BY_PATCH:
-        return ""
-    axes = grid.axes()
-    loads = [name for name in axes if name in LOADS] or [name for name in axes if name not in UNITS]
-    if x in axes:
-        return x
-    if x in OF_LOAD and loads:
-        return loads[0]
-    if creepage is not None and (creepage in axes or not axes):
-        return creepage
-    return max(axes, key=lambda name: axes[name], default=next(iter(grid.given)))

@@ -141,6 +141,12 @@ class Grid(Configuration, extra="allow"):
         known = rig.conditions()
         return Grid(**{name: self.given[name] for name in known or self.given if name in self.given})
 
+    def first(self) -> Grid:
+        """Return the grid of the first value of each axis."""
+        first = {name: (float(axis.values[0]), axis.unit) for name, axis in self._axes.items()}
+        given = {name: (f"{value!r} {unit}" if unit else value,) for name, (value, unit) in first.items()}
+        return Grid(**{**self.given, **given})
+
     def faults(self, rig: Rig) -> list[Fault]:
         """Return what a rig finds wrong at the ends of the axes, one fault for each condition."""
         found: dict[tuple[str, ...], Fault] = {}

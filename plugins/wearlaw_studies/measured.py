@@ -16,9 +16,8 @@ from wearlaw.plugins import loader
 from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import from_si, in_unit
 from wearlaw.units.variables import UNITS
-from wearlaw_fits.wear_tests.columns import COLUMNS
-from wearlaw_fits.wear_tests.reader import parse_tests, text_of_tests
-from wearlaw_fits.wear_tests.tests import WearTests
+from wearlaw_fits.read_tests import parse_tests, text_of_tests
+from wearlaw_fits.wear_tests import COLUMNS, WearTests
 
 OF_TESTS = ("half_width", "max_pressure", "normal_force", "normal_force_per_width", "creepage", "friction_coefficient")
 """Variables of the conditions of tests, on a rig with line contact."""

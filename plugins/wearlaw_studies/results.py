@@ -12,10 +12,10 @@ import xarray
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import WEAR, Outcome
 from wearlaw.pipeline.composition import fitted_to_other_body
-from wearlaw.pipeline.pairs import Pair
 from wearlaw.pipeline.selection import in_words as in_words
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.variables import UNITS
+from wearlaw_fits.pairs import Pair
 from wearlaw_studies.case import Case
 
 Patch: TypeAlias = Mapping[str, Any]
@@ -76,11 +76,9 @@ class Results:
         (found,) = (pair for pair in self.pairs if pair.label == label)
         return found
 
-    def is_outside(self, profile: xarray.Dataset, label: str, body: str) -> bool:
-        """Return whether the depth that a pair gives for a body lies outside what its law was fitted to."""
-        law = self.pair(label).pipeline.wear_law
-        other = fitted_to_other_body(self.case.rig.bodies, law, body)
-        return other or bool(profile.outside_range.sel(pair=label).item())
+    def is_for_other_body(self, label: str, body: str) -> bool:
+        """Return whether the parameters of a pair's wear law were fitted to another body than this one."""
+        return fitted_to_other_body(self.case.rig.bodies, self.pair(label).pipeline.wear_law, body)
 
 
 def predicting(results: Results, outcome: str, labels: Sequence[str]) -> list[str]:
@@ -102,17 +100,7 @@ def axes_of(sweep: xarray.Dataset) -> list[str]:
 
 def patch_axes(sweep: xarray.Dataset) -> list[str]:
     """Return the axes of a sweep that its rig adds for several patches."""
-    return [axis for axis in _names_of_patch_axes(sweep) if axis in sweep.dims]
-
-
-def is_of_patches(line: xarray.Dataset) -> bool:
-    """Return whether a sweep, or a part of it such as one patch, is that of a rig that makes several patches."""
-    return bool(_names_of_patch_axes(line))
-
-
-def _names_of_patch_axes(sweep: xarray.Dataset) -> list[str]:
-    names: list[str] = sweep.attrs.get(PATCH_AXES, "").split()
-    return names
+    return [axis for axis in sweep.attrs.get(PATCH_AXES, "").split() if axis in sweep.dims]
 
 
 def patches_of(sweep: xarray.Dataset, asked: Mapping[str, Collection[Any]] | None = None) -> list[Patch]:
@@ -137,13 +125,6 @@ def possible_patches(sweep: xarray.Dataset) -> list[Patch]:
     axes = patch_axes(sweep)
     labels = itertools.product(*(sweep[axis].values.tolist() for axis in axes))
     return [dict(zip(axes, one, strict=True)) for one in labels]
-
-
-def by_patch(point: xarray.Dataset, asked: Mapping[str, Collection[Any]] | None = None) -> xarray.Dataset:
-    """Return an operating point along an axis "patch" of its existing patches, with their numbers from 0."""
-    axes, found = patch_axes(point), patches_of(point, asked)
-    each = [point.sel(patch).drop_vars(axes) for patch in found]
-    return xarray.concat(each, xarray.Variable("patch", range(len(each))), coords="minimal", compat="override")
 
 
 def labelled_by(patch: Patch, label: str) -> str:
@@ -176,11 +157,6 @@ def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
     return line.set_coords(at).expand_dims(at)
 
 
-def middle_of(sweep: xarray.Dataset) -> xarray.Dataset:
-    """Return a sweep at the middle of all its axes."""
-    return sweep.isel({axis: sweep.sizes[axis] // 2 for axis in axes_of(sweep)})
-
-
 def _other(point: xarray.Dataset) -> str:
     """Return a variable of a sweep without axes."""
     return next(str(name) for name in point.data_vars if not point[name].dims)
@@ -192,3 +168,18 @@ def beyond_limits(dataset: xarray.Dataset) -> dict[str, xarray.DataArray]:
     if any(name not in dataset or dataset[name].attrs.get("units") != UNITS[name] for name in needed):
         return {}
     return {limit: dataset.max_pressure > dataset[limit] for limit in LIMITS}
+
+
+def together(sweep: xarray.Dataset, outcome: str) -> xarray.Dataset:
+    """Return a sweep of several patches with one value at each point.
+
+    The mass lost is the sum over the patches, and any other outcome the largest of them. A point is outside a range or
+    beyond a limit if one of its patches is: its maximum pressure is the largest one, and its limits are scaled to it.
+    """
+    axes = patch_axes(sweep)
+    value = sweep[outcome].sum(axes, min_count=1) if outcome == MASS else sweep[outcome].max(axes)
+    found = {outcome: value, "outside_range": sweep.outside_range.max(axes)}
+    if all(name in sweep for name in ("max_pressure", *LIMITS)):
+        found["max_pressure"] = largest = sweep.max_pressure.max(axes)
+        found |= {limit: largest * (sweep[limit] / sweep.max_pressure).min(axes) for limit in LIMITS}
+    return sweep.drop_dims(axes).assign({name: one.assign_attrs(sweep[name].attrs) for name, one in found.items()})

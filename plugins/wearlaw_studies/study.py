@@ -19,6 +19,7 @@ import xarray
 from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.material import Material
 from wearlaw.errors import (
+    ConfigurationError,
     InputError,
     ModelError,
     WearlawError,
@@ -32,7 +33,6 @@ from wearlaw.models.law import WEAR
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.notes import Notes
-from wearlaw.pipeline.pairs import Pair
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
@@ -41,8 +41,9 @@ from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, known_name, parts
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
+from wearlaw_fits.pairs import Pair
 from wearlaw_studies.case import Case
-from wearlaw_studies.figures import figures_of
+from wearlaw_studies.figures import figures_of, wrong_figures
 from wearlaw_studies.pairs import pairs_of
 from wearlaw_studies.results import PATCH_AXES, Results, axes_of
 from wearlaw_studies.sections import Section
@@ -88,7 +89,7 @@ class Study(Results):
 
     @cached_property
     def figures(self) -> tuple[FigureData, ...]:
-        """The data of the figures of the study."""
+        """The data of the figures, the main one first; a first sweep of one operating point has no main one."""
         return figures_of(self)
 
     def __repr__(self) -> str:
@@ -136,17 +137,36 @@ def run(
         Whether to go on with the stores there.
     """
     expect(Case, case, "case", "a wearlaw.Case, as from wl.load_case")
-    notes = Notes()
+    notes, of_profiles = Notes(), Notes()
     evaluator = Evaluator(on_block, workers, store, resume)
     pairs = pairs_of(case, notes)
+    profiles = {name: _profile(name, grid, case, pairs, of_profiles) for name, grid in case.profiles.items()}
+    _check_figures(case, pairs, profiles)
     sweeps = {name: _sweep(name, grid, case, pairs, notes, evaluator) for name, grid in case.sweeps.items()}
     evaluator.warn_if_resumed()
-    profiles = {name: _profile(name, grid, case, pairs, notes) for name, grid in case.profiles.items()}
+    for text in of_profiles.texts:
+        notes.add(text)
     for dataset in (*sweeps.values(), *profiles.values()):
         dataset.attrs.update(title=case.title, provenance=json.dumps(provenance(case)))
     study = Study(case, tuple(pairs), sweeps, profiles, tuple(notes.texts))
     sections = tuple(_section(name, study, notes) for name in case.sections)
     return replace(study, notes=tuple(notes.texts), sections=sections)
+
+
+def _check_figures(case: Case, pairs: list[Pair], profiles: dict[str, xarray.Dataset]) -> None:
+    """Raise an error if the figures of a case cannot be drawn, before its sweeps are computed.
+
+    They are drawn once from the first operating point of each sweep.
+    """
+    if not case.figures:
+        return
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", WearlawWarning)  # the sweeps repeat them
+        once = Evaluator(lambda _: None, 1, None, False)
+        first = {name: _sweep(name, grid.first(), case, pairs, Notes(), once) for name, grid in case.sweeps.items()}
+        wrong = list(wrong_figures(Results(case, tuple(pairs), first, profiles)))
+    if wrong:
+        raise ConfigurationError("the case", wrong)
 
 
 def _section(name: str, study: Study, notes: Notes) -> Section:
@@ -238,7 +258,7 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
         new = found_in.of_contact[pair.contact_model] if pair.contact_model not in contacts else ()
         outputs = [*_of_pair(pair, first), *new, *(found_in.of_point if not contacts else ())]
         with notes.of(f"sweep '{name}'"):
-            warn_of_unlike_materials(pair.pipeline.contact_model, first, stacklevel=1)
+            warn_of_unlike_materials(pair.pipeline.contact_model, first)
             found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first.dims)
         contacts.setdefault(pair.contact_model, found)
         band = _band(f"{name}-{number}", pair, points, first.dims, found, evaluator)

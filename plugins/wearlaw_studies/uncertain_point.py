@@ -12,7 +12,7 @@ from wearlaw.models.law import Law
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.settings.configuration import Configuration
-from wearlaw_fits.uncertainties.distributions import (
+from wearlaw_fits.distributions import (
     Distribution,
     PublishedRange,
     lognormal,
@@ -20,7 +20,7 @@ from wearlaw_fits.uncertainties.distributions import (
     published_range,
     uniform,
 )
-from wearlaw_fits.uncertainties.inputs import parameter
+from wearlaw_fits.uncertain_inputs import parameter
 from wearlaw_studies.grid import Value, wrong_conditions
 
 

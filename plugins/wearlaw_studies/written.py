@@ -17,7 +17,6 @@ from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import disarmed, save_figure, save_table, writing
 from wearlaw_studies.case import CASE_FILE, Case, written
-from wearlaw_studies.report.main_result import main_figure, main_result
 from wearlaw_studies.report.page import report
 from wearlaw_studies.report.tables import tables
 from wearlaw_studies.results import patch_axes
@@ -159,9 +158,7 @@ def write_figures(
     """Write all figures of a study and return the names of the files."""
     names = []
     (folder / FIGURES).mkdir()
-    first = main_figure(main_result(study))
-    own = study.figures if any(one is first for one in study.figures) else (first, *study.figures)
-    every = (*own, *(figure for section in study.sections for figure in section.figures))
+    every = (*study.figures, *(figure for section in study.sections for figure in section.figures))
     for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
         on_stage(f"drawing {name}")
         names += save_figure(figure, folder, os.path.join(FIGURES, name), formats)

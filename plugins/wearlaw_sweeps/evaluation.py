@@ -16,7 +16,7 @@ from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, RangeWarning, did_you_mean, shown
 from wearlaw.models.contact_model import fault
-from wearlaw.models.law import Law, named_outcomes
+from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction, unsolved
@@ -24,6 +24,7 @@ from wearlaw.pipeline.ranges import Seen
 from wearlaw.pipeline.variables import long_name, outcome_units, unit_of
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.units.quantities import Quantity
+from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import Points
 
@@ -137,13 +138,12 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
 def _check_axes(job: Job, problem: Problem, part: Points) -> None:
     """Raise an error unless the axes of a block's problem are the operating points and the rig's own axes."""
     own = tuple(map(len, job.dims.values()))
-    wanted = (part.size, *own) if part.dims else own
-    if problem.dims != job.dims or problem.batch_shape != wanted:
+    if problem.dims != job.dims or problem.batch_shape != ((part.size, *own) if part.dims else own):
         raise fault(
             job.pipeline.rig,
-            f"gave a batch of shape {problem.batch_shape} with the axes {problem.dims!r}"
-            f" for {part.size} operating points, but of shape {wanted} with {job.dims!r} for the first of them. In the"
-            " rig, give each condition an axis of length one for each of the rig's axes, as in values[..., None, None]",
+            f"gave a batch of shape {problem.batch_shape} with the axes {problem.dims!r} for {part.size} operating"
+            " points; in the rig, give each condition an axis of length one for each of the rig's axes, as in"
+            " values[..., None, None]",
         )
 
 
@@ -171,7 +171,7 @@ def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
             watch.see_outside(name, Seen(*seen))
     watch.overload = max((one.overload for one in every if one.overload), default=None)
     with caught_warnings() as found:
-        watch.warn(stacklevel=1)
+        watch.warn()
     remark = next((text for one in every for text in one.remarks), None)
     return found if remark is None else [*found, RangeWarning(remark)]
 
@@ -203,32 +203,20 @@ def output_units(
             f"the pipeline has no wear law; give one, as in rig | {pipeline.contact_model!r} | wl.wear_law('usfd'), or"
             ' name what to keep, as in outputs=["tangential_force"]'
         )
-    prediction, of_laws = unsolved(problem, pipeline.staged_model, pipeline.laws), outcome_units(pipeline.laws)
-    given = {*points.coordinates(), *points.fixed}
+    prediction = unsolved(problem, pipeline.staged_model, pipeline.laws)
     units = {}
     for name in list(named_outcomes(pipeline.laws)) if outputs is None else outputs:
-        if name in given:
-            raise InputError(
-                f"outputs: {shown(name)} is one of the conditions, and among the coordinates of the results"
-            )
-        _check_body(name, pipeline.laws)
+        if name in points.coordinates() or name in points.fixed:
+            raise InputError(f"outputs: {shown(name)} is among the coordinates of the results already")
         value = _output(prediction, name)
         if value is None:
-            named = dict.fromkeys((*of_laws, *problem.results, *dir(prediction)))
-            known = [one for one in named if one not in given and _is_output(prediction, one)]
+            known = [one for one in (*outcome_units(pipeline.laws), *problem.results, *VARIABLES) if one != name]
             raise InputError(
-                f"outputs: there is no {shown(name)} at an operating point{did_you_mean(name, known)}"
-                f" There are: {', '.join(known)}"
+                f"outputs: {shown(name)} is none of the outcomes, nor a property of a prediction at a point"
+                f"{did_you_mean(name, known)} The outcomes are: {', '.join(outcome_units(pipeline.laws)) or 'none'}"
             )
         units[name] = unit_of(name, value, pipeline.laws)
     return units
-
-
-def _check_body(name: str, laws: Sequence[Law]) -> None:
-    """Raise an error for an outcome that has a law for each body, if the body is not named."""
-    of_bodies = [known for known, index in named_outcomes(laws).items() if laws[index].outcome.name == name != known]
-    if of_bodies:
-        raise InputError(f"outputs: {shown(name)} has a law for each body; name {' or '.join(of_bodies)}")
 
 
 def _output(prediction: Prediction, name: str) -> Quantity | None:
@@ -238,13 +226,6 @@ def _output(prediction: Prediction, name: str) -> Quantity | None:
     there = not name.startswith("_") and hasattr(type(prediction), name)
     value = getattr(prediction, name) if there else None
     return value if isinstance(value, pint.Quantity) and np.shape(value.magnitude) == (1,) else None
-
-
-def _is_output(prediction: Prediction, name: str) -> bool:
-    try:
-        return _output(prediction, name) is not None
-    except CompositionError:  # without a law there is no wear
-        return False
 
 
 def _in_unit(quantity: Any, unit: str) -> Array:

@@ -58,22 +58,20 @@ def _located(
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if fault(low, middle) else (middle, high)
-    first, last = fault(low, high, single=True), fault(len(numbers) - 1, len(numbers), single=True)
+    first = fault(low, high, single=True)
     if first is None:  # wrong only beside other rows
-        return error
-    if type(table) is Table and low == 0 and last is not None:  # in memory, and wrong from end to end
         return error
     message = str(first)
     name = next((name for name in points.varying if message.startswith(f"{name}: ")), None)
-    head = "" if name is None else points.varying[name].origin.rpartition(" of ")[0]
-    column = f", column '{head}'" if head else ""
     if name is None:
         values = (f"{key} = {one.values[low]:.4g} {one.unit or ''}".rstrip() for key, one in points.varying.items())
-        column = f" ({', '.join(values)})"
-    if name is not None and points.varying[name].unit is None and "has no unit" in message:
+        return DataError(f"{table.label}, {table.where(numbers[low])} ({', '.join(values)}): {message}")
+    if low == 0 and type(table) is Table and fault(len(numbers) - 1, len(numbers), single=True):
+        return error  # in memory, and wrong from end to end
+    head = points.varying[name].origin.rpartition(" of ")[0]
+    if points.varying[name].unit is None and "has no unit" in message:
         message += f"; the column {advice(name, head)}"
-    if low == 0 and len(numbers) > 1 and last is not None and str(last) == str(first):  # so is every row
-        return DataError(f"{table.label}{column}: {message}")
+    column = f", column '{head}'" if head else ""
     return DataError(f"{table.label}, {table.where(numbers[low])}{column}: {message}")
 
 

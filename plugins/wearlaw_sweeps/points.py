@@ -21,7 +21,7 @@ import pint
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
-from wearlaw.units.quantities import Q, real_array
+from wearlaw.units.quantities import Q, parse, real_array, with_units
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import VARIABLES
 
@@ -259,8 +259,9 @@ def _plain(name: str, value: Any) -> tuple[Any, str | None]:
     """Return the numbers of a condition, and their unit if they have one."""
     if isinstance(value, (str, int, float)) or is_friction_law(value):  # text with a unit, or a law of friction
         return 0.0, None
-    quantity = isinstance(value, pint.Quantity)
     try:
+        value = parse(value) if with_units(value) else value
+        quantity = isinstance(value, pint.Quantity)
         return real_array(value.magnitude if quantity else value), symbol(value.units, "~C") if quantity else None
     except UnitError as error:
         raise UnitError(f"{name}: {error}; give one value, or several as in {name}={_several(name)}") from None

@@ -2,34 +2,27 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import filelock
 import numpy as np
 import xarray
 import zarr
 from pydantic import TypeAdapter
-from zarr.codecs import Crc32cCodec
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import OutputError, shown
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
+from wearlaw_sweeps.folder import CHECKED, Folder
 from wearlaw_sweeps.points import ITEM, Block, Points, Varying
-from wearlaw_sweeps.provenance import check_same, provenance_of
+from wearlaw_sweeps.provenance import provenance_of
 from wearlaw_sweeps.results import COMPLETE, INCOMPLETE, attributes, bytes_of, dataset
-from wearlaw_sweeps.room import check_disk
 from wearlaw_sweeps.workers import RECORDS
 
-CHECKED = Crc32cCodec()
-"""Every chunk ends with its CRC-32C, so that a damaged one does not decode."""
 
-
-class Store:
+class Store(Folder):
     """Results in a folder, of which one process at a time is the writer.
 
     An output is an array in which each block is a chunk. A block counts as finished if its record and all its chunks
@@ -49,67 +42,27 @@ class Store:
         The absolute path of the folder, to which the evaluating processes write.
     done : dict of int to BlockRecord
         Records of the finished blocks, by number.
-    resumed : bool
-        Whether the folder held the sweep before.
 
     Raises
     ------
     OutputError
-        If the folder holds anything but this sweep, or holds it and `resume` is false, or another process writes it.
+        As for `Folder`, or if the description of an array is damaged.
     """
 
     def __init__(self, job: Job, points: Points, path: Path, resume: bool) -> None:
+        large = sum(one.values.size for one in points.coordinates().values() if one.on_disk)
+        super().__init__(path, provenance_of(job, points), resume, size=bytes_of(job, points) + large * ITEM)
         self.job, self.points = job, points
-        self.path, self.store = path, str(path.absolute())
-        self.done: dict[int, BlockRecord] = {}
-        self.resumed = False
-        self._provenance = provenance_of(job, points)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        self._lock = filelock.FileLock(f"{self.store}.lock", blocking=False)
+        self.store = str(path.absolute())
         try:
-            self._lock.acquire()
-        except filelock.Timeout:
-            raise OutputError(f"store: {shown(path)} is being written by another process; wait for its end") from None
-        try:
-            self._begin_or_go_on(resume)
-        except BaseException:
+            self._lay_out()
+            kept = {block.number: self._kept(block) for block in points.blocks()} if self.resumed else {}
+            self.done = {number: record for number, record in kept.items() if record is not None}
+        except BaseException as error:
             self.close()
+            if self.resumed and isinstance(error, ValueError | KeyError | TypeError):  # what describes an array
+                raise OutputError(f"store: {shown(path)} is damaged ({error}); remove it to start again") from None
             raise
-
-    def _begin_or_go_on(self, resume: bool) -> None:
-        self.resumed = self._begun(resume)
-        if not self.resumed:
-            large = sum(one.values.size for one in self.points.coordinates().values() if one.on_disk)
-            check_disk(bytes_of(self.job, self.points) + large * ITEM, self.path)
-            zarr.create_group(self.store, zarr_format=3, attributes=attributes(INCOMPLETE, self._provenance))
-            self._lay_out()
-            return
-        try:
-            self._lay_out()
-            for block in self.points.blocks():
-                if (record := self._kept(block)) is not None:
-                    self.done[block.number] = record
-        except (ValueError, KeyError, TypeError) as error:  # what describes an array is damaged
-            raise OutputError(f"store: {shown(self.path)} is damaged ({error}); remove it to start again") from None
-
-    def _begun(self, resume: bool) -> bool:
-        """Return whether the folder holds a part of this sweep, or is empty."""
-        if not self.path.exists() or all(file.suffix == ".partial" for file in self.path.iterdir()):
-            return False
-        try:
-            found = zarr.open_group(self.store, mode="r").attrs
-            before, status = json.loads(str(found["provenance"])), found["status"]
-        except (OSError, ValueError, KeyError, TypeError):
-            raise OutputError(
-                f"store: {shown(self.path)} is not empty, and holds no sweep of wearlaw; choose another folder"
-            ) from None
-        if not resume:
-            what = "the results of a sweep" if status == COMPLETE else "an unfinished sweep"
-            raise OutputError(
-                f"store: {shown(self.path)} holds {what}; add resume=True, choose another folder, or remove it"
-            )
-        check_same(self.path, before, self._provenance)
-        return True
 
     def _lay_out(self) -> None:
         """Write the coordinates, and the arrays of outputs that are missing."""
@@ -191,9 +144,3 @@ class Store:
         zarr.open_group(self.store, mode="r+").attrs.update(attributes(COMPLETE, self._provenance, notes))
         found: xarray.Dataset = xarray.open_zarr(self.store, chunks=None, consolidated=False)
         return found
-
-    def close(self) -> None:
-        """Let other processes write the store."""
-        with suppress(OSError):  # Windows keeps a file in use, and removes it afterwards
-            Path(self._lock.lock_file).unlink()
-        self._lock.release()

@@ -23,12 +23,11 @@ from wearlaw.errors import (
     ResumeWarning,
     shown,
 )
-from wearlaw.models.contact_model import fault
 from wearlaw.pipeline.composition import warn_of_unlike_materials
-from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, Rig, expect_pipeline
+from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
-from wearlaw.pipeline.profiles import POSITION
 from wearlaw.pipeline.variables import default_variables
+from wearlaw.pipeline.worn import POSITION
 from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.settings.configuration import parts
@@ -101,7 +100,8 @@ def sweep(
         depth and the sliding distance of `Prediction.wear_profile` with `body` and `at`.
     share : str, optional
         For "wear_profile": the column of the table with the share of each row, which add up to one. The results are
-        then the weighted sums over all rows, with the mass, at constant memory for a file of any length.
+        then the weighted sums over all rows, with the mass, at constant memory for a file of any length. A store keeps
+        the sum of each block.
     body : str
         For "wear_profile": the body that wears.
     at : Quantity or str, optional
@@ -146,10 +146,8 @@ def sweep(
     as_csv = {"sep": sep, "decimal": decimal}
     profile = outputs in ([WEAR_PROFILE], (WEAR_PROFILE,))
     if share is not None:
-        if table is None or not profile or store is not None:
-            raise InputError(
-                'share: belongs to a table and outputs=["wear_profile"], without a store, which a sum does not need'
-            )
+        if table is None or not profile:
+            raise InputError('share: belongs to a table and outputs=["wear_profile"]')
         keep = {**(keep or {}), SHARE: share}
     summed = share is not None
     with (
@@ -169,13 +167,14 @@ def sweep(
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
         target: Memory | Sum | Store
+        folder = None if store is None else Path(store)
         if isinstance(job, ProfileJob) and job.summed:
-            target = Sum(job, points)
+            target = Sum(job, points, folder, resume)
         else:
-            target = target_of(job, points, None if store is None else Path(store), resume)
+            target = target_of(job, points, folder, resume)
         blocks = len(points.blocks())
-        if target.resumed and len(target.done) < blocks:
-            warnings.warn(kept(len(target.done), blocks, Path(target.store or "")), ResumeWarning, stacklevel=2)
+        if folder is not None and target.resumed and len(target.done) < blocks:
+            warnings.warn(kept(len(target.done), blocks, folder), ResumeWarning, stacklevel=2)
         with closing(target), Bar(points.size, progress) as bar:
             of_results = run(target, bar, workers, client)
             for warning in of_results:
@@ -216,7 +215,7 @@ def _points(
                 raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
         yield outer_product(conditions)
         return
-    beside = store if not summed else Path(tempfile.gettempdir(), "sum")  # a sum needs no store, but no memory
+    beside = Path(tempfile.gettempdir(), "sum") if summed and store is None else store  # a sum needs no memory
     on_disk = None if beside is None else Path(beside)
     check = predict.rig.check_names
     with from_table(
@@ -300,7 +299,6 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
             return posed(line, lambda given: pipeline.rig.checked_problem({**not_given, **given}))
 
     first = along(points.dims[0], slice(0, SAMPLE))
-    _check_names(pipeline.rig, first, points)
     slipperiest, there = first, first if first.size else None
     known = points.sizes[points.dims[0]] <= SAMPLE
     for dim in points.dims[1 if known else 0 :]:
@@ -312,18 +310,11 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
             slipperiest = min(slipperiest, one, key=lambda some: np.nanmin(some.friction_coefficient, initial=np.inf))
             if there is None and one.size:
                 there = one
-    pipeline.warn_of_problem(first, stacklevel=4)
-    warn_of_unlike_materials(pipeline.contact_model, slipperiest, stacklevel=4)
+    pipeline.warn_of_problem(first)
+    warn_of_unlike_materials(pipeline.contact_model, slipperiest)
     if there is None:
         raise ConditionsError(TOUCH_NOWHERE.format(pipeline.rig.name))
     return there
-
-
-def _check_names(rig: Rig, problem: Problem, points: Points) -> None:
-    """Raise an error if an axis of the rig has the name of a condition."""
-    taken = {*points.dims, *points.coordinates(), *points.fixed} & problem.dims.keys()
-    if taken:
-        raise fault(rig, f"has an axis and a condition named '{min(taken)}'; rename one of the two")
 
 
 def run(

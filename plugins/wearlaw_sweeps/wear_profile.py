@@ -4,24 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray
+from pydantic import TypeAdapter
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConditionsError, DataError, shown
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.profiles import PATCH, POSITION
+from wearlaw.pipeline.worn import PATCH, POSITION
 from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.units.quantities import Q, coefficient
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_sweeps.points import Block, Points
 from wearlaw_sweeps.provenance import digest, provenance_of
 from wearlaw_sweeps.results import COMPLETE, attributes, labels_of
+
+if TYPE_CHECKING:
+    from wearlaw_sweeps.folder import Parts
 
 WEAR_PROFILE = "wear_profile"
 """Name of this output of a sweep."""
@@ -127,11 +132,21 @@ def _any(problem: Problem) -> Any:
 class Sum:
     """The sum of the outputs of all blocks, in their order, so that it is the same from any number of processes.
 
+    Parameters
+    ----------
+    job : ProfileJob
+    points : Points
+    folder : path, optional
+        Where to keep the outputs of each block.
+    resume : bool
+        Whether to go on with the blocks that are there.
+
     Attributes
     ----------
     store : None
+        Evaluating processes write nothing.
     resumed : bool
-        False.
+        Whether the folder held the sum before.
     job : ProfileJob
     points : Points
     done : dict of int to BlockRecord
@@ -141,17 +156,30 @@ class Sum:
     """
 
     store = None
-    resumed = False
 
-    def __init__(self, job: ProfileJob, points: Points) -> None:
+    def __init__(self, job: ProfileJob, points: Points, folder: Path | None = None, resume: bool = False) -> None:
         self.job, self.points = job, points
         self.done: dict[int, BlockRecord] = {}
         self.totals: Outputs = {}
         self._waiting: dict[int, Outputs] = {}
         self._next = 0
+        self._parts: Parts | None = None
+        if folder is not None:
+            from wearlaw_sweeps.folder import Parts  # zarr takes half a second
+
+            self._parts = Parts(folder, provenance_of(job, points), resume)
+        self.resumed = self._parts is not None and self._parts.resumed
+        for block in points.blocks() if self.resumed else ():
+            if self._parts is not None and (part := self._parts[block.number]) is not None:
+                self._take(block, part.arrays, TypeAdapter(BlockRecord).validate_python(part.record))
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
         """Take over a finished block."""
+        if self._parts is not None:
+            self._parts.add(block.number, outputs, asdict(record))
+        self._take(block, outputs, record)
+
+    def _take(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
         self.done[block.number] = record
         self._waiting[block.number] = outputs
         while self._next in self._waiting:
@@ -160,17 +188,22 @@ class Sum:
             self._next += 1
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
-        """Return the sums as a labelled dataset."""
+        """Return the sums as a labelled dataset, and write them."""
         coordinates = labels_of(self.job)
         data = {
             name: (tuple(coordinates)[: values.ndim], values, self.job.attributes(name))
             for name, values in self.totals.items()
         }
         found = xarray.Dataset(data, coordinates)
-        return found.assign_attrs(attributes(COMPLETE, provenance_of(self.job, self.points), notes))
+        found = found.assign_attrs(attributes(COMPLETE, provenance_of(self.job, self.points), notes))
+        if self._parts is not None:
+            self._parts.finish(found)
+        return found
 
     def close(self) -> None:
-        """Do nothing: there is no file to close."""
+        """Let other processes write the folder."""
+        if self._parts is not None:
+            self._parts.close()
 
 
 def check_shares(points: Points, name: str) -> None:

@@ -7,7 +7,6 @@ import json
 import pickle
 import signal
 import sys
-import time
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Iterable
@@ -29,11 +28,11 @@ RECORDS = "blocks/record"
 AHEAD = 4
 """Blocks submitted for each worker, so that none waits for work."""
 
+IDLE_S = 300
+"""Seconds after which a worker process without work ends; loky warns of one that ends just as it is given work."""
+
 DEATHS = 3
 """Deaths of worker processes at which a sweep is given up."""
-
-CHECKED_S = 1.0
-"""Seconds between two counts of the workers of a cluster."""
 
 
 def here(
@@ -91,7 +90,7 @@ def in_processes(workers: int, job: bytes, store: str | None, points: Points, bl
 
     waiting, deaths = deque(blocks), 0
     while waiting:
-        pool = loky.get_reusable_executor(workers, initializer=_leave_ctrl_c_to_the_parent)
+        pool = loky.get_reusable_executor(workers, timeout=IDLE_S, initializer=_leave_ctrl_c_to_the_parent)
         pending: dict[Future[tuple[Outputs, BlockRecord]], Block] = {}
         try:
             while waiting or pending:
@@ -128,13 +127,14 @@ def on_cluster(client: Any, job: bytes, store: str | None, points: Points, block
     `distributed.scheduler.allowed-failures` allows.
     """
     distributed = sys.modules["distributed"]  # the client comes from there
-    members = _Members(client)
     left = iter(blocks)
     pending: dict[Any, Block] = {}
     waiting: Any = distributed.as_completed([])
 
     def hand_out() -> None:
-        while len(pending) < AHEAD * members.threads and (block := next(left, None)) is not None:
+        while (
+            len(pending) < AHEAD * max(1, sum(client.nthreads().values())) and (block := next(left, None)) is not None
+        ):
             part = points.part(block.slices)
             future = client.submit(_evaluated_elsewhere, job, block, part, store, pure=False)
             pending[future] = block
@@ -151,33 +151,6 @@ def on_cluster(client: Any, job: bytes, store: str | None, points: Points, block
                     f"block {block.number} was given up by the cluster, since its workers died: {error}"
                 ) from None
             hand_out()
-            for address in members.lost(at_once=not pending):
-                warnings.warn(
-                    f"worker {address} left the cluster, and its blocks are evaluated again",
-                    WorkerWarning,
-                    stacklevel=4,
-                )
             yield block, outputs, record
     finally:
         client.cancel(list(pending))
-
-
-class _Members:
-    """The workers of a cluster, as they come and go."""
-
-    def __init__(self, client: Any) -> None:
-        self._client = client
-        self._known: dict[str, int] = client.nthreads()
-        self._checked = time.monotonic()
-
-    @property
-    def threads(self) -> int:
-        """Total number of threads, or 1 if there are no workers yet."""
-        return max(1, sum(self._known.values()))
-
-    def lost(self, at_once: bool) -> list[str]:
-        """Return the addresses of lost workers, checked at most once per `CHECKED_S` unless `at_once`."""
-        if not at_once and time.monotonic() < self._checked + CHECKED_S:
-            return []
-        before, self._known, self._checked = self._known, self._client.nthreads(), time.monotonic()
-        return sorted(set(before) - set(self._known))

@@ -277,7 +277,7 @@ def _surface_speed(disc: Disc, rotational_speed: wl.QuantityLike) -> wl.Quantity
     angular = wl.Unit("rpm").si(rotational_speed, "rotational_speed")
     if angular.ndim:
         raise wl.UnitError(f"rotational_speed: must be one value, got an array of shape {angular.shape}")
-    unit = str((wl.parse(rotational_speed) if isinstance(rotational_speed, str) else rotational_speed).units)
+    unit = str(wl.parse(rotational_speed).units)
     if not any(angle in unit for angle in ("radian", "degree", "turn", "revolutions")):
         raise wl.UnitError(
             f"rotational_speed: got a value in {wl.shown(unit)}, which does not say whether it counts revolutions or"

@@ -378,7 +378,7 @@ class Wheelset(wl.Rig):
         for name, array in arrays.items():
             if array.ndim > 1:
                 raise wl.InputError(f"{name}: must have at most one axis, got an array of shape {array.shape}")
-        axes = {name: wl.parse(value) if isinstance(value, str) else value for name, value in given.items()}
+        axes = {name: wl.parse(value) for name, value in given.items()}
         displacement, turned = (array.ravel() for array in np.meshgrid(*arrays.values(), indexing="ij"))
         fixed = None if roll is None else np.full(displacement.shape, _one(ANGLE, roll, "roll"))
         most = _one(wl.Unit("mm", positive=False), within, "within")

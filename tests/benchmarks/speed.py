@@ -17,7 +17,7 @@ from tests.benchmarks.points import WORKLOAD
 from tests.benchmarks.report import Gate
 from tests.benchmarks.timing import modes
 from wearlaw import RangeWarning
-from wearlaw.numerics.integrate import BLOCK
+from wearlaw.numerics.integrate import BLOCK  # private: memory is counted in blocks
 
 ROUNDS = 15
 DOCS = Path(__file__).parents[2] / "docs"

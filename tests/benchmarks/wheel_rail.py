@@ -1,7 +1,7 @@
 """Print what elliptic contacts cost and how exact they are: `python -m tests.benchmarks.wheel_rail [--strict]`.
 
-Kalker's march in NumPy and compiled by numba is timed beside the same cells in C, all into memory that is already
-there; FASTSIM on few nodes, as wearlaw chooses them, beside the march in NumPy. All in one process, in CPU time.
+FASTSIM on few nodes, as wearlaw chooses them, is timed beside Kalker's march over even cells. All in one process, in
+CPU time.
 """
 
 from __future__ import annotations
@@ -18,12 +18,10 @@ import wearlaw as wl
 from tests.benchmarks import report
 from tests.benchmarks.memory import in_fresh_process
 from tests.benchmarks.report import Gate
-from tests.benchmarks.rivals import CHECK, FAST, PLAIN_LIBRARY, compilers
-from tests.benchmarks.timing import Times, in_mode, modes, side_by_side
-from tests.benchmarks.wheel_rail_rivals import RIVAL_CELLS, WORKLOAD, Compiled, MarchAndLaw, Outcome, ellipses, workload
-from wearlaw.numerics.integrate import integrate_laws
+from tests.benchmarks.timing import in_mode, modes, side_by_side
+from tests.benchmarks.wheel_rail_rivals import RIVAL_CELLS, WORKLOAD, MarchAndLaw, Outcome, workload
+from wearlaw.numerics.integrate import integrate_laws  # private: without the rig
 from wearlaw_fastsim import Fastsim
-from wearlaw_fastsim._march import Cells, march
 
 ROUNDS = 15
 BLOCK = 128
@@ -33,8 +31,6 @@ ACCURACY_POINTS = 256
 REFERENCE_CELLS, REFERENCE_STRIPS = 1600, 400
 DEFAULT_STRIPS = Fastsim().strips
 STRIPS = (6, 8, 10, 14, 20)
-C_FLAGS = {"C": FAST, "C, plain": PLAIN_LIBRARY, "C, -O2": CHECK}
-LIMITS = {"NumPy": 5.0, "numba": 1.3}
 RIVAL = f"march {RIVAL_CELLS} × {RIVAL_CELLS}, NumPy"
 
 
@@ -47,47 +43,12 @@ def main(arguments: list[str]) -> int:
     # The workload exceeds the law's range.
     warnings.simplefilter("ignore", wl.WearlawWarning)
     print(f"{report.machine()}\n{WORKLOAD}")
-    gates = marches(options.rounds)
+    gates: list[Gate] = []
     for bound in ("parabolic", "elliptic"):
         gates += few_nodes(bound, options.rounds)
     gates += [memory(name, on) for name, on in modes().items()]
     report.print_gates(gates)
     return int(options.strict and not all(gate.met for gate in gates))
-
-
-def marches(rounds: int) -> list[Gate]:
-    """Return the gates of the marches against C, and print the cost of a cell in smaller and larger blocks."""
-    if not compilers():
-        print("no C compiler: the march in C is left out")
-        return []
-    gates = []
-    for block in (BLOCK // 2, BLOCK, 2 * BLOCK):
-        times = _march_times(block, rounds)
-        for name in times.seconds:
-            ratio, low, high = times.ratio(name, "C")
-            cost = 1e9 * times.median(name) / (block * RIVAL_CELLS**2)
-            print(f"{block} points, {name:15} {cost:7.2f} ns a cell, {ratio:.3f} × C ({low:.3f} to {high:.3f})")
-        if block == BLOCK:
-            fastest = min(C_FLAGS, key=lambda flags: times.seconds[flags].min())
-            gates = [
-                Gate(f"time, march with {name} over {fastest}", times.best_ratio(name, fastest), LIMITS[name])
-                for name in modes()
-            ]
-    return gates
-
-
-def _march_times(block: int, rounds: int) -> Times:
-    patches = ellipses(workload(block), elliptic=False)
-    shape = (block, RIVAL_CELLS, RIVAL_CELLS)
-    filled = {name: Cells.empty(*shape, compiled=True) for name in C_FLAGS}
-    filled |= {name: Cells.empty(*shape, compiled=compiled) for name, compiled in modes().items()}
-    works = {name: partial(Compiled(flags).march, patches, filled[name]) for name, flags in C_FLAGS.items()}
-    works |= {name: partial(march, patches, filled[name], compiled=compiled) for name, compiled in modes().items()}
-    times = side_by_side(works | {f"{name}, again": work for name, work in works.items()}, rounds)
-    for cells in filled.values():
-        for mine, theirs in zip(cells.arrays, filled["C"].arrays, strict=True):
-            assert np.abs(mine - theirs).max() <= 1e-12 * np.abs(theirs).max()
-    return times
 
 
 def few_nodes(bound: str, rounds: int) -> list[Gate]:
@@ -119,7 +80,7 @@ def few_nodes(bound: str, rounds: int) -> list[Gate]:
 
 
 def _march_and_law(problem: wl.Problem, bound: str, cells: int, strips: int, block: int = BLOCK) -> MarchAndLaw:
-    return MarchAndLaw(ellipses(problem, elliptic=bound == "elliptic"), cells, strips, block)
+    return MarchAndLaw(problem, bound == "elliptic", cells, strips, block)
 
 
 def _wearlaw(problem: wl.Problem, bound: str, strips: int) -> Outcome:

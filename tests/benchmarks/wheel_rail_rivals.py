@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import ctypes
-import subprocess
-import tempfile
-from pathlib import Path
-
 import numpy as np
 
 import wearlaw as wl
-from tests.benchmarks.rivals import FAST
 from wearlaw import Array
-from wearlaw_fastsim._march import Cells, Ellipses, forces, march
+from wearlaw_fastsim._march import Ellipses, forces, march  # private: timed without the rest
 
 AXIS_RATIOS = (0.2, 5.0)
 CREEPAGES = (1e-4, 3e-2)
@@ -62,75 +56,23 @@ def workload(count: int) -> wl.Problem:
     )
 
 
-def ellipses(problem: wl.Problem, *, elliptic: bool) -> Ellipses:
-    """Return the problem of the simplified theory with the flexibilities of Kalker (1982)."""
-    ratio, scale = problem.a / problem.b, problem.a / problem.shear_modulus
-    coefficients = wl.kalker.coefficients(ratio, problem.poisson_ratio)
-    return Ellipses(
-        a=problem.a,
-        b=problem.b,
-        longitudinal_creepage=problem.longitudinal_creepage,
-        lateral_creepage=problem.lateral_creepage,
-        spin=problem.spin,
-        longitudinal_flexibility=8.0 * scale / (3.0 * coefficients.c11),
-        lateral_flexibility=8.0 * scale / (3.0 * coefficients.c22),
-        spin_flexibility=np.pi * np.sqrt(ratio) * scale / (4.0 * coefficients.c23),
-        bound_centre=problem.friction_coefficient * problem.max_pressure * (1.0 if elliptic else 4.0 / 3.0),
-        elliptic=elliptic,
-    )
-
-
-class Compiled:
-    """wheel_rail_march.c, compiled with the given flags."""
-
-    def __init__(self, flags: tuple[str, ...] = FAST, compiler: str = "cc") -> None:
-        with tempfile.TemporaryDirectory() as folder:
-            compiled, library = Path(folder) / "march.o", Path(folder) / "march.so"
-            source = Path(__file__).with_name("wheel_rail_march.c")
-            subprocess.run([compiler, *flags, "-c", "-fPIC", "-o", compiled, source], check=True)
-            # Linked without the flags, as in rivals.py.
-            subprocess.run([compiler, "-shared", "-o", library, compiled, "-lm"], check=True)
-            self._library = ctypes.CDLL(str(library))
-
-    def march(self, patches: Ellipses, cells: Cells) -> None:
-        """Fill cells in C order."""
-        given = [array.flatten() for array in patches.arrays]  # read-only ones have no ctypes
-        arrays = [np.ctypeslib.as_ctypes(array.reshape(-1)) for array in (*given, *cells.arrays)]
-        self._library.march(*map(ctypes.c_size_t, cells.x.shape), ctypes.c_int(patches.elliptic), *arrays)
-
-
 class MarchAndLaw:
-    """The march of Kalker (1982) in NumPy and the USFD law in its cells, in memory that is used again and again."""
+    """The march of Kalker (1982) in NumPy and the USFD law in its cells, in blocks."""
 
-    def __init__(
-        self, patches: Ellipses, cells: int = RIVAL_CELLS, strips: int = RIVAL_CELLS, block: int = 128
-    ) -> None:
-        self._patches, self._block = patches, block
-        self._cells = Cells.empty(block, cells, strips, compiled=False)
-        self._work = [np.empty_like(self._cells.x) for _ in range(2)]
+    def __init__(self, problem: wl.Problem, elliptic: bool, cells: int, strips: int, block: int) -> None:
+        self._parts = [Ellipses.of(problem[first : first + block], elliptic) for first in range(0, problem.size, block)]
+        self._cells, self._strips = cells, strips
 
     def __call__(self) -> Outcome:
         """Return the outcome at all operating points."""
-        count = self._patches.a.size
-        found = np.empty((3, count))
-        for first in range(0, count, self._block):
-            part = slice(first, min(first + self._block, count))
-            found[:, part] = self._on_block(self._patches.part(part), part.stop - first)
-        return found[0], found[1], found[2]
+        longitudinal, lateral, rate = (np.concatenate(some) for some in zip(*map(self._of, self._parts), strict=True))
+        return longitudinal, lateral, rate
 
-    def _on_block(self, patches: Ellipses, count: int) -> Outcome:
-        cells = self._cells.part(slice(count))
-        rate, over = (array[:count] for array in self._work)
-        march(patches, cells, compiled=False)
+    def _of(self, patches: Ellipses) -> Outcome:
+        cells = march(patches, self._cells, self._strips)
         total = forces(patches, cells)
-        np.multiply(cells.traction_x, cells.slip_x, out=rate)
-        np.multiply(cells.traction_y, cells.slip_y, out=over)
-        np.add(rate, over, out=rate)
-        np.subtract(rate, TR_SC, out=over)
-        np.maximum(over, 0.0, out=over)
-        np.minimum(rate, Q_S / M_M, out=rate)
-        strips = rate.shape[-1]
-        lengths = patches.cell_lengths(rate.shape[1], strips)
-        along = M_M * rate.sum(axis=1) + M_C * over.sum(axis=1)
-        mean = (along * lengths).sum(axis=-1) * (2.0 / strips) / (np.pi * patches.a)
+        energy = cells.traction_x * cells.slip_x + cells.traction_y * cells.slip_y
+        rate = M_M * np.minimum(energy, Q_S / M_M) + M_C * np.maximum(energy - TR_SC, 0.0)
+        lengths = patches.cell_lengths(self._cells, self._strips)
+        mean = (rate.sum(axis=1) * lengths).sum(axis=-1) * (2.0 / self._strips) / (np.pi * patches.a)
         return total.longitudinal, total.lateral, mean

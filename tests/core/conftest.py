@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,50 +12,11 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from tests.core import cli_data
-from tests.core.cases import POINT, InstallModel, case, installer
-from tests.core.distributions import Install, write_distribution
+from tests.core.cases import POINT, case
 from wearlaw.arrays import kernels
-from wearlaw.plugins import loader
 from wearlaw_studies.case import case_schema
 from wearlaw_studies.study import Study, run
 from wearlaw_sweeps import points
-
-
-@pytest.fixture
-def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
-    """Give what installs a distribution of one plugin until the test ends."""
-    known = set(sys.modules)
-    monkeypatch.syspath_prepend(tmp_path)
-
-    def write(name: str, source: str, version: str = "1.0") -> None:
-        write_distribution(tmp_path, name, source, version)
-        importlib.invalidate_caches()
-        loader._search.cache_clear()
-
-    loader._search.cache_clear()
-    yield write
-    for module in set(sys.modules) - known:
-        if (
-            getattr(sys.modules[module], "__file__", None)
-            and tmp_path in Path(str(sys.modules[module].__file__)).parents
-        ):
-            del sys.modules[module]
-    loader._search.cache_clear()
-
-
-@pytest.fixture
-def install_model(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
-    """Give what puts a model among the installed ones until the test ends."""
-    return installer(monkeypatch)
-
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Work in a new folder with a space in its name."""
-    here = tmp_path / "my work"
-    here.mkdir()
-    monkeypatch.chdir(here)
-    return here
 
 
 @pytest.fixture

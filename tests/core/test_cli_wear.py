@@ -11,7 +11,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import assert_refused, files, wearlaw
-from tests.plugins.contact_files import FILES
+from tests.plugins.contact_files.files import FILES
 from wearlaw_contact_files._command import _print
 
 pytestmark = [

@@ -149,6 +149,43 @@ def test_wrong_conditions_are_named(changes: dict[str, Any], error: type[Excepti
         TwoSpeeds().problem(**{**GIVEN, **changes})
 
 
+@pytest.mark.parametrize("force", [[Q(1, "kN"), Q(2000, "N")], ["1 kN", "2 kN"], ("1 kN", Q(2, "kN"))])
+def test_a_list_of_quantities_or_texts_is_an_array(force: Any) -> None:
+    predict = wl.TwinDisc.suros() | wl.contact_model("exact")
+    of_list = predict(normal_force=force, creepage=["1 %", "2 %"], friction_coefficient=["10 %", "20 %"])
+    of_array = predict(normal_force=Q([1, 2], "kN"), creepage=Q([1, 2], "%"), friction_coefficient=[0.1, 0.2])
+    assert of_list == of_array
+    assert of_list.to_dataset()["normal_force"].values.tolist() == [1.0, 2.0]
+    swept = wl.sweep(predict, normal_force=force, creepage="1 %", friction_coefficient=0.1, outputs=["wear_index"])
+    assert swept["normal_force"].values.tolist() == [1.0, 2.0]
+    with pytest.raises(wl.UnitError, match="normal_force"):
+        predict(normal_force=["1 kN", "2 mm"], creepage="1 %", friction_coefficient=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "right"), [("mu", "friction_coefficient"), ("load", "normal_force"), ("slip", "creepage")]
+)
+def test_another_name_of_a_condition_is_told_the_right_one(name: str, right: str) -> None:
+    with pytest.raises(wl.ConditionsError, match=f"^{name}: .* did you mean '{right}'"):
+        (DISCS | wl.contact_model("exact"))(**{name: 0.1})
+
+
+def test_a_friction_coefficient_above_one_gets_a_word() -> None:
+    predict = DISCS | wl.contact_model("exact")
+    conditions: dict[str, Any] = {"max_pressure": "300 MPa", "creepage": "0.01 %"}
+    with pytest.warns(wl.RangeWarning, match="friction_coefficient: reaches 40") as caught:
+        predict(**conditions, friction_coefficient=[0.4, 40.0])
+    assert caught[0].filename == __file__
+    predict(**conditions, friction_coefficient=1.0)  # a warning would be an error here
+
+
+def test_a_variable_of_a_near_name_is_suggested() -> None:
+    result = (DISCS | wl.contact_model("exact"))(max_pressure="300 MPa", creepage="1 %", friction_coefficient=0.3)
+    for ask in (lambda: result["tangental_force"], lambda: result.plot("tangental_force")):
+        with pytest.raises(wl.WearlawError, match="did you mean 'tangential_force'"):
+            ask()
+
+
 def test_a_value_that_must_not_be_negative_may_be_zero() -> None:
     distance = wl.Unit("km", positive=False, negative=False)
     assert distance.si("0 km", "distance") == 0.0

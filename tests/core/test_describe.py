@@ -14,7 +14,7 @@ import wearlaw as wl
 from tests.core import cases
 from tests.core.test_outcomes import Damage as BaseOfDamage
 from tests.core.test_outcomes import Heat
-from tests.testing.wrong_rigs import Weight
+from tests.plugins.kit.wrong_rigs import Weight
 from wearlaw.cli.describe import describe
 from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader

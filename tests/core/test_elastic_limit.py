@@ -344,7 +344,7 @@ def test_an_overload_is_the_same_of_one_point_and_of_many(shape: str) -> None:
     t = mu * random.uniform(0.0, 1.0, 50)
     ratio = None if shape == "line" else np.append(2.0 ** random.uniform(-2.0, 2.0, 48), [0.01, 40.0])
     bodies = [(K, 0.28), (0.9 * K, 0.4)]
-    alone = [overload(bodies, p0[i], t[i], mu[i, None], None if ratio is None else ratio[i]) for i in range(50)]
+    alone = [overload(bodies, p0[i], t[i], mu[i], None if ratio is None else ratio[i]) for i in range(50)]
     worst = max(one for one in alone if one is not None)
     assert overload(bodies, p0, t, mu, ratio) == pytest.approx(worst, rel=1e-14)
     ratios = np.zeros(50) if ratio is None else ratio
@@ -355,6 +355,27 @@ def test_an_overload_is_the_same_of_one_point_and_of_many(shape: str) -> None:
         if one is not None:
             assert one.beyond_shakedown == (at_p0 > shakes)
             assert one.max_pressure / one.ratio == pytest.approx(shakes if one.beyond_shakedown else yields, rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", ["line", "ellipse"])
+@pytest.mark.parametrize("nu", [0.0, 0.1, 0.28, 0.5])
+def test_no_point_beyond_a_limit_is_passed_over(shape: str, nu: float) -> None:
+    """The quick bound is conservative: a point just beyond a limit is found, alone and among points of less load."""
+    mu, share = np.array([1e-3, 0.05, 0.15, 0.3, 0.37, 0.5, 1.0, 5.0])[:, None], np.linspace(0.0, 1.0, 40)
+    t, mu = (array.ravel() for array in np.broadcast_arrays(mu * share, mu))
+    for aspect in [0.0] if shape == "line" else [0.03, 0.3, 1.0, 1.9, 30.0]:
+        ratio = np.full(t.shape, aspect)
+        limit = first_yield(K, t, mu, poisson_ratio=nu, axis_ratio=ratio)
+        if shape == "ellipse" and nu == 0.28:
+            limit = np.maximum(limit, shakedown_limit(K, t, mu, axis_ratio=ratio))
+        for i in range(t.size):
+            p0 = np.minimum(limit, 0.999 * limit[i])
+            p0[i] = 1.0001 * limit[i]
+            alone = overload([(K, nu)], p0[i], t[i], mu[i], ratio[i] if aspect else None)
+            assert alone is not None
+            among = overload([(K, nu)], p0, t, mu, ratio if aspect else None)
+            assert among is not None
+            assert among >= alone
 
 
 def test_ellipses_are_looked_at_by_their_own_axis_ratio() -> None:

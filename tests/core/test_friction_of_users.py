@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.fits import usfd
 from tests.core.stages import predicted
+from tests.plugins.fits.fits import usfd
 from wearlaw import Q
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")

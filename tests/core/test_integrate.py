@@ -16,6 +16,7 @@ from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
 from wearlaw.numerics import integrate
 from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK, integrate_forces, integrate_slip
+from wearlaw.numerics.totals import Totals
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 
@@ -168,15 +169,15 @@ def test_slip_is_summed_in_blocks() -> None:
 
 
 def test_each_block_is_told_with_its_forces() -> None:
-    told: list[tuple[wl.Problem, dict[str, Array]]] = []
+    told: list[tuple[wl.Problem, Array]] = []
     problem = Points(seed=16, size=BLOCK + 10).problem
 
-    def on_block(part: wl.Problem, columns: dict[str, Array]) -> None:
-        told.append((part, dict(columns)))
+    def on_block(part: wl.Problem, totals: Totals) -> None:
+        told.append((part, totals.forces.longitudinal))
 
     integrate.integrate_laws(LINE_MODELS["exact"], (wl.wear_law("usfd"),), problem, on_block)
     assert [part.creepage.size for part, _ in told] == [BLOCK, 10]
-    forces = np.concatenate([columns["longitudinal"] for _, columns in told])
+    forces = np.concatenate([force for _, force in told])
     assert forces == pytest.approx(integrate_forces(LINE_MODELS["exact"], problem).longitudinal, rel=4 * EPS)
 
 

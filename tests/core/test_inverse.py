@@ -139,7 +139,7 @@ def test_a_model_whose_force_is_no_number_is_named() -> None:
             return problem.creepage * np.nan
 
     contact = RIG | Nowhere()
-    with pytest.raises(wl.ModelError, match="'nowhere' gave a tangential force that is not finite"):
+    with pytest.raises(wl.ModelError, match="'nowhere' gave a longitudinal force that is not finite"):
         wl.creepage_for(contact, traction_coefficient=0.3, **LOAD)
-    with pytest.raises(wl.ModelError, match="'nowhere' gave a tangential force that is not finite"):
+    with pytest.raises(wl.ModelError, match="'nowhere' gave a longitudinal force that is not finite"):
         contact(creepage="1 %", **LOAD)

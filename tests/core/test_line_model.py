@@ -12,10 +12,11 @@ from hypothesis import given
 
 import wearlaw as wl
 from tests.core.cases import Linear
-from tests.strategies import EPS, LINE_MODELS, line_problems
+from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
 from wearlaw.contact.quadrature import ORDER
 from wearlaw.pipeline import prediction as result
+from wearlaw_kit import line_problems
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 

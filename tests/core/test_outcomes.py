@@ -271,9 +271,7 @@ def test_laws_that_do_not_fit_each_other_are_refused(laws: tuple[wl.Law, ...], s
 
 def test_an_outcome_that_no_law_predicts_is_refused() -> None:
     result = predicted(RIG | GLOBAL | Damage(), **CONDITIONS)
-    with pytest.raises(
-        wl.CompositionError, match=r"no law of the pipeline predicts 'damage'.* Its laws predict: rcf_damage"
-    ):
+    with pytest.raises(wl.CompositionError, match=r"'damage'.* did you mean 'rcf_damage'"):
         _ = result["damage"]
     with pytest.raises(wl.InputError, match="this rig has no 'wheel'"):
         result.outcome("rcf_damage", "wheel")

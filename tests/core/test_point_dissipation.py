@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.testing.brushes import KINETIC, Brush, BrushOnCells, LetGo
+from tests.plugins.kit.brushes import KINETIC, Brush, BrushOnCells, LetGo
 from wearlaw import Q
 
 RIG = wl.TwinDisc.suros()

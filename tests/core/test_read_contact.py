@@ -12,7 +12,7 @@ import wearlaw as wl
 from tests.core.axles import GIVEN, KTH, Axle
 from tests.core.cases import wearlaw
 from tests.core.distributions import Install
-from tests.plugins.contact_files import FILES
+from tests.plugins.contact_files.files import FILES
 from wearlaw import Q
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning", "ignore::wearlaw.RangeWarning")

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.testing.cells import Cells
-from tests.testing.strips import Strips
+from tests.plugins.kit.cells import Cells
+from tests.plugins.kit.strips import Strips
 from wearlaw import Array, Q
 from wearlaw.models.contact_model import QUADRATURE
 from wearlaw.numerics.solving import EVERY, Solver

@@ -1,4 +1,4 @@
-"""wearlaw in several threads at once: its first use in a process, and the warnings of sweeps."""
+"""wearlaw in several threads at once: its first use in a process, and its warnings."""
 
 from __future__ import annotations
 
@@ -9,15 +9,13 @@ import warnings
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier
-from time import sleep
-from typing import Any
 
 import pytest
 
 import wearlaw as wl
 from tests.core import first_uses
 from tests.core.first_uses import USES
-from wearlaw.settings.caught_warnings import caught_warnings
+from wearlaw.settings.caught_warnings import caught_warnings  # private: what sweeps and fits collect warnings with
 
 
 def in_a_fresh_process(names: list[str]) -> list[str]:
@@ -30,10 +28,7 @@ def in_a_fresh_process(names: list[str]) -> list[str]:
 @pytest.mark.parametrize(
     "names",
     [
-        ["quantity"] * 4,
         ["predict"] * 8,
-        ["json", "signature", "schema", "twin_disc"] * 2,
-        ["wheel_rail", "sweep"] * 4,
         [*USES],
     ],
     ids=lambda names: f"{len(names)} threads: {', '.join(dict.fromkeys(names))}",
@@ -49,38 +44,6 @@ def _quick_switches() -> Iterator[None]:
     sys.setswitchinterval(1e-6)
     yield
     sys.setswitchinterval(before)
-
-
-class Slow(wl.TwinDisc):
-    """Discs whose problems let other threads run."""
-
-    def problem(self, **conditions: Any) -> wl.Problem:
-        sleep(0.002)
-        return super().problem(**conditions)
-
-
-def test_sweeps_in_threads_leave_the_treatment_of_warnings_as_it_was() -> None:
-    pipeline = Slow.suros() | wl.contact_model("global") | wl.wear_law("usfd")
-    together = Barrier(8)
-
-    def sweep() -> None:
-        wl.sweep(pipeline, creepage=wl.Q([0.5, 1.0], "%"), max_pressure="500 MPa", friction_coefficient=0.4)
-
-    def sweeps(_: int) -> None:
-        together.wait()
-        for _ in range(3):
-            sweep()
-
-    sweep()  # other packages add filters when they are loaded
-    with warnings.catch_warnings(record=True) as shown:
-        warnings.simplefilter("always")
-        filters = list(warnings.filters)
-        with ThreadPoolExecutor(8) as threads:
-            list(threads.map(sweeps, range(8)))
-        assert warnings.filters == filters
-        shown.clear()
-        warnings.warn("after them", stacklevel=1)
-    assert [str(one.message) for one in shown] == ["after them"]
 
 
 @pytest.mark.usefixtures("_quick_switches")
@@ -103,14 +66,3 @@ def test_a_thread_gets_its_own_warnings_only() -> None:
             assert list(threads.map(caught, range(8))) == [[f"of {number}"] * 50 for number in range(8)]
     assert sorted({str(one.message) for one in shown}) == [f"for the caller of {number}" for number in range(8)]
     assert len(shown) == 400
-
-
-def test_other_warnings_are_shown_as_ever() -> None:
-    with warnings.catch_warnings(record=True) as shown:
-        warnings.simplefilter("always")
-        with caught_warnings(wl.RangeWarning) as found:
-            warnings.warn("another's", stacklevel=1)
-            warnings.warn(wl.FitWarning("of fits"), stacklevel=1)
-            warnings.warn(wl.PlasticityWarning("of ranges"), stacklevel=1)
-    assert [str(one) for one in found] == ["of ranges"]
-    assert [str(one.message) for one in shown] == ["another's", "of fits"]

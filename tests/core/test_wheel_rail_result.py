@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.plugins.kit.strips import Strips
 from tests.strategies import EPS
-from tests.testing.strips import Strips
 from wearlaw import Q
 from wearlaw.numerics import integrate
 from wearlaw.units.variables import VARIABLES

@@ -9,7 +9,7 @@ import wearlaw as wl
 from docs import half_spaces
 from tests.plugins.full_theory import rows
 from wearlaw import Array, Q
-from wearlaw_fastsim._solution import ellipses
+from wearlaw_fastsim._march import Ellipses  # private: the flexibilities
 
 DIGITS = 5e-3
 """Three digits are printed: half of the last one, of 1.00."""
@@ -104,7 +104,7 @@ def locomotive(creepage: Array) -> wl.Problem:
     digits=0.0002,
 )
 def test_the_flexibility_of_a_locomotive_wheel_is_that_which_contact_prints(printed: float, digits: float) -> None:
-    flexibility = ellipses(locomotive(np.array([1e-3])), elliptic=False).longitudinal_flexibility
+    flexibility = Ellipses.of(locomotive(np.array([1e-3])), elliptic=False).longitudinal_flexibility
     # mm³/N; half of the fourth digit of L1, and as much of that of a.
     assert flexibility[0] == pytest.approx(printed, rel=digits)
 

@@ -95,7 +95,7 @@ def test_the_first_stage_is_next_to_the_model() -> None:
     problem = SUROS.problem(**DISCS)
 
     def forces(one: wl.Problem) -> wl.CreepForces:
-        return wl.CreepForces.of({"longitudinal": exact.tangential_force(third_body.altered(one, forces))})
+        return wl.CreepForces.of_line(exact.tangential_force(third_body.altered(one, forces)))
 
     hot = thermal.altered(problem, forces)
     assert found.tangential_force.to("N").magnitude == pytest.approx(forces(hot).longitudinal, rel=1e-14)

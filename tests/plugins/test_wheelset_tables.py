@@ -35,7 +35,7 @@ def test_the_patches_at_the_jumps_are_as_far_apart_as_the_page_says() -> None:
     place = benchmark("kpec")["y"]
     for case, side, distance in ((0, 0, 9), (0, 1, 9), (10, 1, 10)):
         assert round(abs(place[case, side, 1] - place[case, side, 0])) == distance
-        assert f"two patches, {distance} mm apart" in words("wheelset-benchmark")
+        assert f"two patches, {distance} mm apart" in words("how-far-from-contact")
 
 
 def test_the_furthest_points_are_where_the_page_says() -> None:
@@ -45,7 +45,7 @@ def test_the_furthest_points_are_where_the_page_says() -> None:
         off = np.where(place & ~at_jumps(), np.abs(kpec[head]), 0.0)
         assert STEPS[np.unravel_index(off.argmax(), off.shape)[0]] == where
     moved = np.where(at_jumps(), 0.0, np.abs(hertz["y [mm]"])).max()
-    assert f"up to {moved:.2f} mm from the middle of the pressure" in words("wheelset-benchmark")
+    assert f"up to {moved:.2f} mm from the middle of the pressure" in words("how-far-from-contact")
     contact = reference()
     share = contact["fs"] * np.sin(contact["delta"]) / 10e3
     assert share[13, 1] > 1 / 3  # at 6.5 mm, of the right wheel

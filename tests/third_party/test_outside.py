@@ -12,7 +12,7 @@ import pytest
 
 from tests.core.distributions import write_distribution
 from tests.environments import ROOT, Environment, build
-from wearlaw_kit.scaffold import Kind, write_plugin
+from wearlaw_kit.scaffold import Kind, write_plugin  # private: writes without a process for each
 
 HERE = Path(__file__).parent
 

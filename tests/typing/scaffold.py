@@ -21,7 +21,7 @@ from typing import get_args
 
 import yaml  # type: ignore[import-untyped]
 
-from wearlaw_kit.scaffold import Kind, write_plugin
+from wearlaw_kit.scaffold import Kind, write_plugin  # private: writes without a process for each
 
 WORKFLOW = Path(".github/workflows/tests.yml")
 LAST = "pytest"

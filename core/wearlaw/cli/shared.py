@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 import sys
-from collections.abc import Iterable, Mapping
+import textwrap
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import Any, TypeVar
 
 import click
 
@@ -14,8 +18,16 @@ from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
-from wearlaw.plugins.law_files import read_law, read_toml
+from wearlaw.plugins.law_files import is_law_file, read_law, read_toml
 from wearlaw.settings.configuration import Configuration
+
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+
+_SOURCE = re.compile(r" \((?:[^()]|\([^()]*\)){40,}\)")
+"""A remark in parentheses that is as long as a source of the literature."""
+
+LINE = 120
+"""Letters of a note that is printed in short, if the terminal is not wider."""
 
 
 class _WithRig(Configuration, extra="ignore"):
@@ -83,7 +95,7 @@ def stage(text: str) -> Stage:
 
 
 def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
-    """Return the law of "NAME", "NAME:FIELD=VALUE:..." or the path of a TOML file.
+    """Return the law of "NAME" or "NAME:FIELD=VALUE:...", where NAME may be the path of a TOML file.
 
     Parameters
     ----------
@@ -92,11 +104,10 @@ def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
     fixed : mapping of str to str or float, optional
         Further fields.
     """
-    if text.endswith(".toml"):
-        law = read_law(text)
-        return law.model_copy(update=fixed) if fixed else law
-    name, *settings = text.split(":")
+    name, *settings = re.split(r":(?![\\/])", text)  # not within "C:/law.toml"
     given = {**values(text, tuple(settings)), **(fixed or {})}
+    if is_law_file(name):
+        return read_law(name).changed(**given)
     try:
         return loader.law(name, **given)
     except ConfigurationError as error:
@@ -138,10 +149,28 @@ def echo_file(text: str) -> None:
         click.echo(text.encode(), nl=False)  # UTF-8, whatever the terminal speaks
 
 
+def verbose(command: CommandT) -> CommandT:
+    """Add the option that `print_notes` obeys to a command."""
+
+    def keep(context: click.Context, _: click.Parameter, value: bool) -> None:
+        context.meta["verbose"] = value
+
+    return click.option("--verbose", is_flag=True, expose_value=False, callback=keep, help="Print whole notes.")(
+        command
+    )
+
+
 def print_notes(notes: Iterable[str]) -> None:
-    """Print notes on standard error, a line each."""
+    """Print notes on standard error: without sources and as far as a line goes, or the whole with `--verbose`."""
+    whole, cut = click.get_current_context().meta.get("verbose", False), False
+    width = max(shutil.get_terminal_size((LINE, 24)).columns, LINE)
     for note in notes:
-        click.echo(f"note: {note}", err=True)
+        text = f"note: {note}"
+        if not whole and (len(text) > width or "\n" in text):
+            text, cut = textwrap.shorten(_SOURCE.sub("", text), width, placeholder=" …"), True
+        click.echo(text, err=True)
+    if cut:
+        click.echo("(--verbose prints whole notes)", err=True)
 
 
 def print_results(folder: Path, names: Iterable[str]) -> None:

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from wearlaw.arrays.array import Array, extremes, read_only
 from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described
 from wearlaw.settings.docstrings import item_docstrings
-from wearlaw.units.quantities import Q, QuantityLike, Unit, coefficient, parse, real_array
+from wearlaw.units.quantities import Q, QuantityLike, Unit, coefficient, parse, real_array, with_units
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import meaning_of
 
@@ -177,7 +177,7 @@ class Known:
     def of(cls, value: object) -> Known | None:
         """Return a given condition, or None if it is not numeric, such as a law of friction."""
         try:
-            quantity = parse(value) if isinstance(value, str) else value
+            quantity = parse(value) if isinstance(value, str) or with_units(value) else value
             if isinstance(quantity, pint.Quantity):
                 return cls(real_array(quantity.magnitude), symbol(quantity.units, "~C"))
             return cls(real_array(quantity), None)

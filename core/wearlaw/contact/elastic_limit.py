@@ -41,15 +41,14 @@ Medusa (https://e6.ijs.si/medusa/wiki/index.php/Hertzian_contact); P. J. Vermeul
 from __future__ import annotations
 
 import math
-import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
-from wearlaw.errors import InputError, PlasticityWarning, shown
+from wearlaw.arrays.array import Array, extremes
+from wearlaw.errors import InputError, PlasticityWarning, shown, warn
 from wearlaw.units.quantities import coefficient
 
 if TYPE_CHECKING:
@@ -85,9 +84,6 @@ DIRECTIONS = 48
 
 SURFACE = 1e-12
 """Depth over the smaller semi-axis that stands for the surface, where the formulas are singular at the edges."""
-
-ABOVE_ROUNDING = 1.0 + 1e-9
-"""Factor by which a bound exceeds the values that it is a bound of, so that rounding does not."""
 
 BLOCK = 1 << 16
 """Operating points in a block."""
@@ -173,19 +169,18 @@ class Overload(NamedTuple):
     traction_coefficient: float
     """The transmitted traction, T/N [-]."""
 
-    def warn(self, stacklevel: int) -> None:
-        """Warn of this point; `stacklevel` 1 is the caller."""
+    def warn(self) -> None:
+        """Warn of this point."""
         pressure, limit = 1e-6 * self.max_pressure, 1e-6 * self.max_pressure / self.ratio
         passed, result = (
             ("the shakedown limit", "the material flows with every passage")
             if self.beyond_shakedown
             else ("first yield", "the material flows until residual stresses keep it elastic")
         )
-        warnings.warn(
+        warn(
             f"the maximum pressure of {pressure:.4g} MPa at T/N = {self.traction_coefficient:.3g} is beyond {passed},"
             f" {limit:.4g} MPa: {result}, which elastic contact models leave out",
             PlasticityWarning,
-            stacklevel=stacklevel + 1,
         )
 
 
@@ -195,6 +190,7 @@ def overload(
     traction_coefficient: Array,
     friction_coefficient: Array,
     axis_ratio: Array | None,
+    worst: Overload | None = None,
 ) -> Overload | None:
     """Return the operating point furthest beyond the limits of a body, or None if all points are elastic.
 
@@ -204,79 +200,67 @@ def overload(
         Yield stress in shear [Pa] and Poisson's ratio of each body.
     max_pressure, traction_coefficient, friction_coefficient, axis_ratio : ndarray
         Arrays of one shape, not negative; an `axis_ratio` of None is a line.
+    worst : Overload, optional
+        The furthest of other points.
     """
-    points = [max_pressure, traction_coefficient, friction_coefficient]
-    if axis_ratio is not None:
-        points.append(axis_ratio)
-    if max_pressure.size == 1:  # floats take a tenth of the time of arrays
-        pressure, *rest = (array.item() for array in points)
-        found = [_overload(k, nu, pressure, *rest) for k, nu in bodies]
-    else:
-        flat = [array.reshape(-1) for array in points]
-        found = [
-            _overload_among(k, nu, *(array[start : start + BLOCK] for array in flat))
-            for k, nu in bodies
-            for start in range(0, max_pressure.size, BLOCK)
-        ]
-    return max((one for one in found if one is not None), default=None)
-
-
-def _overload(k: float, nu: float, max_pressure: float, *point: float) -> Overload | None:
-    """Return `overload` of one body at one operating point."""
-    if _bound("von_mises", nu, max_pressure, *point) <= k:
-        return None
-    for measure in ("forward", "von_mises"):
-        load = max_pressure * _peak_at(measure, nu, *point) / k
-        if load > 1.0:  # beyond shakedown there is no need to check first yield
-            return Overload(measure == "forward", load, max_pressure, point[0])
-    return None
-
-
-def _overload_among(k: float, nu: float, max_pressure: Array, *points: Array) -> Overload | None:
-    """Return `overload` of one body at many operating points.
-
-    The greatest load is sought among the points whose bound exceeds the load of one of them, the one with the greatest
-    bound.
-    """
-    for measure in ("forward", "von_mises"):
-        bound = _bound(measure, nu, max_pressure, *points)
-        first = int(bound.argmax())
-        if bound[first] <= k:
+    points = [max_pressure, traction_coefficient, friction_coefficient, *(() if axis_ratio is None else (axis_ratio,))]
+    highest, *coefficients = (extremes(array)[1] for array in points[:3])
+    for k, nu in bodies:
+        if highest * _most_stressed(nu, max(coefficients)) <= k:
             continue
-        least = max_pressure[first] * _peak_at(measure, nu, *(float(array[first]) for array in points))
-        chosen = np.flatnonzero(bound >= max(least, k))
-        p0, *rest = (array[chosen] for array in (max_pressure, *points))
-        load = p0 * _peak(measure, nu, *rest) / k
-        at = int(load.argmax())
-        if load[at] > 1.0:
-            return Overload(measure == "forward", float(load[at]), float(p0[at]), float(rest[0][at]))
-    return None
+        for part in _parts(points):
+            for measure, beyond in (("forward", True), ("von_mises", False)):
+                known = worst is not None and worst.beyond_shakedown
+                least = worst.ratio if worst is not None and known == beyond else 1.0
+                if not known or beyond:  # beyond shakedown there is no need to check first yield
+                    load, pressure, traction = _greatest_load(measure, k, nu, least, *part)
+                    if load > least:
+                        worst = Overload(beyond, load, pressure, traction)
+    return worst
 
 
-def _bound(
-    measure: str, nu: float, max_pressure: _Value, traction: _Value, friction: _Value, axis_ratio: _Value | None = None
-) -> _Value:
-    """Return a quick upper bound of the deciding shear stress [Pa], however much of a line slips.
+def _most_stressed(poisson_ratio: float, friction_coefficient: _Value) -> _Value:
+    """Return an upper bound of von Mises's stress over √3 p0, in any patch and however much of it slips [-].
 
-    There is none for an ellipse, whose bound is infinite.
+    The stress is a norm, so the stresses under the pressure and under the traction add at most. Under the pressure
+    alone it is greatest on the surface of a line, (1 - 2ν)/√3, or below the surface, where it is at most 0.38 in any
+    ellipse; under the traction alone it is at most √(3/2) μ, that of a line with ν = 0.
     """
-    if axis_ratio is not None:
-        return max_pressure * math.inf
-    most, mu = _table(measure, nu, 0.0).most, _at_least(traction, friction)
-    row: Any = FRICTIONS * (mu / (1.0 + mu))
-    greatest: Any = most[int(row)] if isinstance(row, float) else np.take(most, _places(row))
-    bound: _Value = max_pressure * (1.0 + mu) * (ABOVE_ROUNDING * greatest)
-    return bound
+    return max(0.38, (1.0 - 2.0 * poisson_ratio) / math.sqrt(3.0)) + 1.23 * friction_coefficient
 
 
-def _at_least(traction: _Value, friction: _Value) -> _Value:
-    """Return the friction coefficient, or the traction coefficient if that is greater, or `TINY`."""
-    mu: Any
-    if isinstance(traction, float):
-        mu = max(friction, traction, TINY)
-    else:
-        mu = np.maximum(np.maximum(friction, traction), TINY)
-    return mu  # type: ignore[no-any-return]
+def _parts(points: list[Array]) -> Iterator[list[Array]]:
+    if not points[0].ndim:
+        yield points
+        return
+    flat = [array.reshape(-1) for array in points]
+    for start in range(0, flat[0].size, BLOCK):
+        yield [array[start : start + BLOCK] for array in flat]
+
+
+def _greatest_load(
+    measure: str, k: float, nu: float, least: float, max_pressure: Array, traction: Array, *more: Array
+) -> tuple[float, float, float]:
+    """Return the greatest deciding shear stress over k if it exceeds `least`, with p0 and T/N of the point.
+
+    Of many points, those are left out whose bound is below the stress of one that is close to the greatest.
+    """
+    p0, points = max_pressure, (traction, *more)
+    if p0.ndim:
+        first = int((p0 * traction).argmax())
+        least = max(least, float(p0[first] * _peak(measure, nu, *(array[first] for array in points)) / k))
+        mu = np.maximum(traction, more[0])
+        if measure == "forward":  # at most 0.25 without traction, μ with much, within the error of the tables
+            most = np.maximum(0.251 + 0.326 * mu, (1.0 + 1e-9 if len(more) == 1 else 1.008) * mu)
+        else:
+            most = _most_stressed(nu, mu)
+        chosen = np.flatnonzero(p0 * most >= least * k)
+        if not chosen.size:
+            return 0.0, 0.0, 0.0
+        p0, points = p0[chosen], tuple(array[chosen] for array in points)
+    load = p0 * _peak(measure, nu, *points) / k
+    at = load.argmax() if load.ndim else ()
+    return float(load[at]), float(p0[at]), float(points[0][at])
 
 
 def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike | None, axis_ratio: ArrayLike) -> Array:
@@ -286,8 +270,10 @@ def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike |
     t, mu, ratio = np.broadcast_arrays(t, mu, _not_negative(axis_ratio, "axis_ratio"))
     peak: Array = np.empty(t.shape)
     line = ratio == 0.0
-    peak[line] = _peak(measure, nu, t[line], mu[line])
-    peak[~line] = _peak(measure, nu, t[~line], mu[~line], ratio[~line])
+    if line.any():
+        peak[line] = _peak(measure, nu, t[line], mu[line])
+    if not line.all():
+        peak[~line] = _peak(measure, nu, t[~line], mu[~line], ratio[~line])
     return peak
 
 
@@ -299,80 +285,48 @@ def _not_negative(value: ArrayLike, name: str) -> Array:
 
 
 def _peak(measure: str, nu: float, traction: Array, friction: Array, axis_ratio: Array | None = None) -> Array:
-    """Return the greatest value of the deciding shear stress over p0 [-], for arrays of one shape with one axis."""
+    """Return the greatest value of the deciding shear stress over p0 [-], for arrays of one shape."""
     if axis_ratio is None:
-        return _on_line(measure, nu, traction, friction)
-    places = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
-    lows = np.minimum(np.floor(places), LAST_STEP)
-    peak: Array = np.empty(places.shape)
+        return _interpolated(_table(measure, nu, 0.0), traction, friction, 0.5)
+    place = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
+    lows = np.minimum(np.floor(place), LAST_STEP)
+    low = lows.min()
+    if low == lows.max():
+        at_low, at_high = (
+            _interpolated(_table(measure, nu, 2.0 ** (end / PER_OCTAVE)), traction, friction, 1.0 / 3.0)
+            for end in (low, low + 1.0)
+        )
+        return at_low + (place - low) * (at_high - at_low)
+    peak: Array = np.empty(place.shape)
     for low in np.unique(lows):
         here = lows == low
-        peak[here] = _between(measure, nu, low, places[here], traction[here], friction[here])
+        peak[here] = _peak(measure, nu, traction[here], friction[here], axis_ratio[here])
     return peak
 
 
-def _peak_at(measure: str, nu: float, traction: float, friction: float, axis_ratio: float | None = None) -> float:
-    """Return `_peak` at one operating point."""
-    if axis_ratio is None:
-        return _on_line(measure, nu, traction, friction)
-    place = PER_OCTAVE * min(max(math.log2(axis_ratio), -OCTAVES), OCTAVES)
-    return _between(measure, nu, min(math.floor(place), LAST_STEP), place, traction, friction)
-
-
-def _between(measure: str, nu: float, low: float, place: _Value, traction: _Value, friction: _Value) -> _Value:
-    """Return the value between the tables of two axis ratios, at places from `low` to `low` + 1."""
-    at_low, at_high = (
-        _interpolated(_table(measure, nu, 2.0 ** (end / PER_OCTAVE)), traction, friction, 1.0 / 3.0)
-        for end in (low, low + 1.0)
-    )
-    value: _Value = at_low + (place - low) * (at_high - at_low)
-    return value
-
-
-def _on_line(measure: str, nu: float, traction: _Value, friction: _Value) -> _Value:
-    """Return the greatest shear stress on a line over p0 [-]."""
-    return _interpolated(_table(measure, nu, 0.0), traction, friction, 0.5)
-
-
-def _interpolated(table: _Table, traction: _Value, friction: _Value, power: float) -> _Value:
-    """Return the value of a table at T/N and μ, times 1 + μ; floats and arrays take the same formula.
+def _interpolated(table: Array, traction: Array, friction: Array, power: float) -> Array:
+    """Return the value of a table at T/N and μ, times 1 + μ.
 
     T/μN = 1 - (c/a)^(1/power), and the table has steps of √(1 - c/a).
     """
-    values: Any
-    place: Any
-    values, place = (table.floats, int) if isinstance(traction, float) else (table.array, _places)
-    mu = _at_least(traction, friction)
+    mu = np.maximum(np.maximum(friction, traction), TINY)
     u = FRICTIONS * (mu / (1.0 + mu))
     v = SLIPS * (1.0 - (1.0 - traction / mu) ** power) ** 0.5
-    i, j = place(u), place(v)
+    i, j = u.astype(np.intp), v.astype(np.intp)
     f, g = u - i, v - j
     at = WIDTH * i + j
-    low = values[at] + g * (values[at + 1] - values[at])
-    high = values[at + WIDTH] + g * (values[at + WIDTH + 1] - values[at + WIDTH])
-    peak: _Value = (1.0 + mu) * (low + f * (high - low))
+    low = table[at] + g * (table[at + 1] - table[at])
+    high = table[at + WIDTH] + g * (table[at + WIDTH + 1] - table[at + WIDTH])
+    peak: Array = (1.0 + mu) * (low + f * (high - low))
     return peak
 
 
-def _places(value: Array) -> Any:
-    return value.astype(np.intp)
-
-
-class _Table(NamedTuple):
-    """Greatest shear stresses over p0 (1 + μ) [-], row by row: one row for each μ/(1+μ), ending with full slip.
-
-    The last row and the last column are stored twice, for points at the end of the table.
-    """
-
-    array: Array
-    floats: list[float]
-    most: list[float]
-    """Greatest value in each row and the next."""
-
-
 @lru_cache(maxsize=256)
-def _table(measure: str, nu: float, axis_ratio: float) -> _Table:
-    """Return the greatest shear stresses by friction and slip; an axis ratio of 0 is a line."""
+def _table(measure: str, nu: float, axis_ratio: float) -> Array:
+    """Return the greatest shear stresses over p0 (1 + μ) [-], a row for each μ/(1+μ), each ending with full slip.
+
+    The last row and the last column are there twice, for points at the end of the table. An axis ratio of 0 is a line.
+    """
     share = np.linspace(0.0, 1.0, FRICTIONS + 1)[:, None]
     x, z = _points(min(1.0, 1.0 / axis_ratio) if axis_ratio else 1.0)
     pressed, slipping = _stresses(x, z, nu, axis_ratio)
@@ -382,9 +336,7 @@ def _table(measure: str, nu: float, axis_ratio: float) -> _Table:
         if stick:
             sheared = slipping - stick * _stresses((x + 1.0 - stick) / stick, z / stick, nu, axis_ratio)[1]
         columns.append(MEASURES[measure](pressed, sheared, share).max(axis=-1))
-    rows = np.pad(np.stack(columns, axis=1), ((0, 1), (0, 1)), mode="edge")
-    most = np.maximum(rows[:-1], rows[1:]).max(axis=-1)
-    return _Table(rows.reshape(-1), rows.reshape(-1).tolist(), most.tolist())
+    return np.pad(np.stack(columns, axis=1), ((0, 1), (0, 1)), mode="edge").reshape(-1)
 
 
 def _points(depth: float) -> tuple[Array, Array]:

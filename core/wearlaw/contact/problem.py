@@ -164,13 +164,10 @@ class CreepForces:
     spin_moment: Array
 
     @classmethod
-    def of(cls, columns: Mapping[str, Array]) -> Self:
-        """Return the forces from the columns of results; a line has no lateral force and no moment."""
-        along = columns["longitudinal"]
-        if "lateral" in columns:
-            return cls(longitudinal=along, lateral=columns["lateral"], spin_moment=columns["spin_moment"])
-        none = np.broadcast_to(0.0, along.shape)
-        return cls(longitudinal=along, lateral=none, spin_moment=none)
+    def of_line(cls, force: Array) -> Self:
+        """Return the forces of a line, which has a longitudinal force alone [N]."""
+        none = np.broadcast_to(0.0, force.shape)
+        return cls(longitudinal=force, lateral=none, spin_moment=none)
 
     @property
     def tangential(self) -> Array:

@@ -15,17 +15,22 @@ ModelT = TypeVar("ModelT", bound=Model)
 def labels(models: Sequence[Model]) -> list[str]:
     """Return a short name for each model: its own name, and the options that tell it from models of the same name.
 
-    The name of a law for one body has that body, as in "usfd(body=rail)".
+    The name of a law for one body has that body, as in "usfd(body=rail)". A law with a label has its label.
     """
     found = []
     for model in models:
-        namesakes = [other for other in models if other.name == model.name]
-        if sum(other == model for other in namesakes) > 1:
-            raise InputError(f"the model {model.name} is listed twice; leave one out, or give it other options")
+        label = getattr(model, "label", None)
+        if label is not None:
+            found.append(label)
+            continue
+        namesakes = [other for other in models if other.name == model.name and not getattr(other, "label", None)]
         body = ["body"] if getattr(model, "body", None) is not None else []
         fields = dict.fromkeys([*_telling_apart(namesakes), *body])
         options = [f"{field}={full_text(getattr(model, field))}" for field in fields]
         found.append(f"{model.name}({', '.join(options)})" if options else model.name)
+    for name in found:
+        if found.count(name) > 1:
+            raise InputError(f"the model {name} is listed twice; leave one out, or give it other options or a label")
     return found
 
 

@@ -215,6 +215,9 @@ class Law(Model):
     """Record of the tests that the numbers are from, with their range; `wl.fit` fills it in."""
     body: str | None = None
     """The body that the law is for, by its name in the rig, such as "rail"; None for every body."""
+    label: str | None = None
+    """The name of the law beside others, in tables, figures and what is printed, such as "our tests of 2026"; None for
+    the name of the model, with the options that tell it from others."""
 
     published: ClassVar = cast(Any, None)  # Any: as for `scale`
     """Record of the tests behind the published numbers of the law, or None. A law with other numbers than the published
@@ -464,6 +467,11 @@ class Law(Model):
         law = self.model_copy()
         vars(law)["fitted_to"] = tuple(digests)  # as `cached_property` keeps its value
         return law
+
+    def changed(self, **fields: Any) -> Self:
+        """Return the law with some fields changed; under another label it still knows the tests of its fit."""
+        law = self.model_copy(update=fields)
+        return law.with_tests(self.fitted_to) if fields.keys() <= {"label"} else law
 
     def band(self) -> "tuple[Law, Law, Law] | None":
         """Return the laws at the low end, middle and high end of published parameter ranges, or None without ranges."""

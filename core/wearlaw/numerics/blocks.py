@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConditionsError
 
-Columns: TypeAlias = dict[str, Array]
-"""Arrays with one entry for each operating point."""
+ResultT = TypeVar("ResultT")
+"""An array with an entry for each operating point, or a named tuple of such arrays, tuples and None."""
 
-OfBlock: TypeAlias = Callable[[Problem, slice], Columns]
+OfBlock: TypeAlias = Callable[[Problem, slice], ResultT]
 """A function of a block of operating points and of the block's slice in the whole problem."""
 
-OnBlock: TypeAlias = Callable[[Problem, Columns], None]
+OnBlock: TypeAlias = Callable[[Problem, ResultT], None]
 """A function called with a block of operating points and its results."""
 
 KEPT = 2**24
@@ -26,37 +25,47 @@ much of the memory that a block frees, for the next block. Otherwise it would re
 request it again, which takes as long as the arithmetic."""
 
 
+def each(function: Callable[..., Any], *results: Any) -> Any:
+    """Return results with a function applied to each array; of several like ones, to the arrays in one place."""
+    first = results[0]
+    if first is None:
+        return None
+    if not isinstance(first, tuple):
+        return function(*results)
+    parts = (each(function, *some) for some in zip(*results, strict=True))
+    return type(first)(*parts) if hasattr(first, "_fields") else tuple(parts)
+
+
 def by_block(
     problem: Problem,
     block: int,
-    function: OfBlock,
-    on_block: OnBlock | None = None,
-    drop_force: bool = False,
-) -> Columns:
-    """Evaluate a function of a problem with at most one batch axis block by block, and return its columns.
+    function: OfBlock[ResultT],
+    on_block: OnBlock[ResultT] | None = None,
+    kept: Callable[[ResultT], ResultT] | None = None,
+) -> ResultT:
+    """Evaluate a function of a problem with at most one batch axis block by block, and return its results.
 
-    With `drop_force`, the forces are passed to `on_block` and not kept.
+    Of several blocks, `kept` returns what is kept of their results after `on_block` has seen them.
     """
     points = problem.size
     if points == 0:
         raise ConditionsError("problem: holds no operating points; give at least one")
-    whole: Columns = {}
     if points > block:
         np.empty(KEPT, dtype=np.uint8)
+    whole: Any = None
     for part in blocks(points, block):
         within = problem if points <= block else problem[part]
-        columns = function(within, part)
+        found = function(within, part)
         if on_block is not None:
-            on_block(within, columns)
-        if drop_force:
-            del columns["longitudinal"]
+            on_block(within, found)
         if points <= block:
-            whole = columns
-            break
-        whole = whole or {name: np.empty(points) for name in columns}
-        for name, values in columns.items():
-            whole[name][part] = values
-    return whole
+            return found
+        if kept is not None:
+            found = kept(found)
+        if whole is None:
+            whole = each(lambda values: np.empty((points, *values.shape[1:])), found)
+        each(lambda values, own, part=part: values.__setitem__(part, own), whole, found)
+    return whole  # type: ignore[no-any-return]
 
 
 def blocks(points: int, block: int) -> Iterator[slice]:

@@ -14,8 +14,7 @@ cells of a plot does not matter here.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import partial
 from typing import Any, NamedTuple, TypeAlias
 
@@ -30,12 +29,13 @@ from wearlaw.errors import CompositionError
 from wearlaw.models.contact_model import Blame, ContactModel
 from wearlaw.models.law import Law, Numbers
 from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, blocks, by_block
+from wearlaw.numerics.blocks import OfBlock, OnBlock, ResultT, blocks, by_block, each
 from wearlaw.numerics.crossings import crossings
 from wearlaw.numerics.solved import Solved
-from wearlaw.numerics.solving import Solver, check_columns, check_type
+from wearlaw.numerics.solving import Solver, check_results, check_type
 from wearlaw.numerics.splits import split_rates
 from wearlaw.numerics.staged import Staged
+from wearlaw.numerics.totals import Across, SlipTotals, Totals
 
 BLOCK = 16384
 """Operating points of a block in closed form: its arrays stay in the cache and in reused memory."""
@@ -61,87 +61,20 @@ ROUNDINGS = 32.0
 
 EPS = float(np.finfo(np.float64).eps)
 
-SLIDING = "sliding_ratio"
-"""Column for laws in p·s: μ∫p·s dA over Tγ = ξFx + ηFy + φMz [-], which is 1 under Coulomb's law, q = μp in slip."""
-
 ALL = slice(None)
 """All operating points."""
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SlipTotals:
-    """Slip of the patch at each operating point, as SI arrays of the batch shape.
-
-    Attributes
-    ----------
-    mean_slip : ndarray
-        Area mean of the magnitude of the slip [-].
-    slip_area : ndarray
-        Area of the slip zone [m²].
-    patch_area : ndarray
-        Area of the whole patch, the sum of its nodes' areas [m²].
-    cell_wear_index : ndarray
-        Energy dissipated per metre rolled, summed over the nodes [N].
-    """
-
-    mean_slip: Array
-    slip_area: Array
-    patch_area: Array
-    cell_wear_index: Array
+Numbered: TypeAlias = Sequence[tuple[Law, Numbers]]
+"""Laws with their numbers in SI."""
 
 
-class Across(NamedTuple):
-    """Wear and slip integrated along each strip, as SI arrays of the batch shape and an axis of strips.
+class Mean(NamedTuple):
+    """The outcome of one law on a line, its error, and the force; see `Totals`."""
 
-    Attributes
-    ----------
-    y : ndarray, (batch, strips)
-        Position of each strip [m].
-    width : ndarray, (batch, strips)
-        Width that it represents [m].
-    wear : ndarray, (batch, strips)
-        ∫ rate dx along it [kg/m²].
-    slid : ndarray, (batch, strips)
-        ∫ |s| dx along it [m].
-    """
-
-    y: Array
-    width: Array
-    wear: Array
-    slid: Array
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Totals:
-    """Outcomes of laws and forces at each operating point, as SI arrays of the batch shape.
-
-    Attributes
-    ----------
-    values : tuple of ndarray
-        The outcome of each law: the area mean of its rate over the patch, or its value of the patch.
-    errors : tuple of ndarray or None
-        Estimate of the numerical error of each outcome; None if the function `outcome_error` computes the estimate.
-    forces : CreepForces or None
-        The forces and the moment; None if the contact model knows them without nodes.
-    patch_area : ndarray or None
-        Area of the patch, the sum of its nodes' areas [m²]; None if it equals the area of the problem.
-    contact : Contact or None
-        The model's solution if all points were solved at once, on nodes that cover the patch; of the batch shape or
-        with one batch axis.
-    slip : SlipTotals or None
-        The slip, if an ellipse has several blocks; their contacts are not kept.
-    across : tuple of Across or None
-        Wear and slip of each law along the model's own strips; None on a line, for a law of the patch, and beyond
-        `KEPT_STRIPS`.
-    """
-
-    values: tuple[Array, ...]
-    errors: tuple[Array | None, ...]
-    forces: CreepForces | None = None
-    patch_area: Array | None = None
-    contact: Contact | None = None
-    slip: SlipTotals | None = None
-    across: tuple[Across | None, ...] = ()
+    value: Array
+    error: Array | None
+    force: Array
+    sliding: Array | None = None
 
 
 def prepared(model: ContactModel, problem: Problem) -> tuple[ContactModel, Problem]:
@@ -161,22 +94,17 @@ def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     model, problem = prepared(model, problem)
     if problem.geometry != "line":
 
-        def of_ellipse(part: Problem, _: slice) -> Columns:
-            return _columns(model.creep_forces(part))
+        def of_ellipse(part: Problem, _: slice) -> Totals:
+            return Totals.of_forces(model.creep_forces(part))
 
-        return CreepForces.of(_by_block(Solver(model), problem, of_ellipse))
+        return _by_block(Solver(model), problem, of_ellipse).forces
     if isinstance(model, LineContactModel):  # closed form, without nodes that would fill the memory
         there = problem.existing()
         with Blame(model):
             force = model.tangential_force(there)
-        check_columns(model, {"tangential_force": force}, there)
-        return CreepForces.of({"longitudinal": force if there is problem else problem.unflatten(force)})
-
-    def of_line(part: Problem, _: slice) -> Columns:
-        return {"tangential_force": model.tangential_force(part)}
-
-    found = _by_block(Solver(model), problem, of_line)
-    return CreepForces.of({"longitudinal": found["tangential_force"]})
+        check_results(model, there, force, "tangential_force")
+        return CreepForces.of_line(force if there is problem else problem.unflatten(force))
+    return _by_block(Solver(model), problem, lambda part, _: Totals(longitudinal=model.tangential_force(part))).forces
 
 
 @steady
@@ -185,23 +113,18 @@ def integrate_slip(model: ContactModel, problem: Problem, solved_before: Contact
     model, problem = prepared(model, problem)
     solver = Solver(model)
 
-    def columns(part: Problem, _: slice) -> Columns:
-        found = _slip_columns(solved_before or solver.solve(part))
+    def of_block(part: Problem, _: slice) -> SlipTotals:
+        found = SlipTotals.of(solved_before or solver.solve(part))
         if isinstance(model, LineContactModel) and part.geometry == "line":
-            found["slip_area"] = model.slip_length(part.forward()) * part.track_width
-            found["patch_area"] = part.patch_area
+            area = model.slip_length(part.forward()) * part.track_width
+            found = found._replace(slip_area=area, patch_area=part.patch_area)
         return found
 
     if solved_before is None:
-        return SlipTotals(**_by_block(solver, problem, columns))
+        return _by_block(solver, problem, of_block)
     part = problem if solved_before.rolling_speed.shape == problem.batch_shape else problem.flatten()
-    found = solver.columns(part, ALL, columns)
-    return SlipTotals(**{name: problem.unflatten(values) for name, values in found.items()})
-
-
-def _slip_columns(contact: Contact) -> Columns:
-    """Return the columns of `SlipTotals`."""
-    return {name: getattr(contact, name) for name in SlipTotals.__slots__}
+    found: SlipTotals = each(problem.unflatten, solver.checked(of_block, part, ALL))
+    return found
 
 
 @steady
@@ -217,7 +140,7 @@ def integrate_laws(
     model: ContactModel,
     laws: Sequence[Law],
     problem: Problem,
-    on_block: OnBlock | None = None,
+    on_block: OnBlock[Totals] | None = None,
     numbers: Sequence[Numbers] | None = None,
 ) -> Totals:
     """Return the outcomes of laws in a contact, block by block; a contact on nodes is solved once for all laws.
@@ -228,7 +151,7 @@ def integrate_laws(
     laws : sequence of Law
     problem : Problem
     on_block : callable, optional
-        Called with each block of operating points and its columns, which include the forces [N].
+        Called with each block of operating points and its totals, which include the forces.
     numbers : sequence of mapping of str to float or ndarray, optional
         The numbers of each law in SI, by default its own. Arrays of shape (points, 1) need a batch of one axis,
         (points,).
@@ -240,88 +163,75 @@ def integrate_laws(
     """
     model, problem = prepared(model, problem)
     numbered = list(zip(laws, map(_frozen, numbers) if numbers else [law.numbers for law in laws], strict=True))
-    across: tuple[Across | None, ...] = (None,) * len(laws)
-    if problem.geometry == "line":
-        found, solver = _over_line(model, numbered, problem, on_block)
-    else:
-        found, solver, across = _over_ellipse(model, numbered, problem, on_block)
-    several_blocks = "cell_wear_index" in found
-    return Totals(
-        values=tuple(found[f"value {index}"] for index in range(len(laws))),
-        errors=tuple(found.get(f"error {index}") for index in range(len(laws))),
-        forces=CreepForces.of(found) if "longitudinal" in found else None,
-        patch_area=found.get("patch_area"),
-        contact=solver.solved,
-        slip=SlipTotals(**{name: found[name] for name in SlipTotals.__slots__}) if several_blocks else None,
-        across=across,
-    )
-
-
-OF_LAW = ("value", "error")
-"""Columns of one law; its index follows, as in "value 0"."""
-
-Numbered: TypeAlias = Sequence[tuple[Law, Numbers]]
-"""Laws with their numbers in SI."""
-
-
-def _over_ellipse(
-    model: ContactModel, laws: Numbered, problem: Problem, on_block: OnBlock | None
-) -> tuple[Columns, Solver, tuple[Across | None, ...]]:
     solver = Solver(model)
-    kept: list[list[Across]] = [[] for _ in laws]
+    over = _over_line if problem.geometry == "line" else _over_ellipse
+    totals = over(solver, numbered, problem, on_block)
+    return totals if solver.solved is None else totals._replace(contact=solver.solved)
 
-    def columns(part: Problem, points: slice) -> Columns:
+
+def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlock[Totals] | None) -> Totals:
+    def of_block(part: Problem, points: slice) -> Totals:
         contact = solver.solve(part)
         area = contact.patch_area
         keeps = contact.strip_width.shape[-1] * problem.size <= KEPT_STRIPS
-        found = {"patch_area": area, **_columns(contact.forces), **_sliding(solver, [law for law, _ in laws], contact)}
-        for index, (law, p) in enumerate(laws):
+        values: list[Array] = []
+        kept: list[Across | None] = []
+        for law, p in laws:
             seen, own = _contact_of(law, contact, part), _at_points(p, points)
             if law.outcome.of == "patch":
-                value = solver.rate(law, seen, part, _of_patches(own))
-            else:
-                wear = seen.over_strip(split_rates(solver, law, seen, part, _of_nodes(own, seen)))
-                value = (wear * seen.strip_width).sum(axis=-1) / area
-                if keeps:
-                    kept[index].append(_across(seen, wear))
-            found[f"value {index}"] = value
-        return found if part.size == problem.size else found | _slip_columns(contact)
-
-    found = _by_block(solver, problem, columns, on_block)
-    return found, solver, tuple(_joined(problem, parts) if parts else None for parts in kept)
-
-
-def _across(contact: Contact, wear: Array) -> Across:
-    return Across(contact.y[..., 0, :], contact.strip_width, wear, contact.over_strip(contact.slip))
-
-
-def _joined(problem: Problem, parts: Sequence[Across]) -> Across:
-    """Return the wear and slip of all blocks in the shape of the batch."""
-    return Across(*(problem.unflatten(np.concatenate(values)) for values in zip(*parts, strict=True)))
-
-
-def _over_line(
-    model: ContactModel, laws: Numbered, problem: Problem, on_block: OnBlock | None
-) -> tuple[Columns, Solver]:
-    fields = model if isinstance(model, LineContactModel) and model.scale == "cells" else None
-    ramps = [_ramps(law, p) if fields else None for law, p in laws]
-    solver = Solver(model)
-
-    def columns(part: Problem, points: slice) -> Columns:
-        found: Columns = {}
-        on_nodes: dict[int, tuple[Law, Numbers]] = {}
-        for index, (law, p) in enumerate(laws):
-            if not (fields and law.zero_in_stick and law.outcome.of == "area mean"):
-                on_nodes[index] = law, _at_points(p, points)
+                values.append(solver.rate(law, seen, part, _of_patches(own)))
+                kept.append(None)
                 continue
-            of, slopes = part.worn_on(law.body), ramps[index]
-            mean = None if slopes is None else closed_form(fields, slopes, of, points)
-            mean = mean or _over_zones(solver, law, _at_points(p, points), of)
-            found |= {f"{name} {index}" if name in OF_LAW else name: values for name, values in mean.items()}
-        return found | _on_own_nodes(solver, on_nodes, part) if on_nodes else found
+            wear = seen.over_strip(split_rates(solver, law, seen, part, _of_nodes(own, seen)))
+            values.append((wear * seen.strip_width).sum(axis=-1) / area)
+            kept.append(Across.of(seen, wear) if keeps else None)
+        return Totals(
+            values=tuple(values),
+            errors=(None,) * len(laws),
+            longitudinal=contact.force_x,
+            lateral=contact.force_y,
+            spin_moment=contact.moment_z,
+            patch_area=area,
+            sliding=_sliding(solver, [law for law, _ in laws], contact),
+            slip=None if part.size == problem.size else SlipTotals.of(contact),
+            across=tuple(kept),
+        )
 
-    block = BLOCK if fields and not any(one is None for one in ramps) else NODE_BLOCK
-    return solver.by_block(problem, block, columns, on_block, drop_force=fields is not None), solver
+    return _by_block(solver, problem, of_block, on_block)
+
+
+def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlock[Totals] | None) -> Totals:
+    model = solver.model
+    fields = model if isinstance(model, LineContactModel) and model.scale == "cells" else None
+    by_zones = [fields is not None and law.zero_in_stick and law.outcome.of == "area mean" for law, _ in laws]
+    ramps = [_ramps(law, p) if zones else None for (law, p), zones in zip(laws, by_zones, strict=True)]
+
+    def of_block(part: Problem, points: slice) -> Totals:
+        contact = None if all(by_zones) else solver.solve(part)
+        means: list[Mean] = []
+        for (law, p), slopes, zones in zip(laws, ramps, by_zones, strict=True):
+            if contact is not None and not zones:
+                means.append(_on_own_nodes(solver, law, _at_points(p, points), part, contact))
+                continue
+            assert fields is not None
+            of = part.worn_on(law.body)
+            mean = None if slopes is None else closed_form(fields, slopes, of, points)
+            means.append(mean or _over_zones(solver, law, _at_points(p, points), of))
+        return Totals(
+            values=tuple([mean.value for mean in means]),
+            errors=tuple([mean.error for mean in means]),
+            longitudinal=means[-1].force,
+            patch_area=None if contact is None or isinstance(model, LineContactModel) else contact.patch_area,
+            sliding=next((mean.sliding for mean in means if mean.sliding is not None), None),
+        )
+
+    block = NODE_BLOCK if any(one is None for one in ramps) else BLOCK
+    return solver.by_block(problem, block, of_block, on_block, kept=None if fields is None else _without_force)
+
+
+def _without_force(totals: Totals) -> Totals:
+    """Return the totals without the force, which a model with fields knows in closed form."""
+    return totals._replace(longitudinal=None)
 
 
 def _ramps(law: Law, p: Numbers) -> tuple[tuple[Any, Any], ...] | None:
@@ -368,11 +278,11 @@ def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Total
         )
     solver = Solver(model)
 
-    def columns(part: Problem, _: slice) -> Columns:
+    def of_block(part: Problem, _: slice) -> Array:
         contact = _contact_of(law, solver.solve(part), part)
-        return {"error": thinning_error(contact, solver.rate(law, contact, part))}
+        return thinning_error(contact, solver.rate(law, contact, part))
 
-    return _by_block(solver, problem, columns)["error"]
+    return _by_block(solver, problem, of_block)
 
 
 @steady
@@ -408,7 +318,7 @@ def integrate_across(
 
     def along(part: Problem, contact: Contact) -> Across:
         contact = _contact_of(law, contact, part)
-        return _across(contact, contact.over_strip(split_rates(solver, law, contact, part, law.numbers)))
+        return Across.of(contact, contact.over_strip(split_rates(solver, law, contact, part, law.numbers)))
 
     if strips is None and solved_before is not None:
         found = [along(flat, solved_before)]
@@ -416,21 +326,19 @@ def integrate_across(
         block = max(ELLIPSE_NODES // solved(flat[:1]).pressure.size, 1)
         parts = (flat[points] for points in blocks(flat.size, block))
         found = [along(part, solved(part)) for part in parts]
-    return _joined(problem, found)
+    return Across(*(problem.unflatten(np.concatenate(values)) for values in zip(*found, strict=True)))
 
 
-def _columns(forces: CreepForces) -> Columns:
-    return {"longitudinal": forces.longitudinal, "lateral": forces.lateral, "spin_moment": forces.spin_moment}
-
-
-def _by_block(solver: Solver, problem: Problem, columns: OfBlock, on_block: OnBlock | None = None) -> Columns:
-    """Return columns over blocks; the model's number of nodes decides the number of operating points in a block."""
+def _by_block(
+    solver: Solver, problem: Problem, of_block: OfBlock[ResultT], on_block: OnBlock[ResultT] | None = None
+) -> ResultT:
+    """Return results over blocks; the model's number of nodes decides the number of operating points in a block."""
     block = NODE_BLOCK
     if problem.geometry != "line" and not isinstance(solver.model, Solved):
         few = problem.size <= FEW
         nodes = 1 if few else Solver(solver.model).solve(problem.flatten()[:1]).pressure.size
         block = FEW if few else max(ELLIPSE_NODES // nodes, 1)
-    return solver.by_block(problem, block, columns, on_block)
+    return solver.by_block(problem, block, of_block, on_block)
 
 
 @steady
@@ -455,7 +363,7 @@ def contact_for(model: ContactModel, law: Law, problem: Problem) -> Contact:
 
 def closed_form(
     model: LineContactModel, ramps: tuple[tuple[Any, Any], ...], problem: Problem, points: slice = ALL
-) -> Columns | None:
+) -> Mean | None:
     """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form.
 
     `points` is the slice of the problem in arrays of thresholds and slopes, (points, 1).
@@ -477,7 +385,7 @@ def closed_form(
     if extremes(rate)[0] < 0.0:  # ramps that cancel leave a rounding error
         rate = np.maximum(rate, 0.0)
     signed = force if forward is problem else np.copysign(force, problem.creepage)
-    return {"value": rate, "longitudinal": signed}
+    return Mean(rate, None, signed)
 
 
 def _per_point(number: float | Array, points: slice) -> float | Array:
@@ -485,8 +393,8 @@ def _per_point(number: float | Array, points: slice) -> float | Array:
     return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
 
 
-def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Columns:
-    """Return the column `SLIDING`, or none if no law goes with p·s or friction may differ from node to node.
+def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Array | None:
+    """Return `Totals.sliding`, or None if no law goes with p·s or friction may differ from node to node.
 
     Only a bare contact model has the one μ of its problem: a stage that changes the solved contact and another program
     may have any friction.
@@ -494,10 +402,11 @@ def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Columns:
     model, problem = solver.model, contact.problem
     follows = model.scale == "cells" and any(law.follows_pressure_times_slip for law in laws)
     if not follows or problem is None or isinstance(model, Staged | Solved):
-        return {}
+        return None
     sliding = problem.friction_coefficient * np.abs(contact.integral(contact.pressure, contact.slip))
     energy = contact.wear_index
-    return {SLIDING: np.divide(sliding, energy, out=np.ones_like(energy), where=energy > 0.0)}
+    ratio: Array = np.divide(sliding, energy, out=np.ones_like(energy), where=energy > 0.0)
+    return ratio
 
 
 def _frozen(p: Numbers) -> Numbers:
@@ -522,41 +431,26 @@ def _of_nodes(p: Numbers, contact: Contact) -> Numbers:
     return {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
 
-def _on_own_nodes(solver: Solver, laws: Mapping[int, tuple[Law, Numbers]], problem: Problem) -> Columns:
-    """Return the outcomes of laws on the model's own nodes of a line, by the index of each law."""
-    model = solver.model
-
-    def columns(part: Problem, points: slice) -> Columns:
-        contact = solver.solve(part)
-        found = {"longitudinal": contact.tangential_force}
-        found |= _sliding(solver, [law for law, _ in laws.values()], contact)
-        if not isinstance(model, LineContactModel):
-            found["patch_area"] = contact.patch_area
-        for index, (law, p) in laws.items():
-            seen, own = _contact_of(law, contact, part), _at_points(p, points)
-            if law.outcome.of == "patch":
-                found[f"value {index}"] = solver.rate(law, seen, part, _of_patches(own))
-                continue
-            rate = solver.rate(law, seen, part, own)
-            mean = found[f"value {index}"] = seen.mean(rate)
-            found[f"error {index}"] = EPS * np.abs(mean) if model.scale == "patch" else thinning_error(seen, rate)
-        return found
-
-    return by_block(problem, solver.block(NODE_BLOCK, problem), columns)
+def _on_own_nodes(solver: Solver, law: Law, p: Numbers, problem: Problem, contact: Contact) -> Mean:
+    """Return the outcome of a law on the model's own nodes of a line."""
+    seen, force = _contact_of(law, contact, problem), contact.tangential_force
+    sliding = _sliding(solver, [law], contact)
+    if law.outcome.of == "patch":
+        return Mean(solver.rate(law, seen, problem, _of_patches(p)), None, force, sliding)
+    rate = solver.rate(law, seen, problem, p)
+    mean = seen.mean(rate)
+    error = EPS * np.abs(mean) if solver.model.scale == "patch" else thinning_error(seen, rate)
+    return Mean(mean, error, force, sliding)
 
 
-def _over_zones(solver: Solver, law: Law, p: Numbers, problem: Problem) -> Columns:
+def _over_zones(solver: Solver, law: Law, p: Numbers, problem: Problem) -> Mean:
     """Return the mean of a law's rate by panels of the slip zone, and its error estimate."""
     if problem.batch_shape == ():
         return _over_slip_zone(solver, law, p, problem)
-
-    def columns(part: Problem, points: slice) -> Columns:
-        return _over_slip_zone(solver, law, _at_points(p, points), part)
-
-    return by_block(problem, NODE_BLOCK, columns)
+    return by_block(problem, NODE_BLOCK, lambda part, points: _over_slip_zone(solver, law, _at_points(p, points), part))
 
 
-def _over_slip_zone(solver: Solver, law: Law, p: Numbers, problem: Problem) -> Columns:
+def _over_slip_zone(solver: Solver, law: Law, p: Numbers, problem: Problem) -> Mean:
     """Return the mean of a law's rate, with the number of panels that each operating point needs."""
     model = solver.model
     assert isinstance(model, LineContactModel)
@@ -571,15 +465,16 @@ def _over_slip_zone(solver: Solver, law: Law, p: Numbers, problem: Problem) -> C
     if needed.min() == most:
         own = splits[inside].reshape(*needed.shape, most)
         return _over_panels(solver, law, p, problem, (stick, slip), own, totals)
-    whole: Columns = {}
+    whole: Any = None
     for count in np.unique(needed):
         points = np.flatnonzero(needed == count)
         own = splits[points][inside[points]].reshape(points.size, count)
         zones = stick[points], slip[points]
         found = _over_panels(solver, law, _at_points(p, points), problem[points], zones, own, totals)
-        for name, values in found.items():
-            whole.setdefault(name, np.empty(problem.creepage.shape))[points] = values
-    return whole
+        if whole is None:
+            whole = each(lambda _: np.empty(problem.creepage.shape), found)
+        each(lambda values, some, points=points: values.__setitem__(points, some), whole, found)
+    return whole  # type: ignore[no-any-return]
 
 
 def splits_of(model: LineContactModel, law: Law, p: Numbers, problem: Problem, slip: Zone) -> Array | None:
@@ -602,7 +497,7 @@ def _over_panels(
     zones: tuple[Zone, Zone],
     splits: Array | None,
     totals: bool,
-) -> Columns:
+) -> Mean:
     """Return the mean of a law's rate over the patch, its error estimate and the force, by panels of the slip zone.
 
     The rate is zero in the stick zone, so one node is enough there. With `totals`, the stick zone has all its nodes,
@@ -617,8 +512,7 @@ def _over_panels(
     slipping = weighted[..., sticking.length.shape[-1] :]
     error = ROUNDINGS * EPS * np.abs(weighted).sum(axis=-1) + remainder(slipping)
     area = problem.patch_area
-    found = {"value": total / area, "error": error / area, "longitudinal": contact.tangential_force}
-    return found | _sliding(solver, [law], contact)
+    return Mean(total / area, error / area, contact.tangential_force, _sliding(solver, [law], contact))
 
 
 def thinning_error(contact: Contact, rate: Array) -> Array:

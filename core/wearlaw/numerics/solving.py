@@ -9,7 +9,7 @@ first place.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -24,8 +24,9 @@ from wearlaw.errors import ModelError, shown
 from wearlaw.models.contact_model import QUADRATURE, Blame, ContactModel, Model, fault
 from wearlaw.models.law import Law, Numbers
 from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.numerics.blocks import Columns, OfBlock, OnBlock, by_block
+from wearlaw.numerics.blocks import OfBlock, OnBlock, ResultT, by_block, each
 from wearlaw.numerics.solved import Solved
+from wearlaw.numerics.totals import Across
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import VARIABLES
 
@@ -89,34 +90,32 @@ class Solver:
         self,
         problem: Problem,
         block: int,
-        columns: OfBlock,
-        on_block: OnBlock | None = None,
-        drop_force: bool = False,
-    ) -> Columns:
-        """Return the columns of a function of the problem in the shape of its batch; see `blocks.by_block`.
+        function: OfBlock[ResultT],
+        on_block: OnBlock[ResultT] | None = None,
+        kept: Callable[[ResultT], ResultT] | None = None,
+    ) -> ResultT:
+        """Return the results of a function of the problem in the shape of its batch; see `blocks.by_block`.
 
-        A single line stays one: its scalars take less time than arrays of one number.
+        A single line stays one: its scalars take less time than arrays of one number. Contacts that are already solved
+        are one block.
 
         Raises
         ------
         ModelError
-            If the model or the law fails, or a column is not one finite float64 for each operating point.
+            If the model or the law fails, or a result is not one finite float64 for each operating point.
         """
-        checked = partial(self.columns, columns=columns)
         one_line = problem.geometry == "line" and problem.batch_shape == () and problem.exists is None
         flat = problem if one_line else problem.flatten()
-        found = by_block(flat, self.block(block, problem), checked, on_block, drop_force)
-        return found if flat is problem else {name: problem.unflatten(values) for name, values in found.items()}
+        if isinstance(self.model, Solved):
+            block = max(flat.size, 1)
+        found = by_block(flat, block, partial(self.checked, function), on_block, kept)
+        return found if flat is problem else each(problem.unflatten, found)
 
-    def block(self, points: int, problem: Problem) -> int:
-        """Return the number of operating points in a block: all of them if they are already solved."""
-        return max(problem.size, 1) if isinstance(self.model, Solved) else points
-
-    def columns(self, part: Problem, points: slice, columns: OfBlock) -> Columns:
-        """Return the checked columns of a function of one block; `points` is its slice of the whole problem."""
+    def checked(self, function: OfBlock[ResultT], part: Problem, points: slice) -> ResultT:
+        """Return the checked results of a function of one block; `points` is its slice of the whole problem."""
         with Blame(self.model):
-            found = columns(part, points)
-        check_columns(self.model, found, part)
+            found = function(part, points)
+        check_results(self.model, part, found)
         return found
 
     def solve(self, problem: Problem) -> Contact:
@@ -186,13 +185,17 @@ def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: 
         raise fault(maker, f"posed a problem with {_words(name)} of {wrong:g} in SI units; it must be finite{above}")
 
 
-def check_columns(model: ContactModel, columns: Mapping[str, Array], problem: Problem) -> None:
-    """Raise a `ModelError` unless each column holds one finite float64 for each operating point."""
-    for name, values in columns.items():
-        check_type(model, name, values, problem.batch_shape)
-        low, high = extremes(values)
-        if not (math.isfinite(low) and math.isfinite(high)):
-            raise _error(model, f"gave {_words(name)} that is not finite", problem, ~np.isfinite(values))
+def check_results(model: ContactModel, problem: Problem, found: Any, name: str = "result") -> None:
+    """Raise a `ModelError` unless each array among results holds finite float64 for each operating point."""
+    if isinstance(found, tuple):
+        for index, one in enumerate(found):
+            if one is not None and type(one) is not Across:  # made of checked rates
+                check_results(model, problem, one, found._fields[index] if hasattr(found, "_fields") else name)
+        return
+    check_type(model, name, found, problem.batch_shape)
+    low, high = extremes(found)
+    if not (math.isfinite(low) and math.isfinite(high)):
+        raise _error(model, f"gave {_words(name)} that is not finite", problem, ~np.isfinite(found))
 
 
 def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
@@ -362,6 +365,8 @@ def _words(name: str) -> str:
         "moment_z": "spin moment",
         "longitudinal": "longitudinal force",
         "lateral": "lateral force",
+        "values": "value",
+        "errors": "error",
     }
     named = words.get(name, name.replace("_", " "))
     return f"{'an' if named[0] in 'aeiou' else 'a'} {named}"

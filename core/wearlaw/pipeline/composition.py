@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import itertools
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from wearlaw.contact.material import dundurs_beta
 from wearlaw.contact.problem import PATCHES, Body, Geometry, Problem
-from wearlaw.errors import CalibrationWarning, CompositionError, ConditionsError, RangeWarning, did_you_mean, shown
+from wearlaw.errors import (
+    CalibrationWarning,
+    CompositionError,
+    ConditionsError,
+    RangeWarning,
+    did_you_mean,
+    shown,
+    warn,
+)
 from wearlaw.models.contact_model import ContactModel, Model, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.plugins import loader
@@ -123,22 +130,19 @@ def warn_of_parameters(
     model: ContactModel,
     scale: Scale,
     law: Law,
-    stacklevel: int = 3,
 ) -> None:
-    """Warn if the law's parameters were fitted for another contact, materials or body; `stacklevel` 1 is this function.
+    """Warn if the law's parameters were fitted for another contact, materials or body.
 
     The geometry is None, and `bodies` is empty, if they are not known.
     """
-    warn_of_calibration(geometry, model, scale, law, stacklevel + 1)
-    warn_of_materials(bodies, law, stacklevel + 1)
+    warn_of_calibration(geometry, model, scale, law)
+    warn_of_materials(bodies, law)
     if law.body is not None and bodies:
-        warn_of_body(bodies, law, law.body, stacklevel + 1)
+        warn_of_body(bodies, law, law.body)
 
 
-def warn_of_calibration(
-    geometry: Geometry | None, model: ContactModel, scale: Scale, law: Law, stacklevel: int = 3
-) -> None:
-    """Warn if the law's parameters were fitted for another contact; `stacklevel` 1 is this function."""
+def warn_of_calibration(geometry: Geometry | None, model: ContactModel, scale: Scale, law: Law) -> None:
+    """Warn if the law's parameters were fitted for another contact."""
     calibration = law.calibration
     if calibration is None:
         return
@@ -148,19 +152,17 @@ def warn_of_calibration(
     if calibration.covers(model, scale, geometry):
         return
     if fitted != "any" and fitted != geometry:
-        warnings.warn(
+        warn(
             f"the parameters of {law.kind} '{law.name}' were fitted for {PATCHES[fitted]}, but are used"
             f" with {PATCHES[geometry]}. {PEAKS} Check them against data",
             CalibrationWarning,
-            stacklevel=stacklevel,
         )
         return
     used = "its patch means" if scale == "patch" else "its cells"
-    warnings.warn(
+    warn(
         f"the parameters of {law.kind} '{law.name}' were fitted for {calibration}, but are used with"
         f" {model!r} and {used}; check them against data, or choose parameters fitted for that contact",
         CalibrationWarning,
-        stacklevel=stacklevel,
     )
 
 
@@ -179,33 +181,31 @@ def fitted_to_other_body(bodies: Mapping[str, Body], law: Law, body: str) -> boo
     return calibration is not None and bool(calibration.bodies) and body != next(iter(bodies))
 
 
-def warn_of_materials(bodies: Mapping[str, Body], law: Law, stacklevel: int = 3) -> None:
-    """Warn if the law's parameters were fitted for other materials; `stacklevel` 1 is this function."""
+def warn_of_materials(bodies: Mapping[str, Body], law: Law) -> None:
+    """Warn if the law's parameters were fitted for other materials."""
     calibration, others = law.calibration, other_materials(bodies, law)
     if calibration is not None and others:
-        warnings.warn(
+        warn(
             f"the parameters of {law.kind} '{law.name}' were fitted for {calibration.materials}, but"
             f" {' and '.join(others)} {'is' if len(others) == 1 else 'are'} of another material: Young's modulus or"
             " density differs by more than 10 %. Check them against data",
             CalibrationWarning,
-            stacklevel=stacklevel,
         )
 
 
-def warn_of_body(bodies: Mapping[str, Body], law: Law, body: str, stacklevel: int) -> None:
-    """Warn if the law's parameters were fitted to the wear of the other body; `stacklevel` 1 is this function."""
+def warn_of_body(bodies: Mapping[str, Body], law: Law, body: str) -> None:
+    """Warn if the law's parameters were fitted to the wear of the other body."""
     calibration = law.calibration
     if calibration is not None and fitted_to_other_body(bodies, law, body):
-        warnings.warn(
+        warn(
             f"the parameters of {law.kind} '{law.name}' were fitted to the wear of the first body, with"
             f" {calibration.materials}, but are used for the wear of {shown(body)}; check them against data",
             CalibrationWarning,
-            stacklevel=stacklevel,
         )
 
 
-def warn_of_unlike_materials(model: ContactModel, problem: Problem, stacklevel: int) -> None:
-    """Warn if the coupling of unlike materials matters and the model neglects it; `stacklevel` 1 is this function.
+def warn_of_unlike_materials(model: ContactModel, problem: Problem) -> None:
+    """Warn if the coupling of unlike materials matters and the model neglects it.
 
     It does not matter if the traction was measured.
     """
@@ -219,12 +219,11 @@ def warn_of_unlike_materials(model: ContactModel, problem: Problem, stacklevel: 
         return
     share = COUPLING * abs(beta) / float(np.nanmin(problem.friction_coefficient))
     if share > MOST_COUPLING:
-        warnings.warn(
+        warn(
             f"{' and '.join(problem.bodies)} are of unlike materials (Dundurs' β = {beta:.2g}), but contact model"
             f" '{model.name}' assumes like ones. It neglects tractions above {100.0 * share:.0f} % of the friction"
             " bound over half of the patch; check the result against data or a theory of unlike bodies",
             RangeWarning,
-            stacklevel=stacklevel,
         )
 
 

@@ -1,35 +1,34 @@
-"""The conditions of a prediction, and the prediction as a labelled dataset and as a table."""
+"""The conditions of a prediction, and labelled datasets and tables of its values."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import Known
-from wearlaw.pipeline.profiles import labelled
+from wearlaw.contact.problem import Problem
+from wearlaw.extras import needed_for
 from wearlaw.pipeline.selection import Selection, axis_names
-from wearlaw.pipeline.variables import Predicted, default_variables, long_name, unit_of
+from wearlaw.pipeline.variables import default_variables, long_name, unit_of
 from wearlaw.settings.arguments import expect_names
-from wearlaw.units.quantities import Quantity
+from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import name_of
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from wearlaw.pipeline.prediction import Prediction
+
 POINT = "point"
 """Name of the rows of a table."""
 
 
-class Named(Predicted, Protocol):
-    """A prediction whose variables can be looked up by name."""
-
-    def __getitem__(self, name: str, /) -> Quantity:
-        """Return a variable."""
-        ...
+Columns: TypeAlias = Mapping[str, tuple[Array, str]]
+"""Arrays in SI and the units to show them in, by name."""
 
 
 class Conditions:
@@ -107,7 +106,7 @@ def _fits(shape: tuple[int, ...], whole: tuple[int, ...]) -> bool:
         return False
 
 
-def dataset(prediction: Named, conditions: Conditions, names: Sequence[str] | None) -> xarray.Dataset:
+def dataset(prediction: Prediction, conditions: Conditions, names: Sequence[str] | None) -> xarray.Dataset:
     """Return a prediction as a dataset with its conditions as coordinates; see `Prediction.to_dataset`."""
     if names is not None:
         names = expect_names(names, "names", "wear_rate")
@@ -136,7 +135,7 @@ def _coordinate(name: str, one: Known, dims: Sequence[str]) -> tuple[list[str], 
     return [dims[axis] for axis in kept], values, {"units": one.unit or "", "long_name": name_of(name)}
 
 
-def frame(prediction: Named, conditions: Conditions, names: Sequence[str] | None) -> pandas.DataFrame:
+def frame(prediction: Prediction, conditions: Conditions, names: Sequence[str] | None) -> pandas.DataFrame:
     """Return a prediction as a table; see `Prediction.to_dataframe`."""
     found = dataset(prediction, conditions, names)
     units = {str(name): one.attrs.get("units", "") for name, one in found.variables.items()}
@@ -149,3 +148,37 @@ def frame(prediction: Named, conditions: Conditions, names: Sequence[str] | None
     columns = [name for name in dict.fromkeys(order) if name in found.variables]
     table = rows.reset_index()[columns]
     return table.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit})
+
+
+def along_patch(problem: Problem, columns: Columns) -> xarray.Dataset:
+    """Return columns over x along the patches of lines; the existing patches come first to last, (patches, nodes)."""
+    batch = axis_names(problem)
+    shaped = {
+        name: (values if problem.exists is None else problem.unflatten(values), unit)
+        for name, (values, unit) in columns.items()
+    }
+    data = data_of([*batch, "cell"] if batch else ["x"], shaped)
+    return labelled(problem, {"x": data.pop("x")}, data)
+
+
+def data_of(dims: Sequence[str], columns: Columns, per: str = "") -> dict[str, Any]:
+    """Return the variables of a dataset; `per` is what their values are per, such as "metre rolled"."""
+    return {
+        name: (
+            dims,
+            in_unit(values, unit),
+            {"units": unit, "long_name": f"{name.replace('_', ' ')} per {per}" if per else name_of(name)},
+        )
+        for name, (values, unit) in columns.items()
+    }
+
+
+def labelled(
+    problem: Problem, coordinates: Mapping[str, Any], variables: Mapping[str, Any], without: str = ""
+) -> xarray.Dataset:
+    """Return a dataset with the labels of the rig's own axes as coordinates, but for one axis."""
+    with needed_for("a dataset", "sweeps"):
+        import xarray
+
+    labels = {name: list(labels) for name, labels in problem.dims.items() if name != without}
+    return xarray.Dataset(variables, {**labels, **coordinates})

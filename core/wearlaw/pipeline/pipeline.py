@@ -9,7 +9,7 @@ import dataclasses
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
-from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast
+from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast, overload
 
 import numpy as np
 import pint
@@ -18,13 +18,23 @@ from pydantic import model_validator
 from wearlaw.arrays.array import Array, read_only, steadily, steady, type_name
 from wearlaw.contact.conditions import Condition, FrictionLaw, broadcast, declared, friction_at, is_friction_law
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ModelError, did_you_mean, shown
+from wearlaw.errors import (
+    CompositionError,
+    ConditionsError,
+    InputError,
+    ModelError,
+    RangeWarning,
+    did_you_mean,
+    shown,
+    warn,
+)
 from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, fault, with_origin
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.stage import Stage
 from wearlaw.numerics.integrate import integrate_forces, prepared
 from wearlaw.numerics.solving import check_problem
 from wearlaw.numerics.staged import staged
+from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import (
     check_geometry,
     check_laws,
@@ -39,11 +49,16 @@ from wearlaw.pipeline.composition import (
 )
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch, overload_of
+from wearlaw.pipeline.several import LAW, Pipelines
+from wearlaw.pipeline.solution import Solution
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, Configuration
 
 ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
+
+OTHER_NAMES = {"mu": "friction_coefficient", "cof": "friction_coefficient", "load": "normal_force", "slip": "creepage"}
+"""What people call conditions, and the names that most rigs have for them."""
 
 TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; check the conditions"
 
@@ -298,9 +313,10 @@ class Rig(Model):
             return
         for name in conditions:
             if name not in known:
-                raise ConditionsError(
-                    f"{name}: unknown condition{did_you_mean(name, known)} The conditions are: {', '.join(known)}"
-                )
+                hint = did_you_mean(name, known)
+                if hint == ".":
+                    hint = did_you_mean(OTHER_NAMES.get(name.lower(), name), known)
+                raise ConditionsError(f"{name}: unknown condition{hint} The conditions are: {', '.join(known)}")
         for names in cls.choices:
             given = [name for name in names if conditions.get(name) is not None]
             if len(given) != 1:
@@ -321,14 +337,20 @@ class Rig(Model):
             example = 'Q({}, "{}")'.format(*example.split(" ", 1))
         return f"give {name}={example}"
 
-    def __or__(self: Poses[P], model: ContactModel) -> Pipeline[P]:
-        """Return the pipeline that solves this rig's contact with a contact model."""
+    @overload
+    def __or__(self: Poses[P], model: ContactModel) -> Pipeline[P]: ...
+    @overload
+    def __or__(self: Poses[P], model: Sequence[ContactModel]) -> Pipelines[P]: ...
+    def __or__(self: Poses[P], model: ContactModel | Sequence[ContactModel]) -> Pipeline[P] | Pipelines[P]:
+        """Return the pipeline that solves this rig's contact with a contact model, or with each of a list of them."""
+        assert isinstance(self, Rig)
+        if isinstance(model, list | tuple):
+            return Pipelines(self, model)
         if not isinstance(model, ContactModel):
             raise CompositionError(
                 f"a rig is followed by a contact model, not by {shown(model)};"
                 ' for example rig | wl.contact_model("fastsim") | wl.wear_law("usfd")'
             )
-        assert isinstance(self, Rig)
         return Pipeline(rig=self, contact_model=model)
 
 
@@ -412,8 +434,14 @@ class Pipeline(Configuration, Generic[P]):
         line = " | ".join(parts)
         return line if len(line) <= LINE else "({})".format("\n | ".join(parts))
 
-    def __or__(self, part: Law | Stage) -> Pipeline[P]:
-        """Return the pipeline with one more law, or one more stage around the contact model."""
+    @overload
+    def __or__(self, part: Law | Stage) -> Pipeline[P]: ...
+    @overload
+    def __or__(self, part: Sequence[Law]) -> Pipelines[P]: ...
+    def __or__(self, part: Law | Stage | Sequence[Law]) -> Pipeline[P] | Pipelines[P]:
+        """Return the pipeline with one more law or stage around the contact model, or with each of a list of laws."""
+        if isinstance(part, list | tuple) and not self.laws:
+            return Pipelines(self.rig, [self.contact_model], self.stages, part, dims=[LAW])
         if isinstance(part, Stage):
             if self.laws:
                 raise CompositionError(f"a stage stands before the laws, not after them: {shown(part)}; {ORDER}")
@@ -430,9 +458,7 @@ class Pipeline(Configuration, Generic[P]):
         if positional:
             first = next(iter(self.rig.conditions()), "creepage")
             raise ConditionsError(f"{shown(positional[0])}: is given without a name; write {first}=..., for example")
-        found = self.predict(self.posed(conditions), stacklevel=3)
-        found._given = conditions
-        return found
+        return self._predicted(self.posed(conditions), given=conditions)
 
     def posed(self, conditions: Mapping[str, Any], of_one_patch: str = "") -> Problem:
         """Return the rig's problem for these conditions, with loads that balance the forces.
@@ -458,13 +484,7 @@ class Pipeline(Configuration, Generic[P]):
             balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
         return rig._checked_balance(problem, balanced)
 
-    def predict(
-        self,
-        problem: Problem,
-        *,
-        on_block: Callable[[int], None] | None = None,
-        stacklevel: int = 2,
-    ) -> Prediction:
+    def predict(self, problem: Problem, *, on_block: Callable[[int], None] | None = None) -> Prediction:
         """Return the contact and the wear for a contact problem made by the rig.
 
         Parameters
@@ -473,62 +493,74 @@ class Pipeline(Configuration, Generic[P]):
             From the `problem` of the rig.
         on_block : callable, optional
             Called after each block with the number of its operating points, to show progress.
-        stacklevel : int
-            The caller that warnings name; 2 is the caller of this method.
         """
         if self.rig.patch_geometry not in (None, problem.geometry):
             raise InputError(
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
                 f" the geometry '{self.rig.patch_geometry}'; make it with the `problem` method of the rig"
             )
+        return self._predicted(problem, on_block)
+
+    def _predicted(
+        self,
+        problem: Problem,
+        on_block: Callable[[int], None] | None = None,
+        given: Mapping[str, Any] | None = None,
+    ) -> Prediction:
         if problem.exists is not None and not problem.exists.any():
             raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
-        self.warn_of_problem(problem, stacklevel + 1)
+        self.warn_of_problem(problem)
         watch = self.range_watch()
-        found = self.watched(problem, watch, on_block)
-        warn_of_unlike_materials(self.contact_model, problem, stacklevel + 1)
-        watch.warn(stacklevel)
+        found = self.watched(problem, watch, on_block, given)
+        warn_of_unlike_materials(self.contact_model, problem)
+        watch.warn()
         return found
 
-    def warn_of_problem(self, problem: Problem, stacklevel: int) -> None:
+    def warn_of_problem(self, problem: Problem) -> None:
         """Warn of parameters fitted for another shape of patch or other materials if only the problem shows them.
 
-        If the rig declares its geometry or its bodies, composing the pipeline gave the warning. `stacklevel` 1 is this
-        method.
+        If the rig declares its geometry or its bodies, composing the pipeline gave the warning. A friction coefficient
+        above 1 gets a word too.
         """
+        if (problem.friction_coefficient > 1.0).any():
+            most = np.nanmax(problem.friction_coefficient)
+            warn(
+                f"friction_coefficient: reaches {most:.4g}; values above 1 are rare, is it in percent?",
+                RangeWarning,
+            )
         rig, declared = self.rig, self.rig.patch_geometry is not None
         for law in self.laws:
             calibration = law.calibration
             if not declared and calibration is not None and calibration.geometry not in ("any", problem.geometry):
-                warn_of_calibration(problem.geometry, self.contact_model, self.scale, law, stacklevel + 1)
+                warn_of_calibration(problem.geometry, self.contact_model, self.scale, law)
             if not rig.bodies:
-                warn_of_materials(problem.bodies, law, stacklevel + 1)
+                warn_of_materials(problem.bodies, law)
 
     def range_watch(self) -> RangeWatch:
         """Return a watch that sees whether operating points stay elastic and within the ranges of the laws."""
         return RangeWatch(*self.laws)
 
-    def watched(self, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None = None) -> Prediction:
+    def watched(
+        self,
+        problem: Problem,
+        watch: RangeWatch,
+        on_block: Callable[[int], None] | None = None,
+        given: Mapping[str, Any] | None = None,
+    ) -> Prediction:
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         if problem.geometry == "line":
             check_traction(self.contact_model, problem)
         if problem.dims:
             watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
-        if not self.laws:
-            return self._without_law(model, problem, watch, on_block)
-        return solved(model, self.laws, problem, watch, on_block)
-
-    @steady
-    def _without_law(
-        self, model: ContactModel, problem: Problem, watch: RangeWatch, on_block: Callable[[int], None] | None
-    ) -> Prediction:
+        if self.laws:
+            return solved(model, self.laws, problem, watch, on_block, given)
         forces = integrate_forces(model, problem)
         watch.points += problem.size
-        watch.see_overload(overload_of(problem, forces.tangential))
+        watch.overload = overload_of(problem, forces.tangential, watch.overload)
         if on_block is not None:
             on_block(problem.size)
-        return Prediction(problem, model, forces=forces)
+        return Prediction(Solution(problem, model, (), Totals.of_forces(forces), given))
 
 
 def expect_pipeline(predict: object) -> None:

@@ -4,44 +4,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict
-from functools import cached_property, partial
+from functools import partial
 from html import escape
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array, same, steady
+from wearlaw.arrays.array import same, steady
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import CreepForces, Geometry, Problem
+from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
-from wearlaw.errors import CompositionError, InputError, shown
+from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
+from wearlaw.extras import load
 from wearlaw.models.contact_model import ContactModel, Scale
-from wearlaw.models.law import WEAR, Law, named_outcomes
+from wearlaw.models.law import Law, named_outcomes
 from wearlaw.models.line_contact_model import LineContactModel
 from wearlaw.numerics import integrate
-from wearlaw.numerics.blocks import Columns
-from wearlaw.numerics.integrate import SlipTotals, Totals
 from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.numerics.staged import without_stages
-from wearlaw.pipeline.composition import (
-    check_laws,
-    check_scale,
-    law_among,
-    other_materials,
-    warn_of_body,
-    warn_of_parameters,
-)
-from wearlaw.pipeline.datasets import Conditions, dataset, frame
-from wearlaw.pipeline.pictures import draw
-from wearlaw.pipeline.profiles import across_patch, along_patch, on_profile
-from wearlaw.pipeline.ranges import RangeWatch, elastic_limits, outside_range
+from wearlaw.numerics.totals import SlipTotals, Totals
+from wearlaw.pipeline import worn
+from wearlaw.pipeline.composition import check_laws, check_scale, other_materials, warn_of_parameters
+from wearlaw.pipeline.datasets import along_patch, dataset, frame
+from wearlaw.pipeline.ranges import RangeWatch, outside_range
 from wearlaw.pipeline.selection import Index, Label, Selection
+from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import ERROR, default_variables, long_name, outcome_units
-from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si, scalar_si
+from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, from_si
 from wearlaw.units.variables import UNITS
 
 if TYPE_CHECKING:
@@ -52,9 +43,6 @@ if TYPE_CHECKING:
 
 PROFILE_CELLS = 200
 """Cells of a profile along the patch."""
-
-MOST_STRIPS = 10_000
-"""Most strips of a wear profile; a wheel's patch of 10 mm then has strips of 1 µm."""
 
 FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
 
@@ -87,27 +75,12 @@ class Prediction:
         The laws; empty if only the contact was predicted.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        model: ContactModel,
-        laws: tuple[Law, ...] = (),
-        *,
-        forces: CreepForces | None = None,
-        totals: Totals | None = None,
-    ) -> None:
-        self.problem = problem
-        self.contact_model = without_stages(model)
-        self.scale: Scale = model.scale
-        self.laws = laws
-        self._model = model
-        self._given_forces = forces
-        self._totals = totals
-        self._asked_for: set[tuple[int, str]] = set()
-        self._errors: dict[int, Array] = {}
-
-    _given: Mapping[str, Any] = MappingProxyType({})
-    """The conditions, as given to the pipeline; {} if a problem was given."""
+    def __init__(self, solution: Solution) -> None:
+        self.problem = solution.problem
+        self.contact_model = without_stages(solution.model)
+        self.scale: Scale = solution.model.scale
+        self.laws = solution.laws
+        self._solution = solution
 
     @classmethod
     def of(cls, contact: Contact, law: Law, /, *more: Law) -> Prediction:
@@ -145,11 +118,8 @@ class Prediction:
             warn_of_parameters(problem.geometry, problem.bodies, model, model.scale, one)
         watch = RangeWatch(*laws)
         found = solved(model, laws, problem, watch)
-        watch.warn(2)
+        watch.warn()
         return found
-
-    _whole: tuple[Prediction, Selection] | None = None
-    """The prediction that this one is a part of, and the selection; None if it is no part."""
 
     def sel(self, /, **labels: Label | Sequence[Label]) -> Prediction:
         """Return the prediction for some of the patches, by the labels of the rig's own axes.
@@ -190,16 +160,7 @@ class Prediction:
 
     def _part(self, chosen: Selection) -> Prediction:
         """Return the prediction for some entries along the axes."""
-        totals = self._totals and chosen.of_totals(self._totals, self.problem)
-        forces = chosen.of_forces(self._forces)
-        model, problem = self._model, chosen.of_problem(self.problem)
-        if isinstance(model, Solved) and totals is not None:
-            model = model.model_copy(update={"contact": totals.contact})
-        found = Prediction(problem, model, self.laws, forces=forces, totals=totals)
-        found._whole = self, chosen
-        found._given = self._given
-        found._asked_for = self._asked_for
-        return found
+        return Prediction(self._solution.part(chosen))
 
     @overload
     def __getitem__(self, name: str, /) -> Quantity: ...
@@ -219,17 +180,22 @@ class Prediction:
         named = named_outcomes(self.laws)
         if name in named:
             index = named[name]
-            return from_si(self._solved_totals.values[index], self.laws[index].outcome.unit)
+            return from_si(self._solution.value(index), self.laws[index].outcome.unit)
         if name.endswith(ERROR) and name.removesuffix(ERROR) in named:
-            index = named[name.removesuffix(ERROR)]
-            return from_si(self._whole_error(index), self.laws[index].outcome.unit)
+            return self._error(named[name.removesuffix(ERROR)])
         if name in self.problem.results:
             return from_si(getattr(self.problem, name), self.problem.results[name])
         if not name.startswith("_") and hasattr(type(self), name):
             value = getattr(self, name)
             if isinstance(value, pint.Quantity):
                 return value
-        return self.outcome(name)
+        if any(name == law.outcome.name for law in self.laws):
+            return self.outcome(name)
+        known = [*outcome_units(self.laws), *default_variables(self)]
+        raise CompositionError(
+            f"there is no variable {shown(name)} here{did_you_mean(name, known)} There are:"
+            f" {', '.join(dict.fromkeys(known))}"
+        )
 
     def __iter__(self) -> Iterator[Prediction]:
         """Iterate over the predictions along the first axis."""
@@ -246,7 +212,7 @@ class Prediction:
         """Return whether another prediction is one of the same contacts with the same models."""
         if not isinstance(other, Prediction):
             return NotImplemented
-        return same((self.problem, self._model, self.laws), (other.problem, other._model, other.laws))
+        return same(*((one.problem, one.model, one.laws) for one in (self._solution, other._solution)))
 
     def __hash__(self) -> int:
         return hash((self.problem.geometry, self.problem.batch_shape))
@@ -266,32 +232,15 @@ class Prediction:
         CompositionError
             If no law predicts the outcome, or the laws differ by body and none is given.
         """
-        index = law_among(self.laws, self.contact_model, name, body)
-        value = self._solved_totals.values[index] if body is None else self._of_body(index, body, stacklevel=3)
-        return from_si(value, self.laws[index].outcome.unit)
+        index = self._solution.law(name, body)
+        return from_si(self._solution.value(index, body), self.laws[index].outcome.unit)
 
     def outcome_error(self, name: str, body: str | None = None) -> Quantity:
         """Return an estimate of the error of an outcome, as in `wear_rate_error`."""
-        index = law_among(self.laws, self.contact_model, name, body)
-        return from_si(self._whole_error(index), self.laws[index].outcome.unit)
+        return self._error(self._solution.law(name, body))
 
-    def error_of_law(self, index: int) -> Array:
-        """Return an estimate of the numerical error of the outcome of a law in SI, by the index of the law."""
-        if self._whole is not None:
-            whole, chosen = self._whole
-            return chosen.of(whole.error_of_law(index))
-        if index not in self._errors:
-            law, totals = self.laws[index], self._solved_totals
-            self._errors[index] = integrate.outcome_error(self._model, law, self.problem, totals, index)
-        return self._errors[index]
-
-    @cached_property
-    def _conditions(self) -> Conditions:
-        if self._whole is not None:
-            whole, chosen = self._whole
-            return whole._conditions.chosen(chosen)
-        shape = self.problem.batch_shape
-        return Conditions(self._given, shape[: len(shape) - len(self.problem.dims)])
+    def _error(self, index: int) -> Quantity:
+        return from_si(self._solution.error_with_energy(index), self.laws[index].outcome.unit)
 
     def to_dataset(self, names: Sequence[str] | None = None) -> xarray.Dataset:
         """Return the prediction as a labelled dataset.
@@ -310,7 +259,7 @@ class Prediction:
             of that condition; other axes are point_0, point_1 and so on, as in `isel`. A rig's own axes follow, with
             their labels; missing patches are NaN.
         """
-        return dataset(self, self._conditions, names)
+        return dataset(self, self._solution.conditions, names)
 
     def to_dataframe(self, names: Sequence[str] | None = None) -> pandas.DataFrame:
         """Return the prediction as a table with a row for each operating point, or for each existing patch.
@@ -326,7 +275,7 @@ class Prediction:
             The conditions, the labels of the patches and the variables. The heads hold the units, as in
             "wear_rate [ug/m/mm^2]"; `wearlaw.sweep` and `wearlaw.read_tests` read such heads.
         """
-        return frame(self, self._conditions, names)
+        return frame(self, self._solution.conditions, names)
 
     def plot(self, name: str | None = None, *, x: str | None = None, ax: Axes | None = None) -> Axes:
         """Draw a variable over the operating points, and return the axes of matplotlib.
@@ -352,33 +301,35 @@ class Prediction:
         InputError
             If there is nothing to draw, or too many axes.
         """
-        return draw(self, self._conditions, name, x, ax)
+        draw = load("wearlaw_output.pictures", "draw", "a picture")
+        drawn: Axes = draw(self, self._solution.conditions, name, x, ax)
+        return drawn
 
     @property
     def longitudinal_force(self) -> Quantity:
         """Longitudinal force, Fx [N], with the sign of the longitudinal creepage."""
-        return from_si(self._forces.longitudinal, "N")
+        return from_si(self._solution.forces.longitudinal, "N")
 
     @property
     def lateral_force(self) -> Quantity:
         """Lateral force, Fy [N], with the sign of the lateral creepage and of the spin."""
-        return from_si(self._forces.lateral, "N")
+        return from_si(self._solution.forces.lateral, "N")
 
     @property
     def spin_moment(self) -> Quantity:
         """Spin moment, Mz [N m], with the sign of the spin."""
-        return from_si(self._forces.spin_moment, "N*m")
+        return from_si(self._solution.forces.spin_moment, "N*m")
 
     @property
     def tangential_force(self) -> Quantity:
         """Tangential force, T [N]: on a line with the sign of the creepage, on an ellipse √(Fx² + Fy²)."""
-        return from_si(self._force, "N")
+        return from_si(self._solution.force, "N")
 
     @property
     @steady
     def traction_coefficient(self) -> Quantity:
         """Tangential over normal force, T/N [-]."""
-        return from_si(self._force / self.problem.normal_force, "")
+        return from_si(self._solution.force / self.problem.normal_force, "")
 
     @property
     def wear_index(self) -> Quantity:
@@ -387,7 +338,7 @@ class Prediction:
         This is the energy that the creepages feed in (Tassini et al. 2010, eq. 5). The energy that the nodes of the
         patch dissipate is `cell_wear_index`.
         """
-        return from_si(self._wear_index, "N")
+        return from_si(self._solution.power, "N")
 
     @property
     def cell_wear_index(self) -> Quantity:
@@ -395,7 +346,7 @@ class Prediction:
 
         Local wear laws see this energy. In the simplified theory with spin it differs from `wear_index`.
         """
-        return from_si(self._slip.cell_wear_index, "N")
+        return from_si(self._solution.slip.cell_wear_index, "N")
 
     @property
     @steady
@@ -405,20 +356,20 @@ class Prediction:
         The mean slip of the slipping part of the patch times the sum of the tractions. It exceeds the dissipated energy
         wherever part of the patch sticks; `wear_index` is consistent with the dissipated energy.
         """
-        slip = self._slip
+        slip = self._solution.slip
         slipping = np.divide(
             slip.mean_slip * slip.patch_area,
             slip.slip_area,
             out=np.zeros_like(slip.slip_area),
             where=slip.slip_area > 0,
         )
-        return from_si(slipping * np.abs(self._force), "N")
+        return from_si(slipping * np.abs(self._solution.force), "N")
 
     @property
     @steady
     def wear_index_density(self) -> Quantity:
         """Wear index over the area of the patch, Tγ/A [N/m²]."""
-        return from_si(self._wear_index / self._patch_area, "N/mm^2")
+        return from_si(self._solution.power / self._solution.patch_area, "N/mm^2")
 
     @property
     def normal_force(self) -> Quantity:
@@ -482,65 +433,63 @@ class Prediction:
     @property
     def first_yield(self) -> Quantity:
         """Maximum pressure at which a body first yields under this traction [Pa]; see `elastic_limit`."""
-        return from_si(self._elastic_limits[0], "MPa")
+        return from_si(self._solution.elastic_limits[0], "MPa")
 
     @property
     def shakedown_limit(self) -> Quantity:
         """Maximum pressure at the shakedown limit under this traction [Pa]; see `elastic_limit`."""
-        return from_si(self._elastic_limits[1], "MPa")
+        return from_si(self._solution.elastic_limits[1], "MPa")
 
     @property
     def outside_range(self) -> Quantity:
         """1 where a point lies outside the range or the materials that a law was fitted to, otherwise 0 [-]."""
-        problem = self.problem
-        columns = {**asdict(self._forces), "patch_area": self._patch_area}
+        problem, solution = self.problem, self._solution
+        if not self.laws:
+            solution.law()  # raises
+        totals = Totals.of_forces(solution.forces)._replace(patch_area=solution.patch_area)
         outside = np.zeros(problem.batch_shape, dtype=np.bool_)
-        for law in self._some_laws:
-            outside |= outside_range(problem, columns, law) | bool(other_materials(problem.bodies, law))
+        for law in self.laws:
+            outside |= outside_range(problem, totals, law) | bool(other_materials(problem.bodies, law))
         marks = outside.astype(np.float64)
         return from_si(marks if problem.exists is None else np.where(problem.exists, marks, np.nan), "")
 
     @property
     def patch_area(self) -> Quantity:
         """Area of the patch, A [m²], the sum of its nodes' areas; in Hertz's theory 2a × track width, or πab."""
-        return from_si(self._patch_area, "mm^2")
+        return from_si(self._solution.patch_area, "mm^2")
 
     @property
     def stick_ratio(self) -> Quantity:
         """Share of the patch that sticks [-]."""
-        return from_si(1.0 - self._slip.slip_area / self._slip.patch_area, "")
+        return from_si(1.0 - self._solution.slip.slip_area / self._solution.slip.patch_area, "")
 
     @property
     def mean_slip(self) -> Quantity:
         """Mean magnitude of the relative slip over the whole patch [-]."""
-        return from_si(self._slip.mean_slip, "%")
+        return from_si(self._solution.slip.mean_slip, "%")
 
-    @cached_property
+    @property
     def contact(self) -> Contact:
         """The solved contact as SI arrays, on nodes that suit the law or that the contact model chose."""
-        if self._solved is not None:
-            return self._solved.unflattened(self.problem)
-        if self._whole is not None and self.problem.size == 0:  # a missing patch alone has no nodes
-            whole, chosen = self._whole
-            return whole.contact.mapped(chosen.of).replaced(problem=self.problem)
-        if self.problem.geometry != "line" or len(self.laws) != 1:
-            return integrate.solve(self._model, self.problem)
-        contact = integrate.contact_for(self._model, self.laws[0], self.problem.flatten())
-        return contact.unflattened(self.problem)
+        return self._solution.contact
 
-    @cached_property
+    @property
     def profile(self) -> xarray.Dataset:
         """Pressure, traction, traction bound, slip and outcomes along the patch of a line, with units."""
-        local = {
-            name: (self.laws[index].checked_rate(self._cells()), self.laws[index].outcome.unit)
-            for name, index in named_outcomes(self.laws).items()
-            if self.laws[index].outcome.of == "area mean"
+        contact = self._cells()
+        columns = {
+            name: (getattr(contact, name), UNITS[name])
+            for name in ("x", "pressure", "traction", "traction_bound", "slip")
         }
-        return self._profile(local)
+        for name, index in named_outcomes(self.laws).items():
+            law = self.laws[index]
+            if law.outcome.of == "area mean":
+                columns[name] = law.checked_rate(contact), law.outcome.unit
+        return along_patch(self.problem, columns)
 
     def _cells(self) -> Contact:
         """Return the contact of the existing patches, on uniform cells if the model can give them."""
-        model, problem = self._model, self.problem
+        model, problem = self._solution.model, self.problem
         problem.needs("line", "profile")
         if problem.size == 0:
             raise InputError("profile: none of these patches exists; select others")
@@ -549,12 +498,6 @@ class Prediction:
             return Solver(model).at(there, uniform_cells(there.half_width, PROFILE_CELLS), totals=False)
         return self.contact if problem.exists is None else self.contact[problem.exists]
 
-    def _profile(self, more: dict[str, tuple[Array, str]]) -> xarray.Dataset:
-        contact = self._cells()
-        names = ("x", "pressure", "traction", "traction_bound", "slip")
-        return along_patch(self.problem, {**{name: (getattr(contact, name), UNITS[name]) for name in names}, **more})
-
-    @steady
     def wear_profile(self, body: str, strips: int | None = None, at: QuantityLike | None = None) -> xarray.Dataset:
         """Return the depth lost and the distance slid across an elliptic patch, over y.
 
@@ -591,48 +534,7 @@ class Prediction:
         CompositionError
             If the contact is a line or is not resolved across the patch.
         """
-        problem, worn = self.problem, self.problem.body(body)
-        radius, density = np.asarray(worn.rolling_radius), self._density(body)
-        if problem.geometry == "line":
-            raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
-        if self.scale == "patch":
-            raise CompositionError(
-                f"wear_profile: {self._model!r} gives means of the whole patch; take a contact model that"
-                ' resolves it, such as wl.contact_model("fastsim")'
-            )
-        if strips is not None and (
-            isinstance(strips, bool) or not isinstance(strips, int) or not 2 <= strips <= MOST_STRIPS
-        ):
-            raise InputError(
-                f"strips: must be a whole number from 2 to {MOST_STRIPS}, such as 101; got {shown(strips)}"
-            )
-        index = self._wear_law(body)
-        self._warn_of(index, body, stacklevel=4)  # the decorator counts
-        across = self._across(index, body, strips)
-        turns = bool(np.isfinite(radius).any())
-        once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
-        units = ("um/km", "mm/m") if turns else ("nm", "um")
-        per = "metre rolled" if turns else "passage of a wheel"
-        depth = across.wear / (density * once)
-        columns = {"depth": (depth, units[0]), "sliding_distance": (across.slid / once, units[1])}
-        if problem.contact_angle is not None:
-            angle = problem.contact_angle[..., None]
-            columns["depth_vertical"] = depth * np.cos(angle), units[0]
-            columns["depth_lateral"] = depth * np.abs(np.sin(angle)), units[0]
-        if at is not None:
-            return on_profile(problem, worn, across.y, across.width, columns, per, at)
-        return across_patch(problem, worn, across.y, columns, per)
-
-    def _across(self, index: int, body: str, strips: int | None) -> integrate.Across:
-        """Return the wear and slip of a law along strips, which are NaN for missing patches."""
-        kept = self._solved_totals.across[index] if strips is None and self._kept_for(index, body) else None
-        if kept is not None:
-            return kept
-        if self.problem.size == 0 and self._whole is not None:  # a missing patch alone has no strips
-            whole, chosen = self._whole
-            return integrate.Across(*map(chosen.of, whole._across(index, body, strips)))
-        law = self._law_of(index, body)
-        return integrate.integrate_across(self._model, law, self.problem, strips, self._solved)
+        return worn.wear_profile(self._solution, body, strips, at)
 
     @property
     def wear_rate(self) -> Quantity:
@@ -641,7 +543,7 @@ class Prediction:
         If the law gives a volume and the densities of the bodies differ, the mass is that of body 1. With a single law
         for one body it is the wear of that body; if each body has its own law, take `wear_rate_of`.
         """
-        return from_si(self._solved_totals.values[self._wear_law()], WEAR_RATE)
+        return from_si(self._solution.value(self._solution.law()), WEAR_RATE)
 
     def wear_rate_of(self, body: str) -> Quantity:
         """Return the mass that a body loses per metre rolled and contact area, mean over the patch [kg/m/m²].
@@ -651,31 +553,17 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        return from_si(self._of_body(self._wear_law(body), body, stacklevel=3), WEAR_RATE)
+        return from_si(self._solution.value(self._solution.law(body=body), body), WEAR_RATE)
 
-    @cached_property
+    @property
     def wear_rate_error(self) -> Quantity:
         """Estimate of the error in `wear_rate` [kg/m/m²]; slow on an ellipse, which it solves again.
 
         It is the numerical error. If the contact model does not claim the energy balance, the rate of the energy that
         its nodes lack is added, as for a law in proportion to q·s; it is infinite if no node dissipates any energy.
         """
-        return from_si(self._whole_error(self._wear_law()), WEAR_RATE)
+        return self._error(self._solution.law())
 
-    @steady
-    def _whole_error(self, index: int) -> Array:
-        """Return the numerical error of an outcome and, without energy balance, that of the energy that nodes lack."""
-        error = self.error_of_law(index)
-        lacks = self.laws[index].outcome.of == "area mean" and "energy_balance" in self.contact_model.exemptions
-        if not lacks or self.scale != "cells":
-            return error
-        found = self._slip.cell_wear_index
-        lacking = np.abs(self.problem.power(self._forces) - found)
-        none = found <= 0.0  # False for the NaN of a missing patch
-        share = np.divide(lacking, found, out=np.zeros_like(found), where=~none)
-        return error + np.where(none & (lacking > 0.0), np.inf, np.abs(self._solved_totals.values[index]) * share)
-
-    @steady
     def depth_per_distance(self, body: str) -> Quantity:
         """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
 
@@ -688,26 +576,22 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        length = 0.5 * self._patch_area / self.problem.b
-        return from_si(self._volume_rate(body) * (length / self._circumference(body)), "um/km")
+        return from_si(worn.depth_per_distance(self._solution, body), "um/km")
 
-    @steady
     def profile_area_rate(self, body: str) -> Quantity:
         """Return the area of a radial section that a body loses per distance rolled [mm²/km].
 
         This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351, after Tassini et al.
         2010, section 4.1): the depth per distance, times the width of the patch.
         """
-        section = self._volume_rate(body) * self._patch_area / self._circumference(body)
-        return from_si(section, "mm^2/km")
+        return from_si(worn.section_per_distance(self._solution, body), "mm^2/km")
 
     @property
     @steady
     def mass_per_distance(self) -> Quantity:
         """Mass that a body loses per metre rolled [kg/m]; of body 1, like `wear_rate`."""
-        return from_si(self._solved_totals.values[self._wear_law()] * self._patch_area, "ug/m")
+        return from_si(self._solution.value(self._solution.law()) * self._solution.patch_area, "ug/m")
 
-    @steady
     def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
         """Return the mass that a body loses over a distance rolled [kg]; a rail loses it along the whole distance.
 
@@ -718,129 +602,18 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        distance, mass = Unit("km").si(over, "over"), self._mass_per_distance(body)
-        try:
-            lost = mass * distance
-        except ValueError:
-            raise InputError(
-                f"over: an array of shape {distance.shape} does not broadcast to the operating points, of shape"
-                f" {mass.shape}; give one distance, or one for each point"
-            ) from None
-        return from_si(lost, "mg")
+        return from_si(worn.mass_lost(self._solution, over, body), "mg")
 
-    @steady
     def mass_per_cycle(self, body: str) -> Quantity:
         """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
-        return from_si(self._mass_per_distance(body) * self._circumference(body), "ug")
-
-    def _wear_law(self, body: str | None = None) -> int:
-        """Return the index of the wear law, for a body if it is given."""
-        return law_among(self.laws, self.contact_model, WEAR, body)
-
-    @property
-    def _some_laws(self) -> tuple[Law, ...]:
-        """The laws; a `CompositionError` if the pipeline has none."""
-        if not self.laws:
-            self._wear_law()  # raises
-        return self.laws
-
-    @cached_property
-    def _forces(self) -> CreepForces:
-        if self._given_forces is not None:
-            return self._given_forces
-        return integrate.integrate_forces(self._model, self.problem)
-
-    @cached_property
-    def _force(self) -> Array:
-        """Tangential force [N]; its magnitude on an ellipse."""
-        return self._forces.longitudinal if self.problem.geometry == "line" else self._forces.tangential
-
-    @cached_property
-    def _elastic_limits(self) -> tuple[Array, Array]:
-        return elastic_limits(self.problem, np.abs(self._force))
-
-    @cached_property
-    def _wear_index(self) -> Array:
-        return self.problem.power(self._forces)
-
-    @cached_property
-    def _slip(self) -> SlipTotals:
-        if self._totals is not None and self._totals.slip is not None:
-            return self._totals.slip
-        if self._whole is not None:
-            whole, chosen = self._whole
-            return chosen.of_slip(whole._slip)
-        return integrate.integrate_slip(self._model, self.problem, self._solved)
-
-    @property
-    def _solved(self) -> Contact | None:
-        """The contact solved for the laws, of the batch shape or with one batch axis; None if it was not kept."""
-        return None if self._totals is None else self._totals.contact
-
-    @cached_property
-    def _patch_area(self) -> Array:
-        if self._totals is None:
-            if self._whole is not None:
-                whole, chosen = self._whole
-                return chosen.of(whole._patch_area)
-            return integrate.patch_area(self._model, self.problem)
-        return self.problem.patch_area if self._totals.patch_area is None else self._totals.patch_area
-
-    @property
-    def _solved_totals(self) -> Totals:
-        """The outcomes of the laws; a `CompositionError` if the pipeline has no law."""
-        self._some_laws  # noqa: B018  raises without a law
-        assert self._totals is not None
-        return self._totals
-
-    def _mass_per_distance(self, body: str) -> Array:
-        return self._rate(body) * self._patch_area
-
-    def _volume_rate(self, body: str) -> Array:
-        return self._rate(body) / self._density(body)
-
-    def _rate(self, body: str) -> Array:
-        return self._of_body(self._wear_law(body), body, stacklevel=6)  # the decorator of the callers counts
-
-    def _of_body(self, index: int, body: str, stacklevel: int) -> Array:
-        """Return the outcome of a law for a body; a law for every body is evaluated again if the materials differ."""
-        self.problem.body(body)  # raises unless it is one of them
-        kept = self._kept_for(index, body)
-        self._warn_of(index, body, stacklevel + 1)
-        if kept:
-            return self._solved_totals.values[index]
-        return integrate.integrate_laws(self._model, (self._law_of(index, body),), self.problem).values[0]
-
-    def _kept_for(self, index: int, body: str) -> bool:
-        """Return whether the results of a law hold for a body."""
-        problem = self.problem
-        return problem.worn_on(body) is problem or self.laws[index].body is not None or problem.size == 0
-
-    def _law_of(self, index: int, body: str) -> Law:
-        law = self.laws[index]
-        return law if law.body is not None else law.model_copy(update={"body": body})
-
-    def _warn_of(self, index: int, body: str, stacklevel: int) -> None:
-        """Warn once if a law for every body was fitted to the other body; `stacklevel` 1 is this method."""
-        if self.laws[index].body is None and (index, body) not in self._asked_for:
-            self._asked_for.add((index, body))
-            warn_of_body(self.problem.bodies, self.laws[index], body, stacklevel + 1)
-
-    def _density(self, body: str) -> float:
-        return scalar_si(self.problem.body(body).material.density, "kg/m^3")
-
-    def _circumference(self, body: str) -> float | Array:
-        radius = self.problem.body(body).rolling_radius
-        if np.isinf(radius).any():
-            raise InputError(f"body: {body} is flat and makes no revolutions; name the other body")
-        return 2.0 * np.pi * radius
+        return from_si(worn.mass_per_cycle(self._solution, body), "ug")
 
     def __repr__(self) -> str:
         return "".join([self._head, *(f"\n  {name:<20} {text}" for name, text in self._summary.items())])
 
     def _repr_html_(self) -> str:
         models = ", ".join(model.name for model in (self.contact_model, *self.laws))
-        lines = [f"<b>{escape(self._head)}</b>", *map(escape, (models, self._conditions.text()))]
+        lines = [f"<b>{escape(self._head)}</b>", *map(escape, (models, self._solution.conditions.text()))]
         rows = "".join(
             f"<tr><td>{escape(long_name(name, self.laws))}</td><td><code>{escape(name)}</code></td>"
             f"<td>{escape(text)}</td></tr>"
@@ -872,36 +645,35 @@ def solved(
     problem: Problem,
     watch: RangeWatch,
     on_block: Callable[[int], None] | None = None,
+    given: Mapping[str, Any] | None = None,
 ) -> Prediction:
     """Return the prediction of laws in the contacts of a model, without warnings; `watch` sees the operating points.
 
-    `on_block` is called after each block with the number of its operating points.
+    `on_block` is called after each block with the number of its operating points. `given` are the conditions.
     """
 
-    def see(part: Problem, columns: Columns) -> None:
-        watch.see_block(part, columns)
+    def see(part: Problem, totals: Totals) -> None:
+        watch.see(part, totals)
         if on_block is not None:
             on_block(part.size)
 
     totals = integrate.integrate_laws(model, laws, problem, see)
-    found = Prediction(problem, model, laws, forces=totals.forces, totals=totals)
+    solution = Solution(problem, model, laws, totals, given)
     for index, law in enumerate(laws):
         if law.outcome.of == "patch":
             law.check_not_negative(totals.values[index])
         else:
-            law.check_not_negative(totals.values[index], partial(found.error_of_law, index))
-    return found
+            law.check_not_negative(totals.values[index], partial(solution.error, index))
+    return Prediction(solution)
 
 
 def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Prediction:
     """Return a prediction of zeros, with all names and units of the solved one, at no cost."""
     none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
-    forces = CreepForces(longitudinal=none, lateral=none, spin_moment=none)
     every = (none,) * len(laws)
-    totals = Totals(values=every, errors=every, patch_area=one, across=(None,) * len(laws))
-    found = Prediction(problem, model, laws, forces=forces, totals=totals)
-    found._slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
-    return found
+    slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
+    totals = Totals(every, every, none, none, none, patch_area=one, slip=slip, across=(None,) * len(laws))
+    return Prediction(Solution(problem, model, laws, totals))
 
 
 def _brief(quantity: Quantity) -> str:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,17 +9,31 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array, extremes, steady
 from wearlaw.contact.elastic_limit import Overload, first_yield, overload, shakedown_limit
-from wearlaw.contact.problem import CreepForces, Problem
-from wearlaw.errors import CompositionError, ModelError, RangeWarning
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import CompositionError, RangeWarning, warn
 from wearlaw.models.contact_model import Blame
 from wearlaw.models.law import Law
-from wearlaw.numerics.blocks import Columns
-from wearlaw.numerics.integrate import SLIDING
+from wearlaw.numerics.totals import Totals
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import UNITS
 
-SLIDING_TOLERANCE = 0.05
-"""Share by which μ∫p·s dA may differ from Tγ without a warning."""
+SLIDING = "sliding_ratio"
+"""Name of `Totals.sliding` among the variables that a watch sees."""
+
+SLIDING_RANGE = 0.95, 1.05
+"""μ∫p·s dA over Tγ without a warning."""
+
+
+class Seen(NamedTuple):
+    """The extremes of a variable among points some of which are out of range [SI], and the number of these."""
+
+    lowest: float
+    highest: float
+    outside: int
+
+    def farthest(self, low: float, high: float) -> float:
+        """Return the extreme that lies farther outside."""
+        return self.highest if self.highest - high >= low - self.lowest else self.lowest
 
 
 class RangeWatch:
@@ -32,6 +43,8 @@ class RangeWatch:
 
     Attributes
     ----------
+    points : int
+        The number of points seen.
     seen : dict of str to Seen
         The points outside, by the index of the law and the variable that leaves its range, as in "0 pressure", or by
         `SLIDING`.
@@ -53,105 +66,63 @@ class RangeWatch:
         self.points = 0
         self.overload: Overload | None = None
 
-    def see(self, points: int, mean_over_patch: Callable[[str], Array]) -> None:
-        """Record a number of operating points; `mean_over_patch` returns the mean of a variable of `Contact` in SI."""
-        self.points += points
+    def see(self, part: Problem, totals: Totals) -> None:
+        """Record a block of operating points."""
+        self.points += part.size
         for key, (low, high) in self.ranges.items():
-            self._see_outside_of(key, mean_over_patch(key.partition(" ")[2]), low, high)
+            self._see_values(key, totals.mean(part, key.partition(" ")[2]), low, high)
+        if totals.sliding is not None:
+            self._see_values(SLIDING, totals.sliding, *SLIDING_RANGE)
+        self.overload = overload_of(part, totals.tangential_force(), self.overload)
 
-    def see_block(self, part: Problem, columns: Columns) -> None:
-        """Record a block of operating points, with forces [N] and areas [m²] in columns."""
-        self.see(part.size, partial(mean_over_patch, part, columns))
-        self.see_overload(overload_of(part, tangential_force(part, columns)))
-        if SLIDING in columns:
-            self._see_outside_of(SLIDING, columns[SLIDING], 1.0 - SLIDING_TOLERANCE, 1.0 + SLIDING_TOLERANCE)
-
-    def _see_outside_of(self, key: str, values: Array, low: float, high: float) -> None:
+    def _see_values(self, key: str, values: Array, low: float, high: float) -> None:
         lowest, highest = extremes(values)
         if lowest < low or highest > high:
             self.see_outside(key, Seen(lowest, highest, int(((values < low) | (values > high)).sum())))
 
     def see_outside(self, key: str, more: Seen) -> None:
         """Record points outside the range of a law, by a key as in `seen`."""
-        known = self.seen.get(key, more)
-        outside = more.outside if known is more else known.outside + more.outside
-        self.seen[key] = Seen(min(known.lowest, more.lowest), max(known.highest, more.highest), outside)
+        known = self.seen.get(key, Seen(more.lowest, more.highest, 0))
+        self.seen[key] = Seen(
+            min(known.lowest, more.lowest), max(known.highest, more.highest), known.outside + more.outside
+        )
 
-    def see_overload(self, overload: Overload | None) -> None:
-        """Record an operating point beyond first yield if none so far lies further beyond."""
-        if overload is not None:
-            self.overload = overload if self.overload is None else max(self.overload, overload)
-
-    def warn(self, stacklevel: int) -> None:
-        """Warn of points beyond first yield or out of range; `stacklevel` 1 is the caller."""
+    def warn(self) -> None:
+        """Warn of points beyond first yield or out of range."""
         if self.overload is not None:
-            self.overload.warn(stacklevel + 1)
-        for key, (low, high) in self.ranges.items():
+            self.overload.warn()
+        for key, ends in self.ranges.items():
             if key in self.seen:
                 index, _, name = key.partition(" ")
-                law, seen = self.laws[int(index)], self.seen[key]
-                calibration = law.calibration
-                farthest = seen.highest if seen.highest > high else seen.lowest
-                shown = [repr(from_si(value, UNITS[name])) for value in (low, high, farthest)]
-                lie = "lies" if seen.outside == 1 else "lie"
+                law, calibration = self.laws[int(index)], self.laws[int(index)].calibration
+                low, high, far = (
+                    repr(from_si(value, UNITS[name])) for value in (*ends, self.seen[key].farthest(*ends))
+                )
                 source = f" ({calibration.source})" if calibration and name in calibration.range_in_si else ""
-                warnings.warn(
-                    f"{law.kind} '{law.name}' has a known range of mean {name.replace('_', ' ')} from {shown[0]} to"
-                    f" {shown[1]}{source}; {seen.outside} of {self.points} {self.counted} {lie} outside, as far"
-                    f" as {shown[2]}",
+                warn(
+                    f"{law.kind} '{law.name}' has a known range of mean {name.replace('_', ' ')} from {low} to"
+                    f" {high}{source}; {self._lie(key)} outside, as far as {far}",
                     RangeWarning,
-                    stacklevel=stacklevel + 1,
                 )
         if SLIDING in self.seen:
-            seen = self.seen[SLIDING]
-            farthest = seen.highest if seen.highest - 1.0 >= 1.0 - seen.lowest else seen.lowest
-            laws = [f"{law.kind} '{law.name}'" for law in self.laws if law.follows_pressure_times_slip]
-            lie = "lies" if seen.outside == 1 else "lie"
-            warnings.warn(
-                f"{' and '.join(dict.fromkeys(laws))}: the rate follows pressure times slip, p·s, but where the"
-                " contact slips its traction is not μp, as with the parabolic bound of fastsim. ∫p·s dA is then not"
-                " Tγ/μ, and the rate is off by about the same factor. The two agree with exact, for discs, and with"
-                f" strip_theory, for wheels; {seen.outside} of {self.points} {self.counted} {lie} more than"
-                f" {100.0 * SLIDING_TOLERANCE:.0f} % off, as far as {farthest:.3g} times Tγ/μ",
+            laws = dict.fromkeys(f"{law.kind} '{law.name}'" for law in self.laws if law.follows_pressure_times_slip)
+            warn(
+                f"{' and '.join(laws)}: the rate follows pressure times slip, p·s, but where the contact slips its"
+                " traction is not μp, as with the parabolic bound of fastsim. ∫p·s dA is then not Tγ/μ, and the rate is"
+                " off by about the same factor. The two agree with exact, for discs, and with strip_theory, for wheels;"
+                f" {self._lie(SLIDING)} more than 5 % off, as far as"
+                f" {self.seen[SLIDING].farthest(*SLIDING_RANGE):.3g} times Tγ/μ",
                 RangeWarning,
-                stacklevel=stacklevel + 1,
             )
 
-
-class Seen(NamedTuple):
-    """The extremes of a variable among points some of which are out of range [SI], and the number of these."""
-
-    lowest: float
-    highest: float
-    outside: int
+    def _lie(self, key: str) -> str:
+        """Return how many points lie outside, as the beginning of a clause."""
+        outside = self.seen[key].outside
+        return f"{outside} of {self.points} {self.counted} {'lies' if outside == 1 else 'lie'}"
 
 
-def mean_over_patch(problem: Problem, columns: Columns, variable: str) -> Array:
-    """Return the mean of a variable of `Contact` over the patch, from forces [N] and areas [m²] in columns.
-
-    The slip is the rigid slip, as in `Contact.of_patch`.
-    """
-    match variable:
-        case "slip":
-            return problem.rigid_slip
-        case "slip_speed":
-            return problem.rigid_slip * problem.rolling_speed
-        case "wear_index":
-            return _power(problem, columns)
-    area = columns.get("patch_area", problem.patch_area)
-    match variable:
-        case "pressure":
-            return problem.normal_force / area
-        case "traction":
-            return tangential_force(problem, columns) / area
-        case "wear_index_density":
-            return _power(problem, columns) / area
-        case "frictional_power_density":
-            return _power(problem, columns) / area * problem.rolling_speed
-    raise ModelError(f"`valid_range` names '{variable}', which is no variable of a contact that has a patch mean")
-
-
-def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
+@steady
+def overload_of(problem: Problem, tangential_force: Array, worst: Overload | None = None) -> Overload | None:
     """Return the operating point furthest beyond first yield of a body, or None if all are elastic.
 
     Parameters
@@ -159,10 +130,12 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
     problem : Problem
     tangential_force : ndarray
         Magnitude of the tangential force [N], of the batch shape; NaN where there is no patch.
+    worst : Overload, optional
+        The furthest of other points.
     """
     strengths = {body.strength for body in problem.bodies.values() if body.strength is not None}
     if not strengths:
-        return None
+        return worst
     if problem.exists is not None:
         tangential_force, problem = tangential_force[problem.exists], problem.existing()
     return overload(
@@ -171,15 +144,16 @@ def overload_of(problem: Problem, tangential_force: Array) -> Overload | None:
         tangential_force / problem.normal_force,
         problem.friction_coefficient,
         None if problem.geometry == "line" else problem.a / problem.b,
+        worst,
     )
 
 
 @steady
-def outside_range(problem: Problem, columns: Columns, law: Law) -> NDArray[np.bool_]:
+def outside_range(problem: Problem, totals: Totals, law: Law) -> NDArray[np.bool_]:
     """Return at which operating points a mean over the patch lies outside the law's range, of the batch shape."""
     outside = np.zeros(problem.batch_shape, dtype=np.bool_)
     for name, (low, high) in law.valid_range.items():
-        values = mean_over_patch(problem, columns, name)
+        values = totals.mean(problem, name)
         outside |= (values < low) | (values > high)
     return outside
 
@@ -215,16 +189,3 @@ def elastic_limits(problem: Problem, tangential_force: Array) -> tuple[Array, Ar
     ]
     limits[:, there] = np.min(found, axis=0)
     return limits[0], limits[1]
-
-
-def tangential_force(problem: Problem, columns: Columns) -> Array:
-    """Return the magnitude of the tangential force [N]."""
-    if problem.geometry == "line":  # zero lateral forces would add a tenth to the time of a prediction
-        return np.abs(columns["longitudinal"])
-    return CreepForces.of(columns).tangential
-
-
-def _power(problem: Problem, columns: Columns) -> Array:
-    if problem.geometry == "line":
-        return problem.longitudinal_creepage * columns["longitudinal"]
-    return problem.power(CreepForces.of(columns))

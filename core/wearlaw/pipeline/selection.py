@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
-from wearlaw.numerics.integrate import Across, SlipTotals, Totals
 from wearlaw.units.variables import name_of
 
 Label: TypeAlias = str | int
@@ -139,27 +138,7 @@ class Selection:
             exists = None
         return problem.mapped(self.of, self.of).replaced(dims=dims, exists=exists)
 
-    def of_forces(self, forces: CreepForces) -> CreepForces:
-        """Return the forces at the chosen entries."""
-        return CreepForces(**{name: self.of(getattr(forces, name)) for name in CreepForces.__slots__})
-
-    def of_slip(self, slip: SlipTotals) -> SlipTotals:
-        """Return the slip at the chosen entries."""
-        return SlipTotals(**{name: self.of(getattr(slip, name)) for name in SlipTotals.__slots__})
-
-    def of_totals(self, totals: Totals, problem: Problem) -> Totals:
-        """Return the totals at the chosen entries; `problem` is that of all entries."""
-        return Totals(
-            values=tuple(map(self.of, totals.values)),
-            errors=tuple(None if error is None else self.of(error) for error in totals.errors),
-            forces=totals.forces and self.of_forces(totals.forces),
-            patch_area=None if totals.patch_area is None else self.of(totals.patch_area),
-            contact=totals.contact and self._of_solved(totals.contact, problem),
-            slip=totals.slip and self.of_slip(totals.slip),
-            across=tuple(one and Across(*map(self.of, one)) for one in totals.across),
-        )
-
-    def _of_solved(self, contact: Contact, problem: Problem) -> Contact:
+    def of_solved(self, contact: Contact, problem: Problem) -> Contact:
         """Return the chosen ones of the existing patches, which lie along the one batch axis of a solved contact."""
         if not problem.batch_shape:  # a single point
             return contact

@@ -25,8 +25,10 @@ from wearlaw.models.law import Law
 from wearlaw.models.stage import Stage
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
+from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw.settings.configuration import Configuration, known_name
 from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.settings.text_files import beside
 
 if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler
@@ -56,15 +58,16 @@ def specification(model: Model) -> dict[str, Any]:
 
 def _maker(look_up: Callable[..., Model]) -> Callable[[Any], Any]:
     def make(value: Any) -> Any:
-        if isinstance(value, str):
-            return look_up(value)
-        if isinstance(value, dict):
-            options = dict(value)
-            name = options.pop("model", None)
-            if not isinstance(name, str):
-                raise InputError('a model needs its name, as in {model = "exact"}')
-            return look_up(name, **options)
-        return value
+        options = {"model": value} if isinstance(value, str) else value
+        if not isinstance(options, dict):
+            return value
+        options = dict(options)
+        name = options.pop("model", None)
+        if not isinstance(name, str):
+            raise InputError('a model needs its name, as in {model = "exact"}')
+        if is_law_file(name):
+            return read_law(beside(name)).changed(**options)
+        return look_up(name, **options)
 
     return make
 

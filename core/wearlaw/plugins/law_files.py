@@ -17,6 +17,11 @@ DIGESTS = "digests_of_tests"
 """The entry of the provenance with the digests of the tests of a fit."""
 
 
+def is_law_file(name: str) -> bool:
+    """Return whether the name of a law is the path of a file of a law, such as "fit/law.toml"."""
+    return name.endswith(".toml")
+
+
 def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
     """Return the contents of a TOML file; errors name it by its subject.
 

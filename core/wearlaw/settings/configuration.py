@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from threading import RLock
 from types import NoneType
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, get_args, get_origin
 
 import pint
 from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
+from pydantic.json_schema import GenerateJsonSchema
 
 from wearlaw.errors import (
     ConfigurationError,
@@ -17,7 +17,7 @@ from wearlaw.errors import (
     did_you_mean,
     shown,
 )
-from wearlaw.settings.docstrings import field_docstrings, place_of_statement
+from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import full_text, plain_number
 
 if TYPE_CHECKING:
@@ -31,6 +31,13 @@ LINE = 100
 """Most characters on a line of a record or a pipeline that is shown."""
 
 ConfigurationT = TypeVar("ConfigurationT", bound="Configuration")
+
+
+class _Schema(GenerateJsonSchema):
+    """JSON Schema in which a default that is a quantity is its text, as in a file."""
+
+    def encode_default(self, dft: Any) -> Any:
+        return full_text(dft) if isinstance(dft, pint.Quantity) else super().encode_default(dft)
 
 
 class Configuration(BaseModel):
@@ -47,6 +54,11 @@ class Configuration(BaseModel):
         defer_build=True,
         ser_json_inf_nan="strings",
     )
+
+    @classmethod
+    def model_json_schema(cls, *args: Any, **options: Any) -> dict[str, Any]:
+        """Return the JSON Schema of the record, with text for quantities."""
+        return super().model_json_schema(*args, **{"schema_generator": _Schema, **options})
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -69,7 +81,6 @@ class Configuration(BaseModel):
         @classmethod
         def __pydantic_init_subclass__(cls, **options: Any) -> None:
             super().__pydantic_init_subclass__(**options)
-            cls._place = place_of_statement(cls)
             if not cls.__pydantic_complete__:
                 cls.__signature__ = _Signature()
 
@@ -141,11 +152,15 @@ class Configuration(BaseModel):
         return repr(self)
 
     def __repr__(self) -> str:
-        return _in_lines(super().__repr__())
-
-    def __repr_args__(self) -> Any:
-        for name, value in super().__repr_args__():
-            yield name, _Text(full_text(value)) if isinstance(value, pint.Quantity) else value
+        text = f"{self.__repr_name__()}("
+        for name, value in self.__repr_args__():
+            shown = full_text(value) if isinstance(value, pint.Quantity) else repr(value)
+            field = shown if name is None else f"{name}={shown}"
+            start = text.rfind("\n") + 1
+            if len(text) - start + len(field.partition("\n")[0]) >= LINE and text[start:].strip():
+                text = text.rstrip() + "\n    "
+            text += f"{field}, "
+        return text.removesuffix(", ") + ")"
 
 
 def _is_number(annotation: Any) -> bool:
@@ -192,28 +207,6 @@ def known_as(name: str, record: ConfigurationT) -> ConfigurationT:
 def known_name(record: Configuration) -> str | None:
     """Return the name under which a record was looked up, or None if it was not looked up."""
     return vars(record).get("_known_as")
-
-
-_FIELD = re.compile(r"""(?:'(?:[^'\\]|\\.)*'|"(?:[^"\\]|\\.)*"|,(?!\s)|[^,])+(?:,\s+|$)""")
-"""A field of a record that is shown, up to the next one; a text between quotes may hold commas."""
-
-
-def _in_lines(shown: str) -> str:
-    """Break the text of a record between its fields, at any depth, so that lines are no longer than `LINE`."""
-    lines = [""]
-    for field in _FIELD.findall(shown):
-        if lines[-1].strip() and len(lines[-1]) + len(field.rstrip()) > LINE:
-            lines[-1] = lines[-1].rstrip()
-            lines.append(4 * " ")
-        lines[-1] += " ".join([field.rstrip(), ""]) if field != field.rstrip() else field
-    return "\n".join(lines)
-
-
-class _Text(str):
-    """A text with a repr without quotes."""
-
-    def __repr__(self) -> str:
-        return str(self)
 
 
 def configuration_error(subject: str, model: type[BaseModel], error: ValidationError) -> ConfigurationError:

@@ -8,8 +8,9 @@ packages and from `pint.set_application_registry`.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypeGuard
 
 import numpy as np
 import pint
@@ -37,8 +38,8 @@ if TYPE_CHECKING:
 else:
     Quantity = pint.Quantity
 
-QuantityLike: TypeAlias = Quantity | str
-"""A quantity, or its text such as "47 mm"."""
+QuantityLike: TypeAlias = Quantity | str | Sequence[Quantity | str]
+"""A quantity, or its text such as "47 mm", or a list of these."""
 
 
 def Q(value: ArrayLike, unit: str) -> Quantity:
@@ -71,18 +72,35 @@ def Q(value: ArrayLike, unit: str) -> Quantity:
     return result
 
 
-def parse(text: str) -> Quantity:
+def parse(value: QuantityLike) -> Quantity:
     """Return the quantity of a text such as "47 mm", "1e-3 %" or "0.01 dimensionless".
+
+    A list of texts or quantities becomes one quantity, in the unit of the first. A quantity stays as it is.
 
     Raises
     ------
     UnitError
-        If the text is not a number followed by a known unit.
+        If a text is not a number followed by a known unit, or the dimensions in a list differ.
     """
-    match = _QUANTITY_TEXT.fullmatch(text) if isinstance(text, str) and len(text) <= LONGEST else None
+    if isinstance(value, pint.Quantity):
+        return value
+    if with_units(value):
+        first, *others = map(parse, value)
+        try:
+            return Q([first.magnitude, *(one.m_as(first.units) for one in others)], str(first.units))
+        except pint.DimensionalityError as error:
+            raise UnitError(f"{shown(value)}: {error}") from None
+    match = _QUANTITY_TEXT.fullmatch(value) if isinstance(value, str) and len(value) <= LONGEST else None
     if match is None or not match["unit"]:
-        raise UnitError(f"{shown(text)} is not a number with a unit")
+        raise UnitError(f"{shown(value)} is not a number with a unit")
     return Q(float(match["number"]), match["unit"])
+
+
+def with_units(value: object) -> TypeGuard[Sequence[Quantity | str]]:
+    """Return whether a value is a list of quantities or their texts, such as [Q(1, "kN"), "2 kN"]."""
+    return (
+        isinstance(value, list | tuple) and bool(value) and all(isinstance(one, pint.Quantity | str) for one in value)
+    )
 
 
 def text_of(quantity: Quantity) -> str:
@@ -204,7 +222,7 @@ class Unit:
 
     @staticmethod
     def _as_quantity(value: object) -> Quantity:
-        if isinstance(value, str):
+        if isinstance(value, str) or with_units(value):
             return parse(value)
         if not isinstance(value, pint.Quantity):
             raise UnitError(f"got {_describe(value)}, which has no unit")
@@ -345,7 +363,8 @@ def plain_number(value: object) -> object:
 
 
 def _ratios(value: object) -> NDArray[np.float64]:
-    return _RATIO._checked(value)[1] if isinstance(value, pint.Quantity | str) else real_array(value)
+    of_units = isinstance(value, pint.Quantity | str) or with_units(value)
+    return _RATIO._checked(value)[1] if of_units else real_array(value)
 
 
 _RATIO, _AS_RATIO = Unit("", positive=False), "as a plain number or in percent, such as 0.3 or '30 %'"
@@ -374,9 +393,13 @@ def from_si(value: NDArray[np.float64] | float, unit: str) -> Quantity:
 
 
 Length = Annotated[Quantity, Unit("mm")]
+"""A field of a model that takes a length, as a quantity or its text."""
 Speed = Annotated[Quantity, Unit("m/s")]
+"""A field of a model that takes a speed, as a quantity or its text."""
 Stress = Annotated[Quantity, Unit("GPa")]
+"""A field of a model that takes a stress, as a quantity or its text."""
 Density = Annotated[Quantity, Unit("kg/m^3")]
+"""A field of a model that takes a density, as a quantity or its text."""
 WEAR_RATE = "ug/m/mm^2"
 """The unit for showing wear rates: mass lost per metre rolled and contact area."""
 

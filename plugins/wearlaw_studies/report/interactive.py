@@ -166,14 +166,10 @@ def _traces(curve: Curve, panel: Panel, number: str, dash: str) -> list[Json]:
         "line": {"color": colour, "dash": dash, "width": 2},
         "marker": marker,
         "hovertemplate": _hover(curve, panel),
-        "showlegend": not (curve.points and panel.y.names),  # the axis names them
+        "showlegend": True,
     }
     if 0 < len(lone) < np.isfinite(curve.y).sum():
         line |= {"selectedpoints": lone, "unselected": {"marker": {"opacity": 0}}}
-    for axis, values in ((panel.x, curve.x), (panel.y, curve.y)):
-        if axis.names:  # of each point the nearest one
-            nearest = np.clip(np.nan_to_num(values).round().astype(int), 0, len(axis.names) - 1)
-            line["text"] = [literal(axis.names[number]) for number in nearest]
     lines = [line]
     if outside is not None:
         thin = {"line": {**line["line"], "width": THIN}, "opacity": PALE, "showlegend": False}
@@ -183,9 +179,8 @@ def _traces(curve: Curve, panel: Panel, number: str, dash: str) -> list[Json]:
     line["customdata"] = [list(ends) for ends in zip(_numbers(curve.low), _numbers(curve.high), strict=True)]
     if not curve.points:
         return [{**common, **_band(curve, panel, colour), "showlegend": False}, *lines]
-    values, along = (curve.x, "x") if panel.y.names else (curve.y, "y")
-    ends = {"array": _numbers(curve.high - values), "arrayminus": _numbers(values - curve.low)}
-    line[f"error_{along}"] = {"type": "data", "symmetric": False, **ends, "color": colour, "thickness": 1.2}
+    ends = {"array": _numbers(curve.high - curve.y), "arrayminus": _numbers(curve.y - curve.low)}
+    line["error_y"] = {"type": "data", "symmetric": False, **ends, "color": colour, "thickness": 1.2}
     return lines
 
 
@@ -245,7 +240,7 @@ def _map(shown: Map, number: str, ends: Ends) -> list[Json]:
 def _hover(curve: Curve, panel: Panel) -> str:
     lines = [f"<b>{literal(curve.label)}</b>"]
     for axis, value in ((panel.x, "x"), (panel.y, "y")):
-        lines.append("%{text}" if axis.names else f"{literal(axis.label)}: %{{{value}:.4~g}}")
+        lines.append(f"{literal(axis.label)}: %{{{value}:.4~g}}")
     if curve.low is not None:
         lines.append("from %{customdata[0]:.4~g} to %{customdata[1]:.4~g}")
     return "<br>".join(lines) + "<extra></extra>"
@@ -274,6 +269,7 @@ def _axis(axis: PlotAxis) -> Json:
         "title": {"text": literal(axis.label)},
         "type": axis.scale,
         "exponentformat": "power",
+        "minexponent": 5,
         "automargin": True,
         "ticks": "outside",
         "showline": True,
@@ -285,8 +281,6 @@ def _axis(axis: PlotAxis) -> Json:
         described["range"] = ends[::-1] if axis.inverted else ends
     elif axis.inverted:
         described["autorange"] = "reversed"
-    if axis.names:
-        described |= {"tickvals": [*range(len(axis.names))], "ticktext": [literal(name) for name in axis.names]}
     return described
 
 

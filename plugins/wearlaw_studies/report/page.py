@@ -18,8 +18,8 @@ from wearlaw.version import __version__
 from wearlaw_output.curves import FigureData
 from wearlaw_output.styled import html_table
 from wearlaw_studies.report.interactive import plotly_figure
-from wearlaw_studies.report.main_result import main_caption, main_figure, main_result, main_table
-from wearlaw_studies.report.tables import models, parameters, profiles, summaries
+from wearlaw_studies.report.tables import main_table, models, of_section, parameters, profiles, summaries
+from wearlaw_studies.results import axes_of
 from wearlaw_studies.sections import VERDICTS, CheckedClaim, Verdict
 from wearlaw_studies.study import Study, used
 
@@ -34,20 +34,18 @@ def report(study: Study, case_text: str) -> str:
     case_text : str
         The case, as TOML.
     """
+    has_main = bool(axes_of(next(iter(study.sweeps.values()))))
     claims = [claim for section in study.sections for claim in section.claims]
-    main = main_result(study)
-    first = main_figure(main)
     return _template().render(
         study=study,
         notes=grouped(study.notes),
         case_text=case_text,
         claims=claims,
         counted=counted,
-        main_figure=first,
-        main_table=main_table(main),
-        main_caption=main_caption(main),
-        figures=[figure for figure in study.figures if figure is not first],
-        beyond_shakedown=any(map(has_strip, (first, *study.figures))),
+        main_table=main_table(study),
+        main_figures=study.figures[:has_main],
+        figures=study.figures[has_main:],
+        beyond_shakedown=any(map(has_strip, study.figures)),
         summaries=[*summaries(study), *profiles(study)],
         parameters=parameters(study),
         models=models(study),
@@ -68,7 +66,12 @@ def _template() -> Template:
         undefined=StrictUndefined,
     )
     environment.filters.update(
-        heading=_heading, paragraphs=paragraphs, plotly=plotly_figure, spaced=spaced, strip=has_strip, styled=html_table
+        heading=_heading,
+        paragraphs=paragraphs,
+        plotly=plotly_figure,
+        strip=has_strip,
+        styled=html_table,
+        tables=of_section,
     )
     return environment.get_template("report.html.j2")
 
@@ -97,11 +100,6 @@ def paragraphs(text: str) -> list[str]:
     return [part for part in re.split(r"\n\s*\n", text.strip()) if part]
 
 
-def spaced(name: str) -> str:
-    """Return the words of a name."""
-    return name.replace("_", " ").strip().capitalize()
-
-
 def _heading(figure: FigureData, study: Study) -> str:
     """Return the title of a figure, or its name in words if the title is that of the study."""
-    return figure.title if figure.title != study.case.title else spaced(figure.name)
+    return figure.title if figure.title != study.case.title else figure.name.replace("_", " ").capitalize()

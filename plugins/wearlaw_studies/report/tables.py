@@ -6,7 +6,9 @@ Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 from __future__ import annotations
 
 import itertools
+import warnings
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -14,17 +16,25 @@ import numpy as np
 import pandas as pd
 import pint
 import xarray
+from numpy.typing import NDArray
 
-from wearlaw.models.contact_model import Model
+from wearlaw.errors import InputError, WearlawWarning
+from wearlaw.models.contact_model import Blame, Model
 from wearlaw.models.labels import labelled
+from wearlaw.models.law import WEAR, Law
 from wearlaw.pipeline.variables import MASS
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.units.quantities import Q, from_si
 from wearlaw.units.registry import symbol
+from wearlaw.units.variables import UNITS, name_of, readable
 from wearlaw.units.variables import label as label_of
-from wearlaw.units.variables import name_of
+from wearlaw_fits.pairs import Pair
 from wearlaw_output.styled import Marked
+from wearlaw_studies.figures import main_result
 from wearlaw_studies.results import (
+    LIMITS,
+    SHAKEDOWN,
     Patch,
     along_main_axis,
     axes_of,
@@ -36,6 +46,7 @@ from wearlaw_studies.results import (
     patches_of,
     predicting,
 )
+from wearlaw_studies.sections import Section
 from wearlaw_studies.study import Study, used
 
 COLUMNS = 5
@@ -61,8 +72,88 @@ class NamedTable:
 
 def tables(study: Study) -> list[NamedTable]:
     """Return all tables of a study."""
-    of_sections = [NamedTable(n, n, frame) for section in study.sections for n, frame in section.tables.items()]
-    return [*summaries(study), *profiles(study), parameters(study), models(study), *of_sections]
+    sections = (one for section in study.sections for one in of_section(section))
+    return [main_table(study), *summaries(study), *profiles(study), parameters(study), models(study), *sections]
+
+
+def of_section(section: Section) -> list[NamedTable]:
+    """Return the tables of a section, with their names in words as titles."""
+    return [
+        NamedTable(name, name.replace("_", " ").strip().capitalize(), frame) for name, frame in section.tables.items()
+    ]
+
+
+def main_table(study: Study) -> NamedTable:
+    """Return the least and the most of the main outcome of each pair, the borders of its law, and what lies outside."""
+    results, outcome = main_result(study)
+    ((name, sweep),) = results.sweeps.items()
+    what = f"[{readable(sweep[outcome].attrs['units'])}{', which is mg/km' if outcome == MASS else ''}]"
+    limits, axes = beyond_limits(sweep), axes_of(sweep)
+    rows = []
+    for pair in map(study.pair, predicting(study, outcome, sweep.pair.values.tolist())):
+        of_pair, law = sweep.sel(pair=pair.label), pair.pipeline.laws[0]
+        values = of_pair[outcome]
+        row: dict[str, Any] = {"pair": pair.label}
+        known = bool(values.notnull().any())
+        for word, find in (("least ", values.argmin), ("most ", values.argmax))[0 if axes else 1 :]:
+            found: Any = find(...) if known else {}
+            word = word if axes else ""
+            row[f"{word}{what}"] = values.isel(found).item() if known else None
+            point = {axis: of_pair[axis].isel({axis: found[axis]}) for axis in axes} if known else {}
+            if axes:
+                row[f"{word}at"] = ", ".join(_place(study, name, value) for value in point.values())
+        if outcome == WEAR:
+            row["that is"] = _as_mass_and_depth(study, name, pair, point) if known else ""
+        row["regimes change at"] = _borders(law)
+        row["outside the range"] = _count(of_pair.outside_range.values > 0.0) if law.valid_range else "not known"
+        beyond = limits[SHAKEDOWN].sel(contact_model=pair.contact_model).values if limits else None
+        row[LIMITS[SHAKEDOWN]] = "not known" if beyond is None else _count(beyond)
+        rows.append(row)
+    where = f"Least and most over the sweep '{name}', with the {' and '.join(map(name_of, axes))} there"
+    return NamedTable("main", where if axes else f"The operating point '{name}'", pd.DataFrame(rows))
+
+
+def _place(study: Study, name: str, value: xarray.DataArray) -> str:
+    """Return a value of an axis, such as "1 %", in the unit of the case."""
+    unit = study.case.sweeps[name].written_units().get(str(value.name), "")
+    return f"{Q(value.item(), value.attrs['units']).m_as(unit):.4g} {readable(unit)}".rstrip()
+
+
+def _as_mass_and_depth(study: Study, name: str, pair: Pair, point: Mapping[str, xarray.DataArray]) -> str:
+    """Return the wear at an operating point as mass and as depth, such as "35 mg/km; wheel 12 µm in 1000 km"."""
+    at = {axis: Q(value.item(), value.attrs["units"]) for axis, value in point.items()}
+    pipeline, law = pair.pipeline, pair.pipeline.laws[0]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", WearlawWarning)  # the study has them
+        found = pipeline.predict(pipeline.posed({**study.case.sweeps[name].given, **at}))
+        parts = [f"{float(found.mass_per_distance.m_as('mg/km')):.4g} mg/km"]
+        body = law.body or next(iter(study.case.rig.bodies), None)
+        if body is not None:
+            with suppress(InputError):  # a rail does not turn
+                depth = 1e3 * float(found.depth_per_distance(body).m_as("um/km"))
+                parts.append(f"{body} {depth:.4g} µm in 1000 km")
+    return "; ".join(parts)
+
+
+def _borders(law: Law) -> str:
+    """Return the borders of the regimes of a law in words; a variable that only the law knows is in SI units."""
+    with Blame(law):
+        borders = law.breakpoints(law.numbers)
+    if borders is None:
+        return "not known"
+    shown = []
+    for name, values in borders.items():
+        unit = UNITS.get(name, "")
+        numbers = ", ".join(f"{from_si(value, unit).magnitude:.4g}" if unit else f"{value:.4g}" for value in values)
+        shown.append(f"{name_of(name)} {numbers} {readable(unit)}".rstrip())
+    return "; ".join(shown) or "none"
+
+
+def _count(mask: NDArray[np.bool_]) -> str:
+    """Return in how many points of a sweep something is so."""
+    if mask.all() or not mask.any():
+        return "everywhere" if mask.all() else "nowhere"
+    return f"{mask.sum()} of {mask.size}"
 
 
 def summaries(study: Study) -> list[NamedTable]:
@@ -165,7 +256,8 @@ def profiles(study: Study) -> list[NamedTable]:
 def _deepest(study: Study, profile: xarray.Dataset, pair: str, body: str) -> tuple[Marked, float]:
     """Return the greatest depth that a pair gives for a body, with its marks, and its position."""
     depth, model = profile[f"{body}_depth"].sel(pair=pair), study.pair(pair).contact_model
-    (marks,) = _marks([study.is_outside(profile, pair, body)], beyond_limits(profile), model)
+    outside = study.is_for_other_body(pair, body) or bool(profile.outside_range.sel(pair=pair))
+    (marks,) = _marks([outside], beyond_limits(profile), model)
     if depth.isnull().all():  # a law for the other body
         return Marked(np.nan, marks), np.nan
     place = profile.y.sel(contact_model=model) if "contact_model" in profile.y.dims else profile.y

@@ -1,0 +1,146 @@
+"""What the integrator returns: outcomes of laws, forces and slip at operating points."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import CreepForces, Problem
+
+
+class SlipTotals(NamedTuple):
+    """Slip of the patch at each operating point, as SI arrays of the batch shape.
+
+    Attributes
+    ----------
+    mean_slip : ndarray
+        Area mean of the magnitude of the slip [-].
+    slip_area : ndarray
+        Area of the slip zone [m²].
+    patch_area : ndarray
+        Area of the whole patch, the sum of its nodes' areas [m²].
+    cell_wear_index : ndarray
+        Energy dissipated per metre rolled, summed over the nodes [N].
+    """
+
+    mean_slip: Array
+    slip_area: Array
+    patch_area: Array
+    cell_wear_index: Array
+
+    @classmethod
+    def of(cls, contact: Contact) -> SlipTotals:
+        """Return the slip of a contact."""
+        return cls(*(getattr(contact, name) for name in cls._fields))
+
+
+class Across(NamedTuple):
+    """Wear and slip integrated along each strip, as SI arrays of the batch shape and an axis of strips.
+
+    Attributes
+    ----------
+    y : ndarray, (batch, strips)
+        Position of each strip [m].
+    width : ndarray, (batch, strips)
+        Width that it represents [m].
+    wear : ndarray, (batch, strips)
+        ∫ rate dx along it [kg/m²].
+    slid : ndarray, (batch, strips)
+        ∫ |s| dx along it [m].
+    """
+
+    y: Array
+    width: Array
+    wear: Array
+    slid: Array
+
+    @classmethod
+    def of(cls, contact: Contact, wear: Array) -> Across:
+        """Return the slip of a contact on strips, with the wear along them."""
+        return cls(contact.y[..., 0, :], contact.strip_width, wear, contact.over_strip(contact.slip))
+
+
+class Totals(NamedTuple):
+    """Outcomes of laws and forces at each operating point, as SI arrays of the batch shape.
+
+    Attributes
+    ----------
+    values : tuple of ndarray
+        The outcome of each law: the area mean of its rate over the patch, or its value of the patch.
+    errors : tuple of ndarray or None
+        Estimate of the numerical error of each outcome; None if `outcome_error` computes the estimate.
+    longitudinal, lateral, spin_moment : ndarray or None
+        The forces [N] and the moment [N m]. All are None if the contact model knows them without nodes; a line has none
+        of the last two.
+    patch_area : ndarray or None
+        Area of the patch, the sum of its nodes' areas [m²]; None if it equals the area of the problem.
+    sliding : ndarray or None
+        For laws in p·s: μ∫p·s dA over Tγ = ξFx + ηFy + φMz [-], which is 1 under Coulomb's law, q = μp in slip.
+    slip : SlipTotals or None
+        The slip, if a patch that is not a line has several blocks; their contacts are not kept.
+    across : tuple of Across or None
+        Wear and slip of each law along the model's own strips; None on a line, for a law of the patch, and where there
+        are too many strips.
+    contact : Contact or None
+        The solved contact if all points were solved at once, on nodes that cover the patch; of the batch shape or with
+        one batch axis.
+    """
+
+    values: tuple[Array, ...] = ()
+    errors: tuple[Array | None, ...] = ()
+    longitudinal: Array | None = None
+    lateral: Array | None = None
+    spin_moment: Array | None = None
+    patch_area: Array | None = None
+    sliding: Array | None = None
+    slip: SlipTotals | None = None
+    across: tuple[Across | None, ...] = ()
+    contact: Contact | None = None
+
+    @classmethod
+    def of_forces(cls, forces: CreepForces) -> Totals:
+        """Return the totals of forces alone."""
+        return cls(longitudinal=forces.longitudinal, lateral=forces.lateral, spin_moment=forces.spin_moment)
+
+    @property
+    def forces(self) -> CreepForces:
+        """The forces and the moment; a line has no lateral force and no moment."""
+        assert self.longitudinal is not None
+        if self.lateral is None or self.spin_moment is None:
+            return CreepForces.of_line(self.longitudinal)
+        return CreepForces(longitudinal=self.longitudinal, lateral=self.lateral, spin_moment=self.spin_moment)
+
+    def tangential_force(self) -> Array:
+        """Return the magnitude of the tangential force [N]."""
+        assert self.longitudinal is not None
+        force: Array = np.abs(self.longitudinal) if self.lateral is None else np.hypot(self.longitudinal, self.lateral)
+        return force
+
+    def power(self, problem: Problem) -> Array:
+        """Return the energy dissipated per metre rolled, Tγ [N]."""
+        if self.lateral is None and self.longitudinal is not None:
+            return problem.longitudinal_creepage * self.longitudinal
+        return problem.power(self.forces)
+
+    def mean(self, problem: Problem, variable: str) -> Array:
+        """Return the mean of a variable of `Contact` over the patch; the slip is the rigid slip, as in `of_patch`."""
+        match variable:
+            case "slip":
+                return problem.rigid_slip
+            case "slip_speed":
+                return problem.rigid_slip * problem.rolling_speed
+            case "wear_index":
+                return self.power(problem)
+        area = problem.patch_area if self.patch_area is None else self.patch_area
+        match variable:
+            case "pressure":
+                return problem.normal_force / area
+            case "traction":
+                return self.tangential_force() / area
+            case "wear_index_density":
+                return self.power(problem) / area
+        assert variable == "frictional_power_density"  # `Law.check_variables` knows these
+        return self.power(problem) / area * problem.rolling_speed

@@ -1,0 +1,194 @@
+"""The contacts of a problem and the outcomes of laws in them, as SI arrays; a part of one takes its values from it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.law import WEAR, Law
+from wearlaw.numerics import integrate
+from wearlaw.numerics.blocks import each
+from wearlaw.numerics.solved import Solved
+from wearlaw.numerics.staged import without_stages
+from wearlaw.numerics.totals import Across, SlipTotals, Totals
+from wearlaw.pipeline.composition import law_among, warn_of_body
+from wearlaw.pipeline.datasets import Conditions
+from wearlaw.pipeline.ranges import elastic_limits
+from wearlaw.pipeline.selection import Selection
+
+
+class Solution:
+    """The contacts of a problem, and the outcomes of laws in them.
+
+    Arrays have the shape of the batch. What the integration did not give is computed when it is first read.
+
+    Parameters
+    ----------
+    problem : Problem
+    model : ContactModel
+        The contact model, with its stages.
+    laws : tuple of Law
+    totals : Totals
+        The outcomes of the laws; of no laws, the forces alone.
+    given : mapping of str to object
+        The conditions, as given to the pipeline.
+    whole : tuple of Solution and Selection, optional
+        The solution that this one is a part of, and which part.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        model: ContactModel,
+        laws: tuple[Law, ...],
+        totals: Totals,
+        given: Mapping[str, Any] | None = None,
+        whole: tuple[Solution, Selection] | None = None,
+    ) -> None:
+        self.problem = problem
+        self.model = model
+        self.laws = laws
+        self.totals = totals
+        self.given = given or {}
+        self.whole = whole
+
+    def part(self, chosen: Selection) -> Solution:
+        """Return the solution at some entries along the axes; nothing is solved again."""
+        totals = each(chosen.of, self.totals._replace(contact=None))
+        model = self.model
+        if self.totals.contact is not None:
+            totals = totals._replace(contact=chosen.of_solved(self.totals.contact, self.problem))
+            if isinstance(model, Solved):
+                model = model.model_copy(update={"contact": totals.contact})
+        return Solution(chosen.of_problem(self.problem), model, self.laws, totals, whole=(self, chosen))
+
+    @cached_property
+    def conditions(self) -> Conditions:
+        """The conditions, along the axes of the operating points."""
+        if self.whole is not None:
+            whole, chosen = self.whole
+            return whole.conditions.chosen(chosen)
+        shape = self.problem.batch_shape
+        return Conditions(self.given, shape[: len(shape) - len(self.problem.dims)])
+
+    @cached_property
+    def forces(self) -> CreepForces:
+        """The forces and the moment."""
+        if self.totals.longitudinal is None:
+            return integrate.integrate_forces(self.model, self.problem)
+        return self.totals.forces
+
+    @property
+    def force(self) -> Array:
+        """Tangential force [N]: on a line with its sign, otherwise its magnitude."""
+        return self.forces.longitudinal if self.problem.geometry == "line" else self.forces.tangential
+
+    @property
+    def power(self) -> Array:
+        """Energy dissipated per metre rolled, Tγ [N]."""
+        return self.problem.power(self.forces)
+
+    @cached_property
+    def elastic_limits(self) -> tuple[Array, Array]:
+        """Maximum pressure at first yield and at the shakedown limit [Pa]."""
+        return elastic_limits(self.problem, np.abs(self.force))
+
+    @cached_property
+    def slip(self) -> SlipTotals:
+        """The slip of the patch."""
+        if self.totals.slip is not None:
+            return self.totals.slip
+        if self.whole is not None:
+            whole, chosen = self.whole
+            return each(chosen.of, whole.slip)  # type: ignore[no-any-return]
+        return integrate.integrate_slip(self.model, self.problem, self.totals.contact)
+
+    @cached_property
+    def patch_area(self) -> Array:
+        """Area of the patch [m²]."""
+        if self.totals.patch_area is not None:
+            return self.totals.patch_area
+        if self.laws:
+            return self.problem.patch_area
+        if self.whole is not None:
+            whole, chosen = self.whole
+            return chosen.of(whole.patch_area)
+        return integrate.patch_area(self.model, self.problem)
+
+    @cached_property
+    def contact(self) -> Contact:
+        """The solved contact."""
+        if self.totals.contact is not None:
+            return self.totals.contact.unflattened(self.problem)
+        if self.whole is not None and self.problem.size == 0:  # a missing patch alone has no nodes
+            whole, chosen = self.whole
+            return whole.contact.mapped(chosen.of).replaced(problem=self.problem)
+        if self.problem.geometry != "line" or len(self.laws) != 1:
+            return integrate.solve(self.model, self.problem)
+        return integrate.contact_for(self.model, self.laws[0], self.problem.flatten()).unflattened(self.problem)
+
+    def law(self, outcome: str = WEAR, body: str | None = None) -> int:
+        """Return the index of the law of an outcome, for a body if it is given."""
+        return law_among(self.laws, without_stages(self.model), outcome, body)
+
+    def value(self, index: int, body: str | None = None) -> Array:
+        """Return the outcome of a law; one for every body is evaluated again for a body of another material."""
+        if body is None or self._holds_for(index, body):
+            return self.totals.values[index]
+        return integrate.integrate_laws(self.model, (self._law_of(index, body),), self.problem).values[0]
+
+    @cached_property
+    def _errors(self) -> dict[int, Array]:
+        return {}
+
+    def error(self, index: int) -> Array:
+        """Return an estimate of the numerical error of the outcome of a law."""
+        if self.whole is not None:
+            whole, chosen = self.whole
+            return chosen.of(whole.error(index))
+        if index not in self._errors:
+            law = self.laws[index]
+            self._errors[index] = integrate.outcome_error(self.model, law, self.problem, self.totals, index)
+        return self._errors[index]
+
+    def error_with_energy(self, index: int) -> Array:
+        """Return the numerical error of an outcome and, without energy balance, that of the energy that nodes lack."""
+        error, model = self.error(index), self.model
+        lacks = self.laws[index].outcome.of == "area mean" and "energy_balance" in model.exemptions
+        if not lacks or model.scale != "cells":
+            return error
+        found = self.slip.cell_wear_index
+        lacking = np.abs(self.power - found)
+        none = found <= 0.0  # False for the NaN of a missing patch
+        share = np.divide(lacking, found, out=np.zeros_like(found), where=~none)
+        return error + np.where(none & (lacking > 0.0), np.inf, np.abs(self.totals.values[index]) * share)
+
+    def across(self, index: int, body: str, strips: int | None) -> Across:
+        """Return the wear and slip of a law along strips, which are NaN for missing patches."""
+        kept = self.totals.across[index] if strips is None and self._holds_for(index, body) else None
+        if kept is not None:
+            return kept
+        if self.problem.size == 0 and self.whole is not None:  # a missing patch alone has no strips
+            whole, chosen = self.whole
+            return each(chosen.of, whole.across(index, body, strips))  # type: ignore[no-any-return]
+        law = self._law_of(index, body)
+        return integrate.integrate_across(self.model, law, self.problem, strips, self.totals.contact)
+
+    def _holds_for(self, index: int, body: str) -> bool:
+        """Return whether the results of a law hold for a body; warn if the law was fitted to the other one."""
+        problem, law = self.problem, self.laws[index]
+        worn = problem.worn_on(body)  # raises unless it is one of the bodies
+        if law.body is None:
+            warn_of_body(problem.bodies, law, body)
+        return worn is problem or law.body is not None or problem.size == 0
+
+    def _law_of(self, index: int, body: str) -> Law:
+        law = self.laws[index]
+        return law if law.body is not None else law.model_copy(update={"body": body})

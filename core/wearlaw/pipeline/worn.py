@@ -1,0 +1,176 @@
+"""What a body loses: mass, depth, and wear profiles across a patch or along a body's own profile."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wearlaw.arrays.array import Array, steady
+from wearlaw.contact.problem import Body, Problem
+from wearlaw.errors import CompositionError, InputError, shown
+from wearlaw.numerics.blocks import blocks
+from wearlaw.numerics.profiles import onto_positions
+from wearlaw.pipeline.datasets import Columns, data_of, labelled
+from wearlaw.pipeline.selection import axis_names
+from wearlaw.pipeline.solution import Solution
+from wearlaw.units.quantities import QuantityLike, Unit, scalar_si
+from wearlaw.units.variables import VARIABLES
+
+if TYPE_CHECKING:
+    import xarray
+
+MOST_STRIPS = 10_000
+"""Most strips of a wear profile; a wheel's patch of 10 mm then has strips of 1 µm."""
+
+PATCH = "patch"
+"""Name of the axis of patches that lie on one profile."""
+
+POSITION = "profile_position"
+"""Name of the position along a profile."""
+
+BLOCK = 2**18
+"""Positions in a block of patches."""
+
+
+@steady
+def mass_per_distance(solution: Solution, body: str) -> Array:
+    """Return the mass that a body loses per metre rolled [kg/m]."""
+    return solution.value(solution.law(body=body), body) * solution.patch_area
+
+
+@steady
+def volume_rate(solution: Solution, body: str) -> Array:
+    """Return the volume that a body loses per metre rolled and contact area [m³/m/m²]."""
+    return solution.value(solution.law(body=body), body) / _density(solution.problem, body)
+
+
+@steady
+def depth_per_distance(solution: Solution, body: str) -> Array:
+    """Return the depth that the surface of a body loses per distance rolled [m/m]."""
+    length = 0.5 * solution.patch_area / solution.problem.b
+    return volume_rate(solution, body) * (length / _circumference(solution.problem, body))
+
+
+@steady
+def section_per_distance(solution: Solution, body: str) -> Array:
+    """Return the area of a radial section that a body loses per distance rolled [m²/m]."""
+    return volume_rate(solution, body) * solution.patch_area / _circumference(solution.problem, body)
+
+
+@steady
+def mass_per_cycle(solution: Solution, body: str) -> Array:
+    """Return the mass that a body loses in one of its revolutions [kg]."""
+    return mass_per_distance(solution, body) * _circumference(solution.problem, body)
+
+
+@steady
+def mass_lost(solution: Solution, over: QuantityLike, body: str) -> Array:
+    """Return the mass that a body loses over a distance rolled [kg]."""
+    distance, mass = Unit("km").si(over, "over"), mass_per_distance(solution, body)
+    try:
+        lost: Array = mass * distance
+    except ValueError:
+        raise InputError(
+            f"over: an array of shape {distance.shape} does not broadcast to the operating points, of shape"
+            f" {mass.shape}; give one distance, or one for each point"
+        ) from None
+    return lost
+
+
+def _circumference(problem: Problem, body: str) -> Array:
+    """Return the circumference of a body that turns [m]."""
+    radius = np.asarray(problem.body(body).rolling_radius)
+    if np.isinf(radius).any():
+        raise InputError(f"body: {body} is flat and makes no revolutions; name the other body")
+    return 2.0 * np.pi * radius
+
+
+def _density(problem: Problem, body: str) -> float:
+    return scalar_si(problem.body(body).material.density, "kg/m^3")
+
+
+@steady
+def wear_profile(solution: Solution, body: str, strips: int | None, at: QuantityLike | None) -> xarray.Dataset:
+    """Return the depth lost and the distance slid across patches; see `Prediction.wear_profile`."""
+    problem, worn = solution.problem, solution.problem.body(body)
+    if problem.geometry == "line":
+        raise CompositionError("wear_profile: a line wears evenly across its width; take depth_per_distance")
+    if solution.model.scale == "patch":
+        raise CompositionError(
+            f"wear_profile: {solution.model!r} gives means of the whole patch; take a contact model that resolves it,"
+            ' such as wl.contact_model("fastsim")'
+        )
+    if strips is not None and (
+        isinstance(strips, bool) or not isinstance(strips, int) or not 2 <= strips <= MOST_STRIPS
+    ):
+        raise InputError(f"strips: must be a whole number from 2 to {MOST_STRIPS}, such as 101; got {shown(strips)}")
+    across = solution.across(solution.law(body=body), body, strips)
+    radius = np.asarray(worn.rolling_radius)
+    turns = bool(np.isfinite(radius).any())
+    once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
+    units = ("um/km", "mm/m") if turns else ("nm", "um")
+    depth = across.wear / (_density(problem, body) * once)
+    columns = {"depth": (depth, units[0]), "sliding_distance": (across.slid / once, units[1])}
+    if problem.contact_angle is not None:
+        angle = problem.contact_angle[..., None]
+        columns["depth_vertical"] = depth * np.cos(angle), units[0]
+        columns["depth_lateral"] = depth * np.abs(np.sin(angle)), units[0]
+    per = "metre rolled" if turns else "passage of a wheel"
+    if at is not None:
+        return _on_profile(problem, worn, across.y, across.width, columns, per, at)
+    batch = axis_names(problem)
+    dims = [*batch, "strip"] if batch else ["y"]
+    places = {"y": (across.y, "mm")}
+    if worn.profile_position is not None:
+        places[POSITION] = _arc(worn, across.y), "mm"
+    return labelled(problem, data_of(dims, places), data_of(dims, columns, per))
+
+
+def _on_profile(
+    problem: Problem, body: Body, y: Array, width: Array, columns: Columns, per: str, at: QuantityLike
+) -> xarray.Dataset:
+    """Return columns over positions of the body's profile, summed over the axis of patches if there is one.
+
+    Raises
+    ------
+    InputError
+        If the positions do not increase, or the rig does not know where its patches lie on the profile.
+    """
+    positions = VARIABLES[POSITION].expected.si(at, "at")
+    if positions.ndim != 1 or positions.size < 2 or not (np.diff(positions) > 0.0).all():
+        raise InputError(
+            f"at: must be two or more increasing positions, such as Q(np.linspace(-40, 30, 141), 'mm'); got {shown(at)}"
+        )
+    if body.profile_position is None:
+        raise InputError(
+            "at: the rig does not say where its patches lie on the profile; leave it out, or give the bodies of the"
+            " problem a `profile_position`"
+        )
+    names = axis_names(problem)
+    rest = {name: size for name, size in zip(names, problem.batch_shape, strict=True) if name != PATCH}
+    sums = {name: np.zeros((*rest.values(), positions.size)) for name in columns}
+    rows = np.arange(math.prod(rest.values())).reshape(tuple(rest.values()))
+    if PATCH in names:
+        rows = np.expand_dims(rows, names.index(PATCH))
+    there = np.broadcast_to(rows, problem.batch_shape).reshape(-1)
+    arc, of_strip = _arc(body, y), [values for values, _ in columns.values()]
+    if problem.exists is not None:
+        exists = problem.exists
+        there, arc, width, *of_strip = there[exists.reshape(-1)], *(one[exists] for one in (arc, width, *of_strip))
+    arc, width, *of_strip = (one.reshape(-1, one.shape[-1]) for one in (arc, width, *of_strip))
+    for some in blocks(there.size, max(BLOCK // positions.size, 1)):
+        index, found = onto_positions(arc[some], width[some], [one[some] for one in of_strip], positions)
+        flat = index + positions.size * there[some, None]
+        for total, values in zip(sums.values(), found, strict=True):
+            np.add.at(total.reshape(-1), flat, values)
+    dims = [*rest, POSITION]
+    data = data_of(dims, {name: (total, columns[name][1]) for name, total in sums.items()}, per)
+    return labelled(problem, data_of([POSITION], {POSITION: (positions, "mm")}), data, without=PATCH)
+
+
+def _arc(body: Body, y: Array) -> Array:
+    """Return the positions of strips along the profile of the body [m]."""
+    arc: Array = np.asarray(body.profile_position)[..., None] + np.asarray(body.profile_direction)[..., None] * y
+    return arc

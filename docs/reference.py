@@ -1,0 +1,120 @@
+"""Writes the entries of the page about the reference from the public names of wearlaw and of its plugins."""
+
+import ast
+import importlib
+import inspect
+from collections.abc import Iterator
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import wearlaw as wl
+
+MARK = "(The build of this page writes the entries of all public names here.)"
+"""Line of the page in whose place the entries stand."""
+
+OTHERS = ("wearlaw_wheelset", "wearlaw_kit", "wearlaw_life")
+"""Plugins whose top package has public names beside those of `wearlaw`."""
+
+TITLES = {
+    "units": "Quantities and units",
+    "wearlaw_twin_disc": "Two discs",
+    "wearlaw_wheel_rail": "A wheel on a rail",
+    "wearlaw_archard": "Wear coefficients of papers",
+    "contact": "Problems and contacts",
+    "plugins": "Looking up models",
+    "pipeline": "Pipelines and predictions",
+    "wearlaw_sweeps": "Sweeps",
+    "wearlaw_fits": "Tests, fits, comparisons, uncertainties",
+    "wearlaw_studies": "Studies",
+    "wearlaw_output": "Data of figures",
+    "tables": "Tables",
+    "wearlaw_wheelset": "Wheelsets",
+    "wearlaw_life": "The life of a wheel",
+    "wearlaw_explore": "Explore",
+    "models": "Base classes for plugins",
+    "hookspecs": "Hooks",
+    "settings": "Settings",
+    "arrays": "Arrays and compiled loops",
+    "wearlaw_kit": "The conformance kit",
+    "errors": "Errors and warnings",
+    "version": "Version",
+}
+"""Sections of the page in their order, each of the names that come from one package."""
+
+
+class Entry(NamedTuple):
+    """A public name: the package it is imported from, and the package and module that it comes from."""
+
+    importable: str
+    name: str
+    package: str
+    module: str
+
+    def rst(self) -> str:
+        """Return the directive that documents the name."""
+        found = getattr(importlib.import_module(self.importable), self.name)
+        path = f"{self.importable}.{self.name}"
+        if inspect.ismodule(found):
+            return f".. automodule:: {found.__name__}\n   :members:"
+        if inspect.isclass(found) and found.__module__.startswith("wearlaw"):
+            inherited = "\n   :inherited-members:" if found is wl.Prediction else ""
+            return f".. autoclass:: {path}\n   :members:{inherited}"
+        if inspect.isfunction(found) and found.__name__ == self.name:
+            return f".. autofunction:: {path}"
+        text = "\n".join(f"   {line}".rstrip() for line in alias(self.module, self.name).splitlines())
+        return f".. py:data:: {path}\n\n{text}"
+
+
+@cache
+def tree(module: str) -> list[ast.stmt]:
+    """Return the statements of a module."""
+    return ast.parse(Path(str(importlib.import_module(module).__file__)).read_text(encoding="utf-8")).body
+
+
+def alias(module: str, name: str) -> str:
+    """Return the docstring below the assignment of a name."""
+    for statement, after in pairwise(tree(module)):
+        targets = getattr(statement, "targets", [getattr(statement, "target", getattr(statement, "name", None))])
+        names = {one.id for one in targets if isinstance(one, ast.Name)}
+        if name in names and isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
+            return inspect.cleandoc(str(after.value.value))
+    return OF_LIBRARIES[name]
+
+
+OF_LIBRARIES = {
+    "Quantity": "A quantity of pint, as `Q` returns it: a number or an array with its unit.",
+    "hookimpl": "Marks a function of a plugin that implements a hook.",
+    "__version__": "The version of wearlaw.",
+}
+"""What names mean that have no docstring of their own."""
+
+
+def entries() -> Iterator[Entry]:
+    """Give the public names in the order in which they are imported."""
+    sources = {
+        name.asname or name.name: str(one.module)
+        for one in ast.walk(ast.Module(tree("wearlaw"), []))
+        if isinstance(one, ast.ImportFrom)
+        for name in one.names
+    }
+    for name in sorted(wl.__all__, key=list(sources).index):
+        package = sources[name].split(".")
+        yield Entry("wearlaw", name, package[1] if package[0] == "wearlaw" else package[0], sources[name])
+    for plugin in OTHERS:
+        for name in importlib.import_module(plugin).__all__:
+            if name not in wl.__all__:
+                yield Entry(plugin, name, plugin, plugin)
+
+
+def page() -> str:
+    """Return the sections, each with the first line of its package's docstring."""
+    found = list(entries())
+    parts = []
+    for package, title in TITLES.items():
+        home = package if package.startswith("wearlaw_") else f"wearlaw.{package}"
+        said = (importlib.import_module(home).__doc__ or "").splitlines()[0]
+        rst = "\n".join(one.rst() for one in found if one.package == package)
+        parts.append(f"## {title}\n\n{said}\n\n```{{eval-rst}}\n{rst}\n```\n")
+    return "\n".join(parts)

@@ -1,0 +1,169 @@
+"""Reading wear tests from tables, with errors by line and column."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Collection, Iterator
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import wearlaw as wl
+from wearlaw.errors import DataError, InputError, UnitError, did_you_mean, shown
+from wearlaw.plugins import loader
+from wearlaw.settings.arguments import expect_names
+from wearlaw.settings.text_files import read_text
+from wearlaw.tables import Column, Table
+from wearlaw_fits.wear_tests import COLUMNS, Values, WearTests, head
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+LARGEST = 2**22
+"""Size of the largest file of tests that is read [bytes]."""
+
+TEXTS = ("label", "comment")
+"""Columns of text."""
+
+
+def read_tests(
+    source: str | os.PathLike[str] | pd.DataFrame,
+    *,
+    outcomes: Collection[str] = (),
+    sep: str | None = None,
+    decimal: str = ".",
+) -> WearTests:
+    """Read tests from a table, or return shipped tests by their name.
+
+    Parameters
+    ----------
+    source : path, str or pandas.DataFrame
+        A CSV file with units in its header, such as ``creepage [%]``, or any table that `read_table` takes; or the name
+        of shipped tests, such as "lewis2004". Columns such as ``mass [kg]`` are other conditions of a rig, and columns
+        such as ``heat_flux [W/mm^2]`` measured outcomes of laws.
+    outcomes : collection of str, optional
+        Names of columns that are outcomes of laws that no plugin provides. Without it, such a column must be complete.
+    sep, decimal : str, optional
+        What separates the cells, and the decimal mark, as in `read_table`.
+
+    Raises
+    ------
+    DataError
+        If there is no such file, or its contents are wrong. The message names all faults by line and column.
+    UnknownModelError
+        If several plugins ship tests of that name.
+    """
+    outcomes = expect_names(outcomes, "outcomes", "rcf_damage", least=0)
+    if isinstance(source, str | os.PathLike):
+        return parse_tests(text_of_tests(source), str(source), outcomes, sep, decimal)
+    return _checked(wl.read_table(source, sep=sep, decimal=decimal), "a table", outcomes)
+
+
+def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
+    """Return the text of a CSV file, or of shipped tests by their name.
+
+    Raises
+    ------
+    DataError
+        If there is no such file and no such tests, or the file is not text.
+    """
+    found = loader.installed()
+    if path_or_name in found.resources["test set"].providers:
+        text: str = found.resources["test set"].find(str(path_or_name), found.broken)
+        return text
+    path = Path(path_or_name)
+    try:
+        return read_text(path, LARGEST)
+    except FileNotFoundError:
+        shipped = list(found.resources["test set"].items())
+        beside = sorted(one.name for one in path.parent.glob("*.csv")) if path.parent.is_dir() else []
+        hint = did_you_mean(path.name, [*beside, *shipped])
+        raise DataError(f"there is no file {shown(path)}{hint} Shipped tests: {', '.join(shipped) or 'none'}") from None
+    except InputError as error:
+        raise DataError(f"cannot read the tests {shown(path)}: {error}") from None
+
+
+def parse_tests(
+    text: str, name: str, outcomes: Collection[str] = (), sep: str | None = None, decimal: str = "."
+) -> WearTests:
+    """Return the tests of a CSV text; its `name` stands in errors, and for the source of tests that state none.
+
+    Raises
+    ------
+    DataError
+        If the contents are wrong. The message names all faults.
+    """
+    return _checked(wl.read_table(io.StringIO(text), sep=sep, decimal=decimal), name, outcomes)
+
+
+def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
+    """Return the tests of a table."""
+    table.label = f"the tests {shown(Path(name))}"
+    conditions = {name for rig in loader.rigs().values() for name in rig.conditions()}
+    measured = {*outcomes, *(law.outcome.name for law in loader.laws().values())}
+    wrong = list(_faulty_heads(table, {*conditions, *measured}))
+    if wrong:
+        raise DataError(f"{table.label} are wrong in:", wrong)
+    given: dict[str, Values] = {}
+    for column in table.columns:
+        try:
+            if column not in TEXTS:
+                given[column] = table[column]
+        except DataError as error:
+            wrong += error.problems
+        except UnitError as error:
+            wrong.append(f"column '{table.columns[column].head}': {error}")
+    if wrong:
+        raise DataError(f"{table.label} are wrong in:", wrong)
+    texts = {name: table.texts(name) for name in TEXTS if name in table.columns}
+    count = len(next(iter(given.values()), ()))
+    if not count:
+        raise DataError(f"{table.label}: no test follows the header")
+    source = next((one.partition(":")[2].strip() for one in table.comments if one.casefold().startswith("source:")), "")
+    return WearTests.checked(
+        given,
+        texts.get("label", [""] * count),
+        source or Path(name).name,
+        measured,
+        table.label,
+        lambda column, row: table.where(row, column),
+    )
+
+
+def _faulty_heads(table: Table, known: Collection[str]) -> Iterator[str]:
+    """Yield what is wrong with single columns of tests."""
+    missing = [name for name in (*COLUMNS, *TEXTS) if name not in table.columns]
+    for column in table.columns.values():
+        where = f"column '{column.head}'"
+        if column.name in COLUMNS:
+            if COLUMNS[column.name].unit and column.unit is None:
+                yield f"{where}: has no unit; write it as '{head(column.name)}'"
+        elif column.name not in TEXTS and not _is_other(column, missing, known):
+            yield (
+                f"{where}: unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])} The columns are"
+                f" {', '.join([*COLUMNS, *TEXTS])}; another condition of a rig has its unit in square brackets, as in"
+                " 'mass [kg]'"
+            )
+
+
+def _is_other(column: Column, missing: Collection[str], known: Collection[str]) -> bool:
+    """Return whether a column is a condition or an outcome that is not in the table of columns.
+
+    It belongs to an installed rig or law, or has a unit and a name unlike those of missing columns.
+    """
+    if column.name.startswith("wear_rate_"):  # the wear rate of one body
+        missing = [name for name in missing if name != "wear_rate"]
+    unlike = column.unit is not None and not get_close_matches(column.name, missing, n=1)
+    return column.name.isidentifier() and (column.name in known or unlike)
+
+
+def explain_tests(name: str, text: str) -> Iterator[str]:
+    """Yield the lines of `wearlaw show` for a test set."""
+    for line in text.splitlines():
+        if line.startswith("#"):
+            yield line.removeprefix("#").strip()
+    tests = parse_tests(text, name)
+    header, *_ = (line for line in text.splitlines() if not line.startswith("#"))
+    yield from ("", f"tests: {len(tests)}", f"columns: {header}")
+    yield from ("", f'In a case: measured = {{label = "Tests", tests = "{name}"}}. In Python: wl.read_tests("{name}").')

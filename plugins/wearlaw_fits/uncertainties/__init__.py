@@ -1,1 +1,0 @@
-"""Uncertainties of predictions."""

@@ -1,0 +1,499 @@
+"""Wear tests of a lab: conditions and measurements, with an entry for each test and NaN for missing measurements.
+
+`read_tests` reads them from a table, and `WearTests.from_arrays` takes arrays. They are independent of rigs: tests only
+provide the conditions of contact problems.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
+
+import numpy as np
+import pint
+
+from wearlaw.arrays.array import Array
+from wearlaw.contact.conditions import LOADS
+from wearlaw.errors import ConditionsError, DataError, UnitError, did_you_mean, shown
+from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, parse, real_array
+from wearlaw.units.registry import si_factor, symbol
+from wearlaw.units.variables import VARIABLES
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from numpy.typing import ArrayLike
+
+    from wearlaw.models.contact_model import ContactModel
+    from wearlaw.pipeline.pipeline import Rig
+
+MEASURED_FORCES = ("tangential_force", "frictional_heat")
+"""Columns from which a traction coefficient follows."""
+
+TRACTIONS = ("traction_coefficient", *MEASURED_FORCES)
+"""Columns of measured traction."""
+
+COLUMNS = {
+    name: VARIABLES[name]
+    for name in (
+        *("creepage", *LOADS, "friction_coefficient"),
+        *(*TRACTIONS, "rolling_speed", "wear_rate", "wear_rate_uncertainty"),
+    )
+}
+"""All columns of tests of discs."""
+
+NEEDED = ("creepage", *LOADS, "friction_coefficient")
+"""Columns that need a value for every test."""
+
+DIGEST = 16
+"""Hexadecimal digits of the digest of a test; two of a million tests share one with a probability below 1e-7."""
+
+Values = Quantity | Array
+"""Values of a column with their unit, or plain numbers."""
+
+
+class Arrays(TypedDict, total=False):
+    """The columns of `WearTests.from_arrays`."""
+
+    creepage: QuantityLike
+    normal_force: QuantityLike
+    normal_force_per_width: QuantityLike
+    max_pressure: QuantityLike
+    friction_coefficient: ArrayLike
+    traction_coefficient: ArrayLike
+    tangential_force: QuantityLike
+    frictional_heat: QuantityLike
+    rolling_speed: QuantityLike
+    wear_rate: QuantityLike
+    wear_rate_uncertainty: QuantityLike
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class WearTests:
+    """A set of tests on one rig, made by `read_tests` or `WearTests.from_arrays`.
+
+    Attributes
+    ----------
+    columns : dict of str to ndarray, (tests,)
+        Values in SI by name: `creepage`, one of the loads, and any of `friction_coefficient`, `traction_coefficient`,
+        `wear_rate` and `wear_rate_uncertainty`. NaN for a missing measurement.
+    labels : tuple of str
+        The name of each test, "" if it has none.
+    source : str
+        The source of the numbers.
+    other_conditions : dict of str to Quantity or ndarray, (tests,)
+        Conditions of the rig that are not in `columns`, as given: with their unit, or plain numbers. A column of a file
+        whose name no plugin knows is here too, until `measuring` says that it is an outcome.
+    outcomes : dict of str to Quantity or ndarray, (tests,)
+        Measured outcomes of laws other than `wear_rate`, as given; NaN for a missing measurement.
+    """
+
+    columns: Mapping[str, Array]
+    labels: tuple[str, ...]
+    source: str = ""
+    other_conditions: Mapping[str, Values] = field(default_factory=dict)
+    outcomes: Mapping[str, Values] = field(default_factory=dict)
+
+    @classmethod
+    def from_arrays(
+        cls,
+        *,
+        other_conditions: Mapping[str, QuantityLike | ArrayLike] | None = None,
+        outcomes: Mapping[str, QuantityLike | ArrayLike] | None = None,
+        labels: Sequence[str] | None = None,
+        source: str = "",
+        **columns: Unpack[Arrays],
+    ) -> Self:
+        """Make tests from arrays. A single value stands for all tests, NaN for a missing measurement.
+
+        Parameters
+        ----------
+        creepage : Quantity or str, (tests,)
+            ξ, of magnitude at most 1.
+        normal_force, normal_force_per_width, max_pressure : Quantity or str, (tests,)
+            The load, exactly one of them: N [N], P [N/m] or p0 [Pa].
+        friction_coefficient : array_like of float, (tests,), optional
+            μ [-].
+        traction_coefficient, tangential_force, frictional_heat : (tests,), optional
+            The measured traction, at most one of them: T/N [-], magnitude of T [N], or the power T ξ V [W]. The last
+            two need `normal_force` as the load, and `frictional_heat` needs `rolling_speed`.
+        rolling_speed : Quantity or str, (tests,), optional
+            V of the tests whose heat is given [m/s].
+        wear_rate, wear_rate_uncertainty : Quantity or str, (tests,), optional
+            Mass lost per distance rolled and area [kg/m³], and its standard uncertainty.
+        other_conditions : mapping of str to Quantity, str or array_like, (tests,), optional
+            Further conditions of the rig by name, such as {"mass": Q([20, 40], "kg")}. With these, creepage and load
+            may be missing, and the rig checks whether it needs them.
+        outcomes : mapping of str to Quantity, str or array_like, (tests,), optional
+            Measured outcomes of laws by their names in results, such as {"heat_flux": Q([2, 5], "W/mm^2")}, or
+            "wear_rate_rail" for a law of one body; the wear rate is an argument of its own.
+        labels : sequence of str, optional
+            The name of each test.
+        source : str, optional
+            The source of the numbers.
+
+        Raises
+        ------
+        DataError
+            If columns are missing or exclude each other, or a value has the wrong unit, sign or size.
+        """
+        others, measured = dict(other_conditions or {}), dict(outcomes or {})
+        wrong = [f"{name} is unknown{did_you_mean(name, COLUMNS)}" for name in columns if name not in COLUMNS]
+        wrong += [f"{name}: is an argument of its own" for name in (*others, *measured) if name in COLUMNS]
+        wrong += [f"{name}: is among conditions and outcomes" for name in others if name in measured]
+        given: dict[str, Values] = {}
+        for name, value in {**columns, **others, **measured}.items():
+            try:
+                if value is not None:
+                    given[name] = _values(value)
+            except UnitError as error:
+                wrong.append(f"{name}: {error}")
+        if wrong:
+            raise DataError("the tests are wrong in:", wrong)
+        same = _same_length(given)
+        count = len(plain(next(iter(same.values()))))
+        if labels is not None and (isinstance(labels, str) or len(labels) != count):
+            raise DataError(f"labels: give one text for each of the {count} tests, got {shown(labels)}")
+        named = [""] * count if labels is None else labels
+        return cls.checked(same, named, source, measured, "the tests", lambda name, i: f"{name}: at index {i}")
+
+    @classmethod
+    def checked(
+        cls,
+        given: Mapping[str, Values],
+        labels: Sequence[str],
+        source: str,
+        outcomes: Collection[str],
+        subject: str,
+        place: Callable[[str, int], str],
+    ) -> Self:
+        """Return tests from columns of one length, with the names of those that are outcomes.
+
+        Raises
+        ------
+        DataError
+            If columns are missing or exclude each other, or a value has the wrong unit, sign or size; the message names
+            the `subject`, and the `place` of each value.
+        """
+        wrong = faulty_names(given, outcomes)
+        columns: dict[str, Array] = {}
+        for name in COLUMNS:
+            try:
+                if name in given:
+                    columns[name] = _in_si(name, given[name])
+            except UnitError as error:
+                wrong.append(f"{name}: {error}")
+        others = {name: values for name, values in given.items() if name not in COLUMNS}
+        wrong = wrong or [
+            f"{place(name, int(i))}: {rule}, got {plain(given[name])[i]:g}"
+            for name, faulty, rule in _faulty_values(columns, others, outcomes)
+            for i in np.flatnonzero(faulty)
+        ]
+        if wrong:
+            raise DataError(f"{subject} are wrong in:", wrong)
+        columns = _with_traction(columns)
+        measured = {name: others.pop(name) for name in list(others) if name in outcomes}
+        return cls(columns, tuple(map(str, labels)), source, others, measured)
+
+    @property
+    def creepage(self) -> Quantity:
+        """ξ, of shape (tests,); NaN if other conditions take its place."""
+        return self._quantity("creepage")
+
+    @property
+    def friction_coefficient(self) -> Array | None:
+        """μ as plain numbers, of shape (tests,); None if the tests have none."""
+        return self.columns.get("friction_coefficient")
+
+    @property
+    def traction_coefficient(self) -> Quantity:
+        """Measured T/N, of shape (tests,); NaN if it was not measured."""
+        return self._quantity("traction_coefficient")
+
+    @property
+    def wear_rate(self) -> Quantity:
+        """Measured mass lost per distance rolled and area, of shape (tests,); NaN if it was not measured."""
+        return self._quantity("wear_rate")
+
+    @property
+    def wear_rate_uncertainty(self) -> Quantity | None:
+        """Standard uncertainty of the wear rate, of shape (tests,); None if the tests have none."""
+        return self._quantity("wear_rate_uncertainty") if "wear_rate_uncertainty" in self.columns else None
+
+    def measuring(self, outcomes: Collection[str]) -> WearTests:
+        """Return the tests with the columns of these names as measured outcomes, not as conditions of the rig."""
+        moved = {name: value for name, value in self.other_conditions.items() if name in outcomes}
+        kept = {name: value for name, value in self.other_conditions.items() if name not in moved}
+        return replace(self, other_conditions=kept, outcomes={**self.outcomes, **moved})
+
+    def measured(self, name: str, unit: str) -> Array:
+        """Return measurements in SI, of shape (tests,); NaN where there is none.
+
+        Parameters
+        ----------
+        name : str
+            Name of an outcome or of a column.
+        unit : str
+            Unit of the outcome.
+
+        Raises
+        ------
+        DataError
+            If the tests give the outcome in a unit of another dimension.
+        """
+        if name not in self.outcomes:
+            return self.columns.get(name, np.full(len(self), np.nan))
+        value = self.outcomes[name]
+        try:
+            return plain(value) * si_factor(Q(1.0, _unit(value)), unit)
+        except UnitError as error:
+            raise DataError(f"{name}: the tests give it in {_unit(value) or 'no unit'}, {error}") from None
+
+    def digests(self, name: str, unit: str) -> tuple[str, ...]:
+        """Return a digest of each test: of its conditions and one measurement, without labels and source.
+
+        Parameters
+        ----------
+        name, unit : str
+            The measurement, as for `measured`.
+        """
+        known = (*LOADS, "creepage", "friction_coefficient")
+        given = {column: self._quantity(column) for column in known if column in self.columns}
+        in_si = {
+            condition: np.asarray(value.to_base_units().magnitude if isinstance(value, pint.Quantity) else value)
+            for condition, value in sorted({**given, **self.other_conditions}.items())
+        }
+        in_si["measured"] = self.measured(name, unit)
+        texts = (
+            # Nine digits, so that the rounding of units does not matter.
+            ";".join(f"{column}={values[i]:.8e}" for column, values in in_si.items())
+            for i in range(len(self))
+        )
+        return tuple(hashlib.sha256(text.encode()).hexdigest()[:DIGEST] for text in texts)
+
+    def conditions(
+        self, model: ContactModel, friction_coefficient: ArrayLike | None = None, rig: Rig | None = None
+    ) -> dict[str, Any]:
+        """Return the conditions of the tests as arguments of ``rig.problem(**conditions)``.
+
+        Parameters
+        ----------
+        model : ContactModel
+            The contact model. If it can use a measured traction and all tests have one, the conditions include it.
+        friction_coefficient : array_like of float, optional
+            μ [-] for tests without a friction coefficient.
+        rig : Rig, optional
+            The rig for the conditions. If it takes no `traction_coefficient`, they leave the measured traction out.
+
+        Raises
+        ------
+        ConditionsError
+            If the friction coefficient is unknown, and there are only conditions of discs.
+        """
+        taken = () if rig is None else rig.conditions()
+        friction = friction_coefficient if self.friction_coefficient is None else self.friction_coefficient
+        if friction is None and not self.other_conditions and (not taken or "friction_coefficient" in taken):
+            raise ConditionsError(
+                "friction_coefficient: the tests do not hold it; add a column of that name, or give it:"
+                " friction_coefficient=0.46 in Python, --friction 0.46 on the command line"
+            )
+        conditions: dict[str, Any] = {
+            name: self._quantity(name) for name in (*LOADS, "creepage") if name in self.columns
+        }
+        if friction is not None:
+            conditions["friction_coefficient"] = friction
+        conditions |= self.other_conditions
+        traction = self.columns.get("traction_coefficient")
+        useful = model.uses_measured_traction and (not taken or "traction_coefficient" in taken)
+        if useful and traction is not None and not np.isnan(traction).any():
+            conditions["traction_coefficient"] = traction
+        return conditions
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the tests as a table with units in its header, which `read_tests` can read."""
+        import pandas as pd
+
+        named = {"label": self.labels} if any(self.labels) else {}
+        columns = {head(name): self._quantity(name).magnitude for name in self.columns}
+        others, outcomes = (
+            {f"{name} [{_unit(value) or '-'}]": plain(value) for name, value in some.items()}
+            for some in (self.other_conditions, self.outcomes)
+        )
+        return pd.DataFrame(named | others | columns | outcomes)
+
+    def __len__(self) -> int:
+        return len(self.labels)
+
+    def __getitem__(self, key: Any) -> Self:
+        """Return the tests selected by an index, a slice or a mask."""
+        index = np.atleast_1d(np.arange(len(self))[key])
+        if not index.size:
+            raise DataError(f"none of the {len(self)} tests is selected")
+        columns, others, outcomes = (
+            {name: values[index] for name, values in some.items()}
+            for some in (self.columns, self.other_conditions, self.outcomes)
+        )
+        return replace(
+            self,
+            columns=columns,
+            labels=tuple(self.labels[i] for i in index),
+            other_conditions=others,
+            outcomes=outcomes,
+        )
+
+    def __iter__(self) -> Iterator[Self]:
+        return (self[i] for i in range(len(self)))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, WearTests):
+            return NotImplemented
+        one, two = (
+            {**some.columns, **{(name, _unit(value)): plain(value) for name, value in some._as_given().items()}}
+            for some in (self, other)
+        )
+        return ((self.labels, self.source, one.keys()) == (other.labels, other.source, two.keys())) and all(
+            np.array_equal(values, two[name], equal_nan=True) for name, values in one.items()
+        )
+
+    def __repr__(self) -> str:
+        every = {
+            **self.other_conditions,
+            **{name: self._quantity(name) for name in self.columns},
+            **self.outcomes,
+        }
+        lines = [f"{len(self)} test{'s' if len(self) > 1 else ''}", *(self._range(*one) for one in every.items())]
+        return "\n  ".join(lines) + (f"\nfrom {self.source}" if self.source else "")
+
+    def _range(self, name: str, values: Values) -> str:
+        """Return the range of a column, and the number of tests with a value unless all have one."""
+        there = plain(values)[~np.isnan(plain(values))]
+        if not there.size:
+            return f"{name:22} none"
+        ends = " to ".join(f"{value:.4g}" for value in dict.fromkeys((there.min(), there.max())))
+        unit = symbol(values.units, "~P") if isinstance(values, pint.Quantity) else ""
+        counted = f" in {there.size}" if there.size < len(self) else ""
+        return f"{name:22} {ends} {unit}".rstrip() + counted
+
+    def _as_given(self) -> dict[str, Values]:
+        return {**self.other_conditions, **self.outcomes}
+
+    def _quantity(self, name: str) -> Quantity:
+        missing = np.full(len(self), np.nan)
+        return from_si(self.columns.get(name, missing), COLUMNS[name].unit)
+
+
+def head(name: str) -> str:
+    """Return the head of a column with its usual unit, as in "creepage [%]"."""
+    unit = COLUMNS[name].unit
+    return f"{name} [{unit}]" if unit else name
+
+
+def plain(values: Values) -> Array:
+    """Return values without their unit."""
+    array: Array = values.magnitude if isinstance(values, pint.Quantity) else values
+    return array
+
+
+def faulty_names(names: Collection[str], outcomes: Collection[str]) -> list[str]:
+    """Return what is wrong with a combination of columns, of which some are `outcomes`, regardless of their values.
+
+    If there are other conditions of a rig, it checks itself whether creepage or load are missing.
+    """
+    others = any(name not in COLUMNS and name not in outcomes for name in names)
+    loads, tractions, forces = ([one for one in kind if one in names] for kind in (LOADS, TRACTIONS, MEASURED_FORCES))
+    wrong = []
+    if "creepage" not in names and (not others or "frictional_heat" in names):
+        wrong.append(f"creepage: is missing; add a column '{head('creepage')}'")
+    if len(loads) > 1 or not (loads or others):
+        wrong.append(f"give exactly one load of {', '.join(map(head, LOADS))}; got {' and '.join(loads) or 'none'}")
+    if len(tractions) > 1:
+        wrong.append(f"{' and '.join(tractions)}: all give the traction; keep one of them")
+    if forces and "normal_force" not in names:
+        wrong.append(f"{forces[0]}: T/N follows from it only beside a column '{head('normal_force')}'")
+    if ("frictional_heat" in names) != ("rolling_speed" in names):
+        wrong.append(
+            f"frictional_heat is T × creepage × rolling speed; '{head('rolling_speed')}' stands beside it only"
+        )
+    if "wear_rate_uncertainty" in names and "wear_rate" not in names:
+        wrong.append("wear_rate_uncertainty: there is no wear_rate beside it")
+    if all(name in (*NEEDED, "rolling_speed") for name in names):
+        wrong.append(f"nothing is measured; add a column '{head('wear_rate')}' or 'traction_coefficient'")
+    return wrong
+
+
+def _faulty_values(
+    columns: Mapping[str, Array], others: Mapping[str, Values], outcomes: Collection[str]
+) -> Iterator[tuple[str, Any, str]]:
+    """Yield a column, a mask of its values that break a rule, and the rule; missing measurements break none."""
+    for name, values in columns.items():
+        about = COLUMNS[name]
+        yield name, np.isinf(values), "must be finite"
+        if about.sign == "positive":
+            yield name, values <= 0.0, "must be greater than zero"
+        if about.sign == "not negative":
+            yield name, values < 0.0, "must not be negative"
+        yield name, np.abs(values) > about.limit, f"must not exceed {100.0 * about.limit:g} %; is its unit right?"
+        if name in NEEDED:
+            yield name, np.isnan(values), "every test needs it"
+    for name, given in others.items():
+        yield name, np.isinf(plain(given)), "must be finite"
+        if name not in outcomes:
+            yield name, np.isnan(plain(given)), "every test needs it"
+    for name in MEASURED_FORCES:
+        if name in columns:
+            traction = _with_traction(columns)["traction_coefficient"]
+            wrong = ~(np.isnan(columns[name]) | ((traction > 0.0) & np.isfinite(traction)))
+            yield name, wrong, "gives no traction coefficient; check creepage, rolling speed and units"
+
+
+def _with_traction(columns: Mapping[str, Array]) -> dict[str, Array]:
+    """Replace the columns from which the traction coefficient follows by the traction coefficient."""
+    kept = {name: values for name, values in columns.items() if name not in (*MEASURED_FORCES, "rolling_speed")}
+    with np.errstate(divide="ignore", over="ignore", under="ignore"):  # `_faulty_values` reports the result
+        force = columns.get("tangential_force")
+        if "frictional_heat" in columns:
+            force = columns["frictional_heat"] / (abs(columns["creepage"]) * columns["rolling_speed"])
+        if force is not None:
+            kept["traction_coefficient"] = force / columns["normal_force"]
+    return {name: kept[name] for name in COLUMNS if name in kept}
+
+
+def _in_si(name: str, values: Values) -> Array:
+    """Return a column as SI floats, NaN included."""
+    unit = COLUMNS[name].unit
+    if unit and not isinstance(values, pint.Quantity):
+        raise UnitError(f"has no unit; it is in {unit} or another unit of that dimension")
+    try:
+        factor = si_factor(Q(1.0, _unit(values)), unit)
+    except UnitError as error:
+        raise UnitError(f"got {_unit(values) or 'no unit'}, {error}; give it in {unit or 'plain numbers'}") from None
+    with np.errstate(over="ignore"):  # an overflow is reported as not finite
+        return plain(values) * factor
+
+
+def _values(value: object) -> Values:
+    """Return an argument as a quantity or as plain numbers."""
+    quantity = parse(value) if isinstance(value, str) else value
+    if isinstance(quantity, pint.Quantity):
+        return Q(real_array(quantity.magnitude), str(quantity.units))
+    return real_array(quantity)
+
+
+def _unit(values: Values) -> str:
+    return symbol(values.units, "~C") if isinstance(values, pint.Quantity) else ""
+
+
+def _same_length(columns: Mapping[str, Values]) -> dict[str, Values]:
+    try:
+        shape = np.broadcast_shapes((1,), *(np.shape(plain(values)) for values in columns.values()))
+    except ValueError:
+        shape = ()
+    if len(shape) != 1 or 0 in shape:
+        shapes = ", ".join(f"{name} {np.shape(plain(values))}" for name, values in columns.items())
+        raise DataError(f"give arrays with one entry for each test, all of one length; got {shapes}")
+    found: dict[str, Values] = {}
+    for name, values in columns.items():
+        copied = np.array(np.broadcast_to(plain(values), shape))
+        found[name] = Q(copied, str(values.units)) if isinstance(values, pint.Quantity) else copied
+    return found

@@ -1,1 +1,0 @@
-"""Wear tests of a lab, and reading them."""

@@ -1,0 +1,256 @@
+"""Pictures of a prediction: curves, a map or bars over its operating points, and the fields of a single patch.
+
+xarray and pandas draw. matplotlib is imported so that an error names the extra if it is missing.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as matplotlib
+import numpy as np
+
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import InputError, did_you_mean, shown
+from wearlaw.models.law import named_outcomes
+from wearlaw.pipeline.datasets import Conditions, dataset, labelled
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.selection import in_words
+from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
+from wearlaw.units.quantities import in_unit
+from wearlaw.units.variables import UNITS, label, name_of
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+SIZE = (6.4, 4.4)
+"""Width and height of a figure, in inches."""
+
+MOST_CURVES = 8
+"""Most curves of a prediction over two conditions; with more it is a map."""
+
+FEW_POINTS = 15
+"""Most operating points of a curve for each to be marked."""
+
+TITLE = 70
+"""Characters on a line of the title."""
+
+PALE = 0.35
+"""Opacity of a curve outside the range of its law."""
+
+OUTSIDE = "outside the range of the law"
+
+ALONG = ("pressure", "traction", "traction_bound")
+"""Fields along the patch of a line that are shown if none is named."""
+
+FIELDS = ("traction", "pressure", "slip")
+"""Fields of a patch that is not a line; the first is shown if none is named."""
+
+
+def draw(prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
+    """Draw a prediction; see `Prediction.plot`."""
+    problem = prediction.problem
+    points = problem.batch_shape[: len(problem.batch_shape) - len(problem.dims)]
+    if math.prod(points) == 1 and x is None:
+        several = math.prod(problem.batch_shape) > 1
+        drawn = _bars(prediction, conditions, name, ax) if several else _of_patch(prediction, name, ax)
+        return _titled(drawn, conditions, ())
+    return _over_points(prediction, conditions, name, x, ax)
+
+
+def _over_points(
+    prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None
+) -> Axes:
+    """Draw a variable over the operating points: a map over two axes of many values, otherwise curves."""
+    problem = prediction.problem
+    found, variable = _found(prediction, conditions, name, x)
+    dims = [str(dim) for dim in found[variable].dims if dim not in problem.dims]
+    if len(dims) > 2:
+        raise InputError(
+            f"plot: there are {len(dims)} axes of operating points, and a picture shows two; choose some of the points,"
+            " as in r.isel(point_0=0).plot()"
+        )
+    for dim in dims:  # conditions that vary together give an axis of positions
+        if dim not in found.coords:
+            found = found.assign_coords({dim: (dim, range(found.sizes[dim]), {"long_name": "operating point"})})
+    along = x if x in dims else max(dims, key=lambda dim: found.sizes[dim])
+    others = [dim for dim in dims if dim != along]
+    if x is None and others and found.sizes[others[0]] > MOST_CURVES:
+        return _titled(_map(found, variable, along, others[0], problem, ax), conditions, dims)
+    together = [name for name in conditions.numbers if name in found and found[name].dims == (along,)]
+    across = x or (along if along in together or not together else together[0])
+    return _titled(_curves(found, variable, across, others, problem, ax), conditions, (across, *others))
+
+
+def _found(
+    prediction: Prediction, conditions: Conditions, name: str | None, x: str | None = None
+) -> tuple[xarray.Dataset, str]:
+    """Return the variables to draw, without axes of a single operating point, and the name of the one to draw."""
+    outcomes = named_outcomes(prediction.laws)
+    variable = name or next(iter(outcomes), "tangential_force")
+    names = [variable]
+    if x is not None and x not in conditions.numbers:
+        names.append(x)
+    if variable in outcomes:
+        names.append(OUTSIDE_RANGE)
+    found = dataset(prediction, conditions, names)
+    points = [dim for dim in found[variable].dims if dim not in prediction.problem.dims]
+    return found.squeeze([dim for dim in points if found.sizes[dim] == 1]), variable
+
+
+def _curves(
+    found: xarray.Dataset, variable: str, across: str, others: Sequence[str], problem: Problem, ax: Axes | None
+) -> Axes:
+    """Draw a curve for each value of the other axes and for each patch."""
+    apart = [*others, *(dim for dim in problem.dims if dim in found.dims)]
+    look = _look(ax)
+    pale = False
+    drawn: Axes | None = None
+    for index in np.ndindex(*(found.sizes[dim] for dim in apart)):
+        place = dict(zip(apart, index, strict=True))
+        table = found.isel(place).to_dataframe().reset_index()
+        table = table[table[variable].notna() & table[across].notna()]
+        if table.empty:
+            continue
+        named = _series(found, place, problem)
+        marked: dict[str, Any] = {"marker": "o" if len(table) <= FEW_POINTS else "", "markersize": 4, "legend": False}
+        outside = table[OUTSIDE_RANGE] > 0.0 if OUTSIDE_RANGE in table else table[variable].isna()  # none
+        inside = table.assign(**{variable: table[variable].where(~outside)})
+        pale |= bool(outside.any())
+        if outside.any():  # the whole curve is pale, and on it lies the part inside
+            behind: Axes = table.plot(
+                x=across, y=variable, label=named if outside.all() else "_", alpha=PALE, **look, **marked
+            )
+            marked["color"] = behind.get_lines()[-1].get_color()
+            look["ax"] = drawn = behind
+        if not outside.all():
+            drawn = inside.plot(x=across, y=variable, label=named, **look, **marked)
+        look["ax"] = drawn
+    if drawn is None:
+        raise InputError(f"plot: {variable} has no value at these operating points")
+    if pale:
+        drawn.plot([], [], color="black", alpha=PALE, label=OUTSIDE)
+    if apart or pale:
+        drawn.legend(fontsize="small")
+    drawn.set(xlabel=_label(found[across]), ylabel=_label(found[variable]))
+    return drawn
+
+
+def _map(found: xarray.Dataset, variable: str, along: str, up: str, problem: Problem, ax: Axes | None) -> Axes:
+    """Draw a map over two axes; hatching marks what lies outside the range of the law."""
+    values = found[variable]
+    if values.ndim > 2:
+        known = " and ".join(f"{dim} {labels}" for dim, labels in problem.dims.items())
+        raise InputError(f"plot: a map shows one patch; choose one of {known}, as in r.sel(...).plot()")
+    bar = {"label": _label(values)}
+    drawn: Axes = values.plot.pcolormesh(x=along, y=up, cbar_kwargs=bar, **_look(ax)).axes
+    if OUTSIDE_RANGE in found and (found[OUTSIDE_RANGE] > 0.0).any():
+        marks = found[OUTSIDE_RANGE].transpose(up, along)
+        drawn.contourf(marks[along], marks[up], marks, levels=[0.5, 1.5], colors="none", hatches=["///"])
+        drawn.fill_between([], [], facecolor="none", edgecolor="black", hatch="///", label=OUTSIDE)
+        drawn.legend(fontsize="small")
+    drawn.set(xlabel=_label(found[along]), ylabel=_label(found[up]))
+    return drawn
+
+
+def _bars(prediction: Prediction, conditions: Conditions, name: str | None, ax: Axes | None) -> Axes:
+    """Draw a variable of each existing patch at one operating point."""
+    found, variable = _found(prediction, conditions, name)
+    dims = [str(dim) for dim in found[variable].dims]
+    table = found.to_dataframe(dim_order=dims).dropna(subset=variable)
+    labels = [row if isinstance(row, tuple) else (row,) for row in table.index.tolist()]
+    names = [in_words(dict(zip(dims, row, strict=True))) for row in labels]
+    drawn: Axes = table[[variable]].set_axis(names).plot.bar(legend=False, rot=0, **_look(ax))
+    marks = table[OUTSIDE_RANGE].tolist() if OUTSIDE_RANGE in table else []
+    outside = [place for place, mark in enumerate(marks) if mark > 0.0]
+    for place in outside:
+        drawn.patches[place].set(alpha=PALE, label=OUTSIDE if place == outside[0] else "_")
+    if outside:
+        drawn.legend(handles=[drawn.patches[outside[0]]], fontsize="small")
+    drawn.set(xlabel="", ylabel=_label(found[variable]))
+    drawn.axhline(0.0, color="black", linewidth=0.8)
+    return drawn
+
+
+def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes:
+    """Draw the fields of the only patch: along a line, otherwise as a map."""
+    if prediction.scale == "patch":
+        raise InputError(
+            "plot: there is one operating point, and the contact model gives means of its patch; give a condition"
+            ' several values, such as creepage=Q([0.5, 1, 2], "%"), or take a contact model that resolves the patch,'
+            ' such as wl.contact_model("fastsim")'
+        )
+    line = prediction.problem.geometry == "line"
+    fields = prediction.profile if line else _map_of_patch(prediction)
+    every = [str(one) for one in fields.data_vars]
+    if name is not None and name not in every:
+        raise InputError(
+            f"plot: there is one operating point, and {shown(name)} is no field of its patch"
+            f"{did_you_mean(name, [*every, *default_variables(prediction)])} The fields are: {', '.join(every)}"
+        )
+    if not line:
+        variable = name or FIELDS[0]
+        mesh = fields[variable].plot.pcolormesh(
+            x="x", y="y", cbar_kwargs={"label": _label(fields[variable])}, **_look(ax)
+        )
+        mesh.axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
+        drawn: Axes = mesh.axes
+        return drawn
+    names = list(ALONG) if name is None else [name]
+    table = fields.to_dataframe().reset_index()
+    style = ["--" if one == "traction_bound" else "-" for one in names]
+    labels = [name_of(one) for one in names]
+    drawn = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
+    drawn.set(xlabel=_label(fields["x"]), ylabel=_label(fields[names[0]]) if name else label("pressure", "traction"))
+    return drawn
+
+
+def _map_of_patch(prediction: Prediction) -> xarray.Dataset:
+    """Return the fields of a patch over its strips and their nodes."""
+    contact = prediction.contact
+    (*_, strips, nodes) = contact.pressure.shape
+
+    def values_of(field: str) -> tuple[tuple[str, str], Any, dict[str, str]]:
+        values = np.broadcast_to(getattr(contact, field), contact.pressure.shape).reshape(strips, nodes)
+        return ("strip", "node"), in_unit(values, UNITS[field]), {"units": UNITS[field], "long_name": name_of(field)}
+
+    none = prediction.problem.replaced(dims={})
+    return labelled(none, {name: values_of(name) for name in ("x", "y")}, {name: values_of(name) for name in FIELDS})
+
+
+def _look(ax: Axes | None) -> dict[str, Any]:
+    return {"figsize": SIZE} if ax is None else {"ax": ax}
+
+
+def _series(found: xarray.Dataset, place: Mapping[str, int], problem: Problem) -> str:
+    """Return the name of a curve: the value of each other condition, and the patch."""
+    of_points = [_value(found[dim].isel({dim: at})) for dim, at in place.items() if dim not in problem.dims]
+    patch = in_words({dim: found[dim].values[at] for dim, at in place.items() if dim in problem.dims})
+    return ", ".join([*of_points, *([patch] if patch else [])]) or "_"
+
+
+def _value(one: xarray.DataArray) -> str:
+    """Return the name and the value of a condition."""
+    return f"{name_of(str(one.name))} {one.item():.4g} {_unit(one)}".rstrip()
+
+
+def _titled(drawn: Axes, conditions: Conditions, variable: Collection[str]) -> Axes:
+    """Write the conditions that a picture does not show above it, and return its axes."""
+    drawn.set_title("")  # xarray's
+    lines = textwrap.wrap(conditions.text(without=variable), TITLE)
+    drawn.set_title("\n".join(lines), fontsize="small", loc="left")
+    return drawn
+
+
+def _label(one: xarray.DataArray) -> str:
+    """Return the label of an axis."""
+    return f"{one.attrs.get('long_name', name_of(str(one.name)))} [{_unit(one) or '-'}]"
+
+
+def _unit(one: xarray.DataArray) -> str:
+    unit: str = one.attrs.get("units", "")
+    return unit.replace("ug", "µg").replace("um", "µm").replace("mm^2", "mm²").replace("*", "·")

@@ -1,0 +1,234 @@
+"""Archard's law with a hardness of the material, against energies in contacts where all of the slip zone is at μp."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import wearlaw as wl
+from tests.plugins.fits.fits import made_up
+from tests.plugins.laws import contact_of
+from tests.strategies import EPS
+from wearlaw import Q
+from wearlaw_archard import Archard, SteelWithHardness
+
+SOFT, HARD = SteelWithHardness(hardness="2 GPa"), SteelWithHardness(hardness="4 GPa")
+ON_DISCS: dict[str, Any] = {"max_pressure": Q(1200, "MPa"), "friction_coefficient": 0.4}
+ON_RAIL: dict[str, Any] = {
+    "normal_force": Q(20, "kN"),
+    "longitudinal_creepage": Q([0.05, 0.3, 2.0], "%"),
+    "friction_coefficient": 0.3,
+}
+
+
+def archard(coefficient: float = 1e-4, **fields: Any) -> Any:
+    return wl.wear_law("archard", coefficient=coefficient, **fields)
+
+
+def discs(**fields: Any) -> Any:
+    return wl.TwinDisc.suros(**fields)
+
+
+def rail(**fields: Any) -> Any:
+    given_fields = {"wheel_radius": "460 mm", "rail_head_radius": "300 mm", "rolling_speed": "30 m/s", "material": SOFT}
+    return wl.rig("wheel_rail", **{**given_fields, **fields})
+
+
+@given(
+    pressure=st.floats(0.0, 4e9),
+    slip=st.floats(-1.0, 1.0),
+    coefficient=st.floats(1e-8, 1.0),
+    hardness=st.floats(1e8, 1e10),
+    density=st.floats(1e3, 2e4),
+)
+def test_the_rate_is_the_volume_of_the_definition_times_the_density(
+    pressure: float, slip: float, coefficient: float, hardness: float, density: float
+) -> None:
+    law = archard(coefficient, hardness=Q(hardness, "Pa"))
+    # V = k N s/H with N = p dA and s = |slip| for each metre rolled, over dA
+    volume = coefficient * pressure * abs(slip) / hardness
+    rate = float(law.checked_rate(contact_of(pressure=pressure, slip=slip, density=density))[0])
+    assert rate == pytest.approx(density * volume, rel=16 * EPS, abs=1e-290)
+
+
+@pytest.mark.validates(
+    "wear-laws",
+    "`archard` on Carter's line contact, from partial to full slip: ρ k/(H μ) times Tγ/A in closed form",
+    source="p = q/μ wherever the bodies slip, so ∫ p s dA = Tγ/μ; T after Carter 1926",
+    held_to="{within:g}, relative",
+    within=1e-12,  # some hundred roundings in the quadrature and in the conditions
+)
+@pytest.mark.parametrize("percent", [0.01, 0.1, 0.6, 1.0, 1.5, 10.0])
+def test_on_a_line_it_is_the_energy_over_friction_and_hardness(percent: float, within: float) -> None:
+    predict = discs(material=SOFT) | wl.contact_model("exact") | archard(3e-4)
+    found = predict(creepage=Q(percent, "%"), **ON_DISCS)
+    problem = found.contact.problem
+    load, half_width, radius = (float(x) for x in (problem.normal_force, problem.half_width, problem.relative_radius))
+    share = min(percent / 100.0 / (0.4 * half_width / radius), 1.0)
+    index = 0.4 * load * (1.0 - (1.0 - share) ** 2) * percent / 100.0
+    expected = 7850.0 * 3e-4 / (2e9 * 0.4) * index / (2.0 * half_width * 0.01)
+    assert found.wear_rate.m_as("kg/m/m^2") == pytest.approx(expected, rel=within)
+
+
+@pytest.mark.validates(
+    "wear-laws",
+    "`archard` on an ellipse with one creepage: ρ k/(H μ) times the energy of the cells over the area",
+    source="p = q/μ wherever the bodies slip, under a traction bound like the pressure; slip and traction are parallel",
+    held_to="{within:g}, relative",
+    within=1e-12,  # both sides are sums over the same cells, of some thousand
+)
+def test_on_an_ellipse_it_is_the_energy_over_friction_and_hardness(within: float) -> None:
+    predict = rail() | wl.contact_model("fastsim", bound="elliptic") | archard(3e-4)
+    found = predict(**ON_RAIL)
+    energy = found.cell_wear_index / found.patch_area
+    expected = 7850.0 * 3e-4 / (2e9 * 0.3) * energy.m_as("N/m^2")
+    assert (expected > 0).all()
+    assert found.wear_rate.m_as("kg/m/m^2") == pytest.approx(expected, rel=within)
+
+
+def test_it_is_kth_within_one_field_of_the_map() -> None:
+    for name in ("exact", "global"):
+        kth = discs() | wl.contact_model(name) | wl.wear_law("kth", coefficient="low")
+        ours = discs() | wl.contact_model(name) | archard(1e-4, hardness="2.625 GPa")
+        at: Any = {"creepage": Q([0.1, 1.0, 10.0], "%"), **ON_DISCS}
+        assert ours(**at).wear_rate.m == pytest.approx(kth(**at).wear_rate.m, rel=1e-12)
+
+
+def test_each_body_wears_by_the_hardness_of_its_own_material() -> None:
+    both = (
+        rail(material=SOFT, rail_material=HARD)
+        | wl.contact_model("fastsim", bound="elliptic")
+        | archard(body="wheel")
+        | archard(body="rail")
+    )
+    found = both(**ON_RAIL)
+    assert found.wear_rate_of("wheel").m == pytest.approx(2.0 * found.wear_rate_of("rail").m, rel=8 * EPS)
+
+
+def test_any_material_with_a_field_hardness_will_do() -> None:
+    class RailSteel(wl.Material):
+        hardness: Annotated[wl.Quantity, wl.Unit("GPa")]
+
+    own = RailSteel(**{**dict(wl.steel()), "hardness": "2 GPa"})
+    at: Any = {"creepage": Q(1, "%"), **ON_DISCS}
+    rates = [(discs(material=one) | wl.contact_model("exact") | archard())(**at).wear_rate.m for one in (own, SOFT)]
+    assert rates[0] == rates[1]
+
+
+def test_a_hardness_of_the_law_goes_before_that_of_the_material() -> None:
+    at: Any = {"creepage": Q(1, "%"), **ON_DISCS}
+    rates = [
+        (discs(material=material) | wl.contact_model("exact") | archard(hardness="3 GPa"))(**at).wear_rate.m
+        for material in (wl.steel(), SOFT, HARD)
+    ]
+    assert rates[0] == rates[1] == rates[2]
+
+
+def test_a_steel_with_a_hardness_is_the_steel_but_for_its_hardness() -> None:
+    fields = dict(SOFT)
+    assert fields.pop("hardness") == Q(2, "GPa")
+    assert fields == dict(wl.steel())
+    assert wl.material("SteelWithHardness", hardness="2 GPa") == SOFT
+    assert SteelWithHardness(hardness="260 kgf/mm^2").hardness.to("GPa").m == pytest.approx(2.549729, rel=1e-9)
+    with pytest.raises(wl.ConfigurationError, match=r"SteelWithHardness: hardness: is missing"):
+        wl.material("SteelWithHardness")
+
+
+def test_a_material_without_a_hardness_is_an_error_that_says_what_to_do() -> None:
+    at: Any = {"creepage": Q(1, "%"), **ON_DISCS}
+    with pytest.raises(wl.InputError) as error:
+        (discs() | wl.contact_model("exact") | archard())(**at)
+    assert str(error.value) == (
+        "hardness: wear law 'archard' needs it, but the material of disc_1, a Material, has none; give disc_1 a"
+        " material with a hardness, such as a SteelWithHardness, or give the law its field hardness, such as"
+        ' hardness="2.6 GPa"'
+    )
+    unlike = discs(disc_1=wl.Disc(diameter="47 mm", material=SOFT)) | wl.contact_model("exact")
+    unlike | archard(body="disc_1")
+    with pytest.raises(wl.InputError, match="the material of disc_2, a Material, has none; give disc_2 a material"):
+        (unlike | archard(body="disc_2"))(**at)
+
+
+def test_a_hardness_that_is_not_a_stress_is_an_error_that_names_the_material() -> None:
+    class Numbered(wl.Material):
+        hardness: float
+
+    at: Any = {"creepage": Q(1, "%"), **ON_DISCS}
+    numbered = Numbered(**{**dict(wl.steel()), "hardness": 260.0})
+    with pytest.raises(wl.UnitError, match=r"hardness of the material of disc_1: got the bare number 260\.0, which"):
+        (discs(material=numbered) | wl.contact_model("exact") | archard())(**at)
+
+
+def test_a_contact_from_elsewhere_needs_the_hardness_of_the_law() -> None:
+    contact = wl.Contact.from_arrays(
+        pressure=Q([900.0], "MPa"), traction="300 MPa", slip="1 %", area="1 mm^2", rolling_speed="10 m/s"
+    )
+    with pytest.raises(wl.InputError, match=r"hardness: .* this contact was solved elsewhere, .*; give the law its"):
+        contact | archard()
+    found = (contact | archard(hardness="2 GPa")).wear_rate
+    assert found.m_as("kg/m/m^2") == pytest.approx(7850.0 * 1e-4 * 9e8 * 0.01 / 2e9, rel=16 * EPS)
+
+
+@pytest.mark.parametrize("contact_model", ["global", "exact"])
+def test_the_coefficient_is_found_by_a_fit(contact_model: str) -> None:
+    predict = discs(material=HARD) | wl.contact_model(contact_model) | archard(4e-4)
+    fit = wl.fit(predict.with_law(archard(1e-3)), made_up(predict), free=["coefficient"], bootstrap=0)
+    # the rate is linear in k, so that the first step of the least squares is exact to rounding
+    assert fit.parameters["coefficient"] == pytest.approx(4e-4, rel=1e-9)
+    assert isinstance(fit.law, Archard)
+    assert fit.law.calibration is not None
+    assert fit.law.calibration.contact_model == contact_model
+
+
+def test_a_range_of_the_tests_is_kept_and_warned_of() -> None:
+    tests = wl.Calibration(
+        contact_model="any",
+        scale="any",
+        materials="steel A on steel B",
+        stated_range=(("slip_speed", "0 m/s", "0.02 m/s"),),
+        source="test 7 of the lab",
+    )
+    law = archard(hardness="2 GPa", fitted_for=tests)
+    assert archard(**law.model_dump(mode="json")) == law
+    assert law.valid_range == {"slip_speed": (0.0, 0.02)}
+    with pytest.warns(wl.RangeWarning, match=r"slip speed from 0\.000 m/s to 0\.02000 m/s"):
+        (discs() | wl.contact_model("global") | law)(creepage=Q(5, "%"), **ON_DISCS)
+    assert archard().calibration is None
+    assert archard().valid_range == {}
+
+
+def test_it_is_smooth_and_needs_no_estimate() -> None:
+    law = archard(hardness="2 GPa")
+    assert law.breakpoints(law.numbers) == {}
+    assert law.jumps(law.numbers) == {}
+    assert law.numbers == {"coefficient": 1e-4, "hardness": 2e9}
+    rates = law.checked_rate(contact_of(pressure=np.array([0.0, 1e9, 2e9])))
+    assert rates[0] == 0.0
+    assert rates[2] == 2.0 * rates[1]
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({}, r"archard: coefficient: is missing"),
+        ({"coefficient": 0.0}, r"coefficient: .*greater than 0"),
+        ({"coefficient": "1e-4"}, r"coefficient: "),
+        ({"coefficient": 1e-4, "hardness": 2.6}, r"hardness: .*2\.6, which has no unit"),
+        ({"coefficient": 1e-4, "hardness": "-2 GPa"}, r"hardness: must be greater than zero"),
+        ({"coefficient": 1e-4, "hardnes": "2 GPa"}, r"unknown field; did you mean 'hardness'"),
+        ({"k": 1e-4}, r"k: unknown field"),
+    ],
+)
+def test_a_wrong_value_is_one_clear_error(fields: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message):
+        wl.wear_law("archard", **fields)
+
+
+@pytest.mark.parametrize("ratio", [-0.1, 0.51, "0.28"])
+def test_a_wrong_poisson_ratio_of_a_steel_with_a_hardness_is_refused(ratio: Any) -> None:
+    with pytest.raises(wl.ConfigurationError, match="poisson_ratio"):
+        wl.material("SteelWithHardness", hardness="2 GPa", poisson_ratio=ratio)

@@ -1,0 +1,274 @@
+"""Wear by the energy of friction, against Tγ/A, and where it jumps against Carter's contact in closed form."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import wearlaw as wl
+from tests.plugins.fits.fits import made_up
+from tests.plugins.laws import around, contact_of
+from tests.roots import brentq
+from tests.strategies import EPS
+from wearlaw import Q
+from wearlaw_energy import Energy
+
+MILD, SEVERE = 5e-9, 15e-9
+"""Coefficients in kg/J, made up."""
+
+TWO = {"mass_per_energy": "5 ug/J", "severe_mass_per_energy": "15 ug/J"}
+UNITS = {"energy_limit": "N/mm^2", "power_limit": "W/mm^2"}
+IN_SI = {"energy_limit": "N/m^2", "power_limit": "W/m^2"}
+FRICTION = 0.4
+ON_DISCS: dict[str, Any] = {"max_pressure": Q(1200, "MPa"), "friction_coefficient": FRICTION}
+ON_RAIL: dict[str, Any] = {
+    "normal_force": Q(20, "kN"),
+    "longitudinal_creepage": Q([0.05, 0.3, 2.0], "%"),
+    "lateral_creepage": Q(0.1, "%"),
+    "spin": Q(0.2, "1/m"),
+    "friction_coefficient": 0.3,
+}
+
+
+def energy(mass_per_energy: Any = "5 ug/J", **fields: Any) -> Any:
+    return wl.wear_law("energy", mass_per_energy=mass_per_energy, **fields)
+
+
+def discs(**fields: Any) -> Any:
+    return wl.TwinDisc.suros(**fields)
+
+
+def rail() -> Any:
+    return wl.WheelRail(
+        wheel_radius=Q(460, "mm"), rail_head_radius=Q(300, "mm"), rolling_speed=Q(30, "m/s"), material=wl.steel()
+    )
+
+
+@pytest.mark.parametrize("limit", ["power_limit", "energy_limit"])
+@given(traction=st.floats(0.0, 2e9), slip=st.floats(0.0, 1.0), border=st.floats(1e3, 1e9))
+def test_the_rate_at_a_point_is_a_coefficient_times_the_energy(
+    limit: str, traction: float, slip: float, border: float
+) -> None:
+    law = energy(**TWO, **{limit: Q(border, IN_SI[limit])})
+    contact = contact_of(traction=traction, slip=slip)
+    found = float(law.checked_rate(contact.replaced(rolling_speed=np.array(4.0)))[0])
+    at_node = traction * slip * (4.0 if limit == "power_limit" else 1.0)
+    allowed = [
+        (MILD if at_node < side else SEVERE) * traction * slip for side in (border * (1 - EPS), border * (1 + EPS))
+    ]
+    assert any(found == pytest.approx(expected, rel=8 * EPS, abs=1e-290) for expected in allowed)
+
+
+@pytest.mark.validates(
+    "wear-laws",
+    "`energy` without a limit: its coefficient times Tγ/A, in every contact model on a line",
+    source="the definition of Tγ, the energy dissipated per distance rolled",
+    held_to="{within:g}, relative",
+    within=1e-13,
+)
+@pytest.mark.parametrize("name", ["global", "exact", "fastsim"])
+def test_without_a_limit_it_is_the_energy_of_the_patch(name: str, within: float) -> None:
+    found = (discs() | wl.contact_model(name) | energy())(creepage=Q([0.01, 0.3, 1.0, 10.0], "%"), **ON_DISCS)
+    expected = MILD * (found.wear_index / found.patch_area).m_as("N/m^2")
+    assert found.wear_rate.m_as("kg/m/m^2") == pytest.approx(expected, rel=within)
+
+
+def test_without_a_limit_it_is_the_energy_of_the_cells_of_an_ellipse() -> None:
+    found = (rail() | wl.contact_model("fastsim") | energy())(**ON_RAIL)
+    expected = MILD * (found.cell_wear_index / found.patch_area).m_as("N/m^2")
+    # the sum over a thousand cells, with its rounding, against the same in another order
+    assert found.wear_rate.m_as("kg/m/m^2") == pytest.approx(expected, rel=1e-12)
+
+
+def carter_mean(percent: float, limit: float, problem: wl.Problem) -> float:
+    """Return the mean of c q s over Carter's patch, with c = MILD below a limit of q s [N/m²] and SEVERE above.
+
+    Over the slip zone, t from -1 to 1, q s is μ p0 ξ_sat h (A + h t) √(1-t²), with h = min(d, 1), A = max(2-d, d) and
+    d = ξ/ξ_sat (Carter 1926; Johnson 1985, section 8.3). It rises to a peak and falls, so that it is above the limit
+    between two points.
+    """
+    p0, a, radius = (float(x) for x in (problem.max_pressure, problem.half_width, problem.relative_radius))
+    saturation = FRICTION * a / radius
+    d = percent / 100.0 / saturation
+    h, above = min(d, 1.0), max(2.0 - d, d)
+    scale = FRICTION * p0 * saturation * h
+
+    def density(t: float) -> float:
+        return scale * (above + h * t) * math.sqrt((1.0 - t) * (1.0 + t))
+
+    def antiderivative(t: float) -> float:
+        root = math.sqrt((1.0 - t) * (1.0 + t))
+        return scale * (above * 0.5 * (t * root + math.asin(t)) - h * root**3 / 3.0)
+
+    # the peak, where h(1-t²) = (A + ht)t
+    peak = (-above + math.sqrt(above**2 + 8.0 * h**2)) / (4.0 * h)
+    total = antiderivative(1.0) - antiderivative(-1.0)
+    if density(peak) <= limit:
+        severe = 0.0
+    else:
+        low, high = (brentq(lambda t: density(t) - limit, end, peak, xtol=1e-16, rtol=1e-15) for end in (-1.0, 1.0))
+        severe = antiderivative(high) - antiderivative(low)
+    return 0.5 * h * (MILD * (total - severe) + SEVERE * severe)  # over the patch, of which the zone is the share h
+
+
+@pytest.mark.validates(
+    "wear-laws",
+    "`energy` that jumps within Carter's patch, from partial to full slip, at a limit in power and in energy",
+    source="q s of Carter 1926 between the two points where it passes the limit, in closed form",
+    held_to="{within:g}, relative",
+    within=1e-12,  # the roots of both sides are known to some roundings, and the rate is finite beside the jump
+)
+@pytest.mark.parametrize("limit", [0.05, 0.5, 2.0, 4.0, 30.0])
+@pytest.mark.parametrize("percent", [0.1, 0.6, 1.0, 1.5, 10.0])
+def test_the_jump_is_integrated_to_rounding(percent: float, limit: float, within: float) -> None:
+    contact = discs() | wl.contact_model("exact")
+    speed = float(contact(creepage=Q(percent, "%"), **ON_DISCS).contact.rolling_speed)
+    for law in (
+        energy(**TWO, energy_limit=Q(limit, "N/mm^2")),
+        energy(**TWO, power_limit=Q(limit * speed, "W/mm^2")),
+    ):
+        found = (contact | law)(creepage=Q(percent, "%"), **ON_DISCS)
+        expected = carter_mean(percent, limit * 1e6, found.contact.problem)
+        assert found.wear_rate.m_as("kg/m/m^2") == pytest.approx(expected, rel=within)
+        assert found.wear_rate_error.m <= within * found.wear_rate.m
+
+
+def test_severe_wear_by_power_begins_at_a_lower_creepage_on_faster_discs() -> None:
+    creepage = Q(np.linspace(0.2, 8.0, 400), "%")
+
+    def begins(**limit: str) -> list[float]:
+        law = energy(**TWO, **limit)
+        rates = [
+            (discs(rolling_speed=speed) | wl.contact_model("global") | law)(creepage=creepage, **ON_DISCS)
+            for speed in ("1 m/s", "2 m/s")
+        ]
+        of_energy = [(one.wear_rate / (one.wear_index / one.patch_area)).m_as("kg/J") for one in rates]
+        return [float(creepage.m[np.argmax(one > 1e-8)]) for one in of_energy]
+
+    slow, fast = begins(power_limit="15 W/mm^2")
+    assert slow / fast == pytest.approx(2.0, abs=0.05)  # to two steps of the creepage
+    slow, fast = begins(energy_limit="15 N/mm^2")
+    assert slow == fast
+
+
+@pytest.mark.validates(
+    "wear-laws",
+    "`energy` that jumps within an ellipse in full slip: the mean in closed form, on 10 to 160 strips",
+    source="q s is ξ μ (2N/(πab)) (1 - r²), so that wear is severe inside of an ellipse of the same shape",
+    held_to="{times:g} times `wear_rate_error`, which falls from {coarse:g} to {fine:g} of the rate at most",
+    times=1.5,
+    coarse=0.12,
+    fine=0.01,
+)
+@pytest.mark.parametrize("limit", ["energy_limit", "power_limit"])
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_the_jump_within_an_ellipse_is_known_to_the_stated_error(
+    limit: str, share: float, times: float, coarse: float, fine: float
+) -> None:
+    # Kalker's simplified theory at a creepage of a hundred times that of full slip: it slips by ξ to a hundredth,
+    # which differs in sign from the leading to the trailing half.
+    at: Any = {"normal_force": Q(20, "kN"), "longitudinal_creepage": Q(50, "%"), "friction_coefficient": 0.3}
+    problem = rail().problem(**at)
+    peak = 0.5 * 0.3 * 2.0 * 20e3 / (math.pi * float(problem.a) * float(problem.b))
+    law = energy(**TWO, **{limit: Q(share * peak * (30.0 if limit == "power_limit" else 1.0), IN_SI[limit])})
+    # ∫ c w dA/A = ∫ c peak (1 - u) du with u = r² from 0 to 1; severe up to 1 - share
+    severe = 1.0 - share
+    expected = peak * (0.5 * MILD + (SEVERE - MILD) * (severe - 0.5 * severe**2))
+    for strips, most in ((10, coarse), (40, 0.05), (160, fine)):
+        # The error falls by steps, as strips enter the severe zone; from two refinements it is known to half of it.
+        found = (rail() | wl.contact_model("fastsim", strips=strips) | law)(**at)
+        rate, error = found.wear_rate.m_as("kg/m/m^2"), found.wear_rate_error.m_as("kg/m/m^2")
+        assert abs(rate - expected) <= times * error
+        assert error <= most * rate
+
+
+def test_each_body_has_a_law_of_its_own() -> None:
+    both = rail() | wl.contact_model("fastsim") | energy(body="wheel") | energy("10 ug/J", body="rail")
+    found = both(**ON_RAIL)
+    assert found.wear_rate_of("rail").m == pytest.approx(2.0 * found.wear_rate_of("wheel").m, rel=8 * EPS)
+
+
+@pytest.mark.parametrize("limit", ["energy_limit", "power_limit"])
+@pytest.mark.parametrize("contact_model", ["global", "exact"])
+def test_both_coefficients_and_the_limit_are_found_by_a_fit(contact_model: str, limit: str) -> None:
+    predict = discs() | wl.contact_model(contact_model) | energy(**TWO, **{limit: Q(10, UNITS[limit])})
+    start = energy("8 ug/J", severe_mass_per_energy="9 ug/J", **{limit: Q(10, UNITS[limit])})
+    fit = wl.fit(
+        predict.with_law(start), made_up(predict), free=["mass_per_energy", "severe_mass_per_energy"], bootstrap=0
+    )
+    found = [fit.parameters[name].m_as("ug/J") for name in ("mass_per_energy", "severe_mass_per_energy")]
+    assert found == pytest.approx([5.0, 15.0], rel=1e-7)  # as for usfd: far below the tolerance of the fit, 1e-8
+    assert isinstance(fit.law, Energy)
+    assert fit.law.calibration is not None
+    assert getattr(fit.law, limit) == Q(10, UNITS[limit])
+
+
+def test_the_limit_belongs_to_severe_wear_and_is_the_only_jump() -> None:
+    law = energy(**TWO, energy_limit="10 N/mm^2")
+    assert law.breakpoints(law.numbers) == law.jumps(law.numbers) == {"wear_index_density": (10e6,)}
+    below, at = law.checked_rate(contact_of(traction=around(10e6), slip=1.0))
+    assert at / below == pytest.approx(3.0, rel=8 * EPS)
+    law = energy(**TWO, power_limit="10 W/mm^2")
+    assert law.jumps(law.numbers) == {"frictional_power_density": (10e6,)}
+    below, at = law.checked_rate(contact_of(traction=around(10e6), slip=1.0))
+    assert at / below == pytest.approx(3.0, rel=8 * EPS)
+
+
+def test_equal_coefficients_make_no_jump_and_no_limit_no_branch() -> None:
+    law = energy(severe_mass_per_energy="5 ug/J", power_limit="4 W/mm^2")
+    assert law.jumps(law.numbers) == {}
+    assert law.ramps(law.numbers) is None
+    law = energy()
+    assert law.breakpoints(law.numbers) == law.jumps(law.numbers) == {}
+    assert law.ramps(law.numbers) == ((0.0, pytest.approx(5e-9)),)
+    assert law.numbers == {"mass_per_energy": pytest.approx(5e-9)}
+
+
+def test_units_of_print_are_taken_as_they_stand() -> None:
+    assert energy("5.3 ug/m/N") == energy("5.3 ug/J")
+    law = energy(**TWO, power_limit="4 N/mm/s")
+    assert law.numbers["power_limit"] == pytest.approx(4e3, rel=4 * EPS)  # a thousandth of 4 W/mm²
+
+
+def test_a_record_of_the_tests_survives_a_round_trip() -> None:
+    tests = wl.Calibration(
+        contact_model="global",
+        scale="patch",
+        materials="steel A on steel B",
+        stated_range=(("frictional_power_density", "0 W/mm^2", "10 W/mm^2"),),
+        source="test 7 of the lab",
+    )
+    law = energy(**TWO, power_limit="4 W/mm^2", fitted_for=tests)
+    assert energy(**law.model_dump(mode="json")) == law
+    assert law.valid_range == {"frictional_power_density": (0.0, 1e7)}
+    with pytest.warns(wl.CalibrationWarning, match="'energy' were fitted for patch means"):
+        discs() | wl.contact_model("exact") | law
+    assert energy().calibration is None
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({}, r"energy: mass_per_energy: is missing"),
+        ({"mass_per_energy": 5e-9}, r"mass_per_energy: got the bare number 5e-09, which has no unit"),
+        ({"mass_per_energy": "1e-13 m^3/J"}, r"mass_per_energy: .*does not have the dimension of 'ug/J'"),
+        (TWO, r"severe_mass_per_energy needs the limit at which it begins: power_limit or energy_limit"),
+        ({"mass_per_energy": "5 ug/J", "power_limit": "4 W/mm^2"}, r"power_limit needs severe_mass_per_energy"),
+        ({"mass_per_energy": "5 ug/J", "energy_limit": "4 N/mm^2"}, r"energy_limit needs severe_mass_per_energy"),
+        ({**TWO, "power_limit": "4 W/mm^2", "energy_limit": "4 N/mm^2"}, r"give one limit, .* not both"),
+        ({**TWO, "power_limit": "4 N/mm^2"}, r"power_limit: .*does not have the dimension of 'W/mm\^2'"),
+        (
+            {**TWO, "severe_mass_per_energy": "4 ug/J", "power_limit": "4 W/mm^2"},
+            r"must not be below mass_per_energy = 5\.000",
+        ),
+        ({**TWO, "power_limt": "4 W/mm^2"}, r"unknown field; did you mean 'power_limit'"),
+    ],
+)
+def test_a_wrong_value_is_one_clear_error(fields: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message):
+        wl.wear_law("energy", **fields)

@@ -1,0 +1,191 @@
+from __future__ import annotations
+
+import math
+
+import mpmath  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+from hypothesis import given
+from scipy import integrate
+
+import wearlaw as wl
+from tests import line
+from tests.line import slip_zone
+from tests.strategies import EPS, log_uniform, saturation_creepage, with_creepage
+from wearlaw import Q
+from wearlaw_kit import line_problems
+
+EXACT = wl.contact_model("exact")
+PRINTED = wl.contact_model("exact", slip="as_printed")
+SUROS = wl.TwinDisc.suros()
+
+
+def problem_at(percent: float) -> wl.Problem:
+    return SUROS.problem(normal_force="7.4143 kN", creepage=Q(percent, "%"), friction_coefficient=0.46)
+
+
+def fields_at(model: wl.ContactModel, problem: wl.Problem, x: float) -> wl.LineFields:
+    return line.fields_at(model, problem, np.array([x]))
+
+
+def literal(problem: wl.Problem, x: float) -> tuple[float, float]:
+    """Return traction and slip as the corrected eqs. (7) and (8) of Tassini et al. write them, to 60 digits."""
+    with mpmath.workdps(60):
+        a, p0, radius = (
+            mpmath.mpf(float(v)) for v in (problem.half_width, problem.max_pressure, problem.relative_radius)
+        )
+        friction, creepage, x_mp = (mpmath.mpf(float(v)) for v in (problem.friction_coefficient, problem.creepage, x))
+        k = friction / radius
+        c = a - creepage / k
+        carter = friction * p0 * mpmath.sqrt(1 - (x_mp / a) ** 2)
+        if c <= 0:
+            return float(carter), float(creepage + k * x_mp)
+        if x_mp <= -a + 2 * c:
+            return float(carter - c / a * friction * p0 * mpmath.sqrt(1 - ((x_mp + a - c) / c) ** 2)), 0.0
+        return float(carter), float(k * mpmath.sqrt((x_mp + a - c) ** 2 - c**2))
+
+
+@pytest.mark.validates(
+    "line-contact",
+    "Traction and slip of `exact` along the patch, at any load, friction and creepage",
+    source="Carter 1926, after Tassini et al. 2010, eqs. 7 and 8 corrected; with 60 digits",
+    held_to="{roundings} ε over the root of the distance from the border of slip, in half-widths",
+    roundings=16,
+)
+@given(problem=line_problems(), where=log_uniform(1e-3, 1.0))
+def test_the_fields_are_the_corrected_equations_7_and_8(problem: wl.Problem, where: float, roundings: int) -> None:
+    x = float(problem.half_width) * (2.0 * where - 1.0) * (1.0 - 1e-6)
+    traction, slip = literal(problem, x)
+    fields = fields_at(EXACT, problem, x)
+    # a - x and the distance from the border are exact to EPS·a; as a share of μp0 and of 2μa/R a square root of
+    # them is no worse than √EPS there, and x keeps 1e-6 a away from the edges.
+    border = float(problem.half_width) * (1.0 - 2.0 * min(float(problem.creepage) / saturation_creepage(problem), 1.0))
+    distance = max(abs(x - border) / float(problem.half_width), 4 * EPS)
+    condition = roundings * EPS / math.sqrt(distance)
+    assert float(fields.traction[0]) == pytest.approx(
+        traction, abs=condition * float(fields.traction_bound.max() + traction)
+    )
+    assert float(fields.slip[0]) == pytest.approx(slip, abs=2.0 * condition * max(saturation_creepage(problem), slip))
+
+
+@pytest.mark.validates(
+    "line-contact",
+    "T = μP [1 - (1 - ξ/ξ_sat)²] is the integral of the traction",
+    source="QUADPACK over the corrected eq. 8",
+    held_to="{within:g}, relative",
+    within=1e-08,
+)
+@pytest.mark.parametrize("percent", [1e-4, 0.1, 0.5, 1.0, 1.2, 2.0, 25.0])
+def test_the_total_is_the_integral_of_the_traction(percent: float, within: float) -> None:
+    problem = problem_at(percent)
+    a = float(problem.half_width)
+    start, end = (float(v) for v in slip_zone(EXACT, problem))
+
+    def over(low: float, high: float) -> float:
+        if high <= low:
+            return 0.0
+        # x = middle + half·sin θ takes the square roots out of both ends
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        total: float = integrate.quad(
+            lambda t: literal(problem, middle + half * math.sin(t))[0] * half * math.cos(t),
+            -0.5 * math.pi, 0.5 * math.pi, epsrel=1e-9, limit=400,
+        )[0]  # fmt: skip
+        return total
+
+    total = over(-a, start) + over(start, end)
+    contact = EXACT.solve(problem)
+    assert float(contact.tangential_force / problem.track_width) == pytest.approx(total, rel=within)
+
+
+@pytest.mark.validates(
+    "line-contact",
+    "The tractions displace two half-planes so that they slip as `exact` says, and not at all in stick",
+    source="displacement of half-planes (Johnson 1985), as a principal value by QUADPACK",
+    held_to="{within:g} of the creepage",
+    within=2e-06,
+)
+@pytest.mark.parametrize("percent", [0.1, 1.0, 1.2, 2.0])
+def test_the_slip_leaves_the_surfaces_together_in_stick(percent: float, within: float) -> None:
+    """The displacement gradient of the tractions on two half planes must be the creepage wherever nothing slips.
+
+    s = ξ - (2/πE*) ⨍ q(t)/(x-t) dt·(sign by the leading edge at -a), as in Johnson (1985) with x reversed.
+    """
+    problem = problem_at(percent)
+    a, modulus = float(problem.half_width), float(problem.effective_modulus)
+    for position in (-0.9, -0.4, 0.05, 0.6, 0.93):
+        x = position * a
+        points = [float(v) for v in slip_zone(EXACT, problem)]
+        principal, _ = integrate.quad(
+            lambda t: float(fields_at(EXACT, problem, t).traction[0]), -a, a, weight="cauchy", wvar=x, limit=2000
+        )
+        assert points[0] < points[1]
+        slip = float(problem.creepage) - 2.0 / (math.pi * modulus) * principal
+        assert slip == pytest.approx(float(fields_at(EXACT, problem, x).slip[0]), abs=within * float(problem.creepage))
+
+
+def test_the_printed_slip_is_creepage_plus_k_x_in_the_whole_slip_zone() -> None:
+    problem = problem_at(0.5)
+    a, k = float(problem.half_width), 0.46 / 0.01175
+    start = float(slip_zone(PRINTED, problem)[0])
+    for x in (start + 1e-3 * a, 0.5 * a, 0.99 * a):
+        assert float(fields_at(PRINTED, problem, x).slip[0]) == pytest.approx(0.005 + k * x, rel=8 * EPS)
+    assert float(fields_at(PRINTED, problem, start - 1e-3 * a).slip[0]) == 0.0
+    # the step at the border is ξ_sat - ξ
+    assert float(fields_at(PRINTED, problem, start + 1e-9 * a).slip[0]) == pytest.approx(
+        saturation_creepage(problem) - 0.005, rel=1e-5
+    )
+
+
+def test_both_slips_have_the_same_tractions_and_total() -> None:
+    problem = problem_at(0.5)
+    one, two = EXACT.solve(problem), PRINTED.solve(problem)
+    assert (one.traction == two.traction).all()
+    assert one.tangential_force == two.tangential_force
+
+
+@pytest.mark.validates(
+    "line-contact",
+    "The share of the patch that sticks is 1 - ξ/ξ_sat",
+    source="Carter 1926, after Tassini et al. 2010",
+    held_to="{roundings} ε",
+    roundings=64,
+)
+@given(problem=line_problems())
+def test_the_stick_ratio_is_one_less_the_reduced_creepage(problem: wl.Problem, roundings: int) -> None:
+    contact = EXACT.solve(problem)
+    expected = max(1.0 - float(problem.creepage) / saturation_creepage(problem), 0.0)
+    assert float(contact.stick_ratio) == pytest.approx(expected, abs=roundings * EPS)
+
+
+def test_slip_begins_continuously_at_the_end_of_the_stick_zone() -> None:
+    problem = problem_at(0.5)
+    a = float(problem.half_width)
+    border = float(slip_zone(EXACT, problem)[0])
+    slips = [float(fields_at(EXACT, problem, border + gap * a).slip[0]) for gap in (1e-4, 1e-8, 1e-12)]
+    assert slips[0] == pytest.approx(100.0 * slips[1], rel=1e-3)  # a square root
+    assert slips[2] < 1e-5 * saturation_creepage(problem)
+
+
+@pytest.mark.validates(
+    "line-contact",
+    "At a creepage of 1e-7 the force has all its digits",
+    source="series of Carter's force in the creepage",
+    held_to="{roundings} ε, relative",
+    roundings=16,
+)
+def test_small_creepages_lose_no_digits(roundings: int) -> None:
+    problem = with_creepage(problem_at(1.0), 1e-7)
+    d = 1e-7 / saturation_creepage(problem)
+    expected = 0.46 * 7414.3 * d * (2.0 - d)
+    assert float(EXACT.solve(problem).tangential_force) == pytest.approx(expected, rel=roundings * EPS)
+
+
+def test_a_wrong_slip_is_refused_by_name() -> None:
+    with pytest.raises(wl.ConfigurationError, match=r"slip.*'consistent' or 'as_printed'"):
+        wl.contact_model("exact", slip="printed")
+
+
+@pytest.mark.parametrize("model", [EXACT, PRINTED])
+@pytest.mark.parametrize("percent", [0.3, 1.0, 1.8, 2.5, 25.0])
+def test_where_a_field_crosses_a_value_it_has_that_value(model: wl.LineContactModel, percent: float) -> None:
+    line.crossings_meet(model, problem_at(percent))

@@ -1,0 +1,82 @@
+"""Patches for the tests of FASTSIM on strips, and their solution."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import wearlaw as wl
+from tests.strategies import EPS
+from wearlaw import Array
+from wearlaw_fastsim._march import Ellipses  # private: patches with any flexibilities
+from wearlaw_fastsim._strips import even_strips, forces, layout_on, strips  # private: with any number of nodes
+from wearlaw_fastsim._zones import Nodes  # private: as above
+
+ROUNDING = 100 * EPS
+
+CASE = {"a": 6e-3, "b": 4e-3, "l1": 4.6e-14, "l2": 5.3e-14, "l3": 3.9e-14, "centre": 5e8}
+"""A steel wheel on a rail [m], [m³/N], [Pa]."""
+
+
+def ellipses(
+    xi: ArrayLike = 0.0, eta: ArrayLike = 0.0, phi: ArrayLike = 0.0, *, elliptic: bool, **changes: float
+) -> Ellipses:
+    """Return contacts with these creepages and spins [1/m]."""
+    case = {**CASE, **changes}
+    creepage_x, creepage_y, spin = np.broadcast_arrays(np.atleast_1d(np.asarray(xi, float)), eta, phi)
+    a, b, l1, l2, l3, centre = (np.full(creepage_x.shape, case[name]) for name in CASE)
+    return Ellipses(
+        a=a,
+        b=b,
+        longitudinal_creepage=creepage_x * 1.0,
+        lateral_creepage=creepage_y * 1.0,
+        spin=spin * 1.0,
+        longitudinal_flexibility=l1,
+        lateral_flexibility=l2,
+        spin_flexibility=l3,
+        bound_centre=centre,
+        elliptic=elliptic,
+    )
+
+
+def sample(elliptic: bool, *, spin: bool = True, count: int = 60) -> Ellipses:
+    """Return contacts from little creepage to full slip."""
+    random = np.random.default_rng(3)
+    xi, eta = (random.choice([-1.0, 1.0], count) * 10.0 ** random.uniform(-4.0, -1.5, count) for _ in range(2))
+    return ellipses(xi, eta, random.uniform(-1.0, 1.0, count) * spin, elliptic=elliptic)
+
+
+class Solved(NamedTuple):
+    fields: Nodes
+    forces: wl.CreepForces
+    power: Array
+    """∑ q·s dA [N]."""
+
+
+def by_points(nodes: Nodes) -> Nodes:
+    """Return nodes, (nodes, strips, points), as (points, nodes, strips)."""
+    return Nodes(*(array.transpose(2, 0, 1) for array in nodes))
+
+
+def solve(patches: Ellipses, count: int = 12, stick: int = 3, slip: int = 12) -> Solved:
+    shares, widths = even_strips(count)
+    layout = layout_on(patches, shares, widths)
+    found = strips(patches, layout, stick, slip)
+    fields = by_points(found)
+    energy = (fields.traction_x * fields.slip_x + fields.traction_y * fields.slip_y) * fields.length
+    power = (energy.sum(axis=1) * widths).sum(axis=-1) * patches.b
+    return Solved(fields, forces(layout, found), power)
+
+
+def strips_at(patches: Ellipses, shares: Array, stick: int, slip: int) -> Nodes:
+    """Return the fields of strips at y = b shares, whatever widths they stand for."""
+    return by_points(strips(patches, layout_on(patches, shares, np.zeros_like(shares)), stick, slip))
+
+
+def limit(patches: Ellipses) -> Array:
+    """Return μN [N]."""
+    share = 1.5 if patches.elliptic else 2.0
+    bound: Array = patches.bound_centre * np.pi * patches.a * patches.b / share
+    return bound

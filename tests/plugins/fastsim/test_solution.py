@@ -1,0 +1,182 @@
+"""What FASTSIM takes from a contact problem, and the cells and strips that it hands back."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, of_ratio
+from wearlaw import Array, Q
+from wearlaw_fastsim._march import Ellipses  # private: the flexibilities
+
+Bound = Literal["elliptic", "parabolic"]
+BOUNDS: tuple[Bound, ...] = ("elliptic", "parabolic")
+MARCHES: tuple[Literal["adaptive", "uniform"], ...] = ("adaptive", "uniform")
+
+
+def two_loads() -> wl.Problem:
+    """Two ellipses that slip in part, a/b = 1/2 and larger."""
+    return ellipse(a=Q([3.0, 4.0], "mm"), longitudinal_creepage=np.array([1e-3, 2e-3]), lateral_creepage=5e-4, spin=0.2)
+
+
+@pytest.mark.parametrize(("axis_ratio", "poisson_ratio"), TABLE_E3)
+@pytest.mark.parametrize(("elliptic", "share"), [(True, 1.5), (False, 2.0)])
+def test_flexibilities_and_bound_are_those_of_the_simplified_theory(
+    axis_ratio: float, poisson_ratio: float, elliptic: bool, share: float
+) -> None:
+    c11, c22, c23, _ = TABLE_E3[axis_ratio, poisson_ratio]
+    problem = of_ratio(axis_ratio, poisson_ratio).flatten()
+    found = Ellipses.of(problem, elliptic)
+    a, b = 6e-3 * np.sqrt(axis_ratio), 6e-3 / np.sqrt(axis_ratio)
+    # Kalker 1982: L1 = 8a/(3 C11 G), L2 = 8a/(3 C22 G), L3 = π a √(a/b)/(4 C23 G); some ten roundings
+    assert found.longitudinal_flexibility == pytest.approx(8.0 * a / (3.0 * c11 * 80e9), rel=32 * EPS)
+    assert found.lateral_flexibility == pytest.approx(8.0 * a / (3.0 * c22 * 80e9), rel=32 * EPS)
+    assert found.spin_flexibility == pytest.approx(np.pi * a * np.sqrt(a / b) / (4.0 * c23 * 80e9), rel=32 * EPS)
+    # the load is that of Hertz's ellipse, 2πab p0/3, or of a paraboloid, πab p0/2
+    assert found.bound_centre == pytest.approx(share * 0.3 * 80e3 / (np.pi * a * b), rel=8 * EPS)
+
+
+@pytest.mark.parametrize("march", MARCHES)
+@pytest.mark.parametrize("strips", [2, 10, 25])
+def test_nodes_lie_on_strips_that_fill_the_ellipse(march: Literal["adaptive", "uniform"], strips: int) -> None:
+    problem = two_loads()
+    contact = wl.contact_model("fastsim", march=march, strips=strips).solve_ellipse(problem)
+    number = np.arange(strips)
+    if march == "uniform":
+        share, width = (2.0 * number + 1.0) / strips - 1.0, np.full(strips, 2.0 / strips)
+        along = strips
+    else:  # even in the angle of y = b cos β
+        angle = np.pi * (strips - number) / (strips + 1)
+        share, width = np.cos(angle), np.pi / (strips + 1) * np.sin(angle)
+        along = max(round(0.4 * strips), 4) + max(strips, 8)
+    assert contact.x.shape == contact.area.shape == (2, along, strips)
+    # a cosine loses up to an EPS of b
+    assert contact.y == pytest.approx(np.broadcast_to(6e-3 * share, contact.y.shape), abs=2 * EPS * 6e-3)
+    assert contact.strip_width == pytest.approx(np.broadcast_to(6e-3 * width, (2, strips)), abs=8 * EPS * 6e-3)
+    half_length = problem.a[:, None] * np.sqrt((1.0 - share) * (1.0 + share))
+    area = 2.0 * half_length * 6e-3 * width
+    # the lengths of some 60 nodes add up
+    assert contact.area.sum(axis=1) == pytest.approx(area, abs=64 * EPS * area.max())
+    assert (np.diff(contact.x, axis=1) >= 0.0).all()
+    # next to the side of the patch 1 - y/b loses digits, here two
+    assert (np.abs(contact.x) <= half_length[:, None, :] + 16 * EPS * 4e-3).all()
+
+
+@pytest.mark.parametrize("march", MARCHES)
+def test_forces_are_those_of_the_nodes(march: Literal["adaptive", "uniform"]) -> None:
+    contact = wl.contact_model("fastsim", march=march, strips=12).solve_ellipse(two_loads())
+
+    def total(density: Array) -> Array:
+        found: Array = (density * contact.area).sum(axis=(-2, -1))
+        return found
+
+    # Sums of some 200 terms of one sign, and in the moment of both.
+    assert contact.force_x == pytest.approx(total(contact.traction_x), rel=256 * EPS)
+    assert contact.force_y == pytest.approx(total(contact.traction_y), rel=256 * EPS)
+    moment = -total(contact.x * contact.traction_y + contact.y * contact.traction_x)
+    largest = total(np.abs(contact.x * contact.traction_y) + np.abs(contact.y * contact.traction_x))
+    assert (np.abs(contact.moment_z - moment) <= 256 * EPS * largest).all()
+
+
+@pytest.mark.parametrize("bound", BOUNDS)
+def test_the_bound_of_each_node_is_that_of_the_theory(bound: Bound) -> None:
+    problem, model = two_loads(), wl.contact_model("fastsim", bound=bound, strips=8)
+    a, area = problem.a[:, None, None], np.pi * problem.a[:, None, None] * 6e-3
+    for contact in (model.solve_ellipse(problem), model.on_strips(problem, np.array([-0.5, 0.1, 0.8]))):
+        assert contact is not None
+        inside = 1.0 - (contact.x / a) ** 2 - (contact.y / 6e-3) ** 2
+        # Hertz's ellipse, 3N/(2πab) √…, or a paraboloid, 2N/(πab) (…); the difference from one loses digits at the edge
+        shape = 1.5 * np.sqrt(np.maximum(inside, 0.0)) if bound == "elliptic" else 2.0 * inside
+        off = np.abs(contact.traction_bound - 0.3 * 80e3 / area * shape)
+        assert (off * np.maximum(shape, 1e-3) <= 64 * EPS * 0.3 * 80e3 / area).all()
+
+
+def test_strips_can_lie_where_they_are_asked_for() -> None:
+    problem = two_loads()
+    contact = wl.contact_model("fastsim", strips=10).on_strips(problem, np.array([-0.5, 0.1, 0.8]))
+    assert contact is not None
+    assert contact.x.shape == (2, 4 + 10, 3)
+    assert contact.y[:, 0] == pytest.approx(np.broadcast_to([-3e-3, 0.6e-3, 4.8e-3], (2, 3)), rel=4 * EPS)
+    # each stands for what is nearest to it
+    assert contact.strip_width == pytest.approx(np.broadcast_to([4.8e-3, 3.9e-3, 3.3e-3], (2, 3)), rel=8 * EPS)
+    alone = wl.contact_model("fastsim", strips=10).on_strips(problem, np.array([0.1]))
+    assert alone is not None
+    assert alone.strip_width == pytest.approx(12e-3, rel=4 * EPS)
+    assert alone.traction_x[..., 0] == pytest.approx(contact.traction_x[..., 1], rel=16 * EPS)
+
+
+def test_a_uniform_march_has_its_own_strips() -> None:
+    assert wl.contact_model("fastsim", march="uniform").on_strips(two_loads(), np.array([0.0])) is None
+
+
+@pytest.mark.parametrize("march", MARCHES)
+def test_what_rolls_freely_among_others_neither_slips_nor_drags(march: Literal["adaptive", "uniform"]) -> None:
+    def contact(longitudinal: float, lateral: float, spin: float) -> wl.Contact:
+        creepages = ([longitudinal, 1e-3], [lateral, 0.0], [spin, 0.0])
+        problem = ellipse().broadcast_to((2,)).with_creepages(*map(np.array, creepages))
+        return wl.contact_model("fastsim", march=march).solve_ellipse(problem)
+
+    free = contact(0.0, 0.0, 0.0)
+    for field in (free.traction_x, free.traction_y, free.slip_x, free.slip_y):
+        assert (field[0] == 0.0).all()
+    assert (free.traction_x[1] > 0.0).any()
+    for creepages in ((1e-3, 0.0, 0.0), (0.0, 1e-3, 0.0), (0.0, 0.0, 1.0)):
+        assert (contact(*creepages).slip[0] > 0.0).any()
+
+
+def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(91)
+    creepages = 10.0 ** random.uniform(-4.0, -1.5, (2, 200)) * random.choice([-1.0, 1.0], (2, 200))
+    problem = ellipse().broadcast_to((200,)).with_creepages(creepages[0], creepages[1], np.full(200, 3.0))
+
+    def least_power() -> float:
+        contact = wl.contact_model("fastsim", march="uniform", strips=20).solve_ellipse(problem)
+        return float((contact.traction_x * contact.slip_x + contact.traction_y * contact.slip_y).min())
+
+    assert least_power() >= 0.0
+    monkeypatch.setattr("wearlaw_fastsim._march.drop_gains", lambda _: None)
+    assert least_power() < 0.0
+
+
+@pytest.mark.parametrize("bound", BOUNDS)
+def test_scaled_slip_dissipates_what_the_creepages_do_and_local_slip_does_not(bound: Bound) -> None:
+    problem = two_loads()
+    local, scaled = (wl.contact_model("fastsim", bound=bound, slip=slip) for slip in ("local", "scaled"))
+    found = scaled.solve_ellipse(problem)
+    # sums of some 200 terms
+    assert found.cell_wear_index == pytest.approx(found.wear_index, rel=256 * EPS)
+    assert (np.abs(local.solve_ellipse(problem).cell_wear_index / found.wear_index - 1.0) > 1e-3).all()
+    shares = np.array([-0.5, 0.1, 0.8])
+    some, as_found = scaled.on_strips(problem, shares), local.on_strips(problem, shares)
+    assert some is not None
+    assert as_found is not None
+    assert some.cell_wear_index == pytest.approx(some.wear_index, rel=256 * EPS)
+    assert (np.abs(as_found.cell_wear_index / some.wear_index - 1.0) > 1e-3).all()
+
+
+@pytest.mark.parametrize("bound", ["parabolic", "elliptic"])
+def test_as_many_strips_as_are_allowed_give_finite_tractions(bound: str) -> None:
+    # A direction that turns towards w in each of many steps: its vector may double in every one, 2^1024 is infinite.
+    contact = wl.contact_model("fastsim", bound=bound, strips=1000).solve(ellipse(longitudinal_creepage=[0.001]))
+    fewer = wl.contact_model("fastsim", bound=bound, strips=250).solve(ellipse(longitudinal_creepage=[0.001]))
+    assert np.isfinite(contact.traction_x).all()
+    assert np.isfinite(contact.slip).all()
+    assert contact.force_x == pytest.approx(fewer.force_x, rel=1.0 / 250**2)  # second order without spin
+
+
+def test_exemptions_are_those_of_the_settings() -> None:
+    exempt = {
+        (): set(),
+        (("bound", "elliptic"),): {"saturation"},
+        (("flexibility", "kalker"),): {"initial_slope"},
+        (("interpolation", "contact"),): {"initial_slope"},
+        (("bound", "elliptic"), ("flexibility", "kalker")): {"saturation", "initial_slope"},
+        (("strips", 4),): {"accuracy"},
+        (("strips", 5),): set(),
+        (("march", "uniform"), ("strips", 9)): {"accuracy"},
+    }
+    for settings, claims in exempt.items():
+        assert set(wl.contact_model("fastsim", **dict(settings)).exemptions) == claims

@@ -1,0 +1,183 @@
+"""Comparisons on the tests of a fit: laws that have seen them are marked, and fits can be cross-validated."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.plugins.fits.comparisons import EXACT, GLOBAL, SCATTER, by_label, made, scattered, usfd
+from tests.plugins.fits.fits import sloping
+from wearlaw import Q
+
+MARK = "fitted to these tests, which flatters their rank: "
+
+
+def folds(points: Any, how: Any) -> list[Any]:
+    """Return the tests in each fold: operating points are dealt in a random order with the seed 0."""
+    count = points.max() + 1
+    dealt = np.random.default_rng(0).permutation(count)
+    number = count if how == "leave-one-out" else how
+    return [np.flatnonzero(np.isin(points, dealt[fold::number])) for fold in range(number)]
+
+
+def seen(comparison: wl.Comparison) -> dict[str, int]:
+    return {one.names.label: one.in_sample for one in comparison.compared}
+
+
+def kth_fit(tests: wl.WearTests) -> wl.Fit:
+    return wl.fit(EXACT | wl.wear_law("kth").explicit(), tests, ["coefficient.low_speed"], bootstrap=0)
+
+
+@pytest.mark.parametrize("law", ["usfd", "kth"])
+def test_a_law_knows_the_tests_that_it_was_fitted_to_also_from_a_file(law: str, tmp_path: Path) -> None:
+    tests = scattered()
+    fit = wl.fit(EXACT | usfd(), tests, ["q_s"], bootstrap=0) if law == "usfd" else kth_fit(tests)
+    fit.to_toml(tmp_path / "law.toml")
+    read = wl.read_law(tmp_path / "law.toml")
+    assert read == fit.law
+    assert fit.law is not None
+    assert read.fitted_to == fit.law.fitted_to == pickle.loads(pickle.dumps(read)).fitted_to
+    assert read.with_tests([]) == read, "laws with equal numbers are equal"
+    assert read.model_copy().fitted_to == ()
+    other = GLOBAL | wl.wear_law("brr")
+    comparison = wl.compare({"fit": fit, "read": EXACT | read, "other": other}, tests)
+    assert seen(comparison) == {"fit": 8, "read": 8, "other": 0}
+    assert comparison.table().set_index("predictor")["in_sample"].to_dict() == {"fit": 8, "read": 8, "other": 0}
+    (note,) = [note for note in comparison.notes if note.startswith(MARK)]
+    assert "fit (8 of 8)" in note
+    assert "read (8 of 8)" in note
+    assert "other" not in note.replace("other tests", "")
+
+
+def test_some_of_the_tests_of_a_fit_are_known_again_under_other_labels_and_units() -> None:
+    tests = scattered()
+    fit = wl.fit(EXACT | usfd(), tests[:5], ["m_m"], bootstrap=0)
+    again = wl.WearTests.from_arrays(
+        creepage=Q(tests.creepage.to("").magnitude, ""),
+        max_pressure="1.5 GPa",
+        friction_coefficient=0.46,
+        wear_rate=tests.wear_rate.to("g/m^3"),
+        labels=[f"test {i}" for i in range(8)],
+        source="elsewhere",
+    )
+    assert seen(wl.compare({"a": EXACT | fit.predict.laws[0]}, again)) == {"a": 5}
+    changed = made(wear_rate=tests.wear_rate * 1.001)
+    comparison = wl.compare({"a": EXACT | fit.predict.laws[0]}, changed)
+    assert seen(comparison) == {"a": 0}
+    assert not any(note.startswith(MARK) for note in comparison.notes)
+    assert "in_sample" not in repr(comparison)
+
+
+def test_a_law_without_digests_is_known_by_the_source_that_it_names() -> None:
+    fit: Any = wl.fit(EXACT | usfd(), scattered(source="our lab, 2020"), ["q_s"], bootstrap=0)
+    law = fit.law.with_tests([])
+    assert seen(wl.compare({"a": EXACT | law}, scattered(source="our lab, 2020"))) == {"a": 8}
+    assert seen(wl.compare({"a": EXACT | law}, scattered(source="another lab"))) == {"a": 0}
+
+
+# Cross-validation
+
+
+@pytest.mark.validates(
+    "fitting",
+    "Leave-one-out predictions of a law that is linear in its two parameters",
+    source="the closed form y - e/(1 - h) of the residuals e and leverages h of one linear fit",
+    held_to="a relative error of {within:g}",
+    within=1e-6,
+)
+def test_leaving_one_out_is_the_closed_form_of_a_linear_law(within: float) -> None:
+    creepage = Q([2.0, 4.0, 6.0, 9.0, 12.0, 16.0], "%")
+    conditions: Any = {"creepage": creepage, "max_pressure": "1500 MPa", "friction_coefficient": 0.46}
+    density = (GLOBAL | sloping)(**conditions).wear_index_density.to("N/mm^2").magnitude
+    y = 1.0 + 2.0 * density * [1.1, 0.9, 1.05, 0.97, 1.02, 0.93]
+    tests = wl.WearTests.from_arrays(**conditions, wear_rate=Q(y, "ug/m/mm^2"))
+    fit = wl.fit(GLOBAL | sloping, tests, ["offset", "slope"], scatter="absolute", bootstrap=0, bounds=WIDE)
+    design = np.stack([np.ones(6), density], axis=-1)
+    hat = design @ np.linalg.pinv(design)
+    expected = y - (y - hat @ y) / (1.0 - np.diag(hat))
+    comparison = wl.compare({"line": fit}, tests, cross_validate="leave-one-out")
+    (one,) = comparison.compared
+    # The sum of squares is flat at the best fit, so that the search ends within the root of rounding, about 1e-8.
+    assert one.predicted * 1e3 == pytest.approx(expected, rel=within)
+    assert one.agreement.rms_error * 1e3 == pytest.approx(np.sqrt(np.mean((expected - y) ** 2)), rel=10 * within)
+    assert repr(comparison).startswith("1 predictor on 6 tests, best first, fits cross-validated (leave-one-out);")
+
+
+WIDE: Any = {"offset": ("1e-6 ug/m/mm^2", "1e3 ug/m/mm^2"), "slope": ("1e-3 ug/m/N", "1e3 ug/m/N")}
+
+
+@pytest.mark.parametrize("how", ["leave-one-out", 4, 3])
+def test_each_fold_is_predicted_by_the_mean_factor_of_the_others(how: Any) -> None:
+    """In the mild regime the only free parameter is a factor: its logarithm is the mean of those of the other tests."""
+    conditions: Any = {
+        "creepage": Q(np.linspace(0.1, 0.5, 8), "%"), "max_pressure": "1500 MPa", "friction_coefficient": 0.46
+    }  # fmt: skip
+    truth = (EXACT | usfd())(**conditions).wear_rate
+    tests = wl.WearTests.from_arrays(**conditions, wear_rate=truth * SCATTER)
+    fit = wl.fit(EXACT | usfd(), tests, ["m_m"], bootstrap=0)
+    parts = folds(np.arange(8), how)
+    assert sorted(np.concatenate(parts)) == list(range(8))
+    expected = np.empty(8)
+    for held in parts:
+        expected[held] = np.exp(np.delete(np.log(SCATTER), held).mean())
+    comparison = wl.compare([fit, EXACT | usfd()], tests, cross_validate=how)
+    one = by_label(comparison)["usfd fitted on exact"]
+    # As above, 1e-8 of the best fit.
+    assert one.predicted * 1e3 == pytest.approx(truth.magnitude * expected, rel=1e-6)
+    assert one.in_sample == 0
+    in_sample = by_label(wl.compare([fit], tests))["usfd fitted on exact"]
+    assert one.agreement.rms_factor > in_sample.agreement.rms_factor  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("how", ["leave-one-out", 2, 3])
+def test_tests_that_repeat_each_other_are_left_out_together(how: Any) -> None:
+    """A repeat has another label, wear rate and measured traction, but no other creepage, load and friction."""
+    creepage = [0.1, 0.2, 0.3, 0.4, 0.2, 0.1, 0.1, 0.40001]
+    point = np.array([0, 1, 2, 3, 1, 0, 0, 3])
+    conditions: Any = {
+        "creepage": Q(creepage, "%"), "max_pressure": "1500 MPa", "friction_coefficient": 0.46
+    }  # fmt: skip
+    truth = (EXACT | usfd())(**conditions).wear_rate
+    tests = wl.WearTests.from_arrays(
+        **conditions, traction_coefficient=0.1 * SCATTER, wear_rate=truth * SCATTER, labels=list("abcdefgh")
+    )
+    fit = wl.fit(EXACT | usfd(), tests, ["m_m"], bootstrap=0)
+    if how == "leave-one-out":
+        held_out = [point == number for number in range(4)]
+    else:
+        held_out = [np.isin(np.arange(8), part) for part in folds(point, how)]
+        for number in range(4):
+            assert sum((held & (point == number)).any() for held in held_out) == 1
+    expected = np.empty(8)
+    for held in held_out:
+        expected[held] = np.exp(np.log(SCATTER[~held]).mean())
+    comparison = wl.compare([fit], tests, cross_validate=how)
+    (one,) = comparison.compared
+    # As above, 1e-8 of the best fit.
+    assert one.predicted * 1e3 == pytest.approx(truth.magnitude * expected, rel=1e-6)
+    assert comparison.cross_validated == (how if how == "leave-one-out" else f"{how} folds")
+    note = "the 8 tests are at 4 operating points; cross-validation leaves out repeated tests together"
+    assert note in comparison.notes
+    with pytest.raises(wl.InputError, match=r"^cross_validate: .* from 2 to 4, .* got 5"):
+        wl.compare([fit], tests, cross_validate=5)
+
+
+def test_cross_validation_needs_two_operating_points_and_a_fit() -> None:
+    tests = made(creepage="0.5 %", wear_rate=Q(10.0 * SCATTER, "ug/m/mm^2"))
+    fit = wl.fit(EXACT | usfd(), tests, ["m_m"], bootstrap=0)
+    with pytest.raises(wl.InputError, match=r"^cross_validate: "):
+        wl.compare([fit], tests, cross_validate="leave-one-out")
+    with pytest.raises(wl.InputError, match=r"^cross_validate: .* Fit"):
+        wl.compare([EXACT | usfd()], scattered(), cross_validate=4)
+
+
+def test_a_fold_without_which_a_parameter_is_not_determined_is_named() -> None:
+    """Only the last two tests depend on the catastrophic regime."""
+    fit = wl.fit(EXACT | usfd(), scattered(), ["m_m", "m_c"], bootstrap=0)
+    with pytest.raises(wl.FitError, match=r"usfd fitted on exact: cannot be fitted without tests number .*8.*m_c"):
+        wl.compare([fit], scattered(), cross_validate=2)

@@ -1,0 +1,172 @@
+"""Uncertain predictions of other outcomes than wear, of several laws, and with uncertain numbers of stages."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import wearlaw as wl
+from tests.core.outcome_laws import MIXED, Damage, Heat, Volume
+from tests.plugins.fits.fits import EXACT
+from tests.plugins.fits.test_fit_stages import Rubbed, Softer
+from wearlaw import Q
+from wearlaw_fits.pairs import Pair
+from wearlaw_studies.uncertainty import UncertainPair, uncertainty_of
+from wearlaw_studies.uncertainty_files import LONGEST_NAME, figure_files, write_uncertainty
+
+EPS = float(np.finfo(np.float64).eps)
+GIVEN: Any = {"max_pressure": Q(1000, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}  # full slip
+KTH = wl.wear_law("kth")
+
+
+def shares(inputs: int, samples: int) -> Any:
+    """Return the probabilities of the samples, (inputs, samples)."""
+    return stats.qmc.Sobol(inputs, rng=np.random.default_rng(0)).random(samples).T
+
+
+def test_each_outcome_has_samples_with_its_unit() -> None:
+    u = wl.uncertainty(
+        EXACT.with_law(KTH, Heat(), Damage()),
+        **GIVEN,
+        law={"share": wl.uniform(0.2, 0.6), "threshold": wl.uniform("10 N", "30 N")},
+        samples=64,
+    )
+    assert u.outcomes == ("wear_rate", "heat_flux", "rcf_damage")
+    alone = EXACT.with_law(KTH, Heat(share=1.0), Damage(threshold=Q(1e-9, "N")))(**GIVEN)
+    p = shares(2, 64)
+    heat, damage = u["heat_flux"], u["rcf_damage"]
+    assert (str(heat.units), str(damage.units)) == (str(alone["heat_flux"].units), "dimensionless")
+    assert heat.magnitude == pytest.approx((0.2 + 0.4 * p[0]) * alone["heat_flux"].magnitude, rel=1e-12)
+    due = alone["rcf_damage"].magnitude - 1e-6 * (10.0 + 20.0 * p[1])
+    assert damage.magnitude == pytest.approx(due, rel=1e-9)
+    assert u.wear_rate.magnitude == pytest.approx(np.full(64, alone.wear_rate.magnitude), rel=64 * EPS)
+    # The median of samples that are even to one in 64.
+    part = alone["heat_flux"].magnitude * 0.4 / 64
+    assert u.of("heat_flux").median.magnitude == pytest.approx(0.4 * alone["heat_flux"].magnitude, abs=2 * part)
+    low, high = u.of("heat_flux").interval(0.5)
+    assert low.magnitude == pytest.approx(0.3 * alone["heat_flux"].magnitude, abs=2 * part)
+    assert high.magnitude == pytest.approx(0.5 * alone["heat_flux"].magnitude, abs=2 * part)
+
+
+def test_the_table_has_a_row_for_each_point_and_the_heads_of_conditions_and_outcomes() -> None:
+    given = {**GIVEN, "creepage": Q([1.0, 3.0], "%")}
+    u = wl.uncertainty(EXACT | Heat() | Damage(), **given, law={"share": wl.uniform(0.2, 0.6)}, samples=16)
+    table = u.table()
+    assert table.columns.tolist() == [
+        "max_pressure [MPa]", "creepage [%]", "friction_coefficient",
+        "heat_flux [W/mm^2]", "heat_flux_low [W/mm^2]", "heat_flux_high [W/mm^2]",
+        "rcf_damage", "rcf_damage_low", "rcf_damage_high",
+    ]  # fmt: skip
+    assert table["creepage [%]"].tolist() == [1.0, 3.0]
+    assert table["heat_flux [W/mm^2]"].tolist() == u.of("heat_flux").median.magnitude.tolist()
+    low, high = u.of("heat_flux").interval()
+    assert table["heat_flux_low [W/mm^2]"].tolist() == low.magnitude.tolist()
+    assert table["heat_flux_high [W/mm^2]"].tolist() == high.magnitude.tolist()
+    median = u.of("heat_flux").median
+    assert f"\n  heat_flux            medians {median.min()!r} to {median.max()!r}\n" in repr(u)
+    one = wl.uncertainty(EXACT | Heat(), **GIVEN, law={"share": wl.uniform(0.2, 0.6)}, samples=16)
+    assert len(one.table()) == 1
+
+
+def test_the_variance_of_each_outcome_is_explained_by_its_own_inputs() -> None:
+    given = {**GIVEN, "friction_coefficient": wl.uniform(0.2, 0.4)}
+    u = wl.uncertainty(EXACT | Heat() | Damage(), **given, law={"share": wl.uniform(0.2, 0.4)}, samples=2**10)
+    heat, damage = u.of("heat_flux").sobol(), u.of("rcf_damage").sobol()
+    # The heat is a product of two uniform factors on 1 ± 1/3; of each the variance is v = (1/3)²/3, of both 2v + v².
+    v = (1.0 / 3.0) ** 2 / 3.0
+    errors = 8.0 * heat["first_order_error"]  # with 7 degrees of freedom, passed by chance once in 10⁴
+    assert np.all(np.abs(heat["first_order"] - v / (2 * v + v**2)) < errors)
+    assert damage.loc["share", "total_order"] == 0.0
+    assert damage.loc["friction_coefficient", "total_order"] == pytest.approx(1.0, abs=0.01)
+
+
+def test_numbers_that_several_laws_have_are_named_in_full() -> None:
+    predict = (MIXED | wl.contact_model("fastsim")).with_law(Volume(body="disc_1"), Volume(body="disc_2", factor=3.0))
+    u = wl.uncertainty(predict, **GIVEN, law={"volume_disc_2.factor": wl.uniform(1.0, 3.0)}, samples=16)
+    one, two = u["wear_rate_disc_1"].magnitude, u["wear_rate_disc_2"].magnitude
+    assert np.ptp(one) == 0.0
+    factors = 1.0 + 2.0 * shares(1, 16)[0]
+    assert two == pytest.approx(factors * one * 8800.0 / 7850.0, rel=1e-12)
+    with pytest.raises(wl.InputError, match=r"'volume_disc_1.factor' or 'volume_disc_2.factor'"):
+        wl.uncertainty(predict, **GIVEN, law={"factor": wl.uniform(1.0, 3.0)})
+    both = EXACT.with_law(KTH, Heat())
+    u = wl.uncertainty(both, **GIVEN, law={"kth.coefficient": wl.published_range()}, samples=16)
+    alone = wl.uncertainty(EXACT.with_law(KTH), **GIVEN, law={"coefficient": wl.published_range()}, samples=16)
+    assert u.wear_rate.magnitude == pytest.approx(alone.wear_rate.magnitude, rel=64 * EPS)
+
+
+@pytest.mark.parametrize("stage", [Softer(), Rubbed()], ids=["altered", "solve"])
+def test_each_sample_of_a_stage_is_the_prediction_with_that_stage(stage: wl.Stage) -> None:
+    creepage = Q([0.2, 3.0], "%")
+    given = {**GIVEN, "creepage": creepage, "friction_coefficient": wl.uniform(0.3, 0.5)}
+    predict = EXACT | stage | Heat()
+    numbers: Any = {"stage": {"reduction": wl.uniform(0.6, 0.9)}, "law": {"share": wl.uniform(0.2, 0.4)}}
+    u = wl.uncertainty(predict, **given, **numbers, samples=8)
+    friction, share, reduction = np.array([[0.3], [0.2], [0.6]]) + np.array([[0.2], [0.2], [0.3]]) * shares(3, 8)
+    for sample in range(8):
+        one = EXACT | stage.model_copy(update={"reduction": reduction[sample]}) | Heat(share=share[sample])
+        due = one(**{**GIVEN, "creepage": creepage, "friction_coefficient": friction[sample]})["heat_flux"]
+        assert u["heat_flux"].magnitude[:, sample] == pytest.approx(due.magnitude, rel=1e-12)
+    assert "reduction            uniform(0.6, 0.9)" in repr(u)
+
+
+def test_a_warning_of_the_samples_names_the_line_of_the_caller() -> None:
+    usfd = wl.wear_law("usfd", fitted_for="exact")
+    for read in ("wear_rate", "item"):
+        u = wl.uncertainty(EXACT | usfd, **GIVEN | {"creepage": wl.uniform("15 %", "25 %")}, samples=16)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            _ = u.wear_rate if read == "wear_rate" else u["wear_rate"]
+        assert caught
+        assert {one.filename for one in caught} == {__file__}
+
+
+CASE = """
+title = "Scatter"
+rig = { preset = "suros" }
+contact_models = ["exact"]
+wear_laws = ["kth"]
+
+[sweeps.creepage]
+creepage = ["1 %", "2 %"]
+max_pressure = "1000 MPa"
+friction_coefficient = 0.4
+
+[uncertainty.scatter]
+max_pressure = "1000 MPa"
+creepage = "3 %"
+friction_coefficient = { uniform = [0.3, 0.5] }
+"""
+
+
+def test_the_uncertainty_of_a_case_has_rows_for_each_outcome(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "case.toml").write_text(CASE)
+    case = wl.load_case(str(tmp_path / "case.toml"))
+    pair = Pair("exact", "kth", EXACT.with_law(KTH, Heat()))
+    monkeypatch.setattr("wearlaw_studies.uncertainty.pairs_of", lambda *_: [pair])
+    found = uncertainty_of(case, 64, 0)
+    table = found.wear_rates
+    assert table.columns.tolist() == ["point", "pair", "outcome", "unit", "median", "2.5 %", "97.5 %"]
+    assert table[["outcome", "unit"]].to_numpy().tolist() == [["wear_rate", "ug/m/mm^2"], ["heat_flux", "W/mm^2"]]
+    heat = EXACT.with_law(Heat())(**GIVEN)["heat_flux"].magnitude  # in full slip it is proportional to μ
+    assert table["median"].tolist()[1] == pytest.approx(heat, rel=0.5 / 64)
+    assert found.indices.columns.tolist()[:4] == ["point", "pair", "outcome", "input"]
+    assert [one.uncertainty.outcomes for one in found.pairs] == [("wear_rate",), ("heat_flux",)]
+    (tmp_path / "results").mkdir()
+    names = write_uncertainty(case, found, 0, tmp_path / "results")
+    assert {"wear_rates.csv", "scatter_kth_on_exact_wear_rate.png", "scatter_kth_on_exact_heat_flux.png"} <= set(names)
+
+
+def test_figures_are_named_by_pair_also_where_labels_are_long_or_alike() -> None:
+    one = wl.uncertainty(EXACT.with_law(KTH), **GIVEN | {"creepage": wl.uniform("1 %", "2 %")}, samples=2)
+    labels = ["kth(body=rail)", "kth(body rail)", "k" * 300, "µ"]
+    pairs = [UncertainPair("scatter", Pair("exact", label, EXACT), one) for label in labels]
+    files = figure_files(pairs)
+    assert files[:2] == ["scatter_kth_body_rail_on_exact", "scatter_kth_body_rail_on_exact_2"]
+    assert len(files[2]) == LONGEST_NAME
+    assert files[3] == "scatter_µ_on_exact"

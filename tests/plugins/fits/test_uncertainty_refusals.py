@@ -1,0 +1,127 @@
+"""Errors and warnings of uncertain predictions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.core.outcome_laws import Damage, Heat
+from tests.plugins.fits.fits import EXACT, GLOBAL
+from tests.plugins.fits.test_fit_stages import Balanced, Choosy, Softer
+from tests.plugins.fits.uncertain import FULL_SLIP, USFD
+from wearlaw import Q
+
+UNCERTAIN: Any = {"friction_coefficient": wl.uniform(0.3, 0.5), "samples": 4}
+HINT = r"(.|\n)*samples of its distribution"
+
+
+def test_samples_outside_the_range_of_the_law_are_warned_of() -> None:
+    u = wl.uncertainty(
+        USFD, max_pressure=Q(1500, "MPa"), creepage=wl.uniform("15 %", "25 %"), friction_coefficient=0.46, samples=64
+    )
+    with pytest.warns(wl.RangeWarning, match="usfd"):
+        u.median  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    ("given", "names"),
+    [
+        ({}, "nothing is uncertain"),
+        ({"creepage": wl.uniform("2 %", "1 %")}, r"creepage: the upper end of uniform\(2.0 %, 1.0 %\)"),
+        ({"creepage": wl.uniform("1 mm", "2 mm")}, "creepage: .*not a ratio"),
+        ({"creepage": wl.normal("1 %", "0 %")}, r"creepage: the standard deviation of normal\(1.0 %, 0.0 %\)"),
+        ({"creepage": wl.lognormal("0 %", 1.2)}, r"creepage: the median of lognormal\(0.0 %, 1.2\)"),
+        ({"creepage": wl.uniform("1 %", "200 %")}, "creepage: "),
+        ({"creep": wl.normal("1 %", "0.1 %")}, "creep: .*'creepage'"),
+        ({"creepage": wl.uniform("1 %", "2 %"), "max_pressur": None}, "max_pressur: "),
+        ({"friction_coefficient": wl.normal(0.3, 0.0)}, "friction_coefficient: the standard deviation"),
+        ({"friction_coefficient": wl.normal(0.3, np.nan)}, "friction_coefficient: the standard deviation"),
+        ({"friction_coefficient": wl.normal(0.0, 0.1)}, "friction_coefficient: must be a positive"),
+        ({"friction_coefficient": wl.uniform(0.3, 0.1)}, "friction_coefficient: the upper end"),
+        ({"friction_coefficient": wl.normal(0.3, Q(1, "mm"))}, "friction_coefficient: .*not a ratio"),
+        ({"friction_coefficient": wl.normal(0.3, 0.2)}, f"friction_coefficient{HINT}"),
+        ({"law": {"m_m": wl.uniform("-1 ug/m/N", "3 ug/m/N")}}, f"m_m{HINT}"),
+        (
+            {"law": {"q_s": wl.uniform("50 ug/m/mm^2", "300 ug/m/mm^2"), "tr_sc": wl.uniform("20 MPa", "90 MPa")}},
+            f"tr_sc{HINT}",
+        ),
+        ({"law": {"qs": wl.normal("55 ug/m/mm^2", "1 ug/m/mm^2")}}, "law: .*'qs'.*'q_s'"),
+        ({"law": {"q_s": 55.0}}, "q_s: "),
+        ({"law": {"q_s": wl.normal("55 mm", "1 mm")}}, "q_s: "),
+        ({"law": {"q_s": wl.published_range()}}, "q_s: "),
+        *[
+            ({**UNCERTAIN, name: wrong}, f"{name}: ")
+            for name, wrong in (("samples", 0), ("samples", 1e3), ("seed", -1))
+        ],
+    ],
+)
+def test_wrong_inputs_are_refused_by_name(given: dict[str, Any], names: str) -> None:
+    with pytest.raises(wl.WearlawError, match=names):
+        wl.uncertainty(USFD, **{**FULL_SLIP, **given}).median  # noqa: B018
+
+
+SHARE = {"share": wl.uniform(0.2, 0.4)}
+BALANCED = Balanced(**dict(EXACT.rig)) | EXACT.contact_model | Softer() | Heat()
+
+
+@pytest.mark.parametrize(
+    ("predict", "given", "names"),
+    [
+        (EXACT | Heat() | Damage(), {"law": SHARE}, r'u\.of\("heat_flux"\)'),
+        (EXACT | Heat() | Damage(), {"law": {"shore": wl.uniform(0, 1)}}, "law: .*'shore'.*'share'"),
+        (EXACT | Softer() | Heat(), {"stage": SHARE}, "stage: .*'share'.* reduction"),
+        (EXACT | Heat(), {"stage": SHARE}, "stage: .*'share'.* none"),
+        (EXACT | Softer() | Heat(), {"stage": {"reduction": wl.published_range()}}, "reduction: "),
+        (EXACT | Heat(), {"law": SHARE | {"heat.share": wl.uniform(0, 1)}}, "share and heat.share: "),
+        (EXACT | Choosy() | Heat(), {"stage": {"reduction": wl.uniform(0.1, 0.9)}}, f"too soft{HINT}"),
+        (EXACT | Choosy() | Heat(), {"stage": {"reduction": wl.uniform(0.5, 1.1)}}, f"reduction{HINT}"),
+        (EXACT, {"creepage": wl.uniform("1 %", "2 %")}, "no wear law"),
+        (BALANCED, {"stage": {"reduction": wl.uniform(0.5, 0.9)}}, "uncertainty: rig 'twin_disc'"),
+        (GLOBAL | wl.wear_law("kth"), {"law": {"hardness": wl.published_range()}}, "hardness: .* coefficient"),
+    ],
+)
+def test_wrong_numbers_of_stages_and_laws_are_refused_by_name(predict: Any, given: Any, names: str) -> None:
+    with pytest.raises((wl.InputError, wl.CompositionError), match=names):
+        wl.uncertainty(predict, **{**FULL_SLIP, "samples": 8, **given}).median  # noqa: B018
+
+
+def test_an_outcome_that_no_law_predicts_is_refused() -> None:
+    u = wl.uncertainty(EXACT | Heat() | Damage(), **FULL_SLIP, law=SHARE, samples=8)
+    for read in (u.__getitem__, u.of):
+        with pytest.raises(wl.InputError, match=r"'heat'.*'heat_flux'"):
+            read("heat")
+    with pytest.raises(wl.CompositionError, match="no wear law"):
+        _ = u.wear_rate
+
+
+@pytest.mark.parametrize("value", [Q([1, 2], "%"), [0.3, 0.4], "1", None])
+@pytest.mark.parametrize(
+    ("name", "make"),
+    [
+        ("low", lambda value: wl.uniform(value, "2 %")),
+        ("high", lambda value: wl.uniform("1 %", value)),
+        ("mean", lambda value: wl.normal(value, "2 %")),
+        ("standard_deviation", lambda value: wl.normal("1 %", value)),
+        ("median", lambda value: wl.lognormal(value, 1.2)),
+        ("geometric_standard_deviation", lambda value: wl.lognormal(0.3, value)),
+    ],
+)
+def test_what_is_no_value_is_refused_where_a_distribution_is_made(name: str, make: Any, value: Any) -> None:
+    with pytest.raises(wl.InputError, match=f"^{name}: "):
+        make(value)
+
+
+TWO_AXES: Any = {"max_pressure": Q([[1000.0], [1500.0]], "MPa"), "creepage": Q([1.0, 2.0, 3.0], "%")}
+
+
+def test_what_needs_one_point_or_one_axis_or_a_rate_that_varies_says_so() -> None:
+    several = wl.uncertainty(USFD, **{**TWO_AXES, **UNCERTAIN})
+    with pytest.raises(wl.InputError, match=r"^sobol: needs one operating point"):
+        several.sobol()
+    with pytest.raises(wl.InputError, match=r"^plot: .* max_pressure, creepage"):
+        several.plot()
+    with pytest.raises(wl.InputError, match=r"^sobol: .*the same in all samples"):
+        wl.uncertainty(USFD, **{**FULL_SLIP, **UNCERTAIN}).sobol()  # all severe

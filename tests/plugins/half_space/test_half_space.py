@@ -1,0 +1,134 @@
+"""Rolling contact of half-spaces, against quadrature, CONTACT, Carter, and what must hold for friction."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy
+
+import wearlaw as wl
+from tests.plugins.contact_files.files import FILES
+from tests.plugins.full_theory import spheres
+from wearlaw import Array
+from wearlaw_kit.reduced import random_ellipses
+
+CARTER = 0.3 * 972253.0
+"""μN [N] of the cylinder that CONTACT solved."""
+
+
+@pytest.mark.parametrize("place", [(0.3, -0.2), (1.7, 0.4), (-2.0, 3.0)])
+def test_displacements_are_those_of_point_forces(place: tuple[float, float]) -> None:
+    nu, (x, y), half = 0.28, place, (0.5, 0.8)
+
+    def integral(kernel: str) -> float:
+        def of_point(eta: float, xi: float) -> float:
+            i, j = x - xi, y - eta
+            r = max(np.hypot(i, j), 1e-12)
+            return {"along": (1 - nu + nu * i**2 / r**2) / r, "mixed": nu * i * j / r**3}[kernel]  # type: ignore[no-any-return]
+
+        corners = [sorted({-h, h, min(max(at, -h), h)}) for h, at in zip(half, place, strict=True)]
+        parts = (
+            scipy.integrate.dblquad(of_point, *xs, *ys, epsabs=1e-6)[0]
+            for xs in zip(corners[0], corners[0][1:], strict=False)
+            for ys in zip(corners[1], corners[1][1:], strict=False)
+        )
+        return float(sum(parts))
+
+    along, across, mixed = wl.half_space.influence(np.array(x), np.array(y), 1.0, 1.6, nu)
+    assert along == pytest.approx(integral("along"), abs=1e-5)
+    assert mixed == pytest.approx(integral("mixed"), abs=1e-5)
+    turned = wl.half_space.influence(np.array(y), np.array(x), 1.6, 1.0, nu)
+    assert across == pytest.approx(float(turned[0]), rel=1e-14)
+
+
+def cylinder(creepage: float) -> wl.Problem:
+    """Return CONTACT's cylinder as one strip, 40 times as wide as half its length."""
+    a, width, load = 5e-3, 0.2, CARTER / 0.3
+    one = np.ones(1)
+    strip = wl.Strips(
+        y=np.zeros((1, 1)),
+        width=np.full((1, 1), width),
+        half_length=np.full((1, 1), a),
+        max_pressure=np.full((1, 1), 2.0 * load / (np.pi * a * width)),
+    )
+    return wl.Problem.of_strips(
+        strip,
+        shear_modulus=82e9 * one,
+        poisson_ratio=0.28 * one,
+        a=a * one,
+        b=0.5 * width * one,
+        friction_coefficient=0.3 * one,
+        longitudinal_creepage=creepage * one,
+        lateral_creepage=0.0 * one,
+        spin=0.0 * one,
+        rolling_speed=30.0 * one,
+        density=7850.0 * one,
+    )
+
+
+def carter(creepage: Array) -> Array:
+    """Return T/(μN) of the cylinder, 1 - (1 - ξ/ξ_sat)² with ξ_sat = 2μp0/E*."""
+    full = 2.0 * 2.0 * CARTER / (np.pi * 5e-3 * 0.2) * (1.0 - 0.28) / 82e9
+    return 1.0 - (1.0 - np.minimum(creepage / full, 1.0)) ** 2
+
+
+@pytest.mark.parametrize("creepage", [0.0003, 0.001, 0.002, 0.004])
+def test_a_wide_strip_is_carters(creepage: float) -> None:
+    coarse, fine = (wl.contact_model("half_space", cells=cells).solve(cylinder(creepage)) for cells in (40, 80))
+    # The second order of the grids is left, and a width of 40 half lengths, which changes little: the mean of the
+    # displacement grows, but not its slope along the strip, except for a share of (a/b)²/2 = 0.13 %.
+    found = (2.0 * fine.force_x - coarse.force_x) / CARTER
+    assert found[0] == pytest.approx(carter(np.array(creepage)), abs=0.0015)
+
+
+@pytest.mark.validates(
+    "elliptic-contact",
+    "The tractions of `half_space` on a cylinder in partial slip",
+    source="CONTACT (Vollebregt), one row of 100 elements",
+    held_to="{within:g} of the greatest, element by element but the last",
+    within=0.001,
+)
+def test_the_elements_of_a_cylinder_are_contacts(within: float) -> None:
+    known, found = wl.read_contact(FILES["carter"]), wl.contact_model("half_space", cells=100).solve(cylinder(0.001))
+    order, there = np.argsort(known.x[known.area > 0.0]), known.area > 0.0
+    off = np.abs(found.traction[0, :, 0] - known.traction[there][order])
+    # CONTACT solves for the pressure, which is lower by a tenth in the elements at the edges. The last one slips.
+    assert off[:-1].max() <= within * known.traction.max()
+    assert off[-1] <= 0.02 * known.traction.max()
+    # CONTACT computes power from the slip before an element.
+    assert found.cell_wear_index == pytest.approx(found.wear_index, rel=1e-9)
+    assert known.cell_wear_index < found.cell_wear_index
+
+
+def test_pressure_times_slip_is_the_energy_over_friction() -> None:
+    problem = random_ellipses(6)
+    found = wl.contact_model("half_space", cells=16).solve(problem)
+    slides = found.sum_over_nodes(found.pressure * found.slip * found.area) * problem.friction_coefficient
+    # Rows that stick to the end slip in a part of their last element only, and do not count.
+    assert slides == pytest.approx(found.wear_index, rel=0.01)
+    assert found.cell_wear_index == pytest.approx(slides, rel=1e-12)
+
+
+def test_friction_that_falls_is_that_of_the_slip_at_each_element() -> None:
+    problem = random_ellipses(4)
+    model = wl.contact_model("half_space", cells=12, limit_ratio=0.4, decay="2 s/m")
+    found = model.solve(problem)
+    speed = found.slip_speed
+    share = 0.6 * np.exp(-2.0 * speed) + 0.4
+    there = found.area > 0.0
+    friction = found.per_node(problem.friction_coefficient)
+    assert found.traction_bound[there] == pytest.approx((friction * share * found.pressure)[there], rel=1e-5)
+    slips = there & (speed > 0.0)
+    assert found.traction[slips] == pytest.approx(found.traction_bound[slips], rel=1e-12)
+    assert (found.tangential_force < wl.contact_model("half_space", cells=12).solve(problem).tangential_force).all()
+
+
+def test_friction_that_falls_in_full_slip_is_that_of_the_creepage() -> None:
+    # The slip of each element differs from the creepage by the growth of the displacement, about a hundredth of it
+    # here, both ways; the curvature of the exponential is of second order in it.
+    sphere = spheres("full40").problem[:1]
+    problem = sphere.with_creepages(np.full(1, 0.3), np.zeros(1), np.zeros(1))
+    found = wl.contact_model("half_space", cells=20, limit_ratio=0.4, decay="2 s/m").solve(problem)
+    share = 0.6 * np.exp(-2.0 * 0.3 * problem.rolling_speed) + 0.4
+    assert found.force_x == pytest.approx(3e4 * share, rel=1e-3)
+    assert found.cell_wear_index == pytest.approx(0.3 * found.force_x, rel=1e-9)

@@ -1,0 +1,168 @@
+"""Checks as tests of pytest: names, claims, exemptions, expected failures, and what a failure says."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import wearlaw as wl
+from tests.plugins.kit.cells import Cells
+from tests.plugins.kit.strips import Strips
+from tests.plugins.kit.wrong_contacts import Wrapped, changed
+from tests.plugins.kit.wrong_declarations import NoReason, UnknownClaim
+from tests.plugins.kit.wrong_laws import Linear, Raises, WrongSign
+from tests.plugins.kit.wrong_rigs import Weight
+from tests.plugins.kit.wrong_stages import Lubricated
+from wearlaw_kit import checks, conformance
+from wearlaw_kit.rules import RULES  # private: all claims, whatever the model
+
+SUITE = """
+from tests.plugins.kit.wrong_declarations import HottestNode
+from tests.plugins.kit.wrong_laws import Linear, Offset, WrongSign
+from wearlaw_kit import conformance
+
+@conformance(WrongSign(), expected_failures={"rate_is_never_negative": "material grows"})
+def test_known(check):
+    check()
+
+@conformance(Linear(), expected_failures={"rate_is_finite": "it passes, in truth"})
+def test_unknown(check):
+    check()
+
+@conformance(Offset())
+def test_wrong(check):
+    check()
+
+@conformance(HottestNode())
+def test_exempt(check):
+    check()
+"""
+
+
+def test_what_pytest_shows_of_expected_failures_exemptions_and_counter_examples(tmp_path: Path) -> None:
+    (tmp_path / "test_suite.py").write_text(SUITE)
+    chosen = "never_negative or is_finite or no_slip or wears_by_itself"
+    command = [sys.executable, "-m", "pytest", "-v", "-rA", "-k", chosen, "-p", "no:cacheprovider", str(tmp_path)]
+    command += [f"--rootdir={tmp_path}", "-c", "/dev/null"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=Path(__file__).parents[3], check=False)
+    report = done.stdout
+    assert "test_wrong[rate_is_finite] PASSED" in report
+    assert re.search(r"XFAIL \S+::test_known\[rate_is_never_negative\] - material grows", report), report
+    assert "[XPASS(strict)] it passes, in truth" in report
+    assert "test_exempt[each_node_wears_by_itself] SKIPPED" in report
+    assert "not claimed: the hottest node heats the patch" in report
+    assert "test_wrong[no_slip_no_wear] FAILED" in report
+    assert "example=Contact(pressure=array([[" in report
+    assert "assert np.False_" in report  # only a rewritten assert shows what its parts were
+
+
+@pytest.mark.parametrize("reason", [{"no_slip_no_war": "misspelt"}, {"no_slip_no_wear": " "}])
+def test_an_expected_failure_is_a_check_and_has_a_reason(reason: dict[str, str]) -> None:
+    with pytest.raises(wl.InputError, match="no_slip_no_wear"):
+        conformance(wl.wear_law("usfd"), expected_failures=reason)
+
+
+@pytest.mark.parametrize("model", [UnknownClaim(), NoReason()], ids=lambda model: type(model).__name__)
+def test_an_exemption_names_a_claim_and_has_a_reason(model: Any) -> None:
+    check = {check.name: check for check in checks(model)}["exemptions_are_claims"]
+    with pytest.raises(AssertionError, match="each_node_wears_by_itself"):
+        check()
+
+
+def exempt(base: Any, claim: str) -> Any:
+    """Return a model that does not claim something."""
+    return type("Exempt", (base,), {"exemptions": property(lambda _: {claim: "for the tests"}), "__doc__": "Exempt."})()
+
+
+@pytest.mark.parametrize("claim", dict.fromkeys(claim for rule in RULES for claim in rule.claims[1:]))
+def test_an_exemption_leaves_out_the_checks_of_a_claim(claim: str) -> None:
+    kept, left = ([check.name for check in checks(model)] for model in (Strips(), exempt(Strips, claim)))
+    assert set(left) < set(kept)
+    assert "no_node_gains_energy" in left
+
+
+@pytest.mark.parametrize(
+    ("base", "name"),
+    [(Linear, "position_does_not_matter"), (Weight, "pressure_carries_the_load"), (Cells, "force_grows_with_creepage")],
+)
+def test_a_single_check_can_be_exempt(base: Any, name: str) -> None:
+    assert [c.name for c in checks(exempt(base, name))] == [c.name for c in checks(base()) if c.name != name]
+
+
+@pytest.mark.parametrize(
+    ("base", "name"),
+    [
+        (Linear, "rate_is_finite"),
+        (Cells, "contact_is_finite"),
+        (Weight, "units_of_conditions_are_checked"),
+        (Lubricated, "pipelines_take_the_contact"),
+    ],
+)
+def test_what_must_hold_for_any_model_cannot_be_exempt(base: Any, name: str) -> None:
+    found = {check.name: check for check in checks(exempt(base, name))}
+    assert name in found
+    with pytest.raises(AssertionError, match=f"`exemptions` names {name}, which must hold for any"):
+        found["exemptions_are_claims"]()
+
+
+def test_checks_are_named_documented_and_frozen() -> None:
+    found = list(checks(WrongSign()))
+    assert len({check.name for check in found}) == len(found)
+    assert all(check.name.isidentifier() and check.doc for check in found)
+    with pytest.raises(AttributeError):
+        found[0].name = "other"  # type: ignore[misc]
+
+
+def test_checks_of_something_else_are_an_error() -> None:
+    with pytest.raises(wl.InputError, match="needs a rig, a contact model, a stage or a law"):
+        list(checks(3))  # type: ignore[arg-type]
+
+
+def test_a_rig_without_an_example_is_an_error_that_says_what_to_write(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Weight, "example", {})
+    with pytest.raises(wl.InputError, match=r"(?s)'weight'.*class Weight.*example = {\"mass\": ..., "):
+        list(checks(Weight()))
+
+
+class FailsOnEllipses(Cells):
+    """Right on a line, and with an error on an ellipse."""
+
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
+        raise ZeroDivisionError("by nothing")
+
+
+def test_a_failure_names_the_shape_and_the_first_example_that_fails_alone() -> None:
+    finite = {check.name: check for check in checks(FailsOnEllipses())}["contact_is_finite"]
+    with pytest.raises(AssertionError, match=r"^on an ellipse: the model raised ZeroDivisionError") as failure:
+        finite()
+    assert "example=Problem(geometry='ellipse'" in "\n".join(failure.value.__notes__)
+
+
+def shaped_by_creepage(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+    """Give the force an axis too many at small creepages."""
+    if problem.creepage.max() > 1e-4:
+        return contact
+    return contact.replaced(tangential_force=contact.tangential_force[..., None])
+
+
+def test_after_a_wrong_shape_no_other_check_is_run_which_might_fill_the_memory() -> None:
+    failures, model = {}, changed(Wrapped, shaped_by_creepage)()
+    for check in checks(model):
+        try:
+            check()
+        except AssertionError as error:
+            failures[check.name] = str(error)
+    assert {*failures, "exemptions_are_claims"} == {check.name for check in checks(model)}
+    assert len({*failures.values()}) == 1
+
+
+def test_a_model_that_raises_has_no_wrong_shape() -> None:
+    found = {check.name: check for check in checks(Raises())}
+    with pytest.raises(AssertionError, match="the model raised ZeroDivisionError: no slip"):
+        found["no_slip_no_wear"]()
+    found["declared_names_are_variables"]()

@@ -1,0 +1,58 @@
+"""New plugins: what is written. `tests/third_party/test_outside.py` installs them and runs their tests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import get_args
+
+import pytest
+from click.testing import Result
+
+from tests.core.cases import assert_refused, wearlaw
+from wearlaw_kit.scaffold import Kind  # private: the kinds that the command offers
+
+pytestmark = pytest.mark.usefixtures("folder")
+
+
+def new_plugin(*arguments: str) -> Result:
+    return wearlaw("new-plugin", *arguments)
+
+
+@pytest.mark.parametrize("kind", get_args(Kind))
+def test_a_new_plugin_is_a_whole_distribution(kind: Kind) -> None:
+    result = new_plugin("two_slopes", f"--{kind.replace('_', '-')}", "-o", "two words")
+    assert result.exit_code == 0
+    assert "  cd 'two words/wearlaw-two_slopes'\n" in result.stdout
+    assert "  wearlaw check two_slopes\n" in result.stdout
+    written = {
+        path.relative_to("two words").as_posix(): path for path in Path("two words").rglob("*") if path.is_file()
+    }
+    assert {*written} == {
+        f"wearlaw-two_slopes/{file}"
+        for file in (".github/workflows/tests.yml", "README.md", "pyproject.toml", "test_two_slopes.py")
+    } | {"wearlaw-two_slopes/wearlaw_two_slopes.py"}
+    assert "class TwoSlopes(" in written["wearlaw-two_slopes/wearlaw_two_slopes.py"].read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["", "two words", "Zobory", "2slopes", "class", "a-b", "../up", "é"])
+def test_a_name_that_is_no_lower_case_identifier_is_refused(name: str) -> None:
+    assert_refused(new_plugin("--wear-law", "--", name), "name: must be a Python name of lower-case letters")
+
+
+@pytest.mark.parametrize(("name", "holder"), [("usfd", "the wear law of "), ("sheffield", "the plugin ")])
+def test_a_taken_name_is_refused_with_who_has_it(name: str, holder: str) -> None:
+    assert_refused(new_plugin(name, "--contact-model"), f"name: '{name}' is taken by {holder}")
+
+
+def test_what_is_there_is_never_overwritten() -> None:
+    Path("wearlaw-zobory").mkdir()
+    assert_refused(new_plugin("zobory", "--wear-law"), "output: 'wearlaw-zobory' exists and is left as it is")
+    assert not [*Path("wearlaw-zobory").iterdir()]
+
+
+def test_a_folder_that_cannot_be_written_is_one_clear_error() -> None:
+    assert_refused(new_plugin("zobory", "--wear-law", "-o", "/proc"), "output: cannot write to ")
+
+
+def test_without_a_kind_all_are_named() -> None:
+    assert_refused(new_plugin("zobory"), "say what the plugin provides: --wear-law,", exit_code=2)

@@ -1,0 +1,282 @@
+"""Rigs that are wrong in one way each, made from a right one."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, NotRequired, TypedDict, Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import Field
+
+import wearlaw as wl
+from tests.core.axle_case import Axle
+
+DISCS = wl.TwinDisc.suros()
+
+
+def newtons(mass: Any, name: str = "mass") -> wl.Quantity:
+    return wl.Q(wl.Unit("kg").si(mass, name) * 9.81, "N")
+
+
+class Weight(wl.Rig):
+    """The right one: a weight presses one disc on another, by a lever."""
+
+    name: ClassVar[str] = "weight"
+    source: ClassVar[str] = "made up for the tests"
+    patch_geometry: ClassVar[wl.Geometry | None] = "line"
+    example: ClassVar[Mapping[str, Any]] = {"mass": "20 kg", "creepage": "1 %", "friction_coefficient": 0.4}
+
+    arm: wl.Length = Field(default="50 cm", validate_default=True)
+    """Length of the lever's arm [m]."""
+
+    def problem(
+        self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike, friction_coefficient: ArrayLike
+    ) -> wl.Problem:
+        load = newtons(mass) * float((self.arm / wl.Q(0.25, "m")).m_as(""))
+        return DISCS.problem(normal_force=load, creepage=creepage, friction_coefficient=friction_coefficient)
+
+    @property
+    def bodies(self) -> Mapping[str, wl.Body]:
+        return DISCS.bodies
+
+
+class Delegating(wl.Rig):
+    """Another right one: it hands all conditions on to another rig."""
+
+    name: ClassVar[str] = "delegating"
+    source: ClassVar[str] = "made up for the tests"
+    example: ClassVar[Mapping[str, Any]] = {**wl.WheelRail.example, "normal_force": wl.Q(8e4, "N"), "spin": "0 1/m"}
+    creepage: ClassVar[str] = "longitudinal_creepage"
+
+    @classmethod
+    def conditions(cls) -> Mapping[str, wl.Condition]:
+        return wl.WheelRail.conditions()
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        rig: wl.WheelRail = wl.rig("wheel_rail", **wl.WheelRail.example_fields)
+        return rig.problem(**conditions)
+
+
+class Changed(Weight):
+    """Numbers of the right problem changed."""
+
+    def problem(self, **conditions: Any) -> Any:
+        problem = super().problem(**conditions)
+        return dataclasses.replace(problem, **self.changed(problem))
+
+    @classmethod
+    def conditions(cls) -> Mapping[str, wl.Condition]:
+        return Weight.conditions()
+
+    def changed(self, problem: Any) -> dict[str, Any]:
+        raise NotImplementedError
+
+
+class NoFriction(Changed):
+    """Friction of zero."""
+
+    def changed(self, problem: Any) -> dict[str, Any]:
+        return {"friction_coefficient": 0.0 * problem.friction_coefficient}
+
+
+class ForceInsteadOfPressure(Changed):
+    """The mean pressure in place of the maximum."""
+
+    def changed(self, problem: Any) -> dict[str, Any]:
+        return {"max_pressure": problem.max_pressure * np.pi / 4.0}
+
+
+class SpeedWithoutBatch(Changed):
+    """One rolling speed for all points."""
+
+    def changed(self, problem: Any) -> dict[str, Any]:
+        return {"rolling_speed": np.array(1.0)}
+
+
+class SinglePrecision(Changed):
+    """A rolling speed of half the digits."""
+
+    def changed(self, problem: Any) -> dict[str, Any]:
+        return {"rolling_speed": problem.rolling_speed.astype(np.float32)}
+
+
+class FrictionInSinglePrecision(Changed):
+    """Friction of half the digits, in an array of double precision."""
+
+    def changed(self, problem: Any) -> dict[str, Any]:
+        return {"friction_coefficient": problem.friction_coefficient.astype(np.float32).astype(np.float64)}
+
+
+class ArmInOtherUnits(Weight):
+    """Reads the number of the arm's length, which happens to be in metres."""
+
+    arm: wl.Length = Field(default="0.5 m", validate_default=True)
+    """Length of the lever's arm [m]."""
+
+    def problem(self, *, mass: Any, creepage: wl.QuantityLike, friction_coefficient: ArrayLike) -> wl.Problem:
+        load = newtons(mass) * (float(self.arm.magnitude) / 0.25)
+        return DISCS.problem(normal_force=load, creepage=creepage, friction_coefficient=friction_coefficient)
+
+
+class DensityOfSteel(Weight):
+    """The density of steel, whatever the material of its discs."""
+
+    material: wl.MaterialField = wl.steel()
+    """Material of the discs."""
+
+    @property
+    def bodies(self) -> Mapping[str, wl.Body]:
+        return {"disc_1": wl.Body(self.material, 0.05)}
+
+
+class MeanOfTheBatch(Changed):
+    """Friction is the mean over all points."""
+
+    def changed(self, problem: Any) -> dict[str, Any]:
+        friction = problem.friction_coefficient
+        return {"friction_coefficient": np.full(friction.shape, np.mean(friction))}
+
+
+class OtherCreepage(Weight):
+    """Names a condition that there is not."""
+
+    creepage: ClassVar[str] = "slip_ratio"
+
+
+class CreepageFromZero(Changed):
+    """Divides by the creepage."""
+
+    def changed(self, problem: Any) -> dict[str, Any]:
+        with np.errstate(invalid="ignore"):
+            return {"rolling_speed": problem.rolling_speed * (problem.creepage / problem.creepage)}
+
+
+class MagnitudeOfCreepage(Changed):
+    """Creepage without its sign."""
+
+    def changed(self, problem: Any) -> dict[str, Any]:
+        return {"longitudinal_creepage": np.abs(problem.creepage)}
+
+
+class TakesBareNumbers(Weight):
+    """Takes a number for a mass in kilograms."""
+
+    def problem(self, *, mass: Any, creepage: wl.QuantityLike, friction_coefficient: ArrayLike) -> wl.Problem:
+        given = wl.Q(mass, "kg") if isinstance(mass, float) else mass
+        return super().problem(mass=given, creepage=creepage, friction_coefficient=friction_coefficient)
+
+
+class WeightConditions(TypedDict):
+    """Conditions of the right one, and one that it may leave out."""
+
+    mass: Annotated[wl.QuantityLike, wl.Unit("kg")]
+    creepage: wl.Creepage
+    friction_coefficient: wl.Coefficient
+    preload: NotRequired[Annotated[wl.QuantityLike, wl.Unit("N")]]
+
+
+class TakesBarePreloads(Weight):
+    """Declares a condition that its example leaves out, and takes it without its unit."""
+
+    def problem(self, **conditions: Unpack[WeightConditions]) -> wl.Problem:
+        given = self.in_si({name: value for name, value in conditions.items() if name != "preload"})
+        return DISCS.problem(
+            normal_force=wl.Q(given["mass"] * 9.81 * float((self.arm / wl.Q(0.25, "m")).m_as("")), "N"),
+            creepage=wl.Q(given["creepage"], ""),
+            friction_coefficient=given["friction_coefficient"],
+        )
+
+
+class NumberWithoutUnit(Weight):
+    """Reads the number of a mass whatever its unit."""
+
+    def problem(self, *, mass: Any, creepage: wl.QuantityLike, friction_coefficient: ArrayLike) -> wl.Problem:
+        wl.Unit("kg").si(mass, "mass")
+        given = mass if isinstance(mass, str) else wl.Q(mass.magnitude, "kg")
+        return super().problem(mass=given, creepage=creepage, friction_coefficient=friction_coefficient)
+
+
+class TakesUnknownConditions(Weight):
+    """Ignores unknown conditions."""
+
+    def problem(self, *, mass: Any, creepage: Any, friction_coefficient: Any, **_: Any) -> wl.Problem:
+        return super().problem(mass=mass, creepage=creepage, friction_coefficient=friction_coefficient)
+
+
+class NaNIsNoLoad(Weight):
+    """Takes NaN for the weight of the disc alone."""
+
+    def problem(self, *, mass: Any, creepage: wl.QuantityLike, friction_coefficient: ArrayLike) -> wl.Problem:
+        given = wl.Q(np.nan_to_num(mass.magnitude, nan=1.0), "kg") if isinstance(mass, wl.Quantity) else mass
+        return super().problem(mass=given, creepage=creepage, friction_coefficient=friction_coefficient)
+
+
+class WrongGeometry(Weight):
+    """Says that its patch is an ellipse."""
+
+    patch_geometry: ClassVar[wl.Geometry | None] = "ellipse"
+
+
+class DensityOfTheOther(Weight):
+    """The density of the second body in place of that of the first."""
+
+    @property
+    def bodies(self) -> Mapping[str, wl.Body]:
+        light = wl.Body(wl.steel(density="2700 kg/m^3"), 0.05)
+        return {"disc_1": light, "disc_2": DISCS.bodies["disc_2"]}
+
+
+class OnStrips(wl.Rig):
+    """A right one of strips: an axle whose patches are cut into strips."""
+
+    name: ClassVar[str] = "on_strips"
+    source: ClassVar[str] = "made up for the tests"
+    patch_geometry: ClassVar[wl.Geometry] = "strips"
+    creepage: ClassVar[str] = "displacement"
+    example: ClassVar[Mapping[str, Any]] = Axle.example
+
+    @classmethod
+    def conditions(cls) -> Mapping[str, wl.Condition]:
+        return Axle.conditions()
+
+    def problem(self, **conditions: Any) -> wl.Problem:
+        Axle().check_names(conditions)
+        ellipse = Axle().problem(**conditions)
+        y = np.linspace(-0.9, 0.9, 10)
+        height = np.sqrt(1.0 - y**2)
+        strips = wl.Strips(
+            y=ellipse.b[..., None] * y,
+            width=0.2 * ellipse.b[..., None] * np.ones(10),
+            half_length=ellipse.a[..., None] * height,
+            max_pressure=ellipse.max_pressure[..., None] * height,
+        )
+        return self.loaded(ellipse.replaced(geometry="strips", strips=strips))
+
+    def loaded(self, problem: wl.Problem) -> wl.Problem:
+        assert problem.strips is not None
+        return problem.replaced(normal_force=problem.strips.normal_force.sum(axis=-1))
+
+
+CAUGHT: dict[type[wl.Rig], str] = {
+    NoFriction: "problem_is_finite_and_positive",
+    ForceInsteadOfPressure: "pressure_carries_the_load",
+    SpeedWithoutBatch: "problem_has_the_shape_of_the_conditions",
+    SinglePrecision: "problem_has_the_shape_of_the_conditions",
+    FrictionInSinglePrecision: "problem_is_in_double_precision",
+    ArmInOtherUnits: "units_of_parameters_do_not_matter",
+    DensityOfSteel: "bodies_are_those_of_the_problem",
+    MeanOfTheBatch: "arrays_equal_single_calls",
+    OtherCreepage: "conditions_are_declared",
+    CreepageFromZero: "creepage_is_proportional_to_its_condition",
+    MagnitudeOfCreepage: "creepage_is_proportional_to_its_condition",
+    TakesBareNumbers: "units_of_conditions_are_checked",
+    TakesBarePreloads: "units_of_conditions_are_checked",
+    NumberWithoutUnit: "units_of_conditions_do_not_matter",
+    TakesUnknownConditions: "unknown_and_missing_conditions_are_refused",
+    NaNIsNoLoad: "values_that_are_no_numbers_are_refused",
+    WrongGeometry: "geometry_is_that_of_the_problem",
+    DensityOfTheOther: "bodies_are_those_of_the_problem",
+}
+"""The check that must catch each."""

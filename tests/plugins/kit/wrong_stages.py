@@ -1,0 +1,303 @@
+"""Stages, and laws of other outcomes than wear or with variables of their own, right ones and wrong ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+import wearlaw as wl
+from wearlaw import Array
+
+
+class Lubricated(wl.Stage):
+    """Friction that falls to a share."""
+
+    name: ClassVar[str] = "lubricated"
+    source: ClassVar[str] = "test"
+    share: float = 0.5
+    """Share of the friction coefficient that is left [-]."""
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return problem.replaced(friction_coefficient=self.share * problem.friction_coefficient)
+
+
+class OfTheBatch(Lubricated):
+    """Friction that depends on the other operating points."""
+
+    name: ClassVar[str] = "of_the_batch"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        share = 1.0 / (1.0 + np.ptp(problem.friction_coefficient))
+        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
+
+
+class Sided(Lubricated):
+    """Less friction forwards than backwards."""
+
+    name: ClassVar[str] = "sided"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        share = np.where(problem.longitudinal_creepage > 0.0, 0.5, 1.0)
+        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
+
+
+class Reversed(Lubricated):
+    """Turns the creepages, so that forces drive the creep."""
+
+    name: ClassVar[str] = "reversed"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return problem.replaced(longitudinal_creepage=-problem.longitudinal_creepage)
+
+    def solve(self, problem: wl.Problem, inner: wl.Solve) -> wl.Contact:
+        contact = inner(self.altered(problem, lambda one: inner(one).forces))
+        return contact.replaced(wear_index=-contact.wear_index)
+
+
+class Forgets(Lubricated):
+    """Returns one operating point only."""
+
+    name: ClassVar[str] = "forgets"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return problem[:1]
+
+
+class AtRest(Lubricated):
+    """Divides by the creepage."""
+
+    name: ClassVar[str] = "at_rest"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        with np.errstate(all="ignore"):
+            share = problem.longitudinal_creepage / problem.longitudinal_creepage
+        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
+
+
+class Film(Lubricated):
+    """Friction that falls with the thickness of a film, whose number is read as millimetres."""
+
+    name: ClassVar[str] = "film"
+    thickness: Annotated[wl.Quantity, wl.Unit("m")] = Field(default="0.5 m", validate_default=True)
+    """Thickness of the film [m]."""
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        share = 1.0 / (1.0 + float(self.thickness.magnitude))
+        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
+
+
+class Slower(Lubricated):
+    """A speed that the contact does not feel, from a parameter without its unit."""
+
+    name: ClassVar[str] = "slower"
+    speed: Annotated[wl.Quantity, wl.Unit("km/h")] = Field(default="7 km/h", validate_default=True)
+    """Speed of the film [m/s]."""
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return problem.replaced(rolling_speed=problem.rolling_speed + float(self.speed.magnitude))
+
+
+class HalfTheDigits(Lubricated):
+    """Friction in single precision."""
+
+    name: ClassVar[str] = "half_the_digits"
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        friction = self.share * problem.friction_coefficient.astype(np.float32)
+        return problem.replaced(friction_coefficient=friction.astype(np.float64))
+
+
+class Damage(wl.Law):
+    """Damage beyond a threshold, with the sign of the traction."""
+
+    name: ClassVar[str] = "damage"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("rcf_damage", unit="", of="patch", signed=True)
+    threshold: Annotated[wl.Quantity, wl.Unit("N")] = Field(default="15 N", validate_default=True)
+    """Threshold of Tγ [N]."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return np.sign(contact.tangential_force) * np.maximum(contact.wear_index - p["threshold"], 0.0)
+
+
+class ReadsItself(Damage):
+    """Reads its own number in place of the one it is given."""
+
+    name: ClassVar[str] = "reads_itself"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return contact.wear_index - self.threshold.m_as("N")
+
+
+class Unsigned(Damage):
+    """States an outcome without sign, but has one."""
+
+    name: ClassVar[str] = "unsigned"
+    outcome = wl.Outcome("rcf_damage", unit="", of="patch")
+
+
+class PlainMean(Damage):
+    """The mean pressure over the nodes, whatever their areas."""
+
+    name: ClassVar[str] = "plain_mean"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        nodes = tuple(range(contact.rolling_speed.ndim, contact.pressure.ndim))
+        damage: Array = contact.pressure.mean(axis=nodes) / (p["threshold"] * 1e6)
+        return damage
+
+
+class FirstNode(Damage):
+    """The pressure of the first node."""
+
+    name: ClassVar[str] = "first_node"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        first: Array = contact.pressure.reshape(*contact.rolling_speed.shape, -1)[..., 0]
+        return first / (p["threshold"] * 1e6)
+
+
+class AreaMean(Damage):
+    """A right one: the mean pressure over the patch."""
+
+    name: ClassVar[str] = "area_mean"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return contact.mean(contact.pressure) / (p["threshold"] * 1e6)
+
+
+class SingleDamage(Damage):
+    """Damage in single precision."""
+
+    name: ClassVar[str] = "single_damage"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return super().rate(contact, p).astype(np.float32).astype(np.float64)
+
+
+class Conducting(wl.Material):
+    """A material with a conductivity."""
+
+    conductivity: Annotated[wl.Quantity, wl.Unit("W/m/K")]
+    """Thermal conductivity [W/m/K]."""
+
+
+class Flash(wl.Law):
+    """A temperature of the patch from the frictional power and the material."""
+
+    name: ClassVar[str] = "flash"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("temperature_rise", unit="K", of="patch")
+    example_material: ClassVar[wl.Material | None] = Conducting(**dict(wl.steel()), conductivity=wl.parse("50 W/m/K"))
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        material: Any = contact.body(self.body).material
+        power = contact.wear_index * contact.rolling_speed / contact.patch_area
+        return power * contact.half_width / wl.scalar_si(material.conductivity, "W/m/K")
+
+
+class Power(wl.Law):
+    """Frictional power over area."""
+
+    name: ClassVar[str] = "power"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("heat_flux", unit="W/mm^2", of="area mean")
+    zero_in_stick: ClassVar[bool] = True
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return contact.frictional_power_density
+
+
+class RunningIn(wl.WearLaw):
+    """Wear that falls with the distance rolled."""
+
+    name: ClassVar[str] = "running_in"
+    source: ClassVar[str] = "test"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        share = np.exp(-contact.per_node(contact.rolled_distance) / 2e3)
+        return 1e-9 * (1.0 + share) * contact.wear_index_density
+
+
+class Switch(wl.WearLaw):
+    """Wear that starts at a frictional power density."""
+
+    name: ClassVar[str] = "switch"
+    source: ClassVar[str] = "test"
+    border: Annotated[wl.Quantity, wl.Unit("W/mm^2")] = Field(default="5 W/mm^2", validate_default=True)
+    """Power at which wear starts [W/m²]."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        above = contact.frictional_power_density >= p["border"]
+        return np.where(above, 1e-9 * contact.wear_index_density, 0.0)
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"frictional_power_density": (p["border"],)}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
+
+
+class PvLimit(wl.WearLaw):
+    """Wear in proportion to q·s, ten times as much above a limit of pressure times slip speed."""
+
+    name: ClassVar[str] = "pv_limit"
+    source: ClassVar[str] = "test"
+
+    limit: Annotated[wl.Quantity, wl.Unit("W/mm^2")] = wl.Q(12.0, "W/mm^2")
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        severe = contact.pressure * contact.slip_speed >= p["limit"]
+        return 5e-9 * np.where(severe, 10.0, 1.0) * contact.wear_index_density
+
+    @property
+    def own_variables(self) -> Mapping[str, Callable[[wl.Contact], Array]]:
+        return {"pv": lambda contact: contact.pressure * contact.slip_speed}
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"pv": (p["limit"],)}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
+
+
+class Behind(wl.WearLaw):
+    """Twice the wear far behind the leading edge; a right one."""
+
+    name: ClassVar[str] = "behind"
+    source: ClassVar[str] = "test"
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"x": (1e-3,)}
+
+    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return self.breakpoints(p)
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return 5e-9 * contact.wear_index_density * np.where(contact.x < 1e-3, 1.0, 2.0)
+
+
+RIGHT: list[Any] = [
+    *(Lubricated(), wl.patch_mean(), Damage(), AreaMean(), Flash(), Power(), RunningIn(), Switch(), PvLimit(), Behind())
+]
+"""Stages and laws that pass."""
+
+CAUGHT: dict[Any, str] = {
+    OfTheBatch: "points_are_independent",
+    Sided: "opposite_creepages_have_opposite_forces",
+    Reversed: "contact_does_not_gain_energy",
+    Forgets: "pipelines_take_the_contact",
+    AtRest: "contact_is_finite",
+    Film: "units_of_parameters_do_not_matter",
+    Slower: "units_of_parameters_do_not_matter",
+    HalfTheDigits: "contact_is_in_double_precision",
+    ReadsItself: "parameters_may_vary",
+    Unsigned: "rate_is_never_negative",
+    PlainMean: "listing_of_nodes_does_not_matter",
+    FirstNode: "listing_of_nodes_does_not_matter",
+    SingleDamage: "precision_is_double",
+}
+"""The check that must catch each."""

@@ -1,0 +1,368 @@
+"""The life of a wheel: removal, conservation of mass, measures, the loop, its errors and its store."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import wearlaw as wl
+import wearlaw_wheelset as ws
+from tests.plugins.wheelsets import R0, cone, round_head, wheelset
+from wearlaw import Q
+from wearlaw_life import Life
+from wearlaw_life._line import Line  # private: a step that fails
+from wearlaw_life._measures import flange, hollow  # private: profiles in closed form
+from wearlaw_life._removal import (  # private: the parts of a step in closed form
+    conserving,
+    even,
+    normal_depth,
+    positions,
+    removed,
+    smoothed,
+    swept,
+)
+
+GIVEN: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
+
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
+
+
+def pipeline(**changed: Any) -> wl.Pipeline[...]:
+    rig = wheelset(**changed)
+    return rig | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
+
+
+def line(count: int = 5, spread: float = 1.5) -> pd.DataFrame:
+    """Return displacements that are symmetric about the middle of the track, with normal shares."""
+    displacement = np.linspace(-2.0 * spread, 2.0 * spread, count)
+    share = np.exp(-0.5 * (displacement / spread) ** 2)
+    return pd.DataFrame({"lateral_displacement [mm]": displacement, "share": share / share.sum()})
+
+
+@pytest.fixture(scope="module")
+def short() -> Life:
+    """A life of a few steps."""
+    return wl.wear_out(pipeline(), line(), over="1500 km", **GIVEN)
+
+
+def test_cone_worn_evenly_is_a_cone() -> None:
+    start = even(cone(0.05))
+    at = positions([start], 500)
+    worn = removed(start, at, np.full(at.size, 0.3e-3))
+    angle = np.arctan(0.05)
+    assert worn.curve.angle == pytest.approx(-angle, abs=1e-9)
+    at_middle = np.interp(0.0, worn.curve.y, worn.curve.z)
+    assert at_middle == pytest.approx(-0.3e-3 / np.cos(angle), abs=1e-12)
+
+
+def test_circle_worn_evenly_along_its_normal_is_a_circle() -> None:
+    start = even(round_head(80e-3))
+    at = positions([start], 500)
+    for step in range(1, 4):
+        start = removed(start, positions([start], 500), np.full(at.size, 0.2e-3))
+        radius = np.hypot(start.curve.y, start.curve.z - 80e-3)
+        assert radius == pytest.approx(80e-3 - step * 0.2e-3, abs=1e-9)
+
+
+def test_volume_between_two_cones_is_that_of_frustums() -> None:
+    """A cone worn by d along its normal: Pappus's theorem on the parallelogram between the two lines."""
+    start, depth, slope = even(cone(0.05)), 0.1e-3, 0.05
+    worn = removed(start, positions([start], 100), np.full(100, depth))
+    length = np.ptp(start.curve.s)
+    centroid = R0 - 0.5 * depth * np.cos(np.arctan(slope))
+    assert swept(start, worn, R0) == pytest.approx(2.0 * np.pi * centroid * depth * length, rel=1e-9)
+    assert swept(start, worn, None) == pytest.approx(depth * length, rel=1e-9)
+
+
+def test_smoothing_keeps_the_sum_and_has_its_length() -> None:
+    at = np.linspace(0.0, 60e-3, 601)
+    depth = np.zeros(601)
+    depth[[40, 300]] = 1.0, 2.0
+    found = smoothed(depth, at, 2e-3)
+    assert found.sum() == pytest.approx(3.0, rel=1e-12)
+    peak = found[200:400] / found[200:400].sum()
+    spread = np.sqrt((peak * (at[200:400] - at[300]) ** 2).sum())
+    assert spread == pytest.approx(2e-3, rel=1e-3)  # the kernel ends at four standard deviations
+
+
+def test_one_factor_makes_the_mass_exact_on_a_flange() -> None:
+    """In the root of the flange, of radius 13 mm, removal along the normal alone misses by depth/2 × curvature."""
+    start = even(ws.Profile.s1002())
+    at = positions([start], 3000)
+    depth = 0.1e-3 * np.exp(-0.5 * ((at + 37e-3) / 2e-3) ** 2)
+    volume = 2.0 * np.pi * R0 * float(np.trapezoid(depth, at))
+    found = conserving(start, at, depth, volume, R0)
+    assert abs(found.factor - 1.0) > 1e-3
+    assert swept(start, found.profile, R0) == pytest.approx(volume, rel=1e-10)
+
+
+def test_mass_removed_is_mass_predicted(short: Life) -> None:
+    """Before its factor, each step is within 1e-3; after it, the sum of all steps is exact."""
+    assert abs(short.table["factor"] - 1.0).max() < 1e-3
+    volume = swept(short.worn_profiles[0][0], short.profile, R0)
+    density = short.pipeline.rig.bodies["wheel"].material.density.m_as("kg/m^3")
+    assert volume * density == pytest.approx(short.rows[-1]["mass"], rel=1e-10)
+
+
+def test_mass_of_the_first_step_is_that_of_the_prediction() -> None:
+    states = line(3)
+    found = wl.wear_out(pipeline(), states, over="10 km", **GIVEN)
+    r = pipeline()(lateral_displacement=Q(states.iloc[:, 0].to_numpy(), "mm"), **GIVEN)
+    mass = states["share"].to_numpy() @ np.nansum(r.mass_lost("10 km", "wheel").m_as("kg"), axis=-1)
+    assert found.table[["mass_left [kg]", "mass_right [kg]"]].iloc[-1].to_numpy() == pytest.approx(mass, rel=1e-9)
+    assert found.rows[-1]["mass"] == pytest.approx(mass.mean(), rel=1e-9)
+
+
+def test_mass_before_the_factor_falls_with_the_spacing() -> None:
+    """With few positions the cubic between them misses mass; the rest is that of curvature, found at 0.05 mm."""
+    off = [
+        wl.wear_out(pipeline(), line(3), over="20 km", smoothing="0.5 mm", spacing=f"{spacing} mm", **GIVEN).rows[1]
+        for spacing in (2.0, 1.0, 0.05)
+    ]
+    errors = [abs(one["factor"] - off[-1]["factor"]) for one in off[:-1]]
+    assert errors[1] < 0.5 * errors[0]
+
+
+def test_first_step_wears_the_weighted_sum_of_the_states() -> None:
+    states = line(3)
+    found = wl.wear_out(pipeline(), states, over="10 km", smoothing="0 mm", **GIVEN)
+    (first,) = found.worn_profiles[0]
+    at = positions([first], int(np.ceil(np.ptp(first.curve.s) / 0.1e-3)) + 1)
+    r = pipeline()(lateral_displacement=Q(states.iloc[:, 0].to_numpy(), "mm"), **GIVEN)
+    depth = r.wear_profile("wheel", at=Q(1e3 * at, "mm"))["depth"].mean("side").values
+    expected = 10e3 * states["share"].to_numpy() @ depth * 1e-9 * found.rows[1]["factor"]  # um/km
+    assert normal_depth(first, found.profile, at) == pytest.approx(expected, abs=2e-3 * expected.max())
+
+
+def test_symmetric_line_wears_both_wheels_alike(short: Life) -> None:
+    table = short.table
+    assert table["mass_left [kg]"].to_numpy() == pytest.approx(table["mass_right [kg]"].to_numpy(), rel=1e-9)
+
+
+def test_a_turned_vehicle_wears_the_mean_of_both_sides() -> None:
+    one_sided = line()
+    one_sided.iloc[:, 0] += 2.0
+    row = wl.wear_out(pipeline(), one_sided, over="10 km", **GIVEN).rows[-1]
+    assert row["mass_right"] > 1.2 * row["mass_left"]
+    assert row["mass"] == pytest.approx(0.5 * (row["mass_left"] + row["mass_right"]), rel=1e-9)
+
+
+def test_each_side_wears_for_itself_and_alike_on_a_symmetric_line(short: Life) -> None:
+    found = wl.wear_out(pipeline(), line(), over="1500 km", sides="each", **GIVEN)
+    table, (left, right) = found.table, found.worn_profiles[-1]
+    # The mirrored states differ by rounding, which moves contact points by up to 2e-9 m (`test_wheelset_positions`).
+    assert table["depth_left [mm]"].to_numpy() == pytest.approx(table["depth_right [mm]"].to_numpy(), rel=1e-6)
+    assert left.points[1].magnitude == pytest.approx(right.points[1].magnitude, abs=1e-6)
+    mean = short.table
+    assert len(table) == len(mean)
+    assert table["mass_left [kg]"].to_numpy() == pytest.approx(mean["mass [kg]"].to_numpy(), rel=1e-6)
+    assert found.profiles.sizes["side"] == 2
+    assert "wear × " in found.figure().panels[2].title
+
+
+def test_a_line_of_right_hand_curves_wears_its_sides_differently() -> None:
+    one_sided = line()
+    one_sided.iloc[:, 0] += 2.0
+    found = wl.wear_out(pipeline(), one_sided, over="1000 km", sides="each", until={"depth": "0.04 mm"}, **GIVEN)
+    row, start = found.rows[-1], found.worn_profiles[0]
+    assert row["mass_right"] > 1.2 * row["mass_left"]
+    assert found.ended == "depth_right"
+    assert row["depth_right"] == pytest.approx(0.04e-3, rel=1e-5)
+    for side, first, worn in zip(("left", "right"), start, found.worn_profiles[-1], strict=True):
+        assert swept(first, worn, R0) * 7850.0 == pytest.approx(row[f"mass_{side}"], rel=1e-10)
+    rig = found.pipeline.rig
+    assert (rig.left_wheel, rig.wheel) == (found.left_profile, found.profile)  # type: ignore[attr-defined]
+
+
+def test_each_rail_wears_for_itself() -> None:
+    one_sided = line(3)
+    one_sided.iloc[:, 0] += 2.0
+    found = wl.wear_out(pipeline(), one_sided, over=2e4, body="rail", sides="each", **GIVEN)
+    assert found.rows[-1]["mass_right"] > 1.2 * found.rows[-1]["mass_left"]
+    assert found.left_profile.kind == "rail"
+
+
+def test_a_pair_of_unlike_wheels_has_no_mean() -> None:
+    unlike = pipeline(left_wheel=ws.Profile.s1002())
+    with pytest.raises(wl.InputError, match="'each'"):
+        wl.wear_out(unlike, line(3), over="10 km", **GIVEN)
+
+
+def test_several_processes_give_the_same_life(tmp_path: Path, short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From a file, in blocks of a few states."""
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)
+    line().to_csv(tmp_path / "line.csv", index=False)
+    lives = [
+        wl.wear_out(pipeline(), tmp_path / "line.csv", over="500 km", workers=workers, **GIVEN) for workers in (1, 2)
+    ]
+    assert lives[0].table.equals(lives[1].table)
+    assert lives[0].rows[1]["mass"] == pytest.approx(short.rows[1]["mass"], rel=1e-12)
+
+
+def test_a_cluster_gives_the_same_life(short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as machines,
+        distributed.Client(machines) as client,
+    ):
+        found = wl.wear_out(pipeline(), line(), over="500 km", client=client, **GIVEN)
+    assert found.rows[1]["mass"] == pytest.approx(short.rows[1]["mass"], rel=1e-12)
+    assert found.table["distance [km]"].iloc[-1] == pytest.approx(500.0)
+
+
+def test_s1002_has_the_dimensions_of_its_name() -> None:
+    """EN 13715 names it S1002/h28/e32,5/6,7%: height, thickness and the slope of its field side.
+
+    The top, of radius 12 mm, lies between points 0.05 mm apart: it may be too low by 0.025²/24 mm.
+    """
+    curve = ws.Profile.s1002().curve
+    height, thickness, gradient = flange(curve.y, curve.z, -70e-3)
+    assert (height, thickness) == pytest.approx((28e-3, 32.5e-3), abs=2.7e-8)
+    # On the printed arcs: of 13 mm at 10 mm above the datum, of 20 mm at 2 mm below the top.
+    flank = -26.210665 - np.sqrt(13.0**2 - (16.446 - 10.0) ** 2)
+    top = -58.558326413 + np.sqrt(20.0**2 - (26.0 - 8.834924130) ** 2)
+    assert gradient == pytest.approx(1e-3 * (flank - top), abs=1e-6)
+
+
+def test_wheel_without_a_flange_has_no_flange_measures() -> None:
+    curve = cone(0.05).curve
+    assert np.isnan(flange(curve.y, curve.z, -70e-3)).all()
+
+
+def test_hollow_is_the_rise_of_the_radius_outwards() -> None:
+    y = np.linspace(-50e-3, 50e-3, 1001)
+    z = -0.05 * y - 1e-3 * np.exp(-((y / 10e-3) ** 2))
+    rise = max((z[k:].max() - z[k]) for k in range(0, z.size, 1))
+    assert hollow(z) == pytest.approx(rise, rel=1e-12)
+    assert hollow(-0.05 * y) == 0.0
+
+
+def test_depth_along_the_normal_is_that_removed() -> None:
+    start = even(ws.Profile.s1002())
+    at = positions([start], 3000)
+    depth = 0.08e-3 * np.exp(-0.5 * ((at + 30e-3) / 6e-3) ** 2)
+    s = at[100:-100:50]
+    assert normal_depth(start, removed(start, at, depth), s) == pytest.approx(np.interp(s, at, depth), abs=1e-9)
+
+
+def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
+    table = short.table
+    assert table["distance [km]"].iloc[[0, -1]].tolist() == pytest.approx([0.0, 1500.0])
+    assert short.ended == "over"
+    assert abs(table["equivalent_conicity"].diff()).max() <= 0.005
+    profiles = short.profiles
+    assert dict(profiles.sizes) == {"distance": len(table), "side": 1, "place": 601}
+    assert profiles["depth"].max() == pytest.approx(table["depth [mm]"].iloc[-1], rel=1e-3)
+    assert profiles["depth"].attrs["units"] == "mm"
+    last = profiles.isel(distance=-1, side=0)
+    y, curve = last["y"].values, short.profile.curve
+    tread, there = y > -34.0, curve.y > -35e-3
+    z = np.interp(y[tread], 1e3 * curve.y[there], 1e3 * curve.z[there])
+    assert last["z"].values[tread] == pytest.approx(z, abs=3e-5)  # 0.025²/(2 R) mm between points, with R = 13 mm
+    assert "1500 km" in repr(short)
+    assert [panel.title for panel in short.figure().panels][1] == "wheel, wear along the normal"
+    assert len(short.plot().axes) == len(short.figure().panels)
+
+
+def test_life_ends_at_a_limit() -> None:
+    found = wl.wear_out(pipeline(), line(), over="10000 km", until={"depth": "0.02 mm"}, **GIVEN)
+    assert found.ended == "depth"
+    assert found.rows[-1]["depth"] == pytest.approx(0.02e-3, rel=2e-2)
+
+
+def test_rail_wears_by_passages() -> None:
+    found = wl.wear_out(pipeline(), line(3), over=2e4, body="rail", **GIVEN)
+    assert found.table["passages"].iloc[-1] == 2e4
+    area = swept(found.worn_profiles[0][0], found.profile, None)
+    assert found.rows[-1]["mass"] == pytest.approx(area * 7850.0, rel=1e-2)
+    assert found.profile.kind == "rail"
+
+
+def test_line_may_be_a_file_with_its_own_heads(tmp_path: Path) -> None:
+    table = line(3)
+    table.columns = ["y [mm]", "part [%]"]
+    table["part [%]"] *= 100.0
+    table.to_csv(tmp_path / "line.csv", index=False)
+    columns = {"lateral_displacement": "y [mm]"}
+    found = wl.wear_out(pipeline(), tmp_path / "line.csv", share="part [%]", columns=columns, over="10 km", **GIVEN)
+    same = wl.wear_out(pipeline(), line(3), over="10 km", **GIVEN)
+    assert found.rows[-1]["mass"] == pytest.approx(same.rows[-1]["mass"], rel=1e-9)
+
+
+def changed(**columns: Any) -> pd.DataFrame:
+    table = line(3)
+    for name, values in columns.items():
+        table[{"y": "lateral_displacement [mm]"}.get(name, name)] = values
+    return table
+
+
+@pytest.mark.parametrize(
+    ("states", "options", "error", "named"),
+    [
+        (changed(share=[0.2, 0.5, 0.2]), {}, wl.DataError, "add up to 0.9"),
+        (changed(share=[20.0, 60.0, 20.0]), {}, wl.DataError, "percent"),
+        (changed(share=[-0.2, 1.0, 0.2]), {}, wl.DataError, "row 0"),
+        (line(3).drop(columns="share"), {}, wl.DataError, "share"),
+        (line(3).set_axis(["lateral_displacement", "share"], axis=1), {}, wl.UnitError, "lateral_displacement"),
+        (changed(y=[0.0, 1.0, 7.0]), {}, wl.DataError, r"row 2 .*lateral_displacement = 7 mm.*climbs"),
+        (changed(y=[-7.0, 1.0, 7.0]), {}, wl.DataError, r"row 0 .*lateral_displacement = -7 mm.*climbs"),
+        (changed(y=[0.0, 60.0, 1.0]), {}, wl.DataError, r"row 1 .*60 mm"),
+        (line(3), {"over": "100"}, wl.UnitError, "over"),
+        (line(3), {"depth_step": "0.2 mm"}, wl.InputError, "depth_step"),
+        (line(3), {"until": {"flange": "25 mm"}}, wl.InputError, "until"),
+        (line(3), {"until": {"flange_thickness": 25.0}}, wl.UnitError, "flange_thickness"),
+        (line(3), {"body": "axle"}, wl.InputError, "body"),
+        (line(3), {"body": "rail"}, wl.InputError, "passages"),
+    ],
+)
+def test_mistakes_name_row_value_and_remedy(
+    states: pd.DataFrame, options: dict[str, Any], error: type[Exception], named: str
+) -> None:
+    with pytest.raises(error, match=named):
+        wl.wear_out(pipeline(), states, **{"over": "10 km", **GIVEN, **options})
+
+
+def test_profile_too_short_for_the_wear() -> None:
+    narrow = cone(0.05)
+    points = [one[(narrow.points[0].magnitude > -12.0) & (narrow.points[0].magnitude < 12.0)] for one in narrow.points]
+    wheel = ws.Profile.from_points(y=points[0], z=points[1], kind="wheel")
+    with pytest.raises(wl.InputError, match="too short"):
+        wl.wear_out(pipeline(wheel=wheel), line(3), over="10 km", **GIVEN)
+
+
+def test_interrupted_life_goes_on(tmp_path: Path, short: Life) -> None:
+    path = tmp_path / "life.zarr"
+    wl.wear_out(pipeline(), line(), over="1500 km", store=path, **GIVEN)
+    *_, before, last = sorted(path.glob("part_*"))
+    shutil.rmtree(last)
+    next(before.glob("profile_0/c/*")).write_bytes(b"damaged")
+    with pytest.raises(wl.OutputError, match="resume"):
+        wl.wear_out(pipeline(), line(), over="1500 km", store=path, **GIVEN)
+    with pytest.raises(wl.OutputError, match="smoothing"):
+        wl.wear_out(pipeline(), line(), over="1500 km", smoothing="2 mm", store=path, resume=True, **GIVEN)
+    with pytest.warns(wl.ResumeWarning, match="kept"):
+        again = wl.wear_out(pipeline(), line(), over="1500 km", store=path, resume=True, **GIVEN)
+    assert again.table.equals(short.table)
+
+
+def test_finished_steps_stay_when_a_step_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[Any] = []
+
+    def failing(*given: Any) -> Any:
+        calls.append(given)
+        if len(calls) == 3:
+            raise wl.ConditionsError("line, row 1: the wheel climbs")
+        return wear(*given)
+
+    wear = Line.wear
+    monkeypatch.setattr(Line, "wear", failing)
+    with pytest.raises(wl.ConditionsError) as caught:
+        wl.wear_out(pipeline(), line(3), over="10000 km", **GIVEN)
+    assert len(caught.value.life.table) == 3  # type: ignore[attr-defined]
+    assert caught.value.__notes__

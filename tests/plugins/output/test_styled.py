@@ -1,0 +1,77 @@
+"""Tables through pandas' Styler: as HTML with numbers at the right, and as LaTeX that a paper can include."""
+
+from __future__ import annotations
+
+import html
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tests.plugins.studies.report_data import EVIL
+from wearlaw_output.styled import Marked, cell, html_table, latex_table  # private: tables by themselves
+
+TABLE = pd.DataFrame(
+    {
+        "model <i>": ["a & b_1", EVIL],
+        "rate [µg/m/mm²]": pd.Series([Marked(-1.5e-7, "†‡"), Marked(np.nan, "")], dtype=object),
+        "tests": [3, 12],
+        "fitted": [True, False],
+        "why": ["γ ≤ 1 · 10⁻³ and cᵢ", "x" * 60],
+    }
+)
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (1.5e-7, ("1.5", "-7", "")),
+        (-12345.678, ("-1.235", "4", "")),
+        (0.00012345678, ("0.0001235", "", "")),
+        (1e100, ("1", "100", "")),
+        (-3, ("-3", "", "")),
+        (Marked(1234.5678, "†"), ("1235", "", "†")),
+        (Marked(np.nan, ""), ("", "", "")),
+        (True, ("yes", "", "")),
+        (float("nan"), ("", "", "")),
+        (None, ("", "", "")),
+        (pd.NA, ("", "", "")),
+        ("1e5", ("1e5", "", "")),
+    ],
+)
+def test_a_cell_shows_four_digits_and_a_power_of_ten(value: Any, shown: tuple[str, str, str]) -> None:
+    assert cell(value) == shown
+
+
+def test_html_has_row_heads_numbers_at_the_right_and_every_text_literally() -> None:
+    shown = html_table(TABLE, "<caption>")
+    cells = [html.unescape(text) for text in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", shown)]
+    assert cells[5:10] == ["a & b_1", "−1.5 × 10<sup>−7</sup><sup>†‡</sup>", "3", "yes", "γ ≤ 1 · 10⁻³ and cᵢ"]
+    assert cells[10:13] == [EVIL, "", "12"]
+    assert shown.count('class="row_heading') == 2
+    assert "<caption>&lt;caption&gt;</caption>" in shown
+    assert shown.count('number"') == 2 + 3, "two heads and three numbers"
+    assert "<script" not in shown
+    assert " id=" not in shown
+
+
+def test_latex_has_units_marks_footnotes_and_escaped_texts() -> None:
+    source = latex_table(TABLE, ["‡ beyond shakedown"])
+    assert r"\begin{tabular}{" in source
+    assert r"rate [\textmu{}g/m/mm\textsuperscript{2}]" in source
+    assert r"a \& b\_1 & $-1.5 \times 10^{-7}$\textdagger{}\textdaggerdbl{} & $3$ & yes &" in source
+    assert r"$\gamma$ $\le$ 1 $\cdot$ 10\textsuperscript{-3} and c\textsubscript{i}" in source
+    assert r"\par{\footnotesize \textdaggerdbl{} beyond shakedown}" in source
+    assert latex_table(pd.DataFrame({"a": ["*", "[2]"]})).count("{}") == 2, "no option of the line above"
+
+
+@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="needs pdflatex")
+def test_latex_compiles(tmp_path: Path) -> None:
+    source = rf"\documentclass{{article}}\usepackage{{booktabs}}\begin{{document}}{latex_table(TABLE)}\end{{document}}"
+    (tmp_path / "t.tex").write_text(source, encoding="utf-8")
+    subprocess.run(["pdflatex", "-interaction=batchmode", "-halt-on-error", "t.tex"], cwd=tmp_path, check=True)

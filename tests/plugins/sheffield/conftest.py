@@ -1,0 +1,18 @@
+"""The bench of the paper, which several test files share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import wearlaw as wl
+
+
+@pytest.fixture(scope="session")
+def bench() -> Any:
+    """Return the rig of Tassini et al. (2010) under their load and friction."""
+    from tests.plugins.sheffield.paper import FRICTION
+    from wearlaw_sheffield.bench import Bench  # here, since tests of other plugins do not need it
+
+    return Bench(wl.TwinDisc.suros(), wl.Q(741.43, "kN/m"), FRICTION)

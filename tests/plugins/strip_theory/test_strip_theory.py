@@ -1,0 +1,210 @@
+"""`strip_theory`: its limits, the energy it dissipates, its forces and its rows of energy beside two half-spaces."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from docs.half_spaces import RATIOS, SPINS, classes, ellipses, errors, rms
+from tests.half_spaces import DRAWS, POISSON_RATIO, table
+from tests.half_spaces import contact as half_spaces
+from wearlaw import Array
+from wearlaw_strip_theory import StripTheory, _strips  # private: strips one by one
+
+MODEL, FASTSIM = wl.contact_model("strip_theory"), wl.contact_model("fastsim")
+INPUTS = ("ratio", "xi", "eta", "phi")
+AXIS_RATIOS = (0.1, 0.3, 1.0, 3.0, 10.0)
+
+
+def solved(ratio: Array, xi: Array, eta: Array, phi: Array, model: wl.ContactModel = MODEL) -> wl.Contact:
+    """Return contacts at reduced creepages and spins, arrays of one shape."""
+    return model.solve(ellipses(*np.broadcast_arrays(*map(np.asarray, (ratio, xi, eta, phi)))))
+
+
+def coefficients(ratio: Array) -> Any:
+    return wl.kalker.coefficients(ratio, np.full(ratio.shape, POISSON_RATIO))
+
+
+def nodes(*strips: Array | float, count: int = 200) -> _strips.Nodes:
+    """Return the nodes of strips before the factor that makes a patch dissipate Tγ."""
+    arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(one, float)) for one in strips))
+    return _strips.solve(_strips.Strips(*arrays), count, count)
+
+
+@pytest.mark.parametrize("reduced", [0.01, 0.1, 0.5, 0.99, 1.0, 3.0])
+@pytest.mark.parametrize("angle", [0.0, 0.7, np.pi / 2, 4.0])
+def test_a_strip_without_spin_is_carters(reduced: float, angle: float) -> None:
+    k, cosine, sine = 0.003, np.cos(angle), np.sin(angle)
+    strip = nodes(reduced * k * cosine, reduced * k * sine, 0.0, k, k, count=12)
+    x, c = strip.x[:, 0], max(1.0 - reduced, 0.0)
+    inner = np.sqrt(np.maximum(c**2 - (x + 1.0 - c) ** 2, 0.0))
+    slip = np.sqrt(np.maximum((x + 1.0 - c) ** 2 - c**2, 0.0)) if c else reduced + x
+    q = np.sqrt(1.0 - x**2) - inner
+    assert strip.q_x[:, 0] == pytest.approx(q * cosine, abs=1e-12)
+    assert strip.q_y[:, 0] == pytest.approx(q * sine, abs=1e-12)
+    slips = x > 2.0 * c - 1.0
+    # Next to the border the slip is a root of a difference from x, which has a rounding of 1e-16.
+    assert strip.slip[:, 0] == pytest.approx(np.where(slips, k * slip, 0.0), abs=1e-7 * k)
+
+
+def test_wide_ellipses_have_the_stiffness_of_the_plane() -> None:
+    ratio = np.array([1e-4, 1e-8])
+    c = coefficients(ratio)
+    # C11 = π²/(4 (1-ν)) means K = 2 G C11/π² = E*/2, Carter's. Kalker's asymptote approaches it as a power of a/b.
+    assert 4.0 * (1.0 - POISSON_RATIO) * c.c11 / np.pi**2 == pytest.approx(1.0, abs=0.02)
+
+
+def test_small_creepages_have_kalkers_slopes_and_spin_those_of_the_strips() -> None:
+    # ∫ over the strips of K w √((1+x)/(1-x)), of which -φx leaves K φ √(1-x²): closed forms.
+    ratio, small, none = np.array(AXIS_RATIOS), 1e-12, np.zeros(len(AXIS_RATIOS))
+    c, fine = coefficients(ratio), wl.contact_model("strip_theory", strips=40)
+    ends = {"c11": (1, 0, 0), "c22": (0, 1, 0), "c23": (0, 0, 1), "c33": (0, 0, 1)}
+    problem = ellipses(ratio, none, none, none)
+    a, b, shear = problem.a, problem.b, problem.shear_modulus
+    found = {}
+    for name, signs in ends.items():
+        forces = fine.creep_forces(
+            problem.with_creepages(*(small * sign / (a if i == 2 else 1.0) + 0.0 * a for i, sign in enumerate(signs)))
+        )
+        unit = shear * a * b * small
+        found[name] = {
+            "c11": forces.longitudinal / unit,
+            "c22": forces.lateral / unit,
+            "c23": forces.lateral / (unit * np.sqrt(b / a)),
+            "c33": forces.spin_moment / (unit * b),
+        }[name]
+    due = {
+        "c11": c.c11,
+        "c22": c.c22,
+        "c23": 4.0 / (3.0 * np.pi) * np.sqrt(ratio) * c.c22,
+        "c33": c.c11 / (4.0 * ratio),
+    }
+    for name, slope in due.items():
+        assert found[name] == pytest.approx(slope, rel=1e-3), name  # what is left falls with the creepage
+
+
+def random_strips(count: int, *, spin: float) -> tuple[Array, ...]:
+    """Draw rigid slips of 0.01 to 5 times the one of full slip, with a given greatest spin, and stiffnesses."""
+    random = np.random.default_rng(11)
+    k_x = np.full(count, 0.003)
+    k_y = k_x * random.uniform(0.7, 1.4, count)
+    size, angle = 0.01 * 500.0 ** random.random(count) * k_x, random.uniform(0.0, 2.0 * np.pi, count)
+    return size * np.cos(angle), size * np.sin(angle), spin * size * random.uniform(-1.0, 1.0, count), k_x, k_y
+
+
+@pytest.mark.parametrize(("spin", "within"), [(0.0, 1e-12), (0.5, 1e-12), (3.0, 0.02)])
+def test_each_strip_dissipates_the_energy_fed_in(spin: float, within: float) -> None:
+    # With much spin some strips stick again, in a march of first order in the step; others hold in stick what the bound
+    # allows, where plane elasticity has more, and lose the rest.
+    along, across, turning, k_x, k_y = random_strips(400, spin=spin)
+    strip = nodes(along, across, turning, k_x, k_y)
+    w_y = across - turning * strip.x
+    fed = ((strip.q_x * along + strip.q_y * w_y) * strip.length).sum(axis=0)
+    spent = (strip.slip * strip.bound * strip.length).sum(axis=0)
+    size = (strip.bound * np.hypot(along, w_y) * strip.length).sum(axis=0)
+    assert (np.abs(spent - fed) <= within * size).all()
+
+
+def test_traction_is_along_the_slip_at_the_bound() -> None:
+    for spin in (0.0, 0.5, 3.0):
+        strip = nodes(*random_strips(400, spin=spin), count=20)
+        q = np.hypot(strip.q_x, strip.q_y)
+        assert (strip.slip >= 0.0).all()
+        assert (q <= strip.bound).all()
+        assert q[strip.slip > 0.0] == pytest.approx(strip.bound[strip.slip > 0.0], rel=1e-12)
+
+
+def test_the_fields_are_the_same_with_and_without_compiled_loops() -> None:
+    grid = np.array(list(itertools.product(AXIS_RATIOS, (0.02, 0.3), (-0.2, 0.1), (-0.5, 0.0, 0.2)))).T
+    found = []
+    for on in (True, False):
+        wl.accelerate(on)
+        found.append(solved(*grid))
+    wl.accelerate(None)
+    for name in ("traction_x", "traction_y", "slip_x", "slip_y", "x", "area", "traction_bound"):
+        one, other = (getattr(contact, name) for contact in found)
+        assert one == pytest.approx(other, rel=1e-9, abs=1e-12 * np.abs(other).max()), name
+
+
+@pytest.mark.validates(
+    "invariants",
+    "`strip_theory`: μ ∫ p·s dA is Tγ from the forces, at {points} random points with any creepage and spin, a/b from"
+    " 1/10 to 10",
+    source="conservation of energy with Coulomb friction",
+    held_to="{within:g}",
+    points=600,
+    within=1e-9,
+)
+def test_pressure_times_slip_is_the_wear_index(points: int, within: float) -> None:
+    # In reduced creepages a circle slips all over from about 0.5 on, with one creepage.
+    random = np.random.default_rng(7)
+    ratio = 0.1 * 100.0 ** random.random(points)
+    size, angle, spin = (
+        0.05 * 50.0 ** random.random(points),
+        random.uniform(0.0, np.pi / 2, points),
+        random.random(points),
+    )
+    turn = np.where(random.random(points) < 0.3, 0.0, random.choice([-1.0, 1.0], points) * spin * np.pi / 2)
+    xi, eta, phi = (size * part for part in (np.cos(turn) * np.cos(angle), np.cos(turn) * np.sin(angle), np.sin(turn)))
+    contact = solved(ratio, xi, eta, phi)
+    problem = contact.problem
+    assert problem is not None
+    pressed = problem.friction_coefficient * contact.integral(contact.pressure, contact.slip)
+    assert pressed == pytest.approx(contact.wear_index, rel=within)
+
+
+@pytest.mark.parametrize(("strips", "without_spin", "with_spin"), [(10, 0.004, 0.1), (60, 1e-4, 0.012)])
+def test_the_factor_of_a_patch_is_close_to_one(strips: int, without_spin: float, with_spin: float) -> None:
+    found, model = table(), wl.contact_model("strip_theory", strips=strips)
+    contact = solved(found["ratio"], found["xi"], found["eta"], found["phi"], model)
+    assert isinstance(model, StripTheory)
+    problem = contact.problem
+    assert problem is not None
+    slips = model._nodes(problem, model._layout(problem)).slip.transpose(2, 0, 1)  # before the factor
+    factor = np.divide(contact.slip, slips, out=np.ones_like(slips), where=slips > 0.0)
+    off = np.abs(factor - 1.0).max(axis=(1, 2))
+    spin = found["phi"] != 0.0
+    assert off[~spin].max() < without_spin
+    assert off[spin].max() < with_spin
+
+
+def test_forces_are_closer_to_the_half_spaces_than_those_of_fastsim() -> None:
+    found = table()
+    random = np.arange(found["ratio"].size) < sum(DRAWS)
+    strips, fastsim = (errors(found, model) for model in (MODEL, FASTSIM))
+    for (spin, most), chosen in classes(found).items():
+        for name in ("force", "moment"):
+            one, other = getattr(strips, name), getattr(fastsim, name)
+            where = f"{name}: spin {SPINS[spin]}, a/b {RATIOS[most]}"
+            assert rms(one[chosen & random]) < rms(other[chosen & random]), where
+            assert one[chosen].max() < other[chosen].max(), where
+
+
+@pytest.mark.validates(
+    "elliptic-contact",
+    "`strip_theory`: the energy by rows across the patch in full slip, at a/b {ratios}, with and without spin",
+    source="a half-space solver written for the tests (Cerruti's solution, after CONTACT)",
+    held_to="{misplaced:.0%} of the energy in other rows, and {peak:.0%} of the largest row",
+    ratios=(0.1, 0.5, 2, 10),
+    misplaced=0.03,
+    peak=0.05,
+)
+def test_rows_have_the_energy_of_the_half_spaces_in_full_slip(
+    ratios: tuple[float, ...], misplaced: float, peak: float
+) -> None:
+    cells = 16
+    shares = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
+    creepages = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.7, 0.7, 0.0), (1.0, 0.0, 0.3), (0.0, 1.0, 0.5), (0.5, 0.5, 0.5))
+    for ratio, creepage in itertools.product(ratios, creepages):
+        half = half_spaces((ratio, *creepage), cells)
+        due = half.over_strip(half.wear_index_density) * half.strip_width
+        contact = MODEL.on_strips(ellipses(*(np.array([one]) for one in (ratio, *creepage))), shares)
+        assert contact is not None
+        found = (contact.over_strip(contact.wear_index_density) * contact.strip_width)[0]
+        due, found = due / due.sum(), found / found.sum()
+        assert 0.5 * np.abs(found - due).sum() < misplaced, (ratio, creepage)
+        assert found.max() == pytest.approx(due.max(), rel=peak), (ratio, creepage)

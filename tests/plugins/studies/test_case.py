@@ -1,0 +1,188 @@
+"""Case files: what is read, and the schema that says the same."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import tomli_w
+
+import wearlaw as wl
+from tests.core import cases
+from tests.core.cases import OWN_TESTS, STEEL, case, changed, load, table
+from wearlaw.models.labels import labels  # private: the names of models in results, without running them
+from wearlaw_studies.case import written
+
+
+def rewritten(read: wl.Case) -> str:
+    return tomli_w.dumps(read.model_dump(mode="json", by_alias=True, exclude_none=True))
+
+
+# Measured tests
+
+
+def test_tests_of_a_lab_are_found_from_the_folder_of_the_case_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    studies = tmp_path / "studies"
+    (studies / "data").mkdir(parents=True)
+    (studies / "data" / "own.csv").write_text(OWN_TESTS, encoding="utf-8")
+    cases.write(studies / "my.toml", table(measured={"label": "m", "tests": "data/own.csv"}))
+    monkeypatch.chdir(tmp_path)
+    for where in ("studies/my.toml", str(studies / "my.toml")):
+        measured = wl.load_case(where).measured
+        assert measured is not None
+        np.testing.assert_allclose(measured.data.wear_rate.to("ug/m/mm^2").magnitude, [10.0, 40.0], rtol=1e-14)
+        assert measured.data.source == "own.csv"
+        assert not measured.shipped
+
+
+def test_a_case_can_be_written_with_its_tests_to_run_again_anywhere(tmp_path: Path) -> None:
+    text = "# source: a test in µg\r\n" + OWN_TESTS.replace(",", ";").replace(".", ",")
+    (tmp_path / "own.csv").write_text(text, encoding="utf-8", newline="")
+    read = load(tmp_path, table(measured={"label": "m", "tests": "own.csv", "decimal": ","}))
+    (tmp_path / "own.csv").unlink()  # what is written is what was read
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    files = written(read)
+    assert list(files) == ["case.toml", "tests.csv"]
+    for name, content in files.items():
+        (elsewhere / name).write_text(content, encoding="utf-8")
+    again = wl.load_case(str(elsewhere / "case.toml"))
+    assert read.measured is not None
+    assert again.measured is not None
+    assert again.measured.data == read.measured.data
+    assert again.measured.data.source == "a test in µg"
+    assert again.model_copy(update={"measured": None}) == read.model_copy(update={"measured": None})
+
+
+# What is read is written and read again
+
+RAIL = {**STEEL, "shear_yield_stress": "300 MPa"}
+OWN_K = {"high_pressure": 0.03, "low_speed": 1e-4, "mid_speed": 1e-3, "high_speed": 2e-4}
+OWN_RIG: dict[str, Any] = {
+    "type": "twin_disc",
+    "disc_1": {"diameter": "47 mm", "material": STEEL},
+    "disc_2": {"diameter": "inf mm", "material": RAIL},
+    "track_width": "1 cm",
+    "rolling_speed": "3.6 km/hr",
+}
+ACCEPTED = {
+    "small": table(),
+    "one name": table(contact_models=["exact"], wear_laws=[{"model": "usfd"}], profiles={}),
+    "own rig": table(rig=OWN_RIG),
+    "preset, overridden": table(
+        rig={
+            "preset": "suros",
+            "diameter": "100 mm",
+            "material": STEEL,
+            "track_width": "5 mm",
+            "rolling_speed": "1 m/s",
+        }
+    ),
+    "preset, the mean speed": table(rig={"preset": "suros", "speed_of": "mean"}),
+    "rig, the speed of disc 1": table(rig={**OWN_RIG, "speed_of": "disc_1"}),
+    "preset, disc by disc": table(
+        rig={"preset": "suros", "disc_1": OWN_RIG["disc_1"], "disc_2": OWN_RIG["disc_2"], "rotational_speed": "600 rpm"}
+    ),
+    "options": table(
+        contact_models=[
+            {"model": "global", "total_from": {"model": "fastsim", "bound": "elliptic"}},
+            {"model": "global", "total_from": "exact"},
+            {"model": "exact", "slip": "as_printed"},
+            "exact",
+        ],
+        wear_laws=[
+            {"model": "kth", "coefficient": OWN_K, "hardness": "3 GPa"},
+            {"model": "kth", "coefficient": "low"},
+            {"model": "usfd", "fitted_for": "fastsim", "m_c": "70 ug/m/N"},
+        ],
+    ),
+    "all forms of a condition": changed(
+        "sweeps.creepage",
+        {
+            "normal_force": ["1 kN", "2000 N"],
+            "creepage": {"from": "0 %", "to": "1 %", "points": 3},
+            "friction_coefficient": 0.4,
+            "traction_coefficient": [0.1, 0.2],
+        },
+    ),
+    "shipped tests": table(measured={"label": "m", "tests": "lewis2004"}),
+}
+
+
+@pytest.mark.parametrize("content", ACCEPTED.values(), ids=ACCEPTED)
+def test_a_case_written_with_all_its_defaults_reads_back_as_the_same_case(
+    tmp_path: Path, validator: Any, content: cases.Table
+) -> None:
+    read = load(tmp_path, content)
+    text = rewritten(read)
+    (tmp_path / "again.toml").write_text(text, encoding="utf-8")
+    again = wl.load_case(str(tmp_path / "again.toml"))
+    assert again == read
+    assert labels(again.contact_models) == labels(read.contact_models)
+    assert labels(again.wear_laws) == labels(read.wear_laws)
+    assert rewritten(again) == text
+    validator.validate(tomllib.loads(text))
+
+
+@pytest.mark.parametrize("content", ACCEPTED.values(), ids=ACCEPTED)
+def test_the_schema_accepts_what_the_loader_accepts(validator: Any, content: cases.Table) -> None:
+    validator.validate(content)
+
+
+def test_the_shipped_case_keeps_the_schema_and_reads_back_the_same(tmp_path: Path, validator: Any) -> None:
+    shipped = wl.load_case("tassini2010")
+    validator.validate(tomllib.loads(cases.wearlaw("case", "tassini2010").stdout))
+    assert load(tmp_path, tomllib.loads(rewritten(shipped))) == shipped
+
+
+# Labels
+
+
+@pytest.mark.parametrize(
+    "models",
+    [
+        ["exact", "exact"],
+        ["exact", {"model": "exact"}],
+        ["exact", {"model": "exact", "slip": "consistent"}],
+        ["global", "exact", {"model": "global", "total_from": {"model": "exact"}}],
+    ],
+)
+def test_a_model_listed_twice_is_refused_however_it_is_written(models: Any) -> None:
+    with pytest.raises(wl.ConfigurationError, match="is listed twice; leave one out, or give it other options"):
+        case(contact_models=models)
+
+
+# The schema and other people's models
+
+
+REQUIRED: dict[str, dict[str, Any]] = {"archard": {"coefficient": 1e-4}, "energy": {"mass_per_energy": "1 ug/J"}}
+"""Fields without defaults of models that ship with wearlaw."""
+
+
+@pytest.mark.parametrize("kind", ["contact_models", "wear_laws"])
+def test_the_schema_accepts_each_installed_model_by_name_and_as_a_table(validator: Any, kind: str) -> None:
+    for name in getattr(wl, kind)():
+        given = REQUIRED.get(name, {})
+        assert validator.is_valid(table(**{kind: [name]}))
+        assert validator.is_valid(table(**{kind: [{"model": name, **given}]}))
+        assert validator.is_valid(table(**{kind: [{"model": name}]})) == (not given)
+        assert not validator.is_valid(table(**{kind: [{"model": name, **given, "nonsense": 1}]}))
+
+
+@pytest.mark.parametrize(
+    ("needed", "message"),
+    [
+        ({"wearlaw": ">=99"}, "plugins.wearlaw: version .* is installed, but >=99 is needed"),
+        ({"wearlaw-zobory": ">=1"}, "plugins.wearlaw-zobory: is not installed; install it with: pip install "),
+        ({"wearlaw": "new"}, "plugins.wearlaw: 'new' is not a version range; write one such as '>=1.2,<2'"),
+    ],
+)
+def test_a_case_whose_plugins_are_missing_is_refused_for_that_alone(needed: Any, message: str) -> None:
+    with pytest.raises(wl.ConfigurationError, match=message) as caught:
+        case(plugins=needed, wear_laws=["zobory"])
+    assert len(caught.value.problems) == 1

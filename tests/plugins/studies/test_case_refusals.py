@@ -1,0 +1,168 @@
+"""Case files: errors and their messages, from the loader and from the schema."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import wearlaw as wl
+from tests.core import cases
+from tests.core.cases import OWN_TESTS, changed, load, table
+
+WRONG: list[tuple[str, Any, str]] = [
+    ("title", None, "title"),
+    ("title", 1, "title"),
+    ("titel", "x", "titel"),
+    ("rig", None, "rig"),
+    ("rig", "suros", "rig"),
+    ("rig", "twin_disk", "rig"),
+    ("rig", 1, "rig"),
+    ("rig", {}, "rig"),
+    ("rig", {"wheel_radius": "460 mm"}, "rig"),
+    ("rig", {"type": "twin_disc"}, "rig.disc_1"),
+    ("rig.type", "twin_disk", "rig.type"),
+    ("rig.type", 1, "rig.type"),
+    ("rig.type", "wheel_rail", "rig.preset"),
+    ("rig.preset", "sros", "rig.preset"),
+    ("rig.preset", 1, "rig.preset"),
+    ("rig.diametre", "47 mm", "rig.diametre"),
+    ("rig.diameter", 47, "rig.diameter"),
+    (
+        "rig.material",
+        {"youngs_modulus": "210 GPa", "poisson_ratio": 0.6, "density": "7.8 g/cm^3"},
+        "rig.material.poisson_ratio",
+    ),
+    ("rig.material", {"youngs_modulus": "1 GPa", "poisson_ratio": 0.3}, "rig.material.density"),
+    (
+        "rig.disc_1",
+        {
+            "diameter": "47 mm",
+            "material": {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7.8 g/cm^3", "E": 1},
+        },
+        "rig.disc_1.material.E",
+    ),
+    ("contact_models", None, "contact_models"),
+    ("contact_models", [], "contact_models"),
+    ("contact_models", "exact", "contact_models"),
+    ("contact_models", ["exat"], "contact_models.0"),
+    ("contact_models", ["exact", "usfd"], "contact_models.1"),
+    ("contact_models", [{"slip": "consistent"}], "contact_models.0"),
+    ("contact_models", [{"model": "exact", "slp": "x"}], "contact_models.0.slp"),
+    ("contact_models", [{"model": "exact", "slip": "x"}], "contact_models.0.slip"),
+    ("contact_models", [3], "contact_models.0"),
+    ("wear_laws", [], "wear_laws"),
+    ("wear_laws", None, "wear_laws"),
+    ("wear_laws", ["brr", "usdf"], "wear_laws.1"),
+    ("wear_laws", [{"model": "kth", "coefficient": {"low_speed": 1.0}}], "wear_laws.0.coefficient.mid_speed"),
+    ("wear_laws", [{"model": "usfd", "m_m": 5.3}], "wear_laws.0.m_m"),
+    ("sweeps", None, "sweeps"),
+    ("sweeps", {}, "sweeps"),
+    ("sweeps.creepage", 1, "sweeps.creepage"),
+    ("sweeps.creepage.creepage.points", 1, "sweeps.creepage.creepage.points"),
+    ("sweeps.creepage.creepage.step", 1, "sweeps.creepage.creepage.step"),
+    ("sweeps.creepage.frictioncoefficient", 0.4, "sweeps.creepage.frictioncoefficient"),
+    ("sweeps.creepage.friction_coefficient", True, "sweeps.creepage.friction_coefficient"),
+    ("profiles.partial_slip.creepage", None, "profiles.partial_slip.creepage"),
+    ("measured", {"label": "m"}, "measured.tests"),
+    ("measured", {"tests": "lewis2004"}, "measured.label"),
+    ("measured", {"label": "m", "tests": 1}, "measured.tests"),
+    ("measured", {"label": "m", "tests": "lewis2004", "source": "s"}, "measured.source"),
+]
+"""What both the loader and the schema refuse."""
+
+WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
+    ("rig.diameter", "47 kN", "rig.diameter"),
+    ("rig.diameter", "-1 mm", "rig.diameter"),
+    ("rig.diameter", "47 foo", "rig.diameter"),
+    ("sweeps.creepage.max_pressure", "1 kN", "sweeps.creepage.max_pressure"),
+    ("sweeps.creepage.creepage", 1, "sweeps.creepage.creepage"),
+    ("sweeps.creepage.normal_force", "1 N", "sweeps.creepage"),
+    ("sweeps.a b", {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}, "sweeps"),
+    (
+        "sweeps.ééééééééééééééééééééééééééééééééééééééééééééééééééé",
+        {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46},
+        "sweeps",
+    ),
+    ("profiles.a/b", {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}, "profiles"),
+    ("profiles.partial_slip.creepage", ["1 %"], "profiles.partial_slip"),
+]
+"""What takes more than a schema to see."""
+
+
+@pytest.mark.parametrize(("path", "value", "named"), WRONG + WRONG_TO_THE_LOADER)
+def test_a_wrong_field_is_named_by_its_path(tmp_path: Path, path: str, value: Any, named: str) -> None:
+    with pytest.raises(wl.CaseError) as refusal:
+        load(tmp_path, changed(path, value))
+    assert str(refusal.value).startswith(f"case '{tmp_path / 'my.toml'}' is wrong in:\n  ")
+    assert f"\n  {named}: " in str(refusal.value)
+
+
+@pytest.mark.parametrize(("path", "value", "named"), WRONG)
+def test_the_schema_refuses_what_the_loader_refuses(validator: Any, path: str, value: Any, named: str) -> None:
+    assert not validator.is_valid(changed(path, value)), named
+
+
+def places(content: Any, tmp_path: Path) -> list[str]:
+    """Return the paths of the wrong fields of a case, in alphabetical order."""
+    with pytest.raises(wl.CaseError) as refusal:
+        load(tmp_path, content)
+    return sorted(line.strip().split(":")[0] for line in str(refusal.value).splitlines()[1:])
+
+
+def test_the_first_condition_that_the_rig_refuses_is_named_in_every_sweep_profile_and_uncertain_point(
+    tmp_path: Path,
+) -> None:
+    content = table(
+        sweeps={
+            "one": {**cases.POINT, "max_pressure": "1500 N"},
+            "two": {**cases.POINT, "angle": "1 deg", "friction": 0.3},
+            "four": {**cases.POINT, "max_pressure": ["1 GPa", "-1 GPa"]},
+        },
+        profiles={"six": {**cases.POINT, "creepage": 1}, "seven": {**cases.POINT, "creepage": ["1 %"]}},
+        uncertainty={"eight": {**cases.POINT, "friction_coefficient": {"normal": [0.4, -1]}}},
+    )
+    assert places(content, tmp_path) == [
+        "profiles.seven",
+        "profiles.six.creepage",
+        "sweeps.four.max_pressure",
+        "sweeps.one.max_pressure",
+        "sweeps.two.angle",
+        "sweeps.two.friction",
+        "uncertainty.eight.friction_coefficient",
+    ]
+
+
+def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Path) -> None:
+    path = tmp_path / "own.csv"
+    content = table(measured={"label": "m", "tests": "own.csv"})
+    with pytest.raises(
+        wl.CaseError, match=r"is wrong in:\n  measured: there is no file '.*own.csv'. Shipped tests: lew"
+    ):
+        load(tmp_path, content)
+    path.write_text(OWN_TESTS.replace("7.4,NA", "-1,NA"), encoding="utf-8")
+    with pytest.raises(wl.CaseError) as refusal:
+        load(tmp_path, content)
+    message = str(refusal.value)
+    assert f"  measured: the tests '{path}' are wrong in:" in message
+    assert "line 3, column 'normal_force [kN]'" in message
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b'title = "no end', "is not valid TOML: "),
+        (b"\xff\xfe\x00", "cannot read the case file .*: it is not text in UTF-8; save it in UTF-8"),
+        (b'title = "\xb5"', "cannot read the case file .*: it is not text in UTF-8; save it in UTF-8"),
+        (b"title,rig\n1,2\n", "is not valid TOML: "),
+        (b"", "is wrong in:\n  title: is missing"),
+        (b"#" * (2**20 + 1), "cannot read the case file .*: it has more than 1 MiB, the most that is read; is it the"),
+    ],
+)
+def test_a_file_that_is_no_case_is_refused(tmp_path: Path, content: bytes, message: str) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_bytes(content)
+    with pytest.raises(wl.CaseError, match=message) as refusal:
+        wl.load_case(str(path))
+    assert str(path) in str(refusal.value)

@@ -1,0 +1,238 @@
+"""`wearlaw run`, as a user meets it: what is printed, and the contents of the files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray
+from click.testing import Result
+
+import wearlaw as wl
+from tests.core import cases
+from tests.core.cases import assert_refused, files, table, wearlaw, write
+
+LATTICE = {**cases.SWEEP, "friction_coefficient": [0.3, 0.4]}
+MEASURED = {**cases.POINT, "traction_coefficient": [0.1, 0.2]}
+RAN = table(sweeps={"creepage": cases.SWEEP, "lattice": LATTICE, "point": cases.POINT, "measured": MEASURED})
+EXACTLY: Any = {} if pd.__version__ >= "3" else {"float_precision": "round_trip"}
+SMALL = table(contact_models=["exact"], wear_laws=["kth"], profiles={})
+
+
+@pytest.fixture(scope="module")
+def study() -> wl.Study:
+    return wl.run(wl.Case(**RAN))
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("results")
+    write(folder / "ran.toml", RAN)
+    done = wearlaw("run", str(folder / "ran.toml"), "-o", str(folder / "out"), "--latex")
+    assert done.exit_code == 0, done.output
+    return folder / "out"
+
+
+@pytest.mark.usefixtures("blank_figures")
+def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> None:
+    write(folder / "my case.toml", table())
+    result = wearlaw("run", "my case.toml", "-o", "out folder")
+    assert result.exit_code == 0
+    assert f"\nComputed with wearlaw {wl.__version__}\nResults in out folder:\n" in result.stdout
+    listing = result.stdout.partition("Results in out folder:\n")[2].splitlines()
+    assert {line.strip() for line in listing} == files(folder) - {"my case.toml", "out folder/.wearlaw-files"}
+    assert listing[0] == "  out folder/report.html"
+    notes = [line for line in result.stderr.splitlines() if line.startswith("note: ")]
+    subjects = ["usfd on exact", "brr on exact is left out", "sweep 'creepage'", "profile 'partial_slip'"]
+    assert [note.split(": ")[1] for note in notes] == subjects
+    assert max(map(len, notes)) <= 120
+    whole = wearlaw("run", "my case.toml", "-o", "again", "--verbose").stderr.splitlines()
+    assert [line.split(": ")[1] for line in whole] == subjects
+    assert whole[1].endswith('write stages = ["patch_mean"] in the case, or use the contact model "global"')
+
+
+@pytest.mark.usefixtures("blank_figures")
+def test_the_short_table_shows_the_rates_and_the_band(folder: Path) -> None:
+    write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["usfd", "kth"], profiles={}))
+    printed = wearlaw("run", "c.toml").stdout
+    assert "Sweep 'creepage': wear rate [µg/m/mm²] by creepage [%]" in printed
+    cells = [line.rsplit(maxsplit=5) for line in printed.splitlines() if line.startswith(" ")]
+    rows = {row[0].strip(): row[1:] for row in cells if len(row) == 6}
+    csv = pd.read_csv("c-results/results.csv").groupby("wear_law")
+    due = {"usfd on exact": ("usfd", "wear_rate"), "kth on exact": ("kth", "wear_rate")}
+    due |= {f"kth on exact, {end} end": ("kth", f"wear_rate_{end}") for end in ("low", "high")}
+    for head, (law, column) in due.items():
+        rates = csv.get_group(law)[f"{column} [ug/m/mm^2]"]
+        assert rows[head] == [f"{rate:.4g}" for rate in rates]
+    assert len(rows) == 4
+
+
+@pytest.mark.usefixtures("blank_figures")
+def test_progress_is_shown_on_a_terminal_and_not_elsewhere(folder: Path) -> None:
+    write(folder / "c.toml", SMALL)
+    assert "evaluating" not in wearlaw("run", "c.toml").stderr
+    on_terminal = wearlaw("run", "c.toml", "--overwrite", FORCE_COLOR="1", TERM="xterm").stderr
+    assert "15/15" in on_terminal  # 5 points, and the band of KTH
+    assert "writing the report" in on_terminal
+
+
+@pytest.mark.usefixtures("blank_figures")
+def test_files_of_others_survive_a_second_run_into_the_same_folder(folder: Path) -> None:
+    write(folder / "c.toml", table(contact_models=["global"], wear_laws=["usfd"], profiles={}))
+    assert wearlaw("run", "c.toml", "-o", "out").exit_code == 0
+    ours = files(folder / "out")
+    for name in ("thesis.tex", "figures/mine.png"):
+        (folder / "out" / name).write_text("years of work")
+    write(folder / "c.toml", SMALL)
+    assert_refused(wearlaw("run", "c.toml", "-o", "out"), "Error: output: 'out' is not empty")
+    assert wearlaw("run", "c.toml", "-o", "out", "--overwrite", "--figure-format", "svg").exit_code == 0
+    assert (folder / "out" / "thesis.tex").read_text() == "years of work"
+    assert (folder / "out" / "figures" / "mine.png").read_text() == "years of work"
+    assert [name for name in files(folder / "out") & ours if name.endswith(".png")] == []
+    assert "kth on exact" in (folder / "out" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.usefixtures("blank_figures")
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_of_two_runs_into_one_folder_the_second_to_end_replaces_the_first_only_when_asked(
+    folder: Path, overwrite: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second begins and ends while the first writes."""
+    from wearlaw_studies import commands  # private: one run begins inside another
+
+    for name in ("usfd", "kth"):
+        write(folder / f"{name}.toml", table(contact_models=["global"], wear_laws=[name], profiles={}))
+    if overwrite:
+        assert wearlaw("run", "usfd.toml", "-o", "out").exit_code == 0
+    options = ["-o", "out", "--figure-format", "svg", *(["--overwrite"] if overwrite else [])]
+    write_results: Any = commands.write  # type: ignore[attr-defined]
+    winners: list[Result] = []
+
+    def late(*arguments: Any) -> list[str]:
+        monkeypatch.setattr(commands, "write", write_results)
+        winners.append(wearlaw("run", "kth.toml", *options))
+        return write_results(*arguments)
+
+    monkeypatch.setattr(commands, "write", late)
+    last = wearlaw("run", "usfd.toml", *options)
+    assert [first.exit_code for first in winners] == [0]
+    if not overwrite:
+        assert_refused(last, "Error: output: 'out' is not empty")
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert ("usfd on global" in page, "kth on global" in page) == (overwrite, not overwrite)
+
+
+def test_figures_and_tables_are_written_in_the_formats_that_are_asked_for(folder: Path, results: Path) -> None:
+    magic = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}
+    write(folder / "c.toml", SMALL)
+    assert wearlaw("run", "c.toml", *(f"--figure-format={one}" for one in magic)).exit_code == 0
+    written = {path.suffix[1:]: path.read_bytes() for path in Path("c-results/figures").iterdir()}
+    assert written.keys() == magic.keys()
+    for extension, content in written.items():
+        assert content.startswith(magic[extension])
+    assert b"/FontFile2" in written["pdf"], "the fonts are embedded, as Type 42"
+    assert not list(Path("c-results/tables").glob("*.tex"))
+    tables = [path.stem for path in (results / "tables").glob("*.csv")]
+    assert {"main", "models", "parameters", "wear_rate_creepage", "wear_rate_point"} <= {*tables}
+    assert sorted(path.stem for path in (results / "tables").glob("*.tex")) == sorted(tables)
+
+
+@pytest.mark.usefixtures("blank_figures")
+def test_a_table_may_be_left_out_and_it_is_said(folder: Path) -> None:
+    write(folder / "c.toml", SMALL)
+    result = wearlaw("run", "c.toml", "-o", "out", "--no-csv")
+    assert result.exit_code == 0
+    assert not (folder / "out" / "results.csv").exists()
+    assert "results.csv is left out" in result.stderr
+    assert (folder / "out" / "results.nc").is_file()
+
+
+def test_the_netcdf_file_holds_every_dataset_whole_in_a_group(study: wl.Study, results: Path) -> None:
+    with xarray.open_datatree(results / "results.nc", engine="h5netcdf") as opened:
+        groups = {node.path: node.to_dataset(inherit=False).load() for node in opened.leaves}
+    datasets = {f"/sweeps/{name}": sweep for name, sweep in study.sweeps.items()}
+    datasets |= {f"/profiles/{name}": profile for name, profile in study.profiles.items()}
+    assert groups.keys() == datasets.keys()
+    for path, dataset in datasets.items():
+        xarray.testing.assert_identical(groups[path], dataset)
+        assert wl.Case(**json.loads(groups[path].attrs["provenance"])["case"]) == study.case
+        assert all("units" in values.attrs for values in groups[path].data_vars.values())
+
+
+@pytest.mark.validates(
+    "reproducibility",
+    "The case file in the results runs again to the same results",
+    source="the first run",
+    held_to="identical datasets",
+)
+def test_the_case_file_in_the_results_runs_again_to_the_same_results(study: wl.Study, results: Path) -> None:
+    read = wl.load_case(str(results / "case.toml"))
+    assert read == study.case
+    again = wl.run(read)
+    assert again.notes == study.notes
+    for name, sweep in study.sweeps.items():
+        xarray.testing.assert_identical(again.sweeps[name], sweep)
+    for name, profile in study.profiles.items():
+        xarray.testing.assert_identical(again.profiles[name], profile)
+
+
+def test_the_csv_has_one_row_a_pair_and_operating_point_with_units_in_its_head(results: Path) -> None:
+    rows = pd.read_csv(results / "results.csv", **EXACTLY)
+    # Pairs × points: 5 × 5, 5 × 10, 5 × 1, and 3 × 2 where only the global model can be used.
+    assert dict(rows["sweep"].value_counts()) == {"lattice": 50, "creepage": 25, "measured": 6, "point": 5}
+    assert list(rows.columns) == [
+        "sweep", "contact_model", "wear_law", "half_width [mm]", "max_pressure [MPa]", "normal_force [kN]",
+        "normal_force_per_width [kN/m]", "creepage [%]", "friction_coefficient", "wear_rate [ug/m/mm^2]",
+        "wear_rate_error [ug/m/mm^2]", "outside_range", "wear_rate_low [ug/m/mm^2]", "wear_rate_high [ug/m/mm^2]",
+        "tangential_force [N]", "traction_coefficient", "wear_index [N]", "averaged_wear_index [N]",
+        "wear_index_density [N/mm^2]", "stick_ratio", "mean_slip [%]", "first_yield [MPa]", "shakedown_limit [MPa]",
+    ]  # fmt: skip
+    assert not rows.isna().any().any()
+
+
+@pytest.mark.parametrize("name", ["creepage", "lattice", "point", "measured"])
+def test_the_csv_holds_the_numbers_of_the_datasets(study: wl.Study, results: Path, name: str) -> None:
+    sweep = study.sweeps[name]
+    rows = pd.read_csv(results / "results.csv", **EXACTLY)
+    rows = rows[rows["sweep"] == name].rename(columns=lambda column: column.split(" [")[0])
+    axes = [str(axis) for axis in sweep.wear_rate.dims if axis != "pair"]
+    for _, row in rows.iterrows():
+        here = sweep.sel({axis: row[axis] for axis in axes})
+        here = here.sel(pair=f"{row.wear_law} on {row.contact_model}", contact_model=row.contact_model)
+        for column in rows.columns[3:]:
+            assert row[column] == here[column].item(), column  # CSV holds all digits of a float64
+
+
+def test_results_of_models_that_share_a_name_keep_their_labels_when_run_again() -> None:
+    laws = ["usfd", {"model": "usfd", "fitted_for": "exact"}, {"model": "kth", "coefficient": "low"}, "kth"]
+    first = wl.run(wl.Case(**table(wear_laws=laws, contact_models=["exact"])))
+    dumped = first.case.model_dump(mode="json", by_alias=True, exclude_none=True)
+    xarray.testing.assert_identical(wl.run(wl.Case(**dumped)).sweeps["creepage"], first.sweeps["creepage"])
+
+
+@pytest.mark.usefixtures("blank_figures")
+def test_the_shipped_study_and_a_copy_of_its_file_give_equal_results(folder: Path) -> None:
+    (folder / "my case.toml").write_bytes(wearlaw("case", "tassini2010").stdout_bytes)
+    shipped, copied = wearlaw("run", "tassini2010"), wearlaw("run", "my case.toml", "-o", "copy")
+    assert shipped.exit_code == 0
+    assert shipped.stdout.replace("tassini2010-results", "copy").split() == copied.stdout.split()
+    assert shipped.stderr == copied.stderr
+    assert files(folder / "tassini2010-results") == files(folder / "copy")
+    for name in ("results.csv", "case.toml"):
+        assert (folder / "copy" / name).read_bytes() == (folder / "tassini2010-results" / name).read_bytes()
+    ours = xarray.open_datatree("tassini2010-results/results.nc", engine="h5netcdf")
+    theirs = xarray.open_datatree("copy/results.nc", engine="h5netcdf")
+    with ours, theirs:
+        xarray.testing.assert_equal(ours, theirs)
+        sweep = ours["sweeps/creepage"].to_dataset()
+        said, copy = (json.loads(tree["sweeps/creepage"].attrs["provenance"])["cases"] for tree in (ours, theirs))
+        assert (said, copy) == ({"tassini2010": f"wearlaw {wl.__version__}"}, {})
+        rates = sweep.wear_rate.sel(creepage=25.0, method="nearest")
+        # Half a digit of the converged integrals that tests/test_numbers.py computes anew.
+        for pair, rate in {"usfd on global": 3658.9, "usfd on exact": 3825.0, "usfd on fastsim": 4148.6}.items():
+            np.testing.assert_allclose(rates.sel(pair=pair), rate, rtol=0, atol=0.05)
+        assert dict(sweep.sizes) == {"pair": 7, "contact_model": 3, "creepage": 600}

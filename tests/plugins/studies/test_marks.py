@@ -1,0 +1,182 @@
+"""What lies outside the range of a law, its materials or elastic theory is marked in results, figures and tables."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import wearlaw as wl
+from tests.core import cases
+from tests.core.cases import case
+from tests.plugins.studies.panels import by_label, by_name
+from tests.plugins.studies.report_data import page_of
+from wearlaw import Q
+from wearlaw_output.styled import latex_table  # private: the marks of a table for LaTeX
+from wearlaw_studies.report.tables import FOOTNOTES, summaries  # private: the marks of each number
+
+RIG = wl.TwinDisc.suros()
+BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.34, density="8800 kg/m^3")
+LOADS = {"from": "300 MPa", "to": "3000 MPa", "points": 28}  # in steps of 100 MPa
+
+
+def silently(pipeline: Any) -> Any:
+    """Return the result of composing a pipeline, without its warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return pipeline()
+
+
+@pytest.fixture(scope="module")
+def study() -> wl.Study:
+    by_load = {**cases.POINT, "max_pressure": LOADS}
+    return wl.run(case(wear_laws=["usfd", "kth"], sweeps={"creepage": cases.SWEEP, "load": by_load}))
+
+
+@pytest.fixture(scope="module")
+def on_rail() -> wl.Study:
+    return wl.run(wl.load_case("wheel_on_rail"))
+
+
+# Predictions
+
+
+@pytest.mark.parametrize("model", ["exact", "fastsim", "global"])
+def test_a_prediction_has_the_limits_of_its_traction(model: str) -> None:
+    conditions: dict[str, Any] = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}
+    r = (RIG | wl.contact_model(model))(creepage=Q([0.0, -0.1, 0.5, 5.0], "%"), **conditions)
+    k, t = 541.3e6, np.abs(r.traction_coefficient.magnitude)
+    first = wl.elastic_limit.first_yield(k, t, 0.46, poisson_ratio=0.28)
+    np.testing.assert_allclose(r.first_yield.to("Pa").magnitude, first, rtol=1e-12)
+    np.testing.assert_allclose(r.shakedown_limit.to("Pa").magnitude, wl.elastic_limit.shakedown_limit(k, t, 0.46))
+    (at_once,) = (RIG | wl.contact_model(model))(creepage=Q([5.0], "%"), **conditions).shakedown_limit
+    alone = (RIG | wl.contact_model(model))(creepage="5 %", **conditions).shakedown_limit
+    assert alone == at_once
+    assert repr(alone) == "1177 MPa"  # k/μ
+
+
+def test_the_limits_are_those_of_the_body_that_yields_first() -> None:
+    weak = wl.steel(shear_yield_stress="300 MPa")
+    rig = wl.TwinDisc.suros(disc_2=wl.Disc(diameter="47 mm", material=weak))
+    conditions: dict[str, Any] = {"max_pressure": "1500 MPa", "creepage": "5 %", "friction_coefficient": 0.46}
+    found = (rig | wl.contact_model("exact"))(**conditions)
+    of_weak = (wl.TwinDisc.suros(material=weak) | wl.contact_model("exact"))(**conditions)
+    assert found.shakedown_limit == of_weak.shakedown_limit
+    assert found.first_yield == of_weak.first_yield
+
+
+def test_without_a_yield_stress_there_is_no_limit() -> None:
+    soft = wl.steel(shear_yield_stress=None)
+    r = (wl.TwinDisc.suros(material=soft) | wl.contact_model("exact"))(
+        max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.4
+    )
+    with pytest.raises(wl.CompositionError, match="no body's material has a shear_yield_stress"):
+        r.first_yield  # noqa: B018
+
+
+def test_the_limits_of_an_ellipse_depend_on_its_axes() -> None:
+    rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+    r = (rig | wl.contact_model("polach"))(
+        normal_force=Q([50, 200], "kN"), longitudinal_creepage=Q(0.3, "%"), friction_coefficient=0.3
+    )
+    expected = wl.elastic_limit.shakedown_limit(
+        541.3e6,
+        r.traction_coefficient.magnitude,
+        0.3,
+        axis_ratio=(r.semi_axis_a / r.semi_axis_b).to("").magnitude,
+    )
+    np.testing.assert_allclose(r.shakedown_limit.to("Pa").magnitude, expected, rtol=1e-12)
+
+
+def test_points_outside_are_those_that_the_warning_counts() -> None:
+    predict = RIG | wl.contact_model("global") | wl.wear_law("usfd")
+    pressure = Q([300, 899, 900, 1500, 1800, 1801], "MPa")
+    r = predict(max_pressure=pressure, creepage="1 %", friction_coefficient=0.46)
+    assert r.outside_range.magnitude.tolist() == [1, 1, 0, 0, 0, 1]
+    with pytest.warns(wl.RangeWarning, match="wear index density .* 1 of 3 operating points lies outside"):
+        r = predict(max_pressure="1500 MPa", creepage=Q([1, 20, -20.1], "%"), friction_coefficient=0.46)
+    assert r.outside_range.magnitude.tolist() == [0, 0, 1]
+
+
+def test_all_points_of_other_materials_are_outside() -> None:
+    predict = silently(lambda: wl.TwinDisc.suros(material=BRONZE) | wl.contact_model("global") | wl.wear_law("brr"))
+    r = predict(max_pressure="1000 MPa", creepage=Q([1, 2], "%"), friction_coefficient=0.3)
+    assert r.outside_range.magnitude.tolist() == [1, 1]
+
+
+def test_a_law_without_a_record_has_no_outside() -> None:
+    law = wl.wear_law("kth", pressure_threshold="1 GPa")
+    r = (RIG | wl.contact_model("global") | law)(max_pressure="5 GPa", creepage="90 %", friction_coefficient=0.4)
+    assert r.outside_range == 0
+
+
+# Results
+
+
+def test_results_hold_the_marks_of_each_pair_and_the_limits_of_each_contact_model(study: wl.Study) -> None:
+    sweep = study.sweeps["load"]
+    for model in ("global", "exact"):
+        predict = silently(lambda model=model: RIG | wl.contact_model(model) | wl.wear_law("usfd"))
+        loads = Q(sweep.max_pressure.values, "MPa")
+        r = predict(**{**cases.POINT, "max_pressure": loads})
+        outside = sweep.outside_range.sel(pair=f"usfd on {model}").values
+        np.testing.assert_array_equal(outside, r.outside_range.magnitude)
+        assert outside.tolist() == [float(not 900 <= load <= 1800) for load in np.round(sweep.max_pressure.values)]
+        limit = sweep.shakedown_limit.sel(contact_model=model).values
+        np.testing.assert_allclose(limit, r.shakedown_limit.magnitude, rtol=1e-14)
+
+
+def test_the_wear_of_a_rail_is_outside_a_law_of_wheel_steel(on_rail: wl.Study) -> None:
+    elastic = on_rail.profiles["curve"].outside_range
+    assert elastic.sel(pair="kth on strip_theory") == 0
+    wheel, rail, *_ = by_name(on_rail)["curve_profile"].panels
+    assert np.asarray(by_label(rail)["usfd on strip_theory"].outside).all()
+    assert not np.asarray(by_label(rail)["kth on strip_theory"].outside).any()
+    outside = bool(elastic.sel(pair="usfd on strip_theory").item())
+    assert np.asarray(by_label(wheel)["usfd on strip_theory"].outside).all() == outside
+
+
+# Tables
+
+
+def marks_of(frame: pd.DataFrame, row: str) -> list[str]:
+    (found,) = (values for values in frame.itertuples(index=False, name=None) if values[0] == row)
+    return [value.marks for value in found[1:]]
+
+
+def test_tables_mark_wear_rates_and_say_what_the_marks_mean(study: wl.Study) -> None:
+    table = {one.name: one for one in summaries(study)}["wear_rate_load"]
+    heads = [float(head) for head in table.frame.columns[1:]]
+    sweep = study.sweeps["load"].sel(max_pressure=heads, method="nearest")
+    assert heads == [300, 1000, 1700, 2300, 3000]
+    for row, pair in (("usfd on exact", "usfd on exact"), ("kth on global, low end", "kth on global")):
+        one = sweep.sel(pair=pair)
+        limits = sweep.sel(contact_model=one.pair_contact_model.item())
+        expected = [
+            ("†" if outside else "") + ("‡" if p > shakedown else "*" if p > first else "")
+            for outside, p, first, shakedown in zip(
+                one.outside_range.values, heads, limits.first_yield.values, limits.shakedown_limit.values, strict=True
+            )
+        ]
+        assert marks_of(table.frame, row) == expected
+        assert len(set(expected)) > 2
+    assert table.footnotes == tuple(f"{mark} {meaning}" for mark, meaning in FOOTNOTES.items())
+
+
+def test_marks_are_in_the_report_and_for_latex_but_not_in_numbers(study: wl.Study) -> None:
+    table = {one.name: one for one in summaries(study)}["wear_rate_load"]
+    page = page_of(study)
+    assert "<sup>†‡</sup>" in page
+    assert "‡ beyond shakedown" in page
+    latex = latex_table(table.frame, table.footnotes)
+    assert r"\begin{tabular}{lrrrrr}" in latex
+    assert r"$\textdagger{}\textdaggerdbl{}" in latex
+    assert r"\par{\footnotesize \textdaggerdbl{} beyond shakedown}" in latex
+    numbers = table.frame.to_csv(index=False)
+    assert "†" not in numbers
+    read = pd.read_csv(io.StringIO(numbers))
+    np.testing.assert_array_equal(read.iloc[:, 1:], table.frame.iloc[:, 1:].astype(float))

@@ -1,0 +1,125 @@
+"""Sections that plugins add to a report: how they are found, asked for and made."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from typing import Any
+
+import pytest
+
+import wearlaw as wl
+from tests.core.cases import SWEEP, case
+from tests.core.distributions import Install
+
+LAB = """
+    import warnings
+
+    import wearlaw as wl
+
+    def highest(study):
+        rate = float(study.sweep("creepage")["wear_rate"].max())
+        verdict = "holds" if rate < 60.0 else "does not hold"
+        claim = wl.CheckedClaim("It wears little.", "section 3", f"It reaches {rate:.1f}.", verdict, "Below 60.")
+        return wl.Section("Highest", "One paragraph.", claims=(claim,))
+
+    def warned(study):
+        warnings.warn("beyond all tests", wl.RangeWarning)
+        warnings.warn("beyond all tests", wl.RangeWarning)
+        return wl.Section("Warned", f"It has {len(study.pairs)} pairs.")
+
+    def in_millionths(study):
+        for dataset in (*study.sweeps.values(), *study.profiles.values()):
+            for values in dataset.data_vars.values():
+                values *= 1e-6
+            dataset["made_up"] = 0.0
+        study.sweeps.clear()
+        return wl.Section("In millionths", "")
+
+    def needs_load(study):
+        return wl.Section("Loads", str(study.sweep("lod")))
+
+    def wrong(study):
+        return "Highest"
+
+    def raises(study):
+        return 1 / 0
+
+    @wl.hookimpl
+    def wearlaw_resources():
+        sections = {
+            "highest": highest, "warned": warned, "needs_load": needs_load, "wrong": wrong, "raises": raises,
+            "in_millionths": in_millionths,
+        }
+        return {"section": sections}
+"""
+
+
+def test_a_study_holds_the_sections_in_the_order_of_the_case(install: Install) -> None:
+    install("lab", LAB)
+    study = wl.run(case(sections=["warned", "highest"]))
+    assert [section.title for section in study.sections] == ["Warned", "Highest"]
+    (claim,) = study.sections[1].claims
+    rate = float(study.sweeps["creepage"]["wear_rate"].max())
+    assert rate > 60.0
+    found = f"It reaches {rate:.1f}."
+    assert claim == wl.CheckedClaim("It wears little.", "section 3", found, "does not hold", "Below 60.")
+    assert study.sections[0].text == "It has 5 pairs."
+    assert wl.run(case()).sections == ()
+
+
+@pytest.mark.parametrize("verdict", [True, "fails", "Holds"])
+def test_a_claim_has_one_of_four_verdicts(verdict: Any) -> None:
+    message = "verdict: must be one of 'holds', 'holds in part', 'does not hold', 'cannot be decided', got "
+    with pytest.raises(wl.InputError, match=f"{message}{verdict!r}"):
+        wl.CheckedClaim("It wears little.", "section 3", "It reaches 55.", verdict, "Below 60.")
+
+
+def test_a_section_that_changes_its_tables_changes_no_others(install: Install) -> None:
+    install("lab", LAB)
+    study, without = wl.run(case(sections=["in_millionths", "highest"])), wl.run(case())
+    for kept, expected in ((study.sweeps, without.sweeps), (study.profiles, without.profiles)):
+        assert [*kept] == [*expected]
+        assert all(kept[name].equals(expected[name]) for name in kept)
+    assert study.sections[1].claims[0].verdict == "does not hold"
+
+
+def test_a_warning_becomes_one_note_of_the_section(install: Install) -> None:
+    install("lab", LAB)
+    without = wl.run(case()).notes
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert wl.run(case(sections=["warned"])).notes == (*without, "section 'warned': beyond all tests")
+
+
+def test_what_a_section_cannot_do_names_it_and_its_plugin(install: Install) -> None:
+    install("lab", LAB, version="1.2.3")
+    with pytest.raises(wl.InputError) as caught:
+        wl.run(case(sections=["needs_load"], sweeps={"load": SWEEP}))
+    assert str(caught.value) == (
+        "section 'needs_load' of lab 1.2.3 (plugin 'lab'): the case has no sweep 'lod';"
+        " did you mean 'load'? Add [sweeps.lod]"
+        "\nTo run the case without this section, take 'needs_load' out of `sections`"
+    )
+    assert "Dimensions" in wl.run(case(sections=["needs_load"], sweeps={"lod": SWEEP})).sections[0].text
+
+
+def test_what_is_no_section_is_the_plugins_fault(install: Install) -> None:
+    install("lab", LAB)
+    with pytest.raises(wl.ModelError, match=r"section 'wrong' of lab 1\.0 .* must be a Section, got 'Highest'"):
+        wl.run(case(sections=["wrong"]))
+
+
+def test_what_a_section_raises_is_the_plugins_fault_and_kept_as_the_cause(install: Install) -> None:
+    install("lab", LAB)
+    message = r"section 'raises' of lab 1\.0 .* failed with ZeroDivisionError: division by zero"
+    with pytest.raises(wl.ModelError, match=message) as refused:
+        wl.run(case(sections=["raises"]))
+    assert isinstance(refused.value.__cause__, ZeroDivisionError)
+
+
+def test_the_provenance_names_where_sections_come_from(install: Install) -> None:
+    install("lab", LAB, version="1.2.3")
+    asked = case(sections=["warned", "highest"])
+    (sweep,) = wl.run(asked).sweeps.values()
+    assert json.loads(sweep.attrs["provenance"])["sections"] == {"highest": "lab 1.2.3", "warned": "lab 1.2.3"}

@@ -1,0 +1,62 @@
+"""Sweeps on a cluster of dask.distributed: a real one, of two processes on this machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+import wearlaw as wl
+from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, deadly, ending, predictor
+
+distributed = pytest.importorskip("distributed")
+pytestmark = pytest.mark.usefixtures("small_blocks")
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as machines,
+        distributed.Client(machines) as connected,
+    ):
+        yield connected
+
+
+@pytest.mark.validates(
+    "reproducibility",
+    "A sweep on a cluster, a worker of which is killed in mid-run",
+    source="the same sweep in one process",
+    held_to="to the byte",
+)
+def test_a_cluster_whose_worker_is_killed_in_mid_run_gives_the_same_bytes(client: Any, tmp_path: Path) -> None:
+    before = set(client.nthreads())
+    predict = deadly(tmp_path / "marker")
+    wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, client=client, store=tmp_path / "cluster.zarr")
+    assert not before <= set(client.nthreads())
+    stored = xr.open_zarr(tmp_path / "cluster.zarr", chunks=None, consolidated=False)
+    xr.testing.assert_identical(stored.load(), wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
+
+
+def test_a_cluster_can_also_hand_results_back(client: Any) -> None:
+    predict = predictor()
+    swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, client=client)
+    xr.testing.assert_identical(swept, wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
+
+
+@pytest.mark.parametrize("error", ["SystemExit"])
+def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers_live_on(
+    client: Any, error: str
+) -> None:
+    before = set(client.nthreads())
+    with pytest.raises(wl.ModelError, match=f"{error}: 0"):
+        wl.sweep(ending(error), **CONDITIONS, client=client)
+    assert set(client.nthreads()) == before
+
+
+def test_a_block_at_which_every_worker_of_the_cluster_dies_is_given_up(client: Any, tmp_path: Path) -> None:
+    client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
+    with pytest.raises(wl.SweepError, match=r"block \d was given up by the cluster, since its workers died"):
+        wl.sweep(deadly(tmp_path / "marker", always=True), **CONDITIONS, client=client)

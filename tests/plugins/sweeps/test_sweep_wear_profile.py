@@ -1,0 +1,113 @@
+"""Sweeps that give the wear across a profile, and its sum weighted by shares."""
+
+from __future__ import annotations
+
+import shutil
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import wearlaw as wl
+from tests.plugins.wheelsets import wheelset
+from wearlaw import Q
+
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
+
+AT = Q(np.arange(-45.0, 30.0, 0.5), "mm")
+GIVEN: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3, "outputs": ["wear_profile"], "at": AT}
+PLACES = np.array([-4.0, -1.0, 0.5, 2.0, 5.0, 5.5, 3.0])
+SHARES = np.array([0.1, 0.2, 0.3, 0.1, 0.1, 0.1, 0.1])
+TABLE = pd.DataFrame({"lateral_displacement [mm]": PLACES, "share [%]": 100.0 * SHARES})
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore", wl.CalibrationWarning)
+    PREDICT = wheelset() | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
+
+
+def single() -> wl.Prediction:
+    return PREDICT(lateral_displacement=Q(PLACES, "mm"), vertical_load="60 kN", friction_coefficient=0.3)
+
+
+@pytest.mark.parametrize("body", ["wheel", "rail"])
+def test_profiles_have_the_names_of_conditions(body: str) -> None:
+    found = wl.sweep(PREDICT, lateral_displacement=Q(PLACES, "mm"), body=body, **GIVEN)
+    assert found["depth"].dims == ("lateral_displacement", "side", "profile_position")
+    expected = single().wear_profile(body, at=AT)
+    for name in ("depth", "sliding_distance"):
+        value = expected[name]
+        assert found[name].values == pytest.approx(Q(value.values, value.units).m_as(found[name].units), rel=1e-12)
+
+
+def test_sum_is_weighted_by_the_shares() -> None:
+    found = wl.sweep(PREDICT, TABLE, share="share [%]", **GIVEN)
+    one = single()
+    assert found["depth"].dims == ("side", "profile_position")
+    expected = np.tensordot(SHARES, one.wear_profile("wheel", at=AT)["depth"].values, axes=1)
+    assert found["depth"].values == pytest.approx(expected, rel=1e-12)
+    mass = SHARES @ np.nansum(one.mass_lost("1 km", "wheel").m_as("mg"), axis=-1)
+    assert found["mass"].values == pytest.approx(mass, rel=1e-12)
+    assert found["mass"].attrs["units"] == "mg/km"
+
+
+def test_sum_is_the_same_from_a_file_in_blocks_on_two_processes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 300)
+    TABLE.to_csv(tmp_path / "line.csv", index=False)
+    one, two = (wl.sweep(PREDICT, tmp_path / "line.csv", share="share", workers=workers, **GIVEN) for workers in (1, 2))
+    assert np.array_equal(one["depth"], two["depth"])
+    whole = wl.sweep(PREDICT, TABLE, share="share", **GIVEN)
+    assert one["depth"].values == pytest.approx(whole["depth"].values, rel=1e-12)
+
+
+def test_sum_in_a_store_goes_on_after_an_interrupt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 300)
+    given, path = {**GIVEN, "share": "share [%]"}, tmp_path / "sum.zarr"
+    due = wl.sweep(PREDICT, TABLE, store=path, **given)
+    xr.testing.assert_identical(due, wl.sweep(PREDICT, TABLE, **given))
+    first, second, *others = sorted(path.glob("part_*"))
+    assert others
+    shutil.rmtree(first)
+    (second / "depth/c/0/0").write_bytes(b"damaged")
+    with pytest.raises(wl.OutputError, match="resume"):
+        wl.sweep(PREDICT, TABLE, store=path, **given)
+    with pytest.warns(wl.ResumeWarning, match=f"{len(others)} of {len(others) + 2} blocks are kept"):
+        xr.testing.assert_identical(due, wl.sweep(PREDICT, TABLE, store=path, resume=True, **given))
+    with xr.open_zarr(path, consolidated=False) as stored:
+        xr.testing.assert_identical(stored.load(), due)
+    with pytest.raises(wl.OutputError, match="kept"):
+        wl.sweep(PREDICT, TABLE.iloc[::-1], store=path, resume=True, **given)
+
+
+def test_profiles_in_a_store_are_those_in_memory(tmp_path: Path) -> None:
+    given = {"lateral_displacement": Q(PLACES, "mm"), **GIVEN}
+    with wl.sweep(PREDICT, store=tmp_path / "profiles.zarr", **given) as stored:
+        assert np.array_equal(stored["depth"], wl.sweep(PREDICT, **given)["depth"])
+        assert stored["profile_position"].values == pytest.approx(AT.magnitude)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"share": "part"}, "no column 'part'"),
+        ({"share": "share", "outputs": ["wear_rate"]}, "share: belongs to"),
+        ({"share": "share", "at": None}, "at: .* needs positions"),
+        ({"share": "share", "body": "axle"}, "axle"),
+    ],
+)
+def test_wrong_sums_are_refused(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(wl.InputError, match=message):
+        wl.sweep(PREDICT, TABLE, **{**GIVEN, **options})
+
+
+def test_a_row_without_a_balance_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few steps balance the loads in the middle of the track, and fail on the flange."""
+    monkeypatch.setattr("wearlaw_wheelset._loads.NEWTON_STEPS", 2)
+    monkeypatch.setattr("wearlaw_wheelset._loads.STEPS", 1)
+    table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 6.9], "yaw [mrad]": [0.0, 20.0], "share": 0.5})
+    with pytest.raises(wl.DataError, match=r"row 1 .*lateral_displacement = 6.9 mm.*no normal forces balance"):
+        wl.sweep(PREDICT, table, share="share", **GIVEN)

@@ -1,0 +1,107 @@
+"""Sweeps on several processes of one machine: the same results, whatever happens to the processes."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import wearlaw as wl
+from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, ending, predictor
+from wearlaw import Q
+from wearlaw.arrays import kernels
+
+pytestmark = pytest.mark.usefixtures("small_blocks")
+
+
+@pytest.mark.validates(
+    "reproducibility",
+    "A sweep on several processes",
+    source="the same sweep in one",
+    held_to="to the byte",
+)
+def test_several_processes_give_the_same_bytes_as_one() -> None:
+    predict = predictor()
+    one = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS)
+    two = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
+    assert one.identical(two)
+    assert one.wear_rate.to_numpy().tobytes() == two.wear_rate.to_numpy().tobytes()
+
+
+def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: Path) -> None:
+    predict = deadly(tmp_path / "die once")
+    with pytest.warns(wl.WorkerWarning, match="died"):
+        swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
+    xr.testing.assert_equal(swept, wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
+
+
+@pytest.mark.filterwarnings("ignore::wearlaw.WorkerWarning")
+def test_a_sweep_whose_workers_die_again_and_again_is_given_up(tmp_path: Path) -> None:
+    predict = deadly(tmp_path / "die always", always=True)
+    with pytest.raises(wl.SweepError, match="given up"):
+        wl.sweep(predict, **{**CONDITIONS, "normal_force": Q([2.0, 5.0], "kN"), "friction_coefficient": 0.3}, workers=2)
+
+
+def test_what_a_model_raises_in_a_worker_is_raised_here() -> None:
+    failing = predictor(Failing(slope=Q(1.0, "mm")))
+    with pytest.raises(wl.ModelError, match="wear law 'failing' failed: OverflowError: too much"):
+        wl.sweep(failing, **CONDITIONS, workers=2)
+    assert wl.sweep(predictor(), **CONDITIONS, workers=2).wear_rate.notnull().all()
+
+
+@pytest.mark.parametrize("error", ["SystemExit"])
+def test_what_would_end_a_worker_is_an_error_here(error: str) -> None:
+    with pytest.raises(wl.ModelError, match=f"{error}: 0"):
+        wl.sweep(ending(error), **CONDITIONS, workers=2)
+
+
+class Choosing(Failing):
+    """A law that gives wear only where compiled kernels are turned off."""
+
+    name = "choosing"
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return abs(contact.slip) * (kernels.chosen() is False)
+
+
+def test_compiled_kernels_are_turned_off_in_workers_where_they_are_here() -> None:
+    turned_off = predictor(Choosing(slope=Q(1.0, "mm")))
+    assert (wl.sweep(turned_off, **CONDITIONS, workers=2).wear_rate > 0).all()
+    wl.accelerate(None)
+    assert (wl.sweep(turned_off, **CONDITIONS, workers=2).wear_rate == 0).all()
+
+
+SCRIPT = """
+import numpy as np
+import wearlaw as wl
+from wearlaw_sweeps import points
+
+points.BLOCK = 3
+wl.accelerate(False)
+
+@wl.as_wear_law(inputs={"slip": ""}, returns="ug/m/mm^2", source="a test")
+def mine(slip):
+    print("evaluated")
+    return abs(slip)
+
+given = dict(creepage=wl.Q(np.linspace(1, 2, 9), "%"), normal_force="5 kN", friction_coefficient=0.3)
+predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
+print(wl.sweep(predict, **given, workers=2).wear_rate.size)
+try:
+    wl.sweep(wl.TwinDisc.suros() | wl.contact_model("global") | mine, **given, workers=2)
+except wl.InputError as error:
+    print(error)
+"""
+
+
+def test_a_script_needs_no_guard_and_laws_of_its_own_are_refused_with_a_reason(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT, encoding="utf-8")
+    done = subprocess.run([sys.executable, "-W", "error", script], capture_output=True, text=True, check=True)
+    first, second = done.stdout.splitlines()
+    assert first == "9"
+    assert second.startswith("mine: is defined in the running script or notebook")
+    assert done.stderr == ""
