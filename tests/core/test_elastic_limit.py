@@ -12,8 +12,7 @@ from scipy import optimize
 import wearlaw as wl
 from tests.reference import Point
 from tests.reference import exact as carter
-from wearlaw import Array
-from wearlaw.contact import elastic_limit
+from wearlaw import Array, elastic_limit
 from wearlaw.contact.elastic_limit import _stresses, first_yield, overload, shakedown_limit
 
 K = 2.625e9 / 2.8 / math.sqrt(3.0)

@@ -16,7 +16,7 @@ from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
 from wearlaw.numerics import integrate
 from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK, integrate_forces, integrate_slip
-from wearlaw.numerics.totals import Totals
+from wearlaw.numerics.totals import Totals  # private: what the integrator returns
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 
