@@ -13,7 +13,13 @@ import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import InputError, Q
 from wearlaw.numerics.integrate import BLOCK, integrate_laws  # private: integrals at the size of blocks
-from wearlaw.settings.parameters import allowed_range, changed, number_in_si, number_like, numbers
+from wearlaw.settings.parameters import (  # private: the numbers of a record, for fits
+    allowed_range,
+    changed,
+    number_in_si,
+    number_like,
+    numbers,
+)
 
 RIG = wl.TwinDisc.suros()
 

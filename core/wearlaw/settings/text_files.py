@@ -1,4 +1,4 @@
-"""Reading files from outside: up to a size, in the encodings that editors and shells write, and TOML.
+"""Reading files from outside: up to a size, in the encodings that editors and shells write, and TOML."""
 
 from __future__ import annotations
 
