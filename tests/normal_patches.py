@@ -12,16 +12,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 
 from tests import wheel_on_rail
 from tests.normal_half_space import Contact, pressed
 from wearlaw import Array
-from wearlaw_wheelset._normal import (  # private: the normal problem before patches are cut
-    HertzPatch,
-    StripPatch,
-    hertz,
-    loaded,
-)
+from wearlaw_wheelset._normal import HertzPatch, StripPatch, hertz, penetrated  # private: patches of any gap
 
 FILE = Path(__file__).parents[1] / "docs" / "wheelset" / "patches.csv"
 HEAD = ("gap", "N [kN]", "p0 [MPa]", "KPEC", "Hertz", "area [mm²]", "KPEC", "Hertz", "δ [µm]", "KPEC", "Hertz")
@@ -52,6 +48,22 @@ class Patch(NamedTuple):
     full: Contact
     strips: StripPatch
     hertz: HertzPatch
+
+
+def loaded(
+    start: list[float], step: list[float], gap: Array, curvature_x: list[float], modulus: float, force: list[float]
+) -> StripPatch:
+    """Return the patch by virtual penetration that carries a force, at the smallest penetration that does."""
+
+    def patch(penetration: float) -> StripPatch:
+        return penetrated(start, step, gap, curvature_x, modulus, [penetration])
+
+    def excess(logarithm: float) -> float:
+        return float(np.log(patch(np.exp(logarithm)).normal_force[0] / force[0]))
+
+    sphere = np.log(np.cbrt(1.125 * (force[0] / modulus) ** 2 * curvature_x[0]))
+    above = next(one for one in np.linspace(sphere - 3.0, sphere + 3.0, 121) if excess(one) > 0.0)
+    return patch(float(np.exp(scipy.optimize.brentq(excess, above - 0.05, above, xtol=1e-11))))
 
 
 def smooth(gap: Callable[[Array], Array], curvature: float, force: float, elements: int = 80) -> Patch:

@@ -105,11 +105,6 @@ class Block:
         found = CAPTION.match(self.text)
         return found[1] if found else ""
 
-    @property
-    def code(self) -> str:
-        """The text without its shell output."""
-        return "\n".join(re.findall(r"^\$ .*$", self.text, re.MULTILINE)) if self.kind == "console" else self.text
-
 
 def blocks_of(path: Path) -> list[Block]:
     text, page = path.read_text(encoding="utf-8"), path.relative_to(ROOT).as_posix()
@@ -143,19 +138,6 @@ def test_every_block_of_a_page_runs_in_the_tests_or_is_listed_with_the_reason_wh
 
 def test_every_block_that_is_listed_is_there() -> None:
     assert NOT_RUN.keys() <= {block.key for block in EVERY}
-
-
-def uses(block: Block, file: Path) -> bool:
-    """Return whether a block names a file, its module or its folder; pip reads pyproject.toml without naming it."""
-    names = {"install --quiet ."} if file.name == "pyproject.toml" else {*file.parts, file.stem}
-    return any(re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", block.code) for name in names)
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_every_file_of_a_page_is_used_by_a_block_after_it(path: Path) -> None:
-    files = [block for block in BLOCKS[path] if block.file and block.file not in JOBS]
-    later = {one.file: [block for block in BLOCKS[path] if block.start > one.start] for one in files}
-    assert [name for name, blocks in later.items() if not any(uses(block, Path(name)) for block in blocks)] == []
 
 
 def environment(**variables: str) -> dict[str, str]:

@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from docs import nomenclature
-from docs.nomenclature import Documented, read
+from docs.nomenclature import Documented
 from tests.environments import ROOT
 from wearlaw.units.variables import VARIABLES  # private: the one table of variables
 
@@ -193,16 +193,3 @@ def test_a_name_has_one_unit_and_one_symbol_and_a_symbol_one_name(documented: li
     assert several((one.name, one.unit) for one in documented) == set()
     assert several((one.name, one.symbol) for one in documented) == set(NAMES_OF_SEVERAL_SYMBOLS)
     assert several((one.symbol, one.name) for one in documented if one.symbol) == set(SYMBOLS_OF_SEVERAL_NAMES)
-
-
-def test_a_docstring_gives_symbol_unit_and_meaning() -> None:
-    text = "Tangential\n    force, T [N], with its sign (Tassini et al. 2010, eq. 5). It is odd. Another [Pa]."
-    meaning = "Tangential force, with its sign (Tassini et al. 2010, eq. 5)"
-    assert read("force", "Toy", text) == Documented("force", "Toy", "T", "N", meaning)
-    assert read("area", "Toy", "Return the area, seen from above [m²].").symbol == ""
-
-
-@pytest.mark.parametrize("text", ["", "Some area.", "Some area, A, in m²."])
-def test_a_quantity_without_a_unit_in_brackets_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match=r"Toy\.area: no unit in brackets"):
-        read("area", "Toy", text)

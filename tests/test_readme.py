@@ -72,20 +72,6 @@ def shipped_laws() -> dict[str, type[wl.Law]]:
     }
 
 
-def test_three_laws_have_their_numbers_and_two_need_those_of_the_user() -> None:
-    assert "three published laws with their numbers (USFD, KTH and BRR)" in SENTENCES
-    assert "two for numbers of your own (Archard's law and wear by energy)" in SENTENCES
-    needs = {}
-    for name in wl.wear_laws():
-        try:
-            wl.wear_law(name)
-        except wl.ConfigurationError:
-            needs[name] = True
-        else:
-            needs[name] = False
-    assert needs == {"usfd": False, "kth": False, "brr": False, "archard": True, "energy": True}
-
-
 def test_no_published_numbers_are_stated_for_water_grease_or_sand() -> None:
     """Look for the words in all texts of the shipped laws and parameter sets, those of their records included."""
     assert "None of its published numbers is stated for water, grease or sand" in SENTENCES
@@ -96,23 +82,6 @@ def test_no_published_numbers_are_stated_for_water_grease_or_sand() -> None:
     assert all(text.strip() for text in texts)
     found = re.findall(r"\w*(?:water|grease|sand\b|wet\b|lubric)\w*", " ".join(texts), re.IGNORECASE)
     assert found == []
-
-
-def test_kth_names_no_materials_and_brr_no_range() -> None:
-    assert "KTH names no materials and BRR no range" in SENTENCES
-    records = {name: wl.wear_law(name).calibration for name in ("usfd", "kth", "brr")}
-    assert {name: (bool(one and one.bodies), bool(one and one.stated_range)) for name, one in records.items()} == {
-        "usfd": (True, True),
-        "kth": (False, True),
-        "brr": (True, False),
-    }
-
-
-def test_the_prediction_of_the_readme_is_warned_of() -> None:
-    assert "wearlaw also gives a `PlasticityWarning`: 1500 MPa is beyond the [shakedown limit]" in SENTENCES
-    predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact")
-    with pytest.warns(wl.PlasticityWarning, match="1500 MPa at T/N = 0.444 is beyond the shakedown limit"):
-        predict(normal_force="7.4143 kN", creepage="1 %", friction_coefficient=0.46)
 
 
 COMMANDS = re.findall(r"^- `wearlaw ([^`]+)`", TEXT, re.MULTILINE)
@@ -137,16 +106,3 @@ def test_the_commands_in_the_list_run(tmp_path: Path, monkeypatch: pytest.Monkey
     found = {path.name for path in tmp_path.iterdir()}
     assert {"my-case.toml", "wearlaw-mine", "case.0001-wear"} <= found
     assert {line.split()[0] for line in COMMANDS} >= {"case", "show", "schema", "fit", "compare", "wear", *ELSEWHERE}
-
-
-@pytest.mark.parametrize(
-    ("sentence", "line"),
-    [
-        ("**Status: alpha.**", '"Development Status :: 3 - Alpha",'),
-        ("nothing but Python 3.11 or later", 'requires-python = ">=3.11"'),
-        ("The licence is [BSD-3-Clause](LICENSE)", 'license = "BSD-3-Clause"'),
-    ],
-)
-def test_status_python_and_licence_are_those_of_the_package(sentence: str, line: str) -> None:
-    assert sentence in SENTENCES
-    assert re.search(rf"^ *{re.escape(line)}$", (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)

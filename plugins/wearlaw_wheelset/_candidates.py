@@ -13,7 +13,7 @@ from wearlaw import Array
 from wearlaw_wheelset._motion import curvature_along, placed
 from wearlaw_wheelset._normal_loops import NEED
 from wearlaw_wheelset._search import BLOCK, Position, Section, Touching, gaps
-from wearlaw_wheelset._search_loops import compiled_samples, normal_gap, tangential, through
+from wearlaw_wheelset._search_loops import compiled_samples, lagrange, normal_gap, tangential
 
 SAMPLES = 81
 """Samples of the gap under a patch."""
@@ -47,6 +47,8 @@ class Candidates:
         Arc length of the wheel's profile, and vertical gap there at first touching [m].
     angle : ndarray
         Contact angle there, δ [rad].
+    lever : ndarray
+        y + z tan δ, by which a roll changes the gap there [m].
     start, step, samples : ndarray
         The gap normal to the surface around the place, above its least value, at even steps across the track in the
         plane of contact [m]; `samples` has the shape (places, samples).
@@ -63,6 +65,7 @@ class Candidates:
     arc: Array
     gap: Array
     angle: Array
+    lever: Array
     start: Array
     step: Array
     samples: Array
@@ -85,7 +88,7 @@ class Candidates:
         base = np.clip(u.astype(np.intp) - 1, 0, SAMPLES - 4)
         near = np.take_along_axis(values[:, None], base[..., None] + np.arange(4), axis=-1)
         with np.errstate(invalid="ignore"):  # infinite gaps
-            found: Array = through(u - base, (0.0, 1.0, 2.0, 3.0), np.moveaxis(near, -1, 0))
+            found: Array = sum(w * near[..., i] for i, w in enumerate(lagrange(u - base, (0.0, 1.0, 2.0, 3.0))))
         return found
 
     def part(self, rows: NDArray[Any]) -> Candidates:
@@ -113,12 +116,11 @@ class Candidates:
         return Candidates(position=Position(*(np.concatenate(pair)[order] for pair in pairs)), **found), order
 
 
-def candidates(
-    section: Section, position: Position, touching: Touching, spacing: float = SPACING, among: int = 0
-) -> Candidates:
-    """Return all places where wheels come close to their rails; positions are of shape (positions, sides).
+def candidates(section: Section, position: Position, touching: Touching, spacing: Array, among: int = 0) -> Candidates:
+    """Return all places where wheels come close to their rails.
 
-    `among` is the number of positions of the task, as in `searched`.
+    Positions and spacings of samples [m] are of shape (positions, sides). `among` is the number of positions of the
+    task, as in `searched`.
     """
     point, side, number = np.nonzero(~np.isnan(touching.arc))
     here = Position(*(array[point, side] for array in position))
@@ -128,18 +130,19 @@ def candidates(
     samples, arcs = np.empty((2, count, SAMPLES))
     found = Candidates(
         point, side, number, here, arc, touching.gap[point, side, number], place.angle,
-        np.empty(count), np.empty(count), samples, arcs,
+        place.y + place.z * np.tan(place.angle), np.empty(count), np.empty(count), samples, arcs,
         0.5 * curvature_along(section, here, place, arc),
     )  # fmt: skip
-    sample(section, found, np.arange(count), spacing, among)
+    sample(section, found, np.arange(count), spacing[point, side], among)
     return found
 
 
-def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing: float, among: int = 0) -> None:
-    """Fill in, in place, the gaps around some of the places at a spacing [m]; `among` as in `searched`."""
+def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing: Array, among: int = 0) -> None:
+    """Fill in, in place, the gaps around some of the places at spacings of theirs [m]; `among` as in `searched`."""
     if section.left is not None:
         for side, one in enumerate(section.sides):
-            sample(one, found, rows[found.side[rows] == side], spacing, among)
+            here = found.side[rows] == side
+            sample(one, found, rows[here], spacing[here], among)
         return
     found.start[rows] = -spacing * (SAMPLES // 2)
     found.step[rows] = spacing
@@ -152,9 +155,10 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
         found.samples[rows], found.arcs[rows] = samples, arcs
         return
     middle = SAMPLES // 2
-    offsets, number = spacing * (np.arange(SAMPLES) - middle), np.arange(SAMPLES)
+    number = np.arange(SAMPLES)
     for start in range(0, rows.size, BLOCK):
         some = rows[start : start + BLOCK]
+        offsets = spacing[start : start + BLOCK, None] * (number - middle)
         arc = found.arc[some, None] + offsets
         at = gaps(section, Position(*(array[some] for array in found.position)).widened(), arc)
         gap, y, z = (array - array[:, middle, None] for array in (at.gap, at.y, at.z))
@@ -172,13 +176,15 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
         low, high = (np.take_along_axis(t, end.clip(0, SAMPLES - 1), axis=-1) for end in (first, last))
         known = (last - first >= 3) & (offsets >= low) & (offsets <= high)
         ordered = np.where(number < first, -np.inf, np.where(number > last, np.inf, t))
-        cell = np.array([np.searchsorted(row, offsets, side="right") for row in ordered]) - 1
+        cell = np.array([np.searchsorted(t, at, side="right") for t, at in zip(ordered, offsets, strict=True)]) - 1
         stencil = np.clip(cell - 1, first, np.maximum(last - 3, first)).clip(0, SAMPLES - 4)[..., None] + np.arange(4)
         four = (np.moveaxis(array[np.arange(some.size)[:, None, None], stencil], -1, 0) for array in (t, height, arc))
         places, heights, arcs = four
         with np.errstate(invalid="ignore", divide="ignore"):
-            found.samples[some] = np.where(known, through(offsets, places, heights), np.inf)
-            found.arcs[some] = np.where(known, through(offsets, places, arcs), arc)
+            weights = lagrange(offsets, places)
+            for array, four, otherwise in ((found.samples, heights, np.inf), (found.arcs, arcs, arc)):
+                through = sum(weight * one for weight, one in zip(weights, four, strict=True))
+                array[some] = np.where(known, through, otherwise)
 
 
 def separated(found: Candidates, saddle: Array, penetration: Array, share: Array, joins: bool) -> Candidates:

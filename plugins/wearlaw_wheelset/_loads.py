@@ -29,8 +29,8 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset import _half_space, _normal
 from wearlaw_wheelset._candidates import SAMPLES, SEPARATE, SPACING, Candidates, candidates, sample, separated
-from wearlaw_wheelset._motion import Creepages, Place, creepages, placed, roll_rate
-from wearlaw_wheelset._search import Section, Touching, both_sides, searched
+from wearlaw_wheelset._motion import Creepages, Place, creepages, curvature_along, placed, roll_rate
+from wearlaw_wheelset._search import Position, Section, Touching, both_sides, searched, searched_again
 from wearlaw_wheelset._search_loops import LEAST_LEVER
 
 WIDENINGS = 2
@@ -54,8 +54,14 @@ FOLD = 2e-2
 """Imbalance of the torque that stays where two penetrations carry a load, and the creep forces jump from one to the
 other as the speed of rotation changes."""
 
-SMALL_ROLL = 2e-5
-"""Change of the roll that leaves the estimated penetration as it is: it changes by about a thousandth [rad]."""
+SLIGHT = 1e-9
+"""Change of the roll that leaves all but the heights of the wheels as it is [rad]."""
+
+SMALL = 1e-5
+"""Change that does so before there are creep forces, which change the roll by about 1e-6 [rad]."""
+
+NEAR = 1e-4
+"""Change of the roll after which places are only followed [rad]."""
 
 FAR = 3.0
 """Gap over the estimated penetration beyond which a place cannot touch as the roll changes in steps."""
@@ -84,6 +90,9 @@ JUMP = 1e-3
 
 COUPLED = np.array([[1.0, 0.0, 1.0, 1.0], [0.0, 1.0, 1.0, 1.0], [1.0, 1.0, 1.0, 1.0], [1.0, 1.0, 0.0, 1.0]])
 """Which of ln h of both wheels, Ω and ρ the load of each wheel, the torque and the level depend on."""
+
+NEARLY = 1e-2
+"""Difference of level, over the penetration, up to which it is linear in penetrations and roll."""
 
 LEAST_SHARE = 0.1
 """Smallest share of the load that a step of the penetration counts with."""
@@ -256,8 +265,14 @@ class Balance:
     """Speed of rotation at each position, Ω [rad/s]."""
     whole: Array
     """The penetration if one patch of each wheel carried the load without creep forces [m]."""
-    estimated: Array
-    """Roll at which `whole` was found [rad]."""
+    touching: Touching
+    """All places where wheels come near their rails, at the roll of `placed`."""
+    sampled: Array
+    """Roll at which the gaps around them were found [rad]."""
+    searched: Array
+    """Roll at which they were last looked for all along the profiles [rad]."""
+    power: Array
+    """Power of the penetration with which the normal force of each wheel grows [-]."""
     height: Array
     """Least gap of each wheel plus a constant, as `Touching.least` [m], (positions, 2)."""
     lever: Array
@@ -301,54 +316,60 @@ class Balance:
         The roll, and where the wheels touch, are the given ones or those of rigid wheels.
         """
         count = roll.size
-        wheels, pairs, right = np.zeros(2 * count), np.zeros((count, 2)), np.ones(count, dtype=np.bool_)
+        wheels, pairs, none = np.zeros(2 * count), np.zeros((count, 2)), np.zeros(count)
         balance = cls(
-            section, elastic, task, pressure, strips, roll.copy(), wheels, np.zeros(count), wheels.copy(), roll.copy(),
-            pairs, pairs.copy(), np.zeros(count), right, np.zeros(count), np.full(count, SEPARATE), np.ones(2 * count),
-            pairs.copy(), pairs.copy(), np.zeros((count, 4, 4)),
+            section, elastic, task, pressure, strips, roll.copy(), wheels, none, wheels, touching, roll.copy(),
+            roll.copy(), np.full(2 * count, 1.5), pairs, pairs.copy(), none.copy(), np.ones(count, dtype=np.bool_),
+            none.copy(), np.full(count, SEPARATE), np.ones(2 * count), pairs.copy(), pairs.copy(),
+            np.zeros((count, 4, 4)),
         )  # fmt: skip
+        balance.whole, sunk = balance._guessed()
+        if task.free:
+            roll = sunk
+            touching = searched_again(section, task.displacement, task.yaw, roll, touching, count)
         balance._stand(np.arange(count), roll, touching)
         balance.penetration = balance.whole.copy()
-        if task.free:  # a first step to the roll under load
-            ahead = np.clip(-balance._lower() / balance._levers(), -WIDEST_ROLL, WIDEST_ROLL)
-            balance._turn(np.arange(count), roll + ahead)
         first = balance.found.part(balance.found.number == 0)
         radius = placed(section, first.position, first.arc).radius.reshape(-1, 2).mean(axis=-1)
         balance.rotation = task.speed / radius if task.rotation is None else task.rotation
         return balance.solved(None)
 
+    def _guessed(self) -> tuple[Array, Array]:
+        """Return guesses of the penetration of each wheel [m] and of the rolls [rad], by Hertz where bodies touch."""
+        task, arc = self.task, self.touching.arc[..., 0]
+        position = both_sides(task.displacement, self.roll, task.yaw)
+        place = placed(self.section, position, arc)
+        cosine = np.cos(place.angle)
+        along = 0.5 * curvature_along(self.section, position, place, arc)
+        depth = self._unit(position, place, arc, along).penetration * np.cbrt(task.load / cosine) ** 2 / cosine
+        lever = np.maximum(np.abs((place.y + place.z * np.tan(place.angle)).sum(axis=-1)), LEAST_LEVER)
+        ahead = np.clip((depth[:, 1] - depth[:, 0]) / lever, -WIDEST_ROLL, WIDEST_ROLL)
+        return depth.reshape(-1), self.roll + ahead
+
     def _stand(self, rows: NDArray[np.intp], roll: Array, touching: Touching) -> None:
         """Put some positions at rolls, in place, where their wheels touch as given."""
-        task, known = self.task, bool(self.whole.all())
-        position = both_sides(task.displacement[rows], roll, task.yaw[rows])
+        task, known = self.task, bool(self.shapes)
+        for array, values in zip(self.touching, touching, strict=True):
+            array[rows] = values
         if known:  # places that are far from touching need no samples
             far = touching.gap > FAR * self.whole.reshape(-1, 2)[rows][..., None]
             touching = touching._replace(arc=np.where(far, np.nan, touching.arc))
-        places = candidates(self.section, position, touching, self._spacing, self.roll.size)
+        spacing = np.full(self.whole.size, self._spacing)
+        if known:
+            np.maximum.at(spacing, self.found.wheel, self.found.step)
+        position = both_sides(task.displacement[rows], roll, task.yaw[rows])
+        places = candidates(self.section, position, touching, spacing.reshape(-1, 2)[rows], self.roll.size)
         saddle = touching.saddle[places.point, places.side, places.number]
         places = replace(places, point=rows[places.point])
         first = np.flatnonzero(places.number == 0)
-        again = first
-        if known:  # `whole` decides where places are close
-            turned = self._chosen(rows[np.abs(roll - self.estimated[rows]) > SMALL_ROLL])
-            step = np.zeros(self.whole.size)
-            np.maximum.at(step, self.found.wheel, self.found.step)
-            wheels = np.zeros(self.whole.size, dtype=np.bool_)
-            several = places.wheel[places.number > 0]
-            wheels[several] = (turned.repeat(2) | (step > self._spacing))[several]
-            again, single = first[wheels[places.wheel[first]]], first[~wheels[places.wheel[first]]]
-            wide = single[step[places.wheel[single]] > self._spacing]
-            self._sample(places, wide, step[places.wheel[wide]])  # as wide as they were
-        if again.size:
-            guess = self.whole[places.wheel[again]] if known else None
-            self.whole[places.wheel[again]] = self._alone(places, again, guess)
-            self.estimated[places.point[again]] = roll[np.searchsorted(rows, places.point[again])]
+        if not known:
+            self.whole[places.wheel[first]] = self._alone(places, first)
         joins = self.pressure == "half_space"
         kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point], joins)
-        self.roll[rows], self.height[rows] = roll, touching.least
+        self.roll[rows], self.sampled[rows], self.height[rows] = roll, roll, touching.least
         lowest = places.part(first)
         place = Place(*(array.reshape(-1, 2) for array in placed(self.section, lowest.position, lowest.arc)))
-        self.lever[rows] = place.y + place.z * np.tan(place.angle)
+        self.lever[rows] = lowest.lever.reshape(-1, 2)
         if task.free:
             self.roll_rate[rows] = roll_rate(place, task.lateral_velocity[rows], task.yaw_velocity[rows])
         if rows.size == self.roll.size:
@@ -374,12 +395,27 @@ class Balance:
         chosen[rows] = True
         return chosen
 
-    def _turn(self, rows: NDArray[np.intp], roll: Array) -> None:
-        """Roll some positions, in place; those whose wheels would leave the rails stay."""
-        task = self.task
+    def _turn(self, rows: NDArray[np.intp], roll: Array, slight: float = SLIGHT) -> None:
+        """Roll some positions, in place; those whose wheels would leave the rails stay.
+
+        After changes below `slight`, only the heights of the wheels and the gaps of further places are new.
+        """
+        near, by, found = np.abs(roll - self.sampled[rows]) < slight, np.zeros(self.roll.size), self.found
+        by[rows[near]] = (roll - self.roll[rows])[near]
+        self.roll += by
+        self.height += self.lever * by[:, None] * (1.0, -1.0)
+        tilt = found.lever - self.lever[found.point, found.side]
+        found.gap[:] += np.where(found.side == 0, 1.0, -1.0) * tilt * by[found.point]
+        rows, roll, task = rows[~near], roll[~near], self.task
         if not rows.size:
             return
-        _, touching = searched(self.section, task.displacement[rows], task.yaw[rows], roll, self.roll.size)
+        given = task.displacement[rows], task.yaw[rows], roll
+        touching = Touching(*(array[rows] for array in self.touching))
+        if (np.abs(roll - self.searched[rows]) < NEAR).all():
+            touching = searched_again(self.section, *given, touching, self.roll.size)
+        else:
+            _, touching = searched(self.section, *given, self.roll.size)
+            self.searched[rows] = roll
         on = ~np.isnan(touching.arc[..., 0]).any(axis=-1)
         if on.any():
             self._stand(rows[on], roll[on], Touching(*(array[on] for array in touching)))
@@ -396,28 +432,33 @@ class Balance:
                 f" {grip[point]:.4g} N*m under this load"
             )
 
-    def _alone(self, found: Candidates, rows: NDArray[np.intp], guess: Array | None) -> Array:
+    def _alone(self, found: Candidates, rows: NDArray[np.intp]) -> Array:
         """Return the vertical penetration if one patch of each wheel carries the whole load, and widen its samples."""
-        penetration = np.empty(rows.size)
+        penetration = self.whole[found.wheel[rows]]
         open_ = np.arange(rows.size)
         widest = self._spacing * 2.0**WIDENINGS
         while open_.size:
             part = found.part(rows[open_])
-            patch = _normal.loaded(
-                part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
-                self.task.load[part.point, part.side] / part.cosine, 5,
-                guess if guess is None else guess[open_] * part.cosine,
-                self.roll.size,
-            )  # fmt: skip
-            penetration[open_] = patch.penetration / part.cosine
+            load = self.task.load[part.point, part.side] / part.cosine
+            depth, power, step, before = penetration[open_], np.full(open_.size, 1.5), 0.0 * load, 0.0 * load
+            for _ in range(2):
+                patch = self._penetrated(part, depth * part.cosine, 5)
+                borne = np.log(np.maximum(patch.normal_force / load, LEAST_SHARE))
+                power = np.divide(borne - before, step, out=power, where=np.abs(step) > STALLED)
+                power = np.minimum(np.maximum(power, 1.0), 3.0)
+                before, step = borne, -borne / power
+                depth = depth * np.exp(step)
+            penetration[open_], self.power[part.wheel] = depth, power
             open_ = open_[patch.narrow & (part.step < widest)]
-            self._sample(found, rows[open_], 2.0 * found.step[rows[open_]])
+            sample(self.section, found, rows[open_], 2.0 * found.step[rows[open_]], self.roll.size)
         return penetration
 
-    def _sample(self, places: Candidates, rows: NDArray[np.intp], spacing: Array) -> None:
-        """Fill in, in place, the gaps around some places at spacings of their own [m]."""
-        for one in np.unique(spacing):
-            sample(self.section, places, rows[spacing == one], float(one), self.roll.size)
+    def _penetrated(self, part: Candidates, depth: Array, strips: int) -> _normal.StripPatch:
+        """Return strips at penetrations normal to the surface [m]."""
+        return _normal.penetrated(
+            part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus, depth, strips,
+            self.roll.size,
+        )  # fmt: skip
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, bounds: bool = True) -> Balance:
         """Return the loads with penetrations and speeds of rotation that balance the creep forces.
@@ -436,7 +477,8 @@ class Balance:
             "penetration",
             "rotation",
             "whole",
-            "estimated",
+            "sampled",
+            "searched",
             "height",
             "lever",
             "roll_rate",
@@ -454,12 +496,16 @@ class Balance:
             balanced=every,
             shapes=dict(self.shapes),
             starts=dict(self.starts),
+            touching=Touching(*(array.copy() for array in self.touching)),
             **copies,
         )
         found.found = self.found.part(np.arange(self.found.point.size))
         rolls = self.task.free and forces is not None
+        if rolls:
+            ahead = np.clip(-found._lower() / found._levers(), -WIDEST_ROLL, WIDEST_ROLL)
+            found._turn(np.arange(every.size), found.roll + ahead, SMALL)
         found._newton(forces, every, rolls)
-        left = found.imbalance > STALLED
+        left = found.imbalance > (ROUGH if forces is None else STALLED)
         if rolls:
             if left.any() and bounds:
                 found._rolled(forces, left)
@@ -467,7 +513,7 @@ class Balance:
             if left.any():  # one of two humps of a patch takes over from the other; let them share the load
                 rows = np.flatnonzero(left)
                 found.share[rows], found.correction[rows] = 0.0, 0.0
-                found._turn(rows, found.roll[rows])
+                found._turn(rows, found.roll[rows], 0.0)
                 found._newton(forces, left, rolls)
                 left &= found.imbalance > ROUGH
             if left.any() and bounds:
@@ -484,7 +530,8 @@ class Balance:
         """Balance the loads of some positions by Newton's method, in place; their rolls stay unless `rolls`.
 
         Broyden's method corrects the estimated rates, in Schubert's form, which keeps those that are zero. The speed
-        of rotation and the roll count with the torque and the level that they change.
+        of rotation and the roll count with the torque and the level that they change. Where the wheels are nearly
+        level, the roll makes them so at the new penetrations.
         """
         count = self.roll.size
         open_, unit = chosen.copy(), np.ones((count, 1, 4))
@@ -495,8 +542,8 @@ class Balance:
             if not rolls:
                 state.miss[:, 3] = 0.0
             self._note(state, open_)
-            worst, tilt = np.abs(state.miss[:, :3]).max(axis=-1), np.abs(state.miss[:, 3]) * self._depths()
-            open_ &= (worst > BALANCED) | (tilt > LEVEL)
+            worst, tilt = np.abs(state.miss[:, :3]).max(axis=-1), np.abs(state.miss[:, 3])
+            open_ &= (worst > (ROUGH if forces is None else BALANCED)) | (tilt * self._depths() > LEVEL)
             better = self.imbalance < 0.5 * least
             least, halved = np.where(better, self.imbalance, least), np.where(better, iteration, halved)
             open_ &= (iteration < NEWTON_STEPS - 1) | (iteration - halved < PATIENCE)
@@ -504,8 +551,6 @@ class Balance:
             if not rows.size:
                 break
             rates, miss = self._rates(state)[rows], state.miss[rows]
-            near = (tilt > 0.5 * LEVEL) | (worst * self._depths() > 0.5 * LEVEL)
-            turns = rolls & near[rows]
             if not rolls:
                 rates[:, 3] = 0.0, 0.0, 0.0, 1.0
             if iteration == 0:
@@ -517,19 +562,17 @@ class Balance:
             self.correction[rows] += (
                 unforeseen[..., None] * own / np.maximum((own**2).sum(axis=-1), BALANCED**2)[..., None]
             )
-            rates += self.correction[rows]
-            rates[~turns, 3], rates[~turns, 3, 3], sought = 0.0, 1.0, miss.copy()
-            sought[~turns, 3] = 0.0
-            ahead = -np.linalg.solve(rates, sought[..., None])[..., 0] / unit[rows, 0]
+            ahead = -np.linalg.solve(rates + self.correction[rows], miss[..., None])[..., 0] / unit[rows, 0]
             ahead[:, :2] = np.clip(ahead[:, :2], -WIDEST_STEP, WIDEST_STEP)
             most = MOST_TURN * self.rotation[rows]
             ahead[:, 2] = np.clip(ahead[:, 2], -most, most)
-            ahead[:, 3] = np.clip(ahead[:, 3], -WIDEST_ROLL, WIDEST_ROLL)
             self.penetration.reshape(-1, 2)[rows] *= np.exp(ahead[:, :2])
             self.rotation[rows] += ahead[:, 2]
-            was = self.roll[rows]
-            self._turn(rows[turns], (was + ahead[:, 3])[turns])
-            ahead[:, 3] = self.roll[rows] - was
+            if rolls:
+                was = self.roll[rows]
+                ahead[:, 3] = np.where(tilt[rows] < NEARLY, -(self._lower() / self._levers())[rows], ahead[:, 3])
+                self._turn(rows, was + np.clip(ahead[:, 3], -WIDEST_ROLL, WIDEST_ROLL))
+                ahead[:, 3] = self.roll[rows] - was
             step[rows], before[rows] = ahead, miss
 
     def _depths(self) -> Array:
@@ -681,7 +724,7 @@ class Balance:
         own, side = patch.normal_force * np.cos(patch.place.angle), np.where(part.side == 1, 1.0, -1.0)
         grip = np.maximum(grip, TINY)
         depth = self.penetration[part.wheel]
-        growth = 1.5 / np.maximum(1.0 - part.gap / depth, LEAST)
+        growth = self.power[part.wheel] / np.maximum(1.0 - part.gap / depth, LEAST)
         if force is not None:
             bound = problem.friction_coefficient * patch.normal_force
             size = np.maximum(force.tangential, TINY)
@@ -708,9 +751,7 @@ class Balance:
         found[:, 3, 3] = 1.0
         if self.task.free:
             # A roll brings a further place nearer to its rail than the first one by the difference of their levers.
-            tilt = side * (
-                patch.place.y + patch.place.z * np.tan(patch.place.angle) - self.lever[part.point, part.side]
-            )
+            tilt = side * (part.lever - self.lever[part.point, part.side])
             nearer = np.where(part.number == 0, 0.0, growth * own * tilt / depth)
             found[:, :2, 3] = (np.bincount(part.wheel, nearer, 2 * count) / load).reshape(-1, 2)
             found[:, 3, 3] = self._levers()
@@ -774,10 +815,7 @@ class Balance:
 
     def _strips(self, part: Candidates) -> dict[str, Array]:
         """Return the strips of patches, their semi-axes and their centres."""
-        found = _normal.penetrated(
-            part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus,
-            self._depth(part), self.strips, self.roll.size,
-        )  # fmt: skip
+        found = self._penetrated(part, self._depth(part), self.strips)
         shapes = {name: getattr(found, name) for name in ("y", "width", "half_length", "a", "b", "centre")}
         return self._sided(part, shapes | {"max_pressure": found.pressure})
 
@@ -819,17 +857,20 @@ class Balance:
 
     def _ellipses(self, part: Candidates) -> dict[str, Array]:
         """Return Hertz's ellipses of the curvatures at first touching."""
-        at = placed(self.section, part.position, part.arc)
-        along, wheel = part.curvature_x, self.section.at("wheel", part.arc, part.side)[3]
-        circle = part.cosine / at.radius
-        across = 0.5 * (wheel + circle + self.section.at("rail", at.rail_arc, part.side)[3]) - along
-        turn = np.tan(part.position.yaw) / part.cosine  # of the wheel's circles, which skews the gap
+        unit = self._unit(part.position, placed(self.section, part.position, part.arc), part.arc, part.curvature_x)
+        share = np.sqrt(self._depth(part) / unit.penetration)
+        return {"a": unit.a * share, "b": unit.b * share, "normal_force": share**3, "centre": np.zeros(share.shape)}
+
+    def _unit(self, position: Position, place: Place, arc: Array, along: Array) -> _normal.HertzPatch:
+        """Return Hertz's ellipses under 1 N, with half the curvature along the rolling direction [1/m]."""
+        cosine, wheel = np.cos(place.angle), self.section.at("wheel", arc, position.side)[3]
+        circle = cosine / place.radius
+        across = 0.5 * (wheel + circle + self.section.at("rail", place.rail_arc, position.side)[3]) - along
+        turn = np.tan(position.yaw) / cosine  # of the wheel's circles, which skews the gap
         skew = 0.5 * (wheel - circle) * turn / (1.0 + turn**2)
         more = np.hypot(0.5 * (along - across), skew) - np.abs(0.5 * (along - across))
         more = np.where(along > across, more, -more)
-        unit = _normal.hertz(along + more, across - more, self.elastic.modulus, np.ones(across.shape))
-        share = np.sqrt(self._depth(part) / unit.penetration)
-        return {"a": unit.a * share, "b": unit.b * share, "normal_force": share**3, "centre": np.zeros(across.shape)}
+        return _normal.hertz(along + more, across - more, self.elastic.modulus, np.ones(across.shape))
 
 
 @dataclass(frozen=True)

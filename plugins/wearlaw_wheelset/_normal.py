@@ -66,9 +66,6 @@ class StripPatch:
         Place t of the strips, the width they represent, half their length [m] and their greatest pressure [Pa].
     narrow : ndarray of bool
         Whether the patch reaches the end of the samples of its gap, so that it may be wider in truth.
-    jumps : ndarray of bool
-        Whether no penetration gives the normal force, as a second hump of the patch joins at this penetration. The
-        strips are those without it, and their pressure is scaled to the normal force.
     """
 
     penetration: Array
@@ -82,7 +79,6 @@ class StripPatch:
     half_length: Array
     pressure: Array
     narrow: NDArray[np.bool_]
-    jumps: NDArray[np.bool_]
 
     @property
     def area(self) -> Array:
@@ -131,42 +127,21 @@ def penetrated(
     InputError
         If a patch has fewer than four samples, a value is not positive, or there are fewer than two strips.
     """
-    return _patches(start, step, gap, curvature_x, modulus, penetration, 0.0, strips, among)
-
-
-def loaded(
-    start: ArrayLike,
-    step: ArrayLike,
-    gap: ArrayLike,
-    curvature_x: ArrayLike,
-    modulus: ArrayLike,
-    normal_force: ArrayLike,
-    strips: int = 21,
-    guess: ArrayLike | None = None,
-    among: int = 0,
-) -> StripPatch:
-    """Return patches that carry a normal force, to 1e-10 of it.
-
-    Parameters
-    ----------
-    start, step, gap, curvature_x, modulus, strips, among
-        As for `penetrated`.
-    normal_force : array_like, (patches,)
-        Normal force, N [N].
-    guess : array_like, (patches,), optional
-        A guess of the penetration [m], such as that of a load close by; it saves steps.
-
-    Notes
-    -----
-    The force is nearly a power 3/2 of the penetration, so the secant method in logarithms takes four steps. It stays
-    within the penetrations that carry too little and too much, and bisects them where it would leave them. Where a
-    second hump of the gap joins the patch, the force jumps. If it falls there, the penetration from before is taken,
-    the first to carry the force as the bodies approach. If it rises past the given force, see `StripPatch.jumps`.
-    """
-    if guess is None:  # that of a sphere
-        force, curvature, elastic = (np.asarray(value, dtype=float) for value in (normal_force, curvature_x, modulus))
-        guess = np.cbrt(1.125 * (force / elastic) ** 2 * curvature)
-    return _patches(start, step, gap, curvature_x, modulus, guess, normal_force, strips, among)
+    samples = np.array(gap, dtype=float, order="C")
+    samples[np.isnan(samples)] = np.inf
+    count = len(samples)
+    given = np.empty((count, 4))
+    for column, value in enumerate((step, curvature_x, modulus, penetration)):
+        given[:, column] = value
+    _check(samples, given, strips)
+    cosine, sine = _even(strips)
+    share, weight = _nodes()
+    fields, sums = np.empty((count, 3, strips)), np.empty((count, 3))
+    if wl.accelerated(max(count, among) * FEW):
+        loops.patch_loop(samples, given, cosine, sine, share, weight, fields, sums)
+    else:
+        _solve(samples, given, (cosine, sine, share, weight), fields, sums)
+    return _result(np.asarray(start, dtype=float), given, fields, sums)
 
 
 class HertzPatch(NamedTuple):
@@ -185,35 +160,6 @@ def hertz(curvature_x: Array, curvature_y: Array, modulus: Array | float, normal
     return HertzPatch(a, b, wl.hertz_ellipse.max_pressure(normal_force, a, b), approach)
 
 
-def _patches(
-    start: ArrayLike,
-    step: ArrayLike,
-    gap: ArrayLike,
-    curvature_x: ArrayLike,
-    modulus: ArrayLike,
-    penetration: ArrayLike,
-    load: ArrayLike,
-    strips: int,
-    among: int,
-) -> StripPatch:
-    """Return patches at a penetration or, if the load is not zero, under it."""
-    samples = np.array(gap, dtype=float, order="C")
-    samples[np.isnan(samples)] = np.inf
-    count = len(samples)
-    given = np.empty((count, 5))
-    for column, value in enumerate((step, curvature_x, modulus, penetration, load)):
-        given[:, column] = value
-    _check(samples, given, strips)
-    cosine, sine = _even(strips)
-    share, weight = _nodes()
-    fields, sums = np.empty((count, 3, strips)), np.empty((count, 4))
-    if wl.accelerated(max(count, among) * FEW):
-        loops.patch_loop(samples, given, cosine, sine, share, weight, fields, sums)
-    else:
-        _solve(samples, given, (cosine, sine, share, weight), fields, sums)
-    return _result(np.asarray(start, dtype=float), given, fields, sums)
-
-
 def _check(samples: Array, given: Array, strips: int) -> None:
     """Raise an error if the strips or the samples are too few, or a value is not positive."""
     if strips < 2:
@@ -226,7 +172,7 @@ def _check(samples: Array, given: Array, strips: int) -> None:
             f"gap: patch {at} has {np.count_nonzero(finite[at])} finite samples; at least {loops.NEED} are needed, "
             "so sample it more finely or widen its window"
         )
-    for name, values in zip(("step", "curvature_x", "modulus", "penetration or normal_force"), given.T, strict=False):
+    for name, values in zip(("step", "curvature_x", "modulus", "penetration"), given.T, strict=True):
         bad = ~((values > 0.0) & np.isfinite(values))
         if bad.any():
             at = int(bad.argmax())
@@ -250,7 +196,7 @@ def _nodes() -> tuple[Array, Array]:
 
 def _result(start: Array, given: Array, fields: Array, sums: Array) -> StripPatch:
     """Return patches from the strips and sums of the loops."""
-    penetration, slope, longest, warning = sums.T
+    slope, longest, cut = sums.T
     u, width, square = fields[:, 0], fields[:, 1], fields[:, 2]
     load = width * square
     total = load.sum(axis=-1)
@@ -259,7 +205,7 @@ def _result(start: Array, given: Array, fields: Array, sums: Array) -> StripPatc
     ratio = 2.0 * np.sqrt(longest) / (_reach(u) * given[:, 0])
     mean = np.sqrt(2.0 / np.pi * (half_length * width).sum(axis=-1))  # √(ab)
     return StripPatch(
-        penetration=penetration,
+        penetration=given[:, 3],
         normal_force=0.5 * np.pi * slope * total,
         max_pressure=slope * np.sqrt(longest),
         a=mean * np.sqrt(ratio),
@@ -269,8 +215,7 @@ def _result(start: Array, given: Array, fields: Array, sums: Array) -> StripPatc
         width=width,
         half_length=half_length,
         pressure=slope[:, None] * half_length,
-        narrow=warning % loops.JUMPS > 0.0,
-        jumps=warning >= loops.JUMPS,
+        narrow=cut > 0.0,
     )
 
 
@@ -405,121 +350,26 @@ def _region(gaps: _Gaps, approach: Array) -> _Region:
     return _Region(top, bend, middle, approach, start, end, narrow | cut)
 
 
-def _evaluated(
-    gaps: _Gaps, modulus: Array, approach: Array, rules: tuple[Array, Array, Array, Array]
-) -> tuple[_Region, Array, Array, Array]:
-    """Return the region of patches, the slope of their pressure in √(l²-x²), their strips and their forces."""
-    cosine, sine, share, weight = rules
-    region = _region(gaps, approach)
-    span = np.stack([region.start, region.end])[:, None] - gaps.deepest
-    square = region.excess(gaps, gaps.deepest + share[:, None] * span) / gaps.curvature
-    length = gaps.spacing * np.abs(span)
-    displaced = length * weight[:, None] * loops.compliance(square, length * share[:, None])
-    slope = math.pi * modulus * approach / displaced.sum(axis=(0, 1))
-    half = 0.5 * (region.end - region.start)
-    strips = np.empty((3, cosine.size, len(approach)))
-    strips[0] = region.start + half * (1.0 + cosine[:, None])
-    strips[1] = half * gaps.spacing * sine[:, None]
-    strips[2] = region.excess(gaps, strips[0]) / gaps.curvature
-    force = 0.5 * math.pi * slope * (strips[1] * strips[2]).sum(axis=0)
-    return region, slope, strips, force
-
-
 def _solve(samples: Array, given: Array, rules: tuple[Array, Array, Array, Array], fields: Array, sums: Array) -> None:
     """Fill in the strips and sums of patches with NumPy, as `loops.patch_loop` does."""
-    spacing, curvature, modulus, approach, load = (np.ascontiguousarray(column) for column in given.T)
-    gaps = _gaps(samples, spacing, curvature)
-    state = _Search(np.log(approach))
-    active = np.arange(len(samples))
-    for iteration in range(loops.ITERATIONS):
-        left = []
-        for block in range(0, len(active), BLOCK):
-            at = active[block : block + BLOCK]
-            here, target = state.logarithm[at], load[at]
-            part = _Gaps(*(array[at] for array in gaps))  # type: ignore[arg-type]
-            region, slope, strips, force = _evaluated(part, modulus[at], np.exp(here), rules)
-            solves = target > 0.0
-            borne = np.divide(force, target, out=np.ones_like(force), where=solves)
-            borne = np.where(borne > 0.0, borne, loops.EMPTY)
-            done = state.step(at, np.log(borne), solves, part, 0.5 * region.approach)
-            done |= iteration == loops.ITERATIONS - 1
-            if done.any():
-                longest = _greatest(part, region, strips[2] * part.curvature) / part.curvature
-                warning = loops.JUMPS * state.jumps[at] + loops.NARROW * region.cut
-                columns = np.stack([region.approach, slope / borne, longest, warning], axis=1)
-                fields[at[done]], sums[at[done]] = strips[..., done].transpose(2, 0, 1), columns[done]
-            left.append(at[~done])
-        active = np.concatenate(left)
-        if not len(active):
-            break
-
-
-class _Search:
-    """The search for the smallest penetrations, from their logarithms."""
-
-    def __init__(self, logarithm: Array) -> None:
-        self.logarithm = logarithm
-        self.found = logarithm.copy()
-        self.before_log, self.before = np.zeros_like(logarithm), np.zeros_like(logarithm)
-        self.low, self.high = np.full_like(logarithm, -np.inf), np.full_like(logarithm, np.inf)
-        self.mode = np.full(logarithm.shape, loops.SOLVES)
-        self.fresh = np.ones(logarithm.shape, dtype=bool)
-        self.jumps = np.zeros(logarithm.shape, dtype=bool)
-
-    def step(
-        self, at: NDArray[np.intp], miss: Array, solves: NDArray[np.bool_], gaps: _Gaps, level: Array
-    ) -> NDArray[np.bool_]:
-        """Choose the next penetrations from the logarithms of force over load, and return which patches are done."""
-        here, mode = self.logarithm[at], self.mode[at]
-        probed = mode == loops.PROBES
-        back, again = probed & (miss < 0.0), probed & (miss >= 0.0)
-        low, high = np.where(again, -np.inf, self.low[at]), np.where(again, here, self.high[at])
-        fresh, jumps = self.fresh[at] | again, self.jumps[at] & ~again
-        mode = np.where(back, loops.FOUND, np.where(again, loops.SOLVES, mode))
-        low, high = np.where((miss < 0.0) & ~back, here, low), np.where((miss < 0.0) | back, high, here)
-        carries, closed = np.abs(miss) < loops.TOLERANCE, high - low < loops.WIDTH
-        candidate = (carries | (closed & (miss < 0.0))) & ~back
-        done: NDArray[np.bool_] = candidate & ((mode == loops.FOUND) | ~solves)
-        jumps |= candidate & ~carries
-        rate = (miss - self.before[at]) / np.where(fresh, 1.0, here - self.before_log[at])
-        rate = np.where(fresh, 1.5, np.minimum(np.maximum(rate, loops.LEAST_SLOPE), loops.STEEPEST_SLOPE))
-        to = here - miss / rate
-        to = np.where(closed, low, np.where((to > low) & (to < high), to, 0.5 * (low + high)))
-        probe = candidate & ~done
-        if probe.any():
-            joined = _joined(gaps, level)
-            done |= probe & (joined == 0.0)
-            probe &= joined > 0.0
-            to = np.where(probe, np.log(2.0 * loops.BEFORE * np.where(probe, joined, 1.0)), to)
-            mode = np.where(probe, loops.PROBES, mode)
-        kept = probe | back
-        self.before_log[at], self.before[at] = np.where(kept, self.before_log[at], here), np.where(kept, 0.0, miss)
-        self.logarithm[at] = np.where(back, self.found[at], to)
-        self.found[at] = np.where(probe, here, self.found[at])
-        self.fresh[at] = fresh & kept
-        self.low[at], self.high[at], self.mode[at], self.jumps[at] = low, high, mode, jumps
-        return done
-
-
-def _joined(gaps: _Gaps, level: Array) -> Array:
-    """Return the greatest levels below the given ones at which a hump joins a patch from outside, or 0."""
-    samples, rows = gaps.samples, np.arange(len(level))
-    cell, size = gaps.deepest.astype(np.intp), gaps.samples.shape[1]
-    other = np.minimum(cell + 1, gaps.last)
-    within, place = samples < (level + gaps.least)[:, None], np.arange(size)
-    low, high = within.argmax(axis=1), size - 1 - within[:, ::-1].argmax(axis=1)
-    with np.errstate(invalid="ignore"):  # between infinite samples
-        rises = np.diff(samples, axis=1) >= 0.0
-    bottom = np.zeros_like(within)
-    bottom[:, :-1] = rises & (place[:-1] >= low[:, None])
-    low = np.minimum(bottom.argmax(axis=1), cell)
-    bottom[:] = False
-    bottom[:, 1:] = ~rises & (place[1:] <= high[:, None])
-    high = np.maximum(size - 1 - bottom[:, ::-1].argmax(axis=1), other)
-    joined = np.zeros_like(level)
-    for at, inside in ((low, low < cell), (high, high > other)):
-        joined = np.maximum(joined, np.where(inside & within[rows, at], samples[rows, at] - gaps.least, 0.0))
-    return joined
+    cosine, sine, share, weight = rules
+    for start in range(0, len(samples), BLOCK):
+        some = slice(start, start + BLOCK)
+        spacing, curvature, modulus, approach = given[some].T
+        gaps = _gaps(samples[some], spacing, curvature)
+        region = _region(gaps, approach)
+        span = np.stack([region.start, region.end])[:, None] - gaps.deepest
+        square = region.excess(gaps, gaps.deepest + share[:, None] * span) / curvature
+        length = spacing * np.abs(span)
+        displaced = length * weight[:, None] * loops.compliance(square, length * share[:, None])
+        half = 0.5 * (region.end - region.start)
+        place = region.start + half * (1.0 + cosine[:, None])
+        excess = region.excess(gaps, place)
+        fields[some, 0], fields[some, 1], fields[some, 2] = (
+            place.T, (half * spacing * sine[:, None]).T, (excess / curvature).T,
+        )  # fmt: skip
+        sums[some, 0] = math.pi * modulus * approach / displaced.sum(axis=(0, 1))
+        sums[some, 1], sums[some, 2] = _greatest(gaps, region, excess) / curvature, region.cut
 
 
 def _greatest(gaps: _Gaps, region: _Region, excess: Array) -> Array:
@@ -535,6 +385,6 @@ def _greatest(gaps: _Gaps, region: _Region, excess: Array) -> Array:
         best = np.maximum(best, here)
         bow = 2.0 * here - before - after
         ahead = np.where(bow > 0.0, 0.5 * (before - after) / np.where(bow > 0.0, bow, 1.0), 0.0)
-        angle = np.minimum(np.maximum(angle + np.clip(ahead, -1.0, 1.0) * step, 0.0), math.pi)
+        angle = np.minimum(np.maximum(angle + np.minimum(np.maximum(ahead, -1.0), 1.0) * step, 0.0), math.pi)
         step *= 0.25
     return best

@@ -19,15 +19,6 @@ AGM = 6
 HERTZ = 2
 """Newton steps to the axis ratio: right to 2e-12 for ratios of curvatures up to 100, to 4e-11 beyond."""
 
-TOLERANCE = 1e-10
-"""Relative error of the force that a penetration is solved to."""
-
-WIDTH = 1e-12
-"""Relative width of the bracket of a penetration at which the force is taken to jump."""
-
-ITERATIONS = 100
-"""Largest number of steps: bisection alone takes 60."""
-
 NEWTON = 60
 """Largest number of steps to an end of the patch; 4 are common."""
 
@@ -37,9 +28,6 @@ STEP = 1e-13
 PEAK = 3
 """Steps to the longest strip."""
 
-LEAST_SLOPE, STEEPEST_SLOPE = 0.5, 6.0
-"""Range of d ln N / d ln δ; it is 3/2 where the gap is a parabola."""
-
 REACH = 1.1
 """Least semi-axis across the ellipse, over the distance of its middle from the deepest point."""
 
@@ -48,18 +36,6 @@ FLOOR = 1e-4
 
 NEED = 4
 """Samples of a cubic."""
-
-EMPTY = 0.3
-"""Share of the load that strips count with if they lie between two humps and none of them carries anything."""
-
-BEFORE = 1.0 - 1e-12
-"""Factor of a penetration just before a hump joins."""
-
-SOLVES, PROBES, FOUND = 0, 1, 2
-"""States of the search for the smallest penetration."""
-
-NARROW, JUMPS = 1.0, 2.0
-"""What may be wrong: the window is too narrow; the force jumps over the given one."""
 
 Number = TypeVar("Number", float, Array)
 
@@ -215,22 +191,6 @@ def _outermost(outer: Array, begin: int, end: int, level: float) -> int:
     return end
 
 
-def _joined(gap: Array, outer: Array, first: int, last: int, deepest: float, least: float, level: float) -> float:
-    """Return the greatest level below the given one at which a hump joins the patch from outside, or 0."""
-    cell = int(deepest)
-    j = _outermost(outer, first, cell, level + least)
-    while j < cell and gap[j + 1] < gap[j]:
-        j += 1
-    joined = gap[j] if j < cell and gap[j] < level + least else -math.inf
-    cell = min(cell + 1, last)
-    j = _outermost(outer, last, cell, level + least)
-    while j > cell and gap[j - 1] < gap[j]:
-        j -= 1
-    if j > cell and gap[j] < level + least:
-        joined = max(joined, gap[j])
-    return max(joined - least, 0.0)
-
-
 def _end(
     gap: Array,
     outer_least: Array,
@@ -381,11 +341,11 @@ ROWS, ROW = "float64[:, ::1]", "float64[::1]"
 def patch_loop(
     gap: Array, given: Array, cosine: Array, sine: Array, share: Array, weight: Array, fields: Array, sums: Array
 ) -> None:
-    """Fill in the strips, (patches, 3, strips), and the sums, (patches, 4), of patches.
+    """Fill in the strips, (patches, 3, strips), and the sums, (patches, 3), of patches.
 
-    `given` holds the spacing of the samples, the curvature A, the effective modulus, the penetration or a guess of it,
-    and the normal force or 0. The strips are their place, width and square of half the length; the sums the
-    penetration, the slope of the pressure in √(l²-x²), the square of half the longest length, and what is wrong.
+    `given` holds the spacing of the samples, the curvature A, the effective modulus and the penetration. The strips are
+    their place, width and square of half the length; the sums the slope of the pressure in √(l²-x²), the square of half
+    the longest length, and 1 where the window cuts the patch off.
     """
     outer, buffer = np.empty(gap.shape[1]), np.empty((5, 2 * share.size))
     for p in range(len(gap)):
@@ -405,75 +365,26 @@ def _solve(
     sums: Array,
 ) -> None:
     """Fill in the strips and the sums of a patch."""
-    spacing, curvature, modulus, approach, load = given[0], given[1], given[2], given[3], given[4]
+    spacing, curvature, modulus, approach = given[0], given[1], given[2], given[3]
     first, last, deepest, least = _lowest(gap, outer)
-    logarithm, before_log, before = math.log(approach), 0.0, 0.0
-    low, high, warning = -math.inf, math.inf, 0.0
-    mode, found, iteration = SOLVES, logarithm, 0
-    top = bend = middle = start = end = slope = force = borne = 0.0
-    cut = False
-    for _ in range(ITERATIONS):
-        approach = math.exp(logarithm)
-        top, bend, middle, start, end, cut = _region(
-            gap, outer, first, last, deepest, least, spacing, curvature, approach
-        )
-        square, distance, weights = buffer[0], buffer[1], buffer[2]
-        for side in range(2):
-            span = (end if side else start) - deepest
-            length = spacing * abs(span)
-            for k in range(share.size):
-                i = side * share.size + k
-                square[i] = (
-                    _excess(gap, first, last, least, top, bend, middle, approach, deepest + share[k] * span) / curvature
-                )
-                distance[i], weights[i] = length * share[k], length * weight[k]
-        displaced = _displacement(weights, square, distance, buffer[3], buffer[4])
-        slope = math.pi * modulus * approach / displaced
-        force, half = 0.0, 0.5 * (end - start)
-        for i in range(cosine.size):
-            fields[0, i] = start + half * (1.0 + cosine[i])
-            fields[1, i] = half * spacing * sine[i]
-            fields[2, i] = _excess(gap, first, last, least, top, bend, middle, approach, fields[0, i]) / curvature
-            force += fields[1, i] * fields[2, i]
-        force *= 0.5 * math.pi * slope
-        borne = force / load if load > 0.0 else 1.0
-        borne = borne if borne > 0.0 else EMPTY
-        miss = math.log(borne)
-        if mode == PROBES:  # a smaller penetration may carry the force, before a hump joined
-            mode = SOLVES
-            if miss < 0.0:
-                mode, logarithm = FOUND, found
-                continue
-            low, high, warning, iteration = -math.inf, logarithm, 0.0, 0
-        carries = abs(miss) < TOLERANCE
-        if miss < 0.0:
-            low = logarithm
-        else:
-            high = logarithm
-        closed = high - low < WIDTH
-        if carries or (closed and miss < 0.0):
-            warning = warning if carries or mode == FOUND else JUMPS
-            joined = _joined(gap, outer, first, last, deepest, least, 0.5 * approach)
-            if mode == FOUND or load <= 0.0 or joined == 0.0:
-                break
-            mode, found, logarithm = PROBES, logarithm, math.log(2.0 * BEFORE * joined)
-            continue
-        if closed:
-            to = low
-        else:
-            rate = 1.5
-            if iteration > 0:
-                rate = (miss - before) / (logarithm - before_log)
-                rate = min(max(rate, LEAST_SLOPE), STEEPEST_SLOPE)
-            to = logarithm - miss / rate
-            if not low < to < high:
-                to = 0.5 * (low + high)
-        before_log, before, logarithm = logarithm, miss, to
-        iteration += 1
+    top, bend, middle, start, end, cut = _region(gap, outer, first, last, deepest, least, spacing, curvature, approach)
+    square, distance, weights = buffer[0], buffer[1], buffer[2]
+    for side in range(2):
+        span = (end if side else start) - deepest
+        length = spacing * abs(span)
+        for k in range(share.size):
+            i = side * share.size + k
+            square[i] = (
+                _excess(gap, first, last, least, top, bend, middle, approach, deepest + share[k] * span) / curvature
+            )
+            distance[i], weights[i] = length * share[k], length * weight[k]
+    displaced = _displacement(weights, square, distance, buffer[3], buffer[4])
+    half = 0.5 * (end - start)
     for i in range(cosine.size):
-        fields[2, i] *= curvature
+        fields[0, i] = start + half * (1.0 + cosine[i])
+        fields[1, i] = half * spacing * sine[i]
+        fields[2, i] = _excess(gap, first, last, least, top, bend, middle, approach, fields[0, i])
     longest = _greatest(gap, first, last, least, top, bend, middle, approach, start, end, fields[2])
     for i in range(cosine.size):
         fields[2, i] /= curvature
-    sums[0], sums[1], sums[2] = approach, slope / borne, longest / curvature
-    sums[3] = warning + (NARROW if cut else 0.0)
+    sums[0], sums[1], sums[2] = math.pi * modulus * approach / displaced, longest / curvature, 1.0 if cut else 0.0

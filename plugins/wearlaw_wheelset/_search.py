@@ -33,12 +33,12 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._curve import Curve
 from wearlaw_wheelset._search_loops import (
+    FIRST,
     PATCHES,
     ROLL_ACCURACY,
     ROLLS,
     ROOTS,
     ROUNDING,
-    WINDOW,
     compiled_search,
     cubic,
     locus,
@@ -63,14 +63,14 @@ BESIDE = 1e3
 STRAIGHT = 1e-6
 """Difference in the angle of a flank that is straight but for rounding [rad]."""
 
+PROBE = 1e-6
+"""First step along a wheel by which a contact point is followed [m]."""
+
 ON_EDGE = 1e-6
 """Difference between slopes at a contact point that only the end of a profile can have."""
 
 BLOCK = 256
 """Positions that NumPy searches at once: their arrays stay in the cache."""
-
-FIRST = 4
-"""One in so many coarse points gives the first estimate of the roll."""
 
 LOOPS = 1000
 """Formulas of a position in one search, to judge whether compiled loops are worth while."""
@@ -100,7 +100,7 @@ class Table(NamedTuple):
     def at(self, x: Array) -> tuple[Array, Array]:
         """Return the value and the slope at x, from the cubic through the values and slopes on either side."""
         share = (x - self.start) / self.step
-        index = np.clip(share.astype(np.intp), 0, self.value.size - 2)
+        index = np.minimum(np.maximum(share.astype(np.intp), 0), self.value.size - 2)
         ends = self.value[index], self.value[index + 1], self.slope[index], self.slope[index + 1]
         return cubic(share - index, self.step, *ends)
 
@@ -190,7 +190,7 @@ class Section:
 
 
 def _at(of: Table | Curve, x: Array) -> tuple[Array, ...]:
-    return of.at(x) if isinstance(of, Table) else of.at(np.clip(x, of.s[0], of.s[-1]))
+    return of.at(x) if isinstance(of, Table) else of.at(np.minimum(np.maximum(x, of.s[0]), of.s[-1]))
 
 
 def section(
@@ -349,22 +349,18 @@ class Touching(NamedTuple):
     least: Array
 
 
-def touching(section: Section, position: Position, near: NDArray[np.intp] | None = None, every: int = 1) -> Touching:
+def touching(section: Section, position: Position, every: int = 1) -> Touching:
     """Return the places where the gaps of wheels are least; positions are of shape (positions, sides).
 
-    `near`, of shape (positions, sides), limits the search to `WINDOW` coarse points around the given ones; the saddles
-    are then those of the window. `every` leaves out coarse points, for a first estimate.
+    `every` leaves out coarse points, for a first estimate.
     """
     if section.left is not None:
         single = []
         for side, one in enumerate(section.sides):
             here = Position(*(array[:, [side]] for array in position))
-            single.append(touching(one, here, None if near is None else near[:, [side]], every))
+            single.append(touching(one, here, every))
         return Touching(*(np.concatenate(pair, axis=1) for pair in zip(*single, strict=True)))
     points = Coarse(*(array[::every] for array in section.coarse))
-    if near is not None:
-        start = np.clip(near - WINDOW // 2, 0, points.arc.size - WINDOW)[..., None]
-        points = Coarse(*(array[start + np.arange(WINDOW)] for array in points))
     around = _gaps(position.widened(), points.y, points.radius, points.slope, section.rail_z.near)
     gap, rise = around.gap, around.rise
     falls = (rise < 0.0) | np.isinf(gap)
@@ -388,7 +384,7 @@ def touching(section: Section, position: Position, near: NDArray[np.intp] | None
     least = height[..., 0]
     none = np.isnan(arc)
     above = np.where(none, np.nan, height) - np.where(none[..., 0], np.nan, least)[..., None]
-    saddle = _saddles(gap, index) - least[..., None] if near is None else np.zeros_like(above)
+    saddle = _saddles(gap, index) - least[..., None]
     return Touching(arc, above, np.where(none, np.nan, saddle), least)
 
 
@@ -509,20 +505,62 @@ def _level(
     """Roll the wheelset, in place, until the contact points near those found touch on both sides."""
     least, arc = found.least[rows], found.arc[rows, :, 0]
     for _ in range(ROLLS):
-        position = both_sides(displacement[rows], roll[rows], yaw[rows])
-        lost = np.asarray(np.isnan(arc).any(axis=-1))  # the point has jumped out of the window
+        lost = np.isnan(arc).any(axis=-1)
         excess = np.subtract(least[:, 1], least[:, 0], out=np.zeros(rows.size), where=~lost)
-        start = _starts(section)[:, 0]
-        place = gaps(section, position, np.where(lost[:, None], start, arc))
-        lever = (place.y + place.rail_slope * place.z).sum(axis=-1)
-        going = np.asarray((np.abs(excess) > ROLL_ACCURACY) & ~lost)
-        roll[rows] += np.where(going, roll_step(excess, lever), 0.0)
-        rows, arc = rows[going], arc[going]
+        going = np.abs(excess) > ROLL_ACCURACY
+        rows, arc, excess = rows[going], arc[going], excess[going]
         if not rows.size:
             return
-        near = ((arc - start) / [one.spacing for one in section.sides]).astype(np.intp) + 1
-        local = touching(section, both_sides(displacement[rows], roll[rows], yaw[rows]), near)
-        least, arc = local.least, local.arc[..., 0]
+        place = gaps(section, both_sides(displacement[rows], roll[rows], yaw[rows]), arc)
+        roll[rows] += roll_step(excess, (place.y + place.rail_slope * place.z).sum(axis=-1))
+        arc, least = _followed(section, both_sides(displacement[rows], roll[rows], yaw[rows]), arc)
+
+
+def _followed(section: Section, position: Position, arc: Array) -> tuple[Array, Array]:
+    """Return where contact points at arc lengths [m] have moved after a small roll, and the gaps there [m].
+
+    The gap has the same constant as `Touching.least`. The arc length is NaN where a point is lost, or has moved by more
+    than `COARSE`.
+    """
+    known = ~np.isnan(arc)
+    position = Position(*(np.broadcast_to(array, arc.shape)[known] for array in position))
+    start = place = arc[known]
+    rise, step = gaps(section, position, place).rise, np.full(place.shape, PROBE)
+    for _ in range(ROOTS):
+        place = place + step
+        at = gaps(section, position, place)
+        change, rise = at.rise - rise, at.rise
+        going = np.abs(rise) >= ROUNDING
+        slope = np.divide(change, step, out=np.ones(place.shape), where=going & (step != 0.0))
+        lost = (slope <= 0.0) | (np.abs(place - start) > COARSE)
+        going &= ~lost
+        step = np.where(going, np.clip(-rise / slope, -COARSE, COARSE), 0.0)
+        if not going.any():
+            break
+    moved, gap = np.full((2, *arc.shape), np.nan)
+    moved[known], gap[known] = np.where(lost | going, np.nan, place), at.gap
+    return moved, gap
+
+
+def searched_again(
+    section: Section, displacement: Array, yaw: Array, roll: Array, found: Touching, among: int
+) -> Touching:
+    """Return where wheels touch at a roll [rad] close to that of places found; `among` as in `searched`.
+
+    Saddles stay. Where a place is lost, or another one touches first, the whole wheel is searched again.
+    """
+    position = both_sides(displacement, roll, yaw).widened()
+    arc, height = _followed(section, position, found.arc)
+    least = height[..., 0]
+    gap = height - least[..., None]
+    lost = ((np.isnan(arc) != np.isnan(found.arc)) | (gap < 0.0)).any(axis=(-2, -1))
+    again = Touching(arc, gap, found.saddle, least)
+    if lost.any():
+        _, new = searched(section, displacement[lost], yaw[lost], roll[lost], among)
+        again = Touching(*(array.copy() for array in again))
+        for array, values in zip(again, new, strict=True):
+            array[lost] = values
+    return again
 
 
 def both_sides(displacement: Array, roll: Array, yaw: Array) -> Position:

@@ -13,6 +13,9 @@ from wearlaw import Array
 PATCHES = 3
 """Greatest number of contact patches of a wheel."""
 
+FIRST = 4
+"""One in so many coarse points gives the first estimate of the roll."""
+
 ROLLS = 30
 """Greatest number of iterations for the roll; four or five are usual."""
 
@@ -117,12 +120,17 @@ def tangential(across: Any, down: Any, own_slope: Any) -> Any:
     return (across + own_slope * down) / np.sqrt(1.0 + own_slope * own_slope)
 
 
-def through(x: Any, places: Any, values: Any) -> Any:
-    """Return the cubic through four values at four places, at x."""
-    (x0, x1, x2, x3), (f0, f1, f2, f3) = places, values
-    d01, d12, d23 = (f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1), (f3 - f2) / (x3 - x2)
-    d02, d13 = (d12 - d01) / (x2 - x0), (d23 - d12) / (x3 - x1)
-    return f0 + (x - x0) * (d01 + (x - x1) * (d02 + (x - x2) * (d13 - d02) / (x3 - x0)))
+def lagrange(x: Any, places: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the weights of four values, at four places, whose sum is the cubic through them at x."""
+    x0, x1, x2, x3 = places
+    t0, t1, t2, t3 = x - x0, x - x1, x - x2, x - x3
+    d01, d02, d03, d12, d13, d23 = x0 - x1, x0 - x2, x0 - x3, x1 - x2, x1 - x3, x2 - x3
+    return (
+        t1 * t2 * t3 / (d01 * d02 * d03),
+        -t0 * t2 * t3 / (d01 * d12 * d13),
+        t0 * t1 * t3 / (d02 * d12 * d23),
+        -t0 * t1 * t2 / (d03 * d13 * d23),
+    )
 
 
 def at(x: float, start: float, step: float, value: Array, slope: Array) -> tuple[float, float]:
@@ -150,7 +158,7 @@ def near(x: float, start: float, step: float, value: Array, slope: Array) -> tup
 def touch(
     shift: float,
     turn: tuple[float, float, float, float],
-    whole: bool,
+    every: int,
     arc: Array,
     y: Array,
     radius: Array,
@@ -178,43 +186,45 @@ def touch(
 ) -> tuple[float, float]:
     """Find the contact points of one wheel, and return its least gap and the lever of a roll [m].
 
-    Unless `whole`, they are looked for around the first of those in `found`.
+    One in `every` coarse points is read. If that is zero, they are looked for around the first of those in `found`.
     """
     spacing = arc[2] - arc[1]
     lever = 0.0
     begin, end = 0, arc.size
-    if not whole:
+    if not every:
+        every = 1
         middle = int((found[0] - arc[0]) / spacing) + 1
         begin = min(max(middle - WINDOW // 2, 0), arc.size - WINDOW)
         end = begin + WINDOW
     for patch in range(PATCHES):
         place[patch], height[patch], cell[patch] = np.nan, np.inf, -1
-    for k in range(begin, end):
+    for k in range(begin, end, every):
         _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
         rail, rail_slope = near(across, z_start, z_step, z_value, z_slope)
         gap[k], rise[k] = rail - down, rail_slope - steep
         if k == begin:
             continue
-        falls = rise[k - 1] < 0.0 or gap[k - 1] == np.inf
+        last = k - every
+        falls = rise[last] < 0.0 or gap[last] == np.inf
         low = falls and rise[k] >= 0.0 and gap[k] < np.inf
-        if not low and not (rise[k - 1] < 0.0 and gap[k - 1] < np.inf and gap[k] == np.inf):
+        if not low and not (rise[last] < 0.0 and gap[last] < np.inf and gap[k] == np.inf):
             continue
-        size = min(gap[k - 1], gap[k])
+        size = min(gap[last], gap[k])
         last = PATCHES - 1
         if size >= height[last]:
             continue
         while last > 0 and size < height[last - 1]:
             height[last], cell[last] = height[last - 1], cell[last - 1]
             last -= 1
-        height[last], cell[last] = size, k - 1
+        height[last], cell[last] = size, k - every
     for patch in range(PATCHES):
         k = cell[patch]
         if k < 0:
             continue
-        left, right = float(arc[k]), float(arc[k + 1])
+        left, right = float(arc[k]), float(arc[k + every])
         if gap[k] == np.inf:
             left = right
-        if gap[k + 1] == np.inf:
+        if gap[k + every] == np.inf:
             right = left
         at_left = at_right = 0.0
         for iteration in range(ROOTS + 2):
@@ -303,11 +313,11 @@ def compiled_search(
     height, cell, place = np.empty(PATCHES), np.empty(PATCHES, np.int64), np.empty(PATCHES)
     for point in range(displacement.size):
         shift, sin_yaw, cos_yaw = displacement[point], math.sin(yaw[point]), math.cos(yaw[point])
-        whole = True
+        every = 1 if given else FIRST  # all points once the roll is found
         for _ in range(ROLLS):
             sin_roll, cos_roll = math.sin(roll[point]), math.cos(roll[point])
             least[point, 0], left = touch(
-                -shift, (-sin_roll, cos_roll, -sin_yaw, cos_yaw), whole,
+                -shift, (-sin_roll, cos_roll, -sin_yaw, cos_yaw), every,
                 arc_of[0], y_of[0], radius_of[0], slope_of[0],
                 y_start_of[0], y_step_of[0], y_value_of[0], y_slope_of[0],
                 r_start_of[0], r_step_of[0], r_value_of[0], r_slope_of[0],
@@ -315,7 +325,7 @@ def compiled_search(
                 gap, rise, height, cell, place, found[point, 0], above[point, 0], saddle[point, 0],
             )  # fmt: skip
             least[point, 1], right = touch(
-                shift, (sin_roll, cos_roll, sin_yaw, cos_yaw), whole,
+                shift, (sin_roll, cos_roll, sin_yaw, cos_yaw), every,
                 arc_of[1], y_of[1], radius_of[1], slope_of[1],
                 y_start_of[1], y_step_of[1], y_value_of[1], y_slope_of[1],
                 r_start_of[1], r_step_of[1], r_value_of[1], r_slope_of[1],
@@ -324,20 +334,21 @@ def compiled_search(
             )  # fmt: skip
             excess = least[point, 1] - least[point, 0]
             lost = math.isnan(found[point, 0, 0]) or math.isnan(found[point, 1, 0])
-            if given or (whole and not abs(excess) > ROLL_ACCURACY):
+            level = not abs(excess) > ROLL_ACCURACY
+            if given or (every == 1 and level):
                 break
-            whole = lost or not abs(excess) > ROLL_ACCURACY
-            if not whole:
+            every = 1 if lost or level else 0
+            if not every:
                 roll[point] += roll_step(excess, left + right)
 
 
-@wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, float64, {TABLE}, {TABLE}, {TABLE}, {ROWS}, {ROWS})")
+@wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {TABLE}, {TABLE}, {TABLE}, {ROWS}, {ROWS})")
 def compiled_samples(
     displacement: Array,
     roll: Array,
     yaw: Array,
     arc: Array,
-    spacing: float,
+    spacings: Array,
     y_start: float,
     y_step: float,
     y_value: Array,
@@ -362,6 +373,7 @@ def compiled_samples(
     end, rail_end = y_start + y_step * (y_value.size - 1), z_start + z_step * (z_value.size - 1)
     for point in range(arc.size):
         turn = math.sin(roll[point]), math.cos(roll[point]), math.sin(yaw[point]), math.cos(yaw[point])
+        spacing = spacings[point]
         own = own_slope = own_across = own_down = 0.0
         first, last = 0, count - 1
         for step in range(count + 1):
@@ -391,7 +403,6 @@ def compiled_samples(
             while cell < last - 1 and tangent[cell + 1] <= offset:
                 cell += 1
             i = min(max(cell - 1, first), last - 3)
-            places = tangent[i], tangent[i + 1], tangent[i + 2], tangent[i + 3]
-            samples[point, k] = through(offset, places, (height[i], height[i + 1], height[i + 2], height[i + 3]))
-            left = arc[point] + spacing * (i - count // 2)
-            arcs[point, k] = through(offset, places, (left, left + spacing, left + 2.0 * spacing, left + 3.0 * spacing))
+            w0, w1, w2, w3 = lagrange(offset, (tangent[i], tangent[i + 1], tangent[i + 2], tangent[i + 3]))
+            samples[point, k] = w0 * height[i] + w1 * height[i + 1] + w2 * height[i + 2] + w3 * height[i + 3]
+            arcs[point, k] = arc[point] + spacing * (i - count // 2 + w1 + 2.0 * w2 + 3.0 * w3)

@@ -67,12 +67,12 @@ def test_compiled_gaps_around_contact_points_are_those_of_numpy(spacing: float) 
     section, draw = wheelset()._section, np.random.default_rng(1)
     displacement, yaw = draw.uniform(-7e-3, 7e-3, 300), draw.uniform(-0.02, 0.02, 300)
     roll, touching = searched(section, displacement, yaw)
-    found = candidates(section, both_sides(displacement, roll, yaw), touching)
+    found = candidates(section, both_sides(displacement, roll, yaw), touching, np.full((displacement.size, 2), SPACING))
     samples = []
     try:
         for on in (True, False):
             wl.accelerate(on)
-            sample(section, found, np.arange(found.arc.size), spacing)
+            sample(section, found, np.arange(found.arc.size), np.full(found.arc.size, spacing))
             samples.append(found.samples.copy())
     finally:
         wl.accelerate(None)

@@ -272,8 +272,13 @@ def alone(pair: ws.Wheelset, problem: Any, force: Array) -> Array:
         return np.asarray(wl.hertz_ellipse.approach(force, a, b, pair._elastic.modulus))
     part = found.part(rows)
     samples = np.maximum(part.samples, 0.0)
-    loaded = _normal.loaded(part.start, part.step, samples, part.curvature_x, pair._elastic.modulus, force, 20)
-    return np.asarray(loaded.penetration)
+    gaps = part.start, part.step, samples, part.curvature_x, pair._elastic.modulus
+    low, high = 0.5 * problem.penetration[1, : force.size], 2.0 * problem.penetration[1, : force.size]
+    for _ in range(60):  # bisection
+        middle = 0.5 * (low + high)
+        deep = _normal.penetrated(*gaps, middle, 20).normal_force > force
+        low, high = np.where(deep, low, middle), np.where(deep, middle, high)
+    return np.asarray(low)
 
 
 @pytest.mark.parametrize("pressure", ["kpec", "hertz"])

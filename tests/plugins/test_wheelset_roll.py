@@ -169,13 +169,13 @@ def test_what_the_balance_leaves_over_is_in_the_result() -> None:
 
 
 def test_a_balance_that_leaves_over_more_than_a_thousandth_warns() -> None:
-    # As the wheelset rolls, the second of two patches vanishes near -5.39 mm, where no roll is level.
+    # Where the flange takes the load from the tread, the creep forces jump.
     pair: Any = wheelset()
-    with pytest.warns(wl.RangeWarning, match=r"the loads of \d+ of 9 positions do not balance: .* of the load is left"):
+    with pytest.warns(wl.RangeWarning, match="do not balance"):
         result = (pair | FASTSIM)(
-            lateral_displacement=Q(np.linspace(-5.4, -5.38, 9), "mm"), vertical_load="90 kN", friction_coefficient=0.4
+            lateral_displacement=Q([-6.293, -3.0], "mm"), vertical_load="90 kN", friction_coefficient=0.4
         )
-    assert 1e-3 < np.nanmax(result.problem.imbalance) < 0.2
+    assert np.nanmax(result.problem.imbalance[0]) > 1e-3 > 1e-6 > np.nanmax(result.problem.imbalance[1])
 
 
 def test_rolls_are_found_within_bounds_where_newtons_method_fails() -> None:
