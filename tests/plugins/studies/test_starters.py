@@ -13,9 +13,7 @@ import wearlaw_wheelset as ws
 from tests.core.cases import wearlaw
 
 STARTERS = ("two_discs", "my_tests", "wheel_on_rail", "wheelset")
-OWN_STEEL = (
-    '{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = "7800 kg/m^3", shear_yield_stress = "400 MPa" }'
-)
+OWN_STEEL = '{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = "7800 kg/m^3" }'
 OWN_TESTS = "creepage [%],normal_force [kN],wear_rate [ug/m/mm^2]\n1,7.4,25\n5,7.4,80\n"
 
 EDITS = [
