@@ -10,8 +10,8 @@ import pytest
 
 import wearlaw as wl
 from tests import normal_half_space, wheel_on_rail
-from tests.plugins.test_wheelset_roll import STEEL, service
-from tests.plugins.wheelsets import R0, wheelset
+from tests.plugins.wheelset.test_roll import STEEL, service
+from tests.plugins.wheelset.wheelsets import R0, wheelset
 from wearlaw import Q
 from wearlaw_wheelset._half_space import pressed
 from wearlaw_wheelset._motion import placed

@@ -17,7 +17,7 @@ import scipy
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.published_profiles import S1002, UIC60
+from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
 from wearlaw_wheelset._curve import SPACING, Curve, smoothed
 from wearlaw_wheelset._formulas import FORMULAS

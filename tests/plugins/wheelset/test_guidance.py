@@ -10,7 +10,7 @@ import pytest
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.wheelsets import through, wheelset
+from tests.plugins.wheelset.wheelsets import through, wheelset
 from wearlaw import Array, Q
 from wearlaw_wheelset._guidance import BORNE
 from wearlaw_wheelset._loads import BALANCED
