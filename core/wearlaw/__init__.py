@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop
 from wearlaw.contact import elastic_limit, half_space, hertz, hertz_ellipse, kalker
-from wearlaw.contact.conditions import Coefficient, Condition, Creepage, Friction
+from wearlaw.contact.conditions import Coefficient, Condition, Creepage, FallingFriction, Friction
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
-from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
 from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem, Strips
 from wearlaw.contact.quadrature import Nodes
@@ -46,8 +45,7 @@ from wearlaw.errors import (
 )
 from wearlaw.extras import load as _load
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
-from wearlaw.models.contact_model import Claim, ContactModel, Scale
-from wearlaw.models.creep_force_model import CreepForceModel
+from wearlaw.models.contact_model import Claim, ContactModel, CreepForceModel, Scale
 from wearlaw.models.functions import as_wear_law
 from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
@@ -56,7 +54,6 @@ from wearlaw.models.stage import Forces, Solve, Stage
 from wearlaw.models.wear_law import LocalWear, WearLaw
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.reading import read_contact
 from wearlaw.plugins.fields import ContactModelField, LawField, MaterialField, StageField, WearLawField
 from wearlaw.plugins.loader import (
     contact_model,
@@ -244,6 +241,7 @@ __all__ = [
 if TYPE_CHECKING:
     from wearlaw.plugins.law_files import read_law, read_wear_law
     from wearlaw_archard.coefficients import wear_coefficient
+    from wearlaw_contact_files._reading import read_contact
     from wearlaw_explore import explore
     from wearlaw_fits.comparison import Comparison, compare
     from wearlaw_fits.distributions import lognormal, normal, published_range, uniform
@@ -267,6 +265,7 @@ _LATE = {
     "read_law": "wearlaw.plugins.law_files",
     "read_wear_law": "wearlaw.plugins.law_files",
     "wear_coefficient": "wearlaw_archard.coefficients",
+    "read_contact": "wearlaw_contact_files._reading",
     "explore": "wearlaw_explore",
     "Comparison": "wearlaw_fits.comparison",
     "compare": "wearlaw_fits.comparison",
