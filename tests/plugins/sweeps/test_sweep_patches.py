@@ -165,21 +165,21 @@ def test_a_rig_balances_block_by_block_and_patches_may_lift_off() -> None:
 
 
 @pytest.mark.parametrize(
-    ("back", "said"),
+    ("back", "named"),
     [
-        (lambda problem: problem[:1], r"a problem of geometry 'ellipse', shape \(1, 2, 2\) and axes .* for one of"),
-        (lambda problem: problem.replaced(dims={}), r"shape \(3, 2, 2\) and axes \{\} for one"),
-        (lambda problem: problem.replaced(geometry="line"), "a problem of geometry 'line'"),
-        (lambda problem: problem.replaced(exists=np.ones(3, bool)), "rig 'unlike' gave .* as `exists`; it must be"),
-        (lambda _: 3, "`balanced` of rig 'unlike' returned 3, not a wearlaw.Problem"),
+        (lambda problem: problem[:1], "balanced"),
+        (lambda problem: problem.replaced(dims={}), "balanced"),
+        (lambda problem: problem.replaced(geometry="line"), "balanced"),
+        (lambda problem: problem.replaced(exists=np.ones(3, bool)), "exists"),
+        (lambda _: 3, "balanced"),
     ],
-)  # fmt: skip
-def test_a_balance_returns_a_problem_like_the_one_it_was_given(back: Any, said: str) -> None:
+)
+def test_a_balance_returns_a_problem_like_the_one_it_was_given(back: Any, named: str) -> None:
     class Unlike(Rocking):
         name: ClassVar[str] = "unlike"
 
     Unlike.back = staticmethod(back)
-    with pytest.raises(wl.ModelError, match=said):
+    with pytest.raises(wl.ModelError, match=f"rig 'unlike' .*`{named}`"):
         (Unlike() | FASTSIM)(**GIVEN)
 
 
