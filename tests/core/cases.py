@@ -15,7 +15,7 @@ from click.testing import CliRunner, Result
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw.cli import main
+from wearlaw.cli import main  # private: the program, in this process
 from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import Origin

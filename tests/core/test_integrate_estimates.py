@@ -15,8 +15,8 @@ from tests.core.integrals import MEANS, REFERENCE, Points, integrate_wear
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array
 from wearlaw.contact.quadrature import uniform_cells
-from wearlaw.numerics.integrate import integrate_forces
-from wearlaw.numerics.staged import staged
+from wearlaw.numerics.integrate import integrate_forces  # private: forces without a pipeline
+from wearlaw.numerics.staged import staged  # private: a staged model without a pipeline
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 

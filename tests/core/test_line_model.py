@@ -15,7 +15,7 @@ from tests.core.cases import Linear
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
 from wearlaw.contact.quadrature import ORDER
-from wearlaw.pipeline import prediction as result
+from wearlaw.pipeline import prediction as result  # private: fewer cells
 from wearlaw_kit import line_problems
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")

@@ -18,7 +18,7 @@ from click.testing import CliRunner
 
 import wearlaw as wl
 from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
-from wearlaw.cli import main
+from wearlaw.cli import main  # private: the program, in this process
 from wearlaw.plugins import loader
 
 BROKEN = {

@@ -18,7 +18,7 @@ from tests.strategies import EPS, log_uniform
 from wearlaw import Q
 from wearlaw.contact import hertz
 from wearlaw.contact.material import dundurs_beta
-from wearlaw.pipeline.composition import COUPLING
+from wearlaw.pipeline.composition import COUPLING  # private: the constant is derived here
 from wearlaw_studies.case import Case
 from wearlaw_studies.study import run
 

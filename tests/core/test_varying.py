@@ -13,7 +13,10 @@ import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.errors import InputError
-from wearlaw.numerics.integrate import BLOCK, integrate_laws
+from wearlaw.numerics.integrate import (
+    BLOCK,
+    integrate_laws,
+)  # private: numbers that vary from point to point, as a fit gives them
 from wearlaw.settings.parameters import allowed_range, changed, number_in_si, number_like, numbers
 
 RIG = wl.TwinDisc.suros()

@@ -12,7 +12,7 @@ import wearlaw as wl
 from tests.plugins.kit.strips import Strips
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.numerics import integrate
+from wearlaw.numerics import integrate  # private: counts the solutions
 from wearlaw.units.variables import VARIABLES
 
 RIG = wl.WheelRail(
