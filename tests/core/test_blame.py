@@ -11,9 +11,7 @@ import wearlaw as wl
 from tests.core.distributions import Install
 from tests.core.stages import CONDITIONS, EXACT, FASTSIM, KTH, ON_RAILS, RAILS, RIG, silently
 from wearlaw import Q
-from wearlaw.numerics.integrate import (
-    integrate_laws,
-)  # private: numbers that vary from point to point, as a fit gives them
+from wearlaw.numerics.integrate import integrate_laws  # private: blocks
 
 PLUGIN = """
     from typing import Annotated, Any

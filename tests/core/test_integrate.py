@@ -15,12 +15,7 @@ from tests.roots import brentq
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
 from wearlaw.numerics import integrate  # private: what a block is told
-from wearlaw.numerics.integrate import (
-    BLOCK,
-    NODE_BLOCK,
-    integrate_forces,
-    integrate_slip,
-)  # private: the sizes of blocks
+from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK, integrate_forces, integrate_slip  # private: blocks
 from wearlaw.numerics.totals import Totals  # private: what a block is told
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")

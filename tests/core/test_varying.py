@@ -16,7 +16,7 @@ from wearlaw.errors import InputError
 from wearlaw.numerics.integrate import (
     BLOCK,
     integrate_laws,
-)  # private: numbers that vary from point to point, as a fit gives them
+)  # private: numbers that vary, as in a fit
 from wearlaw.settings.parameters import allowed_range, changed, number_in_si, number_like, numbers
 
 RIG = wl.TwinDisc.suros()
