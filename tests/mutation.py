@@ -59,7 +59,7 @@ TESTS = {
     "wearlaw.numerics.splits": "core/test_splits.py",
     "wearlaw.settings.parameters": "core/test_varying.py",
     "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py plugins/fits/test_uncertainty.py"
-    " plugins/fits/test_uncertainty_refusals.py core/test_inverse.py core/test_wheel_rail.py"
+    " plugins/fits/test_uncertainty_refusals.py plugins/sweeps/test_inverse.py core/test_wheel_rail.py"
     " core/test_wheel_rail_result.py core/test_models.py",
     "wearlaw.contact.contact": "core/test_records.py core/test_contact_from_arrays.py core/test_elliptic_contact.py"
     " core/test_several_patches.py plugins/fastsim/test_given_strips.py",

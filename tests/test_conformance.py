@@ -53,7 +53,7 @@ CONTACT_MODELS: list[wl.ContactModel] = [
     wl.contact_model("linear", interpolation="contact"),
     wl.contact_model("shen_hedrick_elkins"),
     wl.contact_model("strip_theory", strips=24),
-    wl.contact_model("half_space", cells=8),
+    wl.contact_model("half_space", cells=6),
     *(
         wl.contact_model("polach", adhesion_reduction=adhesion, slip_reduction=slip)
         for adhesion, slip in ((1.0, 1.0), (1.0, 0.4), (0.3, 0.1))

@@ -24,22 +24,6 @@ def test_the_theory_states_the_errors_that_are_computed() -> None:
     assert pictures.force_errors_in_words() in " ".join(text.split())
 
 
-def test_the_figure_of_errors_has_a_point_for_every_force_that_is_not_zero_by_symmetry() -> None:
-    axes = pictures.fastsim_against_half_space().axes[0]
-    names = [label.get_text() for label in axes.get_yticklabels()]
-    drawn: dict[str, list[str]] = {name: [] for name in names}
-    for line in axes.get_lines():
-        label = str(line.get_label())
-        if label.startswith("F"):
-            error, place = np.asarray(line.get_data())
-            for row in place[~np.isnan(error)]:
-                drawn[names[round(row)]].append(label)
-    for name, labels in drawn.items():
-        forces = ["Fx"] * ("ξ" in name) + ["Fy"] * ("η" in name or "φ" in name)
-        expected = [f"{force}, {bound} bound" for force in forces for bound in ("elliptic", "parabolic")]
-        assert sorted(labels) == expected
-
-
 @pytest.mark.parametrize("creepage", ["ξ", "η", "φ"])
 def test_arrows_of_the_drawing_are_the_rigid_slip_seen_with_x_to_the_right_and_rolling_to_the_left(
     creepage: str,
@@ -117,7 +101,6 @@ def test_every_axis_of_the_theory_and_of_the_benchmarks_has_its_unit() -> None:
     costs = pictures.cost_against_error().axes[0]
     assert costs.get_xlabel().endswith("]")
     assert costs.get_ylabel().endswith("]")
-    assert pictures.fastsim_against_half_space().axes[0].get_xlabel().endswith("]")
 
 
 def test_the_curves_of_the_creep_forces_are_kalkers_lines_and_their_reduction_by_a_cubic() -> None:

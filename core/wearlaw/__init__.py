@@ -56,7 +56,6 @@ from wearlaw.models.stage import Forces, Solve, Stage
 from wearlaw.models.wear_law import LocalWear, WearLaw
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.reading import read_contact
 from wearlaw.plugins.fields import ContactModelField, LawField, MaterialField, StageField, WearLawField
 from wearlaw.plugins.loader import (
     contact_model,
@@ -244,6 +243,7 @@ __all__ = [
 if TYPE_CHECKING:
     from wearlaw.plugins.law_files import read_law, read_wear_law
     from wearlaw_archard.coefficients import wear_coefficient
+    from wearlaw_contact_files._reading import read_contact
     from wearlaw_explore import explore
     from wearlaw_fits.comparison import Comparison, compare
     from wearlaw_fits.distributions import lognormal, normal, published_range, uniform
@@ -267,6 +267,7 @@ _LATE = {
     "read_law": "wearlaw.plugins.law_files",
     "read_wear_law": "wearlaw.plugins.law_files",
     "wear_coefficient": "wearlaw_archard.coefficients",
+    "read_contact": "wearlaw_contact_files._reading",
     "explore": "wearlaw_explore",
     "Comparison": "wearlaw_fits.comparison",
     "compare": "wearlaw_fits.comparison",

@@ -9,7 +9,15 @@ from pathlib import Path
 import click
 import pandas as pd
 
-from wearlaw.cli.shared import (
+from wearlaw.contact.contact import Contact
+from wearlaw.models.law import Law
+from wearlaw.pipeline.notes import Notes
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.plugins.fields import specification
+from wearlaw.version import __version__
+from wearlaw_contact_files._reading import read_contact
+from wearlaw_contact_files._worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
+from wearlaw_output.commands import (
     echo,
     fields,
     folder_for,
@@ -17,14 +25,6 @@ from wearlaw.cli.shared import (
     print_notes,
     print_results,
 )
-from wearlaw.contact.contact import Contact
-from wearlaw.models.law import Law
-from wearlaw.pipeline.notes import Notes
-from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.reading import read_contact
-from wearlaw.plugins.fields import specification
-from wearlaw.version import __version__
-from wearlaw_contact_files._worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import named, write_files, written_formats
 from wearlaw_output.folder import results_folder

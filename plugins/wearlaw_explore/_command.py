@@ -9,9 +9,9 @@ import panel as pn
 from bokeh.models import CustomJS
 
 import wearlaw as wl
-from wearlaw.cli.shared import echo, fields, value
 from wearlaw_explore._answer import Subject
 from wearlaw_explore._page import page
+from wearlaw_output.commands import echo, fields, value
 from wearlaw_studies.case import load_case
 
 VIEWPORT = """document.head.insertAdjacentHTML("beforeend",

@@ -10,20 +10,6 @@ from typing import Any
 
 import click
 
-from wearlaw.cli.shared import (
-    contact_model,
-    echo,
-    fields,
-    folder_for,
-    law_of,
-    listed,
-    print_notes,
-    print_results,
-    read_rig,
-    stage,
-    value,
-    values,
-)
 from wearlaw.errors import FitError, PlasticityWarning, shown
 from wearlaw.models.law import Law
 from wearlaw.pipeline.notes import Notes
@@ -37,6 +23,20 @@ from wearlaw_fits.pairs import Pair, compose
 from wearlaw_fits.read_tests import read_tests
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests
+from wearlaw_output.commands import (
+    contact_model,
+    echo,
+    fields,
+    folder_for,
+    law_of,
+    listed,
+    print_notes,
+    print_results,
+    read_rig,
+    stage,
+    value,
+    values,
+)
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import CommandT, named, write_files, written_formats
 from wearlaw_output.folder import results_folder

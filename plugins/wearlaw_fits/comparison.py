@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from html import escape
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -200,17 +201,27 @@ class Comparison:
         return plot(self.figure_data())
 
     def __repr__(self) -> str:
-        frame = self._ranking().drop(columns="tests")
-        frame = frame.loc[:, frame.fillna(0).ne(0).any()]
-        cells = [list(frame.columns), *([_cell(value) for value in row] for row in frame.to_numpy())]
+        frame = self._shown()
+        cells = [list(frame.columns), *frame.to_numpy().tolist()]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in cells]
-        count = f"{len(frame)} predictor{'s' if len(frame) > 1 else ''} on {len(self.tests)} tests"
+        return "\n  ".join([self._head(), *map(str.rstrip, lines)])
+
+    def _repr_html_(self) -> str:
+        return f"<div><b>{escape(self._head())}</b>{self._shown().to_html(index=False, border=0)}</div>"
+
+    def _shown(self) -> pd.DataFrame:
+        """Return the ranking as texts, without columns that say nothing."""
+        frame = self._ranking().drop(columns="tests")
+        return frame.loc[:, frame.fillna(0).ne(0).any()].map(_cell)
+
+    def _head(self) -> str:
+        count = f"{len(self.compared)} predictor{'s' if len(self.compared) > 1 else ''} on {len(self.tests)} tests"
         unit = label(self.outcome, units={self.outcome: self.unit}).rpartition(" [")[2].removesuffix("]")
         of = "" if self.outcome == WEAR else f" of {name_of(self.outcome)}"
         head = f"; rms_error in {unit}" if unit != "-" else ""
         validated = f", fits cross-validated ({self.cross_validated})" if self.cross_validated else ""
-        return "\n  ".join([f"{count}{of}, best first{validated}{head}", *map(str.rstrip, lines)])
+        return f"{count}{of}, best first{validated}{head}"
 
 
 def _cell(value: Any) -> str:

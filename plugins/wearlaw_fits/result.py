@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
@@ -242,21 +243,29 @@ class Fit:
         return predicted
 
     def __repr__(self) -> str:
+        return "\n".join([self._head(), *(f"  {name:<21} {text}" for name, text in self._lines())])
+
+    def _repr_html_(self) -> str:
+        rows = (f"<tr><td>{escape(name)}</td><td>{escape(text)}</td></tr>" for name, text in self._lines())
+        return f"<div><b>{escape(self._head())}</b><table>{''.join(rows)}</table></div>"
+
+    def _head(self) -> str:
         degrees = sum(one.measured.size for one in self.observations) - len(self.parameters)
         counts = " and ".join(f"{one.measured.size} {one.plural}" for one in self.observations)
-        lines = [f"Fit to {counts}, {degrees} degrees of freedom, {self.scatter} scatter"]
+        return f"Fit to {counts}, {degrees} degrees of freedom, {self.scatter} scatter"
+
+    def _lines(self) -> Iterator[tuple[str, str]]:
+        """Yield the names and texts of a summary."""
         for name, value in self.parameters.items():
             low, high = (f"{end.magnitude:.3g}" for end in self.intervals[name])
             unit = repr(value).partition(" ")[2]
-            lines.append(f"  {name:<21} {value.magnitude:<8.4g} ({low} to {high}) {unit}".rstrip())
-        first = self.observations[0]
-        factor = f", a factor of {np.exp(self.rms.magnitude):.4g}" if first.scatter == "relative" else ""
-        lines.append(f"  rms residual          {self.rms!r}{factor}")
+            yield name, f"{value.magnitude:<8.4g} ({low} to {high}) {unit}".rstrip()
+        factor = f", a factor of {np.exp(self.rms.magnitude):.4g}" if self.observations[0].scatter == "relative" else ""
+        yield "rms residual", f"{self.rms!r}{factor}"
         for one in self.lack_of_fit:
             of = f" of {name_of(one.observable)}" if len(self.observations) > 1 else ""
-            lines.append(f"  lack of fit           {'yes' if one.poor else 'none'}{of}: {one}")
-        lines.append(f"  intervals             {self.confidence:.0%}, {self.interval_method}")
-        return "\n".join(lines)
+            yield "lack of fit", f"{'yes' if one.poor else 'none'}{of}: {one}"
+        yield "intervals", f"{self.confidence:.0%}, {self.interval_method}"
 
 
 def _panel(fit: Fit, one: Observations) -> Panel:

@@ -10,8 +10,7 @@ from typing import Any
 
 import click
 
-from wearlaw.cli.describe import accuracies
-from wearlaw.cli.shared import echo, fields, values
+from wearlaw.cli.show import accuracies
 from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, message_of, shown
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
@@ -20,6 +19,7 @@ from wearlaw.plugins import loader
 from wearlaw.plugins.shelf import Shelf, unknown
 from wearlaw_kit.kit import Check, checks, validate_expected
 from wearlaw_kit.scaffold import Kind, write_plugin
+from wearlaw_output.commands import echo, fields, values
 
 
 @click.command("new-plugin")

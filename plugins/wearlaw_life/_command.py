@@ -13,9 +13,9 @@ import click
 import pandas as pd
 
 import wearlaw as wl
-from wearlaw.cli.shared import echo, fields, folder_for, print_notes, print_results
 from wearlaw.pipeline.notes import Notes
 from wearlaw_life._life import Life
+from wearlaw_output.commands import echo, fields, folder_for, print_notes, print_results
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import save_figure, save_table, writing, written_formats
 from wearlaw_output.folder import results_folder

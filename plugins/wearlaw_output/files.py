@@ -13,9 +13,9 @@ import click
 import matplotlib as mpl
 import pandas as pd
 
-from wearlaw.cli.shared import verbose
 from wearlaw.errors import OutputError
 from wearlaw.settings.text_files import FULL, reason_of
+from wearlaw_output.commands import verbose
 from wearlaw_output.curves import FigureData, FigureFormat
 from wearlaw_output.drawing import draw
 from wearlaw_output.styled import latex_table

@@ -6,7 +6,7 @@ import json
 
 import click
 
-from wearlaw.cli.shared import echo_file
+from wearlaw_output.commands import echo_file
 from wearlaw_studies.case import case_schema, case_text
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from wearlaw.cli.describe import wrapped
+from wearlaw.cli.show import wrapped
 from wearlaw.errors import InputError
 from wearlaw.plugins import loader
 from wearlaw.settings.toml_files import parse_toml

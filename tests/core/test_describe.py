@@ -15,7 +15,7 @@ from tests.core import cases
 from tests.core.test_outcomes import Damage as BaseOfDamage
 from tests.core.test_outcomes import Heat
 from tests.plugins.kit.wrong_rigs import Weight
-from wearlaw.cli.describe import describe
+from wearlaw.cli.show import describe
 from wearlaw.models.contact_model import Model
 from wearlaw.plugins import loader
 from wearlaw.settings.docstrings import field_docstrings

@@ -17,8 +17,8 @@ from wearlaw.plugins import loader
 from wearlaw.version import __version__
 
 OWN = (
-    Command("plugins", "wearlaw.cli.model_commands:list_plugins", "List what the installed plugins provide."),
-    Command("show", "wearlaw.cli.model_commands:show", "Explain anything that wearlaw plugins lists."),
+    Command("plugins", "wearlaw.cli.show:list_plugins", "List what the installed plugins provide."),
+    Command("show", "wearlaw.cli.show:show", "Explain anything that wearlaw plugins lists."),
 )
 """The commands of wearlaw itself. Their modules import pandas, matplotlib and more when a command is called."""
 

@@ -41,13 +41,13 @@ Medusa (https://e6.ijs.si/medusa/wiki/index.php/Hertzian_contact); P. J. Vermeul
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
-from wearlaw.arrays.array import Array, extremes
+from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, PlasticityWarning, shown, warn
 from wearlaw.units.quantities import coefficient
 
@@ -204,18 +204,22 @@ def overload(
         The furthest of other points.
     """
     points = [max_pressure, traction_coefficient, friction_coefficient, *(() if axis_ratio is None else (axis_ratio,))]
-    highest, *coefficients = (extremes(array)[1] for array in points[:3])
+    one = max_pressure.size == 1
+    flat: Any = [array.item() for array in points] if one else [array.reshape(-1) for array in points]
+    highest, traction, friction = flat[:3] if one else (array.max() for array in flat[:3])
     for k, nu in bodies:
-        if highest * _most_stressed(nu, max(coefficients)) <= k:
+        if highest * _most_stressed(nu, max(traction, friction)) <= k:
             continue
-        for part in _parts(points):
+        for start in range(0, max_pressure.size, BLOCK):
+            part = flat if one else [array[start : start + BLOCK] for array in flat]
             for measure, beyond in (("forward", True), ("von_mises", False)):
                 known = worst is not None and worst.beyond_shakedown
                 least = worst.ratio if worst is not None and known == beyond else 1.0
                 if not known or beyond:  # beyond shakedown there is no need to check first yield
-                    load, pressure, traction = _greatest_load(measure, k, nu, least, *part)
+                    point = part if one else _furthest(measure, k, nu, least, *part)
+                    load = point[0] * _peak(measure, nu, *point[1:]) / k if point else 0.0
                     if load > least:
-                        worst = Overload(beyond, load, pressure, traction)
+                        worst = Overload(beyond, float(load), *point[:2])
     return worst
 
 
@@ -229,38 +233,27 @@ def _most_stressed(poisson_ratio: float, friction_coefficient: _Value) -> _Value
     return max(0.38, (1.0 - 2.0 * poisson_ratio) / math.sqrt(3.0)) + 1.23 * friction_coefficient
 
 
-def _parts(points: list[Array]) -> Iterator[list[Array]]:
-    if not points[0].ndim:
-        yield points
-        return
-    flat = [array.reshape(-1) for array in points]
-    for start in range(0, flat[0].size, BLOCK):
-        yield [array[start : start + BLOCK] for array in flat]
-
-
-def _greatest_load(
+def _furthest(
     measure: str, k: float, nu: float, least: float, max_pressure: Array, traction: Array, *more: Array
-) -> tuple[float, float, float]:
-    """Return the greatest deciding shear stress over k if it exceeds `least`, with p0 and T/N of the point.
+) -> list[float]:
+    """Return p0, T/N, μ and a/b of the point with the greatest deciding shear stress; [] if it is at most `least` k.
 
-    Of many points, those are left out whose bound is below the stress of one that is close to the greatest.
+    Points are left out whose bound is below the stress of one that is close to the greatest.
     """
-    p0, points = max_pressure, (traction, *more)
-    if p0.ndim:
-        first = int((p0 * traction).argmax())
-        least = max(least, float(p0[first] * _peak(measure, nu, *(array[first] for array in points)) / k))
-        mu = np.maximum(traction, more[0])
-        if measure == "forward":  # at most 0.25 without traction, μ with much, within the error of the tables
-            most = np.maximum(0.251 + 0.326 * mu, (1.0 + 1e-9 if len(more) == 1 else 1.008) * mu)
-        else:
-            most = _most_stressed(nu, mu)
-        chosen = np.flatnonzero(p0 * most >= least * k)
-        if not chosen.size:
-            return 0.0, 0.0, 0.0
-        p0, points = p0[chosen], tuple(array[chosen] for array in points)
-    load = p0 * _peak(measure, nu, *points) / k
-    at = load.argmax() if load.ndim else ()
-    return float(load[at]), float(p0[at]), float(points[0][at])
+    points = (traction, *more)
+    first = int((max_pressure * traction).argmax())
+    least = max(least, float(max_pressure[first] * _peak(measure, nu, *(float(array[first]) for array in points)) / k))
+    mu = np.maximum(traction, more[0])
+    if measure == "forward":  # at most 0.25 without traction, μ with much, within the error of the tables
+        most = np.maximum(0.251 + 0.326 * mu, (1.0 + 1e-9 if len(more) == 1 else 1.008) * mu)
+    else:
+        most = _most_stressed(nu, mu)
+    chosen = np.flatnonzero(max_pressure * most >= least * k)
+    if not chosen.size:
+        return []
+    load = max_pressure[chosen] * _peak(measure, nu, *(array[chosen] for array in points))
+    at = chosen[load.argmax()]
+    return [float(array[at]) for array in (max_pressure, *points)]
 
 
 def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike | None, axis_ratio: ArrayLike) -> Array:
@@ -284,11 +277,11 @@ def _not_negative(value: ArrayLike, name: str) -> Array:
     return array
 
 
-def _peak(measure: str, nu: float, traction: Array, friction: Array, axis_ratio: Array | None = None) -> Array:
-    """Return the greatest value of the deciding shear stress over p0 [-], for arrays of one shape."""
+def _peak(measure: str, nu: float, traction: _Value, friction: _Value, axis_ratio: _Value | None = None) -> _Value:
+    """Return the greatest value of the deciding shear stress over p0 [-], of a point or of arrays of one shape."""
     if axis_ratio is None:
         return _interpolated(_table(measure, nu, 0.0), traction, friction, 0.5)
-    place = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
+    place: Any = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
     lows = np.minimum(np.floor(place), LAST_STEP)
     low = lows.min()
     if low == lows.max():
@@ -296,29 +289,29 @@ def _peak(measure: str, nu: float, traction: Array, friction: Array, axis_ratio:
             _interpolated(_table(measure, nu, 2.0 ** (end / PER_OCTAVE)), traction, friction, 1.0 / 3.0)
             for end in (low, low + 1.0)
         )
-        return at_low + (place - low) * (at_high - at_low)
-    peak: Array = np.empty(place.shape)
+        return at_low + (place - low) * (at_high - at_low)  # type: ignore[no-any-return]
+    peak: Any = np.empty(place.shape)
     for low in np.unique(lows):
         here = lows == low
-        peak[here] = _peak(measure, nu, traction[here], friction[here], axis_ratio[here])
-    return peak
+        peak[here] = _peak(measure, nu, *(array[here] for array in (traction, friction, axis_ratio)))  # type: ignore[index]
+    return peak  # type: ignore[no-any-return]
 
 
-def _interpolated(table: Array, traction: Array, friction: Array, power: float) -> Array:
+def _interpolated(table: Array, traction: _Value, friction: _Value, power: float) -> _Value:
     """Return the value of a table at T/N and μ, times 1 + μ.
 
     T/μN = 1 - (c/a)^(1/power), and the table has steps of √(1 - c/a).
     """
-    mu = np.maximum(np.maximum(friction, traction), TINY)
+    alone = isinstance(traction, float)  # functions of NumPy take ten times as long
+    mu: Any = max(friction, traction, TINY) if alone else np.maximum(np.maximum(friction, traction), TINY)
     u = FRICTIONS * (mu / (1.0 + mu))
     v = SLIPS * (1.0 - (1.0 - traction / mu) ** power) ** 0.5
-    i, j = u.astype(np.intp), v.astype(np.intp)
+    i, j = (int(u), int(v)) if alone else (u.astype(np.intp), v.astype(np.intp))
     f, g = u - i, v - j
     at = WIDTH * i + j
     low = table[at] + g * (table[at + 1] - table[at])
     high = table[at + WIDTH] + g * (table[at + WIDTH + 1] - table[at + WIDTH])
-    peak: Array = (1.0 + mu) * (low + f * (high - low))
-    return peak
+    return (1.0 + mu) * (low + f * (high - low))  # type: ignore[no-any-return]
 
 
 @lru_cache(maxsize=256)

@@ -41,7 +41,8 @@ class LineContactModel(ContactModel):
     def fields(self, problem: Problem, nodes: Nodes) -> LineFields:
         """Return the fields at `nodes`; their positions have the shape (batch, nodes) or broadcast to it.
 
-        The arrays of `problem` have a last axis of length one, so that formulas broadcast against positions.
+        The arrays of `problem` have a last axis of length one, and those of one operating point no axis, so that
+        formulas broadcast against positions.
         """
 
     @abstractmethod
@@ -89,7 +90,8 @@ class LineContactModel(ContactModel):
 
     def at(self, problem: Problem, nodes: Nodes) -> Contact:
         """Return the contact on the given nodes, mirrored where the creepage is negative."""
-        fields = self.fields(problem.forward()[..., None], nodes)
+        forward = problem.forward()
+        fields = self.fields(forward[..., None] if forward.batch_shape else forward, nodes)
         if not (problem.creepage > 0.0).all():
             sign = np.sign(problem.creepage)[..., None]
             fields = dataclasses.replace(fields, traction=sign * fields.traction, slip=sign * fields.slip)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import dataclasses
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property, partial
+from functools import cache, cached_property, lru_cache, partial
 from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast, overload
 
 import numpy as np
@@ -163,20 +163,21 @@ class Rig(Model):
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
-        # A subclass may hand its conditions on: those of the nearest `problem` with a table count.
-        tables = (declared(base.problem) for base in cls.__mro__ if issubclass(base, Rig))
-        known = next((one for one in tables if any(condition.table for condition in one.values())), {})
+        known = _own_conditions(cls)
         arrays: dict[str, Array] = {}
         laws: dict[str, FrictionLaw] = {}
         for name, value in conditions.items():
-            check = known[name].check if name in known else None
-            if value is None or check is None:
+            condition = known.get(name)
+            if value is None or condition is None or condition.check is None:
                 continue
-            if known[name].law and is_friction_law(value):
+            if condition.law and is_friction_law(value):
                 laws[name] = value
             else:
-                arrays[name] = check(value, name)
-        cls._check_names(known, conditions)
+                arrays[name] = condition.check(value, name)
+        if len(arrays) + len(laws) == len(conditions):
+            _check_given(cls, tuple(conditions))
+        else:
+            cls._check_names(known, conditions)
         for name, si in otherwise.items():
             arrays.setdefault(name, np.float64(si))  # type: ignore[arg-type]
         arrays = broadcast(arrays)
@@ -354,6 +355,19 @@ class Rig(Model):
         return Pipeline(rig=self, contact_model=model)
 
 
+@cache
+def _own_conditions(rig: type[Rig]) -> Mapping[str, Condition]:
+    """Return the conditions of the nearest `problem` with a table; a subclass may hand its conditions on."""
+    tables = (declared(base.problem) for base in rig.__mro__ if issubclass(base, Rig))
+    return next((one for one in tables if any(condition.table for condition in one.values())), {})
+
+
+@lru_cache
+def _check_given(rig: type[Rig], names: tuple[str, ...]) -> None:
+    """Check names of conditions that are all given; names that passed once need no second look."""
+    rig._check_names(_own_conditions(rig), dict.fromkeys(names, True))
+
+
 @steady
 def _posed(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
     given = {name: value if type(value) in (str, float) else _read_only(value) for name, value in conditions.items()}
@@ -529,6 +543,8 @@ class Pipeline(Configuration, Generic[P]):
                 RangeWarning,
             )
         rig, declared = self.rig, self.rig.patch_geometry is not None
+        if declared and rig.bodies:
+            return
         for law in self.laws:
             calibration = law.calibration
             if not declared and calibration is not None and calibration.geometry not in ("any", problem.geometry):
@@ -557,7 +573,8 @@ class Pipeline(Configuration, Generic[P]):
             return solved(model, self.laws, problem, watch, on_block, given)
         forces = integrate_forces(model, problem)
         watch.points += problem.size
-        watch.overload = overload_of(problem, forces.tangential, watch.overload)
+        with steadily():
+            watch.overload = overload_of(problem, forces.tangential, watch.overload)
         if on_block is not None:
             on_block(problem.size)
         return Prediction(Solution(problem, model, (), Totals.of_forces(forces), given))

@@ -121,7 +121,6 @@ class RangeWatch:
         return f"{outside} of {self.points} {self.counted} {'lies' if outside == 1 else 'lie'}"
 
 
-@steady
 def overload_of(problem: Problem, tangential_force: Array, worst: Overload | None = None) -> Overload | None:
     """Return the operating point furthest beyond first yield of a body, or None if all are elastic.
 
@@ -133,7 +132,7 @@ def overload_of(problem: Problem, tangential_force: Array, worst: Overload | Non
     worst : Overload, optional
         The furthest of other points.
     """
-    strengths = {body.strength for body in problem.bodies.values() if body.strength is not None}
+    strengths = {strength for body in problem.bodies.values() if (strength := body.strength)}
     if not strengths:
         return worst
     if problem.exists is not None:

@@ -19,8 +19,6 @@ from wearlaw.settings.caught_warnings import caught_warnings
 if TYPE_CHECKING:
     import xarray
 
-    from wearlaw.pipeline.pipeline import Pipeline, Rig
-
 P = ParamSpec("P")
 
 MODEL, LAW = "contact_model", "law"
@@ -42,7 +40,7 @@ class Pipelines(Generic[P]):
 
     def __init__(
         self,
-        rig: Rig,
+        rig: Any,
         models: Sequence[ContactModel],
         stages: Sequence[Stage] = (),
         laws: Sequence[Law] = (),
@@ -51,7 +49,7 @@ class Pipelines(Generic[P]):
         self._parts = rig, models, stages
         self._dims = dims
         every_model, every_law = _labelled(models, ContactModel), _labelled(laws, Law) if laws else {"": None}
-        self.pipelines: dict[tuple[str, str], Pipeline[P]] = {}
+        self.pipelines: dict[tuple[str, str], Any] = {}
         impossible = {}
         for model_label, model in every_model.items():
             for law_label, law in every_law.items():
@@ -106,13 +104,13 @@ class Pipelines(Generic[P]):
 
 
 def composed(
-    rig: Rig,
+    rig: Any,
     model: ContactModel,
     stages: Sequence[Stage],
     law: Law | None,
     geometry: Geometry | None = None,
     remedy: str = TAKE_MEANS,
-) -> Pipeline[Any]:
+) -> Any:
     """Return the pipeline of a contact model and a law; `geometry` is that of the patch if the rig declares none.
 
     Raises
@@ -121,7 +119,7 @@ def composed(
         If its parts do not fit each other.
     """
     check_geometry(rig, model, geometry or rig.patch_geometry)
-    pipeline: Pipeline[Any] = rig | model
+    pipeline = rig | model
     for stage in stages:
         pipeline = pipeline | stage
     if law is None:

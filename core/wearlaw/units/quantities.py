@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypeGuard
 
 import numpy as np
@@ -196,13 +197,13 @@ class Unit:
 
     def _allows(self, in_si: NDArray[np.float64]) -> bool:
         """Return whether the extremes show that no rule is broken; False for an array that is empty or has NaN."""
-        if in_si.size == 0:
+        if not in_si.size:
             return False
         (low, high), limit = extremes(in_si), self._limit_in_si
         above = low > 0.0 if self.positive else low >= (-limit if self.negative else 0.0)
         return above and high <= limit and (self.infinite or (low > -np.inf and high < np.inf))
 
-    @property
+    @cached_property
     def _limit_in_si(self) -> float:
         return self.limit * unit_in_si(self.unit) if self.limit < np.inf else np.inf
 

@@ -13,10 +13,10 @@ from functools import cache
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from plotly.offline import get_plotlyjs
 
-from wearlaw.pipeline.notes import grouped
 from wearlaw.version import __version__
 from wearlaw_output.curves import FigureData
 from wearlaw_output.styled import html_table
+from wearlaw_studies.notes import grouped
 from wearlaw_studies.report.interactive import plotly_figure
 from wearlaw_studies.report.tables import main_table, models, of_section, parameters, profiles, summaries
 from wearlaw_studies.results import axes_of

@@ -215,3 +215,12 @@ def test_tests_that_differ_in_one_condition_have_a_curve_over_it(varied: str) ->
     expected = fit.predict(**{**conditions, varied: over}).wear_rate.magnitude
     np.testing.assert_allclose(curve.y, expected, rtol=1e-9)
     assert isinstance(fit.plot(), Figure)
+
+
+def test_a_notebook_shows_a_fit_and_a_comparison_as_tables(exact_fit: wl.Fit) -> None:
+    html = exact_fit._repr_html_()
+    assert html.count("<tr>") == len(exact_fit.parameters) + 2
+    assert "<td>q_s</td>" in html
+    found = wl.compare({"a <b>": exact_fit, "plain": exact_fit.predict}, exact_fit.tests)._repr_html_()
+    assert "a &lt;b&gt;" in found
+    assert found.count("<tr") == 3

@@ -16,7 +16,7 @@ from tests.core import cases
 from tests.core.cases import InstallModel, case
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.pipeline.notes import grouped  # private: what `wearlaw run` prints of notes
+from wearlaw_studies.notes import grouped  # private: what `wearlaw run` prints of notes
 
 LOADS = ["1000 MPa", "1500 MPa"]
 FRICTIONS = [0.3, 0.4, 0.5]

@@ -1,29 +1,118 @@
-"""A description of a model in words, made from the declarations of its class."""
+"""The commands `plugins` and `show`: what plugins provide, and all about one thing of theirs in words."""
 
 from __future__ import annotations
 
 import inspect
 import json
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeGuard
 
+import click
 import pint
 
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import PATCHES
-from wearlaw.errors import InputError
+from wearlaw.errors import InputError, PluginWarning, UnknownModelError
+from wearlaw.extras import load
+from wearlaw.hookspecs import Command
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.reader import Reader
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
+from wearlaw.plugins.shelf import unknown
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import Q, from_si, text_of
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
+
+OTHERS = "model, material, case, test set or section"
+"""The things that can be shown, in the message for an unknown name."""
+
+
+@click.command("plugins")
+def list_plugins() -> None:
+    """List what the installed plugins provide, by kind and name, and the plugins that failed to load."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PluginWarning)  # the listing below names what is left out
+        found = loader.installed()
+    rows = [("kind", "name", "distribution", "version")]
+    rows += [(kind, name, origin.distribution, origin.version) for kind, name, origin in found.listing()]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        click.echo("  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
+    for plugin in found.broken:
+        click.echo(f"left out: {plugin}", err=True)
+
+
+@click.command()
+@click.argument("name")
+def show(name: str) -> None:
+    """Explain anything that `wearlaw plugins` lists, by its name.
+
+    A model shows its fields with units and defaults, its source, and what it declares; a material its values; a case
+    its models and sweeps; a test set its source and columns; a section the cases that have it.
+    """
+    click.echo(explain(name))
+
+
+def explain(name: str) -> str:
+    """Return the descriptions of everything with a name, separated by blank lines.
+
+    Raises
+    ------
+    UnknownModelError
+        If there is nothing of that name, or two distributions provide a thing of one kind.
+    """
+    found = loader.installed()
+    shelves = [shelf for shelf in found.shelves() if name in shelf.providers]
+    if not shelves:
+        known = dict.fromkeys(one for shelf in found.shelves() for one in shelf.items())
+        raise UnknownModelError(unknown(OTHERS, name, known, found.broken))
+    return "\n\n".join(_explained(shelf.kind, name, shelf.find(name, found.broken)) for shelf in shelves)
+
+
+def _explained(kind: str, name: str, item: Any) -> str:
+    if kind == "parameter set":
+        return describe(type(item), name)
+    found = loader.installed()
+    tell = _TELL.get(kind)
+    if kind in found.explanations:
+        module, _, function = found.explanations[kind].partition(":")
+        tell = load(module, function, f"wearlaw show {name}")
+    if tell is None:
+        return describe(item)
+    head = f"{name}: a {kind} of {found.of_kind(kind).origin(name)}"
+    return "\n".join([head, "", *tell(name, item)])
+
+
+def _material(name: str, material: Material) -> Iterator[str]:
+    yield (inspect.getdoc(type(material)) or "").partition("\n\n")[0]  # the rest is for authors of classes
+    yield from ("", "fields:", *fields_of(type(material), material))
+    yield from ("", f'In a case: material = "{name}". In Python: wl.material("{name}").')
+
+
+def _material_type(name: str, cls: type[Material]) -> Iterator[str]:
+    yield inspect.getdoc(cls) or ""
+    yield from ("", "fields:", *fields_of(cls, None))
+    yield from ("", f'In a case: material = {{type = "{name}", ...}} with these fields.')
+
+
+def _command(name: str, command: Command) -> Iterator[str]:
+    yield command.help
+    yield from ("", f"wearlaw {name} --help lists its options.")
+
+
+_TELL: dict[str, Callable[[str, Any], Iterator[str]]] = {
+    "material": _material,
+    "material type": _material_type,
+    "command": _command,
+}
+"""What makes the lines of the kinds that are no models."""
 
 
 def describe(model: type[Model], parameter_set: str | None = None) -> str:
@@ -50,7 +139,10 @@ def fields_of(model: type[Configuration], default: Configuration | None) -> Iter
     schema = model.model_json_schema(by_alias=False).get("properties", {})
     shown: dict[type, str] = {}
     for name, text in field_docstrings(model).items():
-        yield from _field(name, _value(model, default, name), _choices(schema[name]), text)
+        yield f"  {name} {_value(model, default, name)}"
+        if choices := _choices(schema[name]):
+            yield f"      one of {', '.join(choices)}"
+        yield from wrapped("      ", text)
         part = model.model_fields[name].annotation
         if not _is_table(part):
             continue
@@ -106,13 +198,8 @@ def _call(function: str, *arguments: str) -> Iterator[str]:
 
 
 def _keywords(values: Mapping[str, Any]) -> list[str]:
-    return [f"{name}={_literal(value)}" for name, value in values.items()]
-
-
-def _literal(value: Any) -> str:
-    """Return a value as Python code, with quantities as text."""
-    written = isinstance(value, str | pint.Quantity | Mapping)
-    return json.dumps(value, ensure_ascii=False, default=text_of) if written else repr(value)
+    """Return arguments as Python code, with quantities as text."""
+    return [f"{name}={json.dumps(value, ensure_ascii=False, default=text_of)}" for name, value in values.items()]
 
 
 def _default(model: type[Model]) -> Model | None:
@@ -132,13 +219,6 @@ def _value(model: type[Configuration], default: Configuration | None, name: str)
         return "(must be given)"
     value = field.get_default(call_default_factory=True)
     return f"= {value if field.validate_default else _shown(value)}"  # text to be validated is a quantity's
-
-
-def _field(name: str, value: str, choices: Sequence[str], description: str) -> Iterator[str]:
-    yield f"  {name} {value}"
-    if choices:
-        yield f"      one of {', '.join(choices)}"
-    yield from wrapped("      ", description)
 
 
 def _shown(value: Any) -> str:
