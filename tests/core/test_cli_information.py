@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import assert_refused, table, wearlaw, write
 from tests.core.distributions import FIRST_PARTY_MODELS, Install
-from wearlaw.plugins import loader
+from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import case_schema, case_text
 
 # case, schema, show, help
