@@ -522,7 +522,7 @@ def test_a_disc_and_a_cone_are_not_upside_down() -> None:
     [
         ({"kind": "wheel"}, "needs the name of a formula, or points with y and z"),
         ({"kind": "wheel", "y": Q(Y, "mm")}, "needs the name of a formula, or points"),
-        ({"kind": "wheel", "formula": "s1003"}, "no profile is called 's1003'; there are s1002, uic60"),
+        ({"kind": "wheel", "formula": "s1003"}, "no profile is called 's1003'; did you mean 's1002'"),
         ({"kind": "rail", "formula": "s1002"}, "kind: 's1002' is a wheel, not a rail"),
         ({"kind": "wheel", "formula": "s1002", "y": Q(Y, "mm")}, "takes a formula or points, not both"),
         ({"kind": "tram", "formula": "s1002"}, "kind: input should be 'wheel' or 'rail'"),
