@@ -11,8 +11,8 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import assert_refused, table, wearlaw, write
 from tests.core.distributions import FIRST_PARTY_MODELS, Install
-from wearlaw.plugins import loader
-from wearlaw_studies.case import case_schema, case_text
+from wearlaw.plugins import loader  # private: what is installed, changed for a test
+from wearlaw_studies.case import case_schema, case_text  # private: a case without its files
 
 # case, schema, show, help
 

@@ -14,9 +14,9 @@ from tests import reference
 from tests.core.integrals import MEANS, REFERENCE, Points, integrate_wear
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array
-from wearlaw.contact.quadrature import uniform_cells
-from wearlaw.numerics.integrate import integrate_forces
-from wearlaw.numerics.staged import staged
+from wearlaw.contact.quadrature import uniform_cells  # private: the nodes of a zone, against their theory
+from wearlaw.numerics.integrate import integrate_forces  # private: integrals and their blocks, without a rig
+from wearlaw.numerics.staged import staged  # private: one step of the integration, against its theory
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 

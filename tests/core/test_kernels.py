@@ -7,8 +7,8 @@ import sys
 import pytest
 
 import wearlaw as wl
-from wearlaw.arrays import kernels
-from wearlaw.arrays.kernels import WORTHWHILE, accelerated
+from wearlaw.arrays import kernels  # private: which loops are compiled
+from wearlaw.arrays.kernels import WORTHWHILE, accelerated  # private: which loops are compiled
 
 pytestmark = pytest.mark.usefixtures("by_size_again")
 

@@ -12,7 +12,14 @@ from hypothesis import strategies as st
 
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw.contact.quadrature import ORDER, Nodes, Zone, join, remainder, uniform_cells
+from wearlaw.contact.quadrature import (  # private: the nodes of a zone, against their theory
+    ORDER,
+    Nodes,
+    Zone,
+    join,
+    remainder,
+    uniform_cells,
+)
 
 HALF_WIDTH, LENGTH = np.array(1.1), np.array(1.4)
 

@@ -13,8 +13,8 @@ from scipy.integrate import quad
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.pipeline.ranges import SLIDING
-from wearlaw_sweeps import points
+from wearlaw.pipeline.ranges import SLIDING  # private: the bound of a warning
+from wearlaw_sweeps import points  # private: small blocks
 
 DISCS = wl.TwinDisc.suros(material=wl.steel(shear_yield_stress=None))
 WHEEL = wl.WheelRail(

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from wearlaw.plugins.fields import specification
+from wearlaw.plugins.fields import specification  # private: how a case writes a model
 
 
 class Holder(wl.Configuration):

@@ -14,7 +14,12 @@ from pydantic import TypeAdapter
 import wearlaw as wl
 from tests.core.units import LENGTH, TO_SI
 from wearlaw import Q
-from wearlaw.units.quantities import coefficient, from_si, in_unit, real_array
+from wearlaw.units.quantities import (  # private: one step of the way into SI units
+    coefficient,
+    from_si,
+    in_unit,
+    real_array,
+)
 
 CREEPAGE = wl.Unit("", positive=False, limit=1.0)
 

@@ -15,12 +15,11 @@ from scipy import integrate
 
 import wearlaw as wl
 from tests.strategies import EPS, log_uniform
-from wearlaw import Q
-from wearlaw.contact import hertz
-from wearlaw.contact.material import dundurs_beta
-from wearlaw.pipeline.composition import COUPLING
-from wearlaw_studies.case import Case
-from wearlaw_studies.study import run
+from wearlaw import Q, hertz
+from wearlaw.contact.material import dundurs_beta  # private: one formula of the contact, against its theory
+from wearlaw.pipeline.composition import COUPLING  # private: the bound of a warning
+from wearlaw_studies.case import Case  # private: a case without its files
+from wearlaw_studies.study import run  # private: a case run without its files
 
 STEEL = wl.steel()
 POLYMER = wl.Material(youngs_modulus="3 GPa", poisson_ratio=0.4, density="1200 kg/m^3")

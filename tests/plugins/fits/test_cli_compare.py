@@ -77,7 +77,9 @@ def test_a_fit_that_the_tests_do_not_determine_on_one_contact_is_left_out(monkey
             raise wl.FitError("no test determines it")
         return fit(predict, *arguments, **options)
 
-    monkeypatch.setattr("wearlaw_fits.commands.fit_parameters", refuse_global)
+    monkeypatch.setattr(
+        "wearlaw_fits.commands.fit_parameters", refuse_global
+    )  # private: one part of a fit, without the whole
     result = wearlaw(*COMPARE, "--free", "usfd=q_s")
     assert result.exit_code == 0
     assert "note: usfd fitted on global is left out: no test determines it\n" in result.stderr

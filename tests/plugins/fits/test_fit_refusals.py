@@ -200,7 +200,7 @@ def test_a_fit_at_a_bound_is_warned_of_and_the_caller_is_named() -> None:
 
 
 def test_a_fit_that_does_not_converge_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw_fits.least_squares.ITERATIONS", 0.2)
+    monkeypatch.setattr("wearlaw_fits.least_squares.ITERATIONS", 0.2)  # private: the search, against its theory
     predict = usfd("exact")
     refused("has not converged", predict, made_up(predict, 0.1), ALL, starts=0, bounds={})
 

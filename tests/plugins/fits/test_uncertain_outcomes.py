@@ -15,9 +15,13 @@ from tests.core.outcome_laws import MIXED, Damage, Heat, Volume
 from tests.plugins.fits.fits import EXACT
 from tests.plugins.fits.test_fit_stages import Rubbed, Softer
 from wearlaw import Q
-from wearlaw_fits.pairs import Pair
-from wearlaw_studies.uncertainty import UncertainPair, uncertainty_of
-from wearlaw_studies.uncertainty_files import LONGEST_NAME, figure_files, write_uncertainty
+from wearlaw_fits.pairs import Pair  # private: one part of a fit, without the whole
+from wearlaw_studies.uncertainty import UncertainPair, uncertainty_of  # private: one part of a study, without the whole
+from wearlaw_studies.uncertainty_files import (  # private: one part of a study, without the whole
+    LONGEST_NAME,
+    figure_files,
+    write_uncertainty,
+)
 
 EPS = float(np.finfo(np.float64).eps)
 GIVEN: Any = {"max_pressure": Q(1000, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}  # full slip
@@ -148,7 +152,9 @@ def test_the_uncertainty_of_a_case_has_rows_for_each_outcome(tmp_path: Path, mon
     (tmp_path / "case.toml").write_text(CASE)
     case = wl.load_case(str(tmp_path / "case.toml"))
     pair = Pair("exact", "kth", EXACT.with_law(KTH, Heat()))
-    monkeypatch.setattr("wearlaw_studies.uncertainty.pairs_of", lambda *_: [pair])
+    monkeypatch.setattr(
+        "wearlaw_studies.uncertainty.pairs_of", lambda *_: [pair]
+    )  # private: one part of a study, without the whole
     found = uncertainty_of(case, 64, 0)
     table = found.wear_rates
     assert table.columns.tolist() == ["point", "pair", "outcome", "unit", "median", "2.5 %", "97.5 %"]

@@ -13,7 +13,7 @@ from tests.plugins.fits.fits import CREEPAGE, EXACT, FRICTION, GLOBAL, PRESSURE,
 from tests.plugins.fits.uncertain import FULL_SLIP, USFD
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_studies.uncertain_point import UncertainPoint
+from wearlaw_studies.uncertain_point import UncertainPoint  # private: one part of a study, without the whole
 
 
 @wl.as_wear_law(
