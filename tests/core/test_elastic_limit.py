@@ -13,11 +13,12 @@ import wearlaw as wl
 from tests.reference import Point
 from tests.reference import exact as carter
 from wearlaw import Array, elastic_limit
-from wearlaw.contact.elastic_limit import (  # private: stresses at a depth, against their theory
-    _stresses,
-    first_yield,
-    overload,
-    shakedown_limit,
+from wearlaw.contact.elastic_limit import _stresses  # private: stresses at a point
+
+first_yield, overload, shakedown_limit = (
+    elastic_limit.first_yield,
+    elastic_limit.overload,
+    elastic_limit.shakedown_limit,
 )
 
 K = 2.625e9 / 2.8 / math.sqrt(3.0)

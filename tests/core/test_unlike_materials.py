@@ -16,8 +16,8 @@ from scipy import integrate
 import wearlaw as wl
 from tests.strategies import EPS, log_uniform
 from wearlaw import Q, hertz
-from wearlaw.contact.material import dundurs_beta  # private: one formula of the contact, against its theory
-from wearlaw.pipeline.composition import COUPLING  # private: the bound of a warning
+from wearlaw.contact.material import dundurs_beta  # private: Dundurs' constant, which only a warning shows
+from wearlaw.pipeline.composition import COUPLING  # private: the constant of a formula
 from wearlaw_studies.case import Case  # private: a case without its files
 from wearlaw_studies.study import run  # private: a case run without its files
 

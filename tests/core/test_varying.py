@@ -12,8 +12,8 @@ from pydantic import Field
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import InputError, Q
-from wearlaw.numerics.integrate import BLOCK, integrate_laws  # private: integrals and their blocks, without a rig
-from wearlaw.settings.parameters import (  # private: numbers of a law that vary
+from wearlaw.numerics.integrate import BLOCK, integrate_laws  # private: integrals at the size of blocks
+from wearlaw.settings.parameters import (  # private: the numbers of a record, for fits
     allowed_range,
     changed,
     number_in_si,
