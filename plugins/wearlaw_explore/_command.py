@@ -11,7 +11,7 @@ from bokeh.models import CustomJS
 import wearlaw as wl
 from wearlaw_explore._answer import Subject
 from wearlaw_explore._page import page
-from wearlaw_output.commands import echo, fields, value
+from wearlaw_output.commands import echo, values
 from wearlaw_studies.case import load_case
 
 VIEWPORT = """document.head.insertAdjacentHTML("beforeend",
@@ -36,7 +36,7 @@ def explore(rig: str, conditions: tuple[str, ...], port: int, browser: bool) -> 
     ends it.
     """  # noqa: D301
     subject = named(rig)
-    start = {name: value(text) for name, text in fields("--set", conditions, "CONDITION=VALUE").items()}
+    start = values("--set", conditions)
     page(subject, start)  # an error before the server starts
     server: Any = pn.serve(
         lambda: _served(subject, start), port=port, address="localhost", show=browser, start=False, verbose=False,

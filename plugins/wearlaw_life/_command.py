@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,7 +14,7 @@ import pandas as pd
 import wearlaw as wl
 from wearlaw.pipeline.notes import Notes
 from wearlaw_life._life import Life
-from wearlaw_output.commands import echo, fields, folder_for, print_notes, print_results
+from wearlaw_output.commands import echo, folder_for, print_notes, print_results, value, values
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import save_figure, save_table, writing, written_formats
 from wearlaw_output.folder import results_folder
@@ -73,10 +72,7 @@ def life(
     folder = output if output is not None else folder_for(str(line), "life")
     partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
     loaded, notes = load_case(case), Notes()
-    until = {name: _plain(text) for name, text in fields("--until", limits, "MEASURE=VALUE").items()}
-    given: dict[str, Any] = {
-        name: _plain(text) for name, text in fields("--set", conditions, "CONDITION=VALUE").items()
-    }
+    given: dict[str, Any] = values("--set", conditions)
     with results_folder(folder, overwrite, LIFE) as fresh:
         with notes.of("life"):
             pipeline = loaded.rig | loaded.contact_models[0]
@@ -84,9 +80,9 @@ def life(
                 pipeline = pipeline | stage
             predict = pipeline | loaded.wear_laws[0]
             found = wl.wear_out(
-                predict, line, over=_plain(over) if body == "rail" else over, share=share, until=until, body=body,
-                sides=sides, depth_step=depth_step, smoothing=smoothing, workers=workers, store=partial, resume=resume,
-                progress=True, **given,
+                predict, line, over=value(over) if body == "rail" else over, share=share,
+                until=values("--until", limits), body=body, sides=sides, depth_step=depth_step, smoothing=smoothing,
+                workers=workers, store=partial, resume=resume, progress=True, **given,
             )  # fmt: skip
         names = _write(found, notes.texts, fresh, figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
@@ -117,12 +113,3 @@ def _write(
         text = json.dumps(record, indent=2, ensure_ascii=False)
         (folder / LIFE).write_text(text + "\n", encoding="utf-8")
     return [*names, LIFE]
-
-
-def _plain(text: str) -> str | float:
-    """Return a plain number as such; other texts have a unit."""
-    try:
-        number = float(text)
-    except ValueError:
-        return text
-    return number if math.isfinite(number) else text
