@@ -373,6 +373,10 @@ def test_at_one_point_the_fields_of_the_patch_are_shown() -> None:
     np.testing.assert_allclose(shown, np.sort(100.0 * patch.contact.slip.reshape(-1)), rtol=4 * EPS)
     one = axles.PREDICT(**GIVEN)[2].sel(side="right", patch=2)
     assert one.plot().get_ylabel() == "position y across the patch [mm]"
+    with pytest.raises(wl.InputError, match="'max_pressure' is no field of its patch"):
+        found.plot("max_pressure")
+    with pytest.raises(wl.InputError, match="the contact model gives means of its patch; give a condition several val"):
+        GLOBAL(**POINT).plot()
 
 
 def test_the_cells_of_a_patch_fill_its_ellipse_and_no_more() -> None:
@@ -384,10 +388,6 @@ def test_the_cells_of_a_patch_fill_its_ellipse_and_no_more() -> None:
     assert sides.prod(axis=1).sum() == pytest.approx(1e6 * patch.contact.area.sum(), rel=1e-12)
     reach = np.abs(corners).max(axis=(0, 1)) / (a, b)
     assert np.all((reach > 0.95) & (reach < 1.0 + 1e-9))
-    with pytest.raises(wl.InputError, match="'max_pressure' is no field of its patch"):
-        found.plot("max_pressure")
-    with pytest.raises(wl.InputError, match="the contact model gives means of its patch; give a condition several val"):
-        GLOBAL(**POINT).plot()
 
 
 def test_pictures_of_too_many_axes_or_of_no_values_are_refused() -> None:
