@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop
 from wearlaw.contact import elastic_limit, half_space, hertz, hertz_ellipse, kalker
-from wearlaw.contact.conditions import Coefficient, Condition, Creepage, Friction
+from wearlaw.contact.conditions import Coefficient, Condition, Creepage, FallingFriction, Friction
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
-from wearlaw.contact.friction import FallingFriction
 from wearlaw.contact.material import Material, steel
 from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem, Strips
 from wearlaw.contact.quadrature import Nodes
@@ -46,8 +45,7 @@ from wearlaw.errors import (
 )
 from wearlaw.extras import load as _load
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
-from wearlaw.models.contact_model import Claim, ContactModel, Scale
-from wearlaw.models.creep_force_model import CreepForceModel
+from wearlaw.models.contact_model import Claim, ContactModel, CreepForceModel, Scale
 from wearlaw.models.functions import as_wear_law
 from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome
 from wearlaw.models.line_contact_model import FieldVariable, LineContactModel

@@ -20,7 +20,7 @@ from wearlaw.models.reader import Reader
 from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.plugins import loader
-from wearlaw.plugins.shelf import unknown
+from wearlaw.plugins.loader import unknown
 from wearlaw.settings.text_files import read_start
 
 File: TypeAlias = str | os.PathLike[str]

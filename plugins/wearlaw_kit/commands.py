@@ -16,7 +16,7 @@ from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
-from wearlaw.plugins.shelf import Shelf, unknown
+from wearlaw.plugins.loader import Shelf, unknown
 from wearlaw_kit.kit import Check, checks, validate_expected
 from wearlaw_kit.scaffold import Kind, write_plugin
 from wearlaw_output.commands import echo, fields, values

@@ -1,18 +1,25 @@
 """Studies: what a case file describes is computed, drawn, and written with a report."""
 
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import wearlaw as wl
 
+STARTERS = ("two_discs", "my_tests")
+"""Short cases to start from; `wheel_on_rail` and `wheelset` are those of their rigs."""
+
 
 @wl.hookimpl
-def wearlaw_resources() -> dict[str, dict[str, wl.ResourceKind]]:
-    """Return the kinds of resources that this plugin looks up."""
+def wearlaw_resources() -> dict[str, dict[str, Any]]:
+    """Return the kinds of resources that this plugin looks up, and cases to start from."""
+    folder = Path(__file__).with_name("starters")
     return {
+        "case": {name: (folder / f"{name}.toml").read_text(encoding="utf-8") for name in STARTERS},
         "kind": {
             "case": wl.ResourceKind(str, "wearlaw_studies.explained:explain_case"),
             "section": wl.ResourceKind(Callable, "wearlaw_studies.explained:explain_section"),  # type: ignore[arg-type]
-        }
+        },
     }
 
 

@@ -51,10 +51,9 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
 from wearlaw.plugins.law_files import is_law_file
-from wearlaw.plugins.shelf import Shelf
+from wearlaw.plugins.loader import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
-from wearlaw.settings.text_files import beside, read_text, reading
-from wearlaw.settings.toml_files import LARGEST, parse_toml
+from wearlaw.settings.text_files import LARGEST, beside, parse_toml, read_text, reading
 from wearlaw.units.variables import UNITS
 from wearlaw_studies.figure_spec import FigureSpec
 from wearlaw_studies.grid import Condition, Grid

@@ -13,7 +13,10 @@ from wearlaw_studies.case import case_schema, case_text
 @click.command()
 @click.argument("name")
 def case(name: str) -> None:
-    """Print a case file: NAME is the name of a shipped one (tassini2010, wheel_on_rail, wheelset), or a path."""
+    """Print a case file to start from.
+
+    NAME is two_discs, my_tests, wheel_on_rail, wheelset, wheel_life, tassini2010, or a path.
+    """
     echo_file(case_text(name))
 
 

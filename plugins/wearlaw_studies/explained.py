@@ -10,7 +10,7 @@ from typing import Any
 from wearlaw.cli.show import wrapped
 from wearlaw.errors import InputError
 from wearlaw.plugins import loader
-from wearlaw.settings.toml_files import parse_toml
+from wearlaw.settings.text_files import parse_toml
 from wearlaw_studies.case import load_case
 
 

@@ -52,7 +52,7 @@ from wearlaw_sweeps.evaluator import Evaluator
 from wearlaw_sweeps.points import Points
 
 if TYPE_CHECKING:
-    from wearlaw.plugins.shelf import Shelf
+    from wearlaw.plugins.loader import Shelf
     from wearlaw_output.curves import FigureData
     from wearlaw_studies.grid import Grid
 

@@ -130,6 +130,8 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
 
 def crossed_steps(y: Array, z: Array) -> tuple[int, int] | None:
     """Return the first two steps between points that cross each other, by the indices of their first points."""
+    if (np.diff(y) > 0.0).all():  # no step comes back to the y of another
+        return None
     count = y.size - 1
     starts = np.arange(0, count, BLOCK)
     low, high = [], []

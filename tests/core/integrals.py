@@ -12,8 +12,8 @@ import wearlaw as wl
 from tests import reference
 from tests.strategies import LINE_MODELS
 from wearlaw import Array, Q
-from wearlaw.numerics import integrate
-from wearlaw.numerics.integrate import integrate_forces
+from wearlaw.numerics import integrate  # private: integrals at the size of blocks
+from wearlaw.numerics.integrate import integrate_forces  # private: integrals at the size of blocks
 
 Solve = Callable[[reference.Point], reference.Solution]
 REFERENCE: dict[str, Solve] = {

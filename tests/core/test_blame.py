@@ -11,7 +11,7 @@ import wearlaw as wl
 from tests.core.distributions import Install
 from tests.core.stages import CONDITIONS, EXACT, FASTSIM, KTH, ON_RAILS, RAILS, RIG, silently
 from wearlaw import Q
-from wearlaw.numerics.integrate import integrate_laws
+from wearlaw.numerics.integrate import integrate_laws  # private: integrals at the size of blocks
 
 PLUGIN = """
     from typing import Annotated, Any

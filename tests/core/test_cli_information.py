@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import assert_refused, table, wearlaw, write
 from tests.core.distributions import FIRST_PARTY_MODELS, Install
-from wearlaw.plugins import loader
+from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import case_schema, case_text
 
 # case, schema, show, help
@@ -95,7 +95,7 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
         ["material", "type", "SteelWithHardness", "wearlaw", wl.__version__],
         *(
             ["case", name, "wearlaw", wl.__version__]
-            for name in ("tassini2010", "wheel_life", "wheel_on_rail", "wheelset")
+            for name in ("my_tests", "tassini2010", "two_discs", "wheel_life", "wheel_on_rail", "wheelset")
         ),
         ["section", "life", "wearlaw", wl.__version__],
         *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4", "tables")),
@@ -202,4 +202,4 @@ def test_a_misspelt_command_suggests_one() -> None:
 @pytest.mark.parametrize("command", ["case", "run"])
 def test_help_names_every_shipped_case(command: str) -> None:
     text = " ".join(wearlaw(command, "--help").stdout.split())
-    assert "(tassini2010, wheel_on_rail, wheelset)" in text
+    assert "two_discs, my_tests, wheel_on_rail, wheelset, wheel_life" in text

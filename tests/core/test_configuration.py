@@ -15,8 +15,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import Linear
-from wearlaw import Q
-from wearlaw.settings.configuration import Configuration
+from wearlaw import Configuration, Q
 from wearlaw_studies.grid import Axis
 
 STEEL = wl.steel()

@@ -16,9 +16,9 @@ from tests.core.test_outcomes import Damage as BaseOfDamage
 from tests.core.test_outcomes import Heat
 from tests.plugins.kit.wrong_rigs import Weight
 from wearlaw.cli.show import describe
-from wearlaw.models.contact_model import Model
-from wearlaw.plugins import loader
-from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.models.contact_model import Model  # private: the bound of a quadrature
+from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
+from wearlaw.settings.docstrings import field_docstrings  # private: what `show`, schemas and signatures say of fields
 
 MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}
 

@@ -12,9 +12,14 @@ from scipy import optimize
 import wearlaw as wl
 from tests.reference import Point
 from tests.reference import exact as carter
-from wearlaw import Array
-from wearlaw.contact import elastic_limit
-from wearlaw.contact.elastic_limit import _stresses, first_yield, overload, shakedown_limit
+from wearlaw import Array, elastic_limit
+from wearlaw.contact.elastic_limit import _stresses  # private: stresses at a point
+
+first_yield, overload, shakedown_limit = (
+    elastic_limit.first_yield,
+    elastic_limit.overload,
+    elastic_limit.shakedown_limit,
+)
 
 K = 2.625e9 / 2.8 / math.sqrt(3.0)
 """Yield stress in shear of the default steel, by von Mises [Pa]."""

@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import errors
-from wearlaw.errors import Fault, did_you_mean
+from wearlaw.errors import Fault, did_you_mean  # private: how messages are made
 
 CLASSES = [found for _, found in inspect.getmembers(errors, inspect.isclass) if issubclass(found, Exception)]
 

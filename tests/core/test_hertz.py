@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy import integrate
 
 from tests.strategies import EPS, log_uniform
-from wearlaw.contact import hertz
+from wearlaw import hertz
 
 
 def test_the_relative_radius_of_equal_discs_is_half_of_theirs() -> None:

@@ -12,8 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.strategies import EPS, log_uniform
-from wearlaw.arrays.array import Array
-from wearlaw.contact import hertz, hertz_ellipse
+from wearlaw import Array, hertz, hertz_ellipse
 
 AXIS_RATIOS = sorted(
     {*np.geomspace(1e-3, 1e3, 24), *(1.0 + sign * gap for sign in (-1, 1) for gap in np.logspace(-9, -1, 9))}

@@ -14,9 +14,9 @@ from tests.core.integrals import FULL_SLIP, MEANS, REFERENCE, RIG, SPEED, Points
 from tests.roots import brentq
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
-from wearlaw.numerics import integrate
-from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK, integrate_forces, integrate_slip
-from wearlaw.numerics.totals import Totals
+from wearlaw.numerics import integrate  # private: integrals at the size of blocks
+from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK, integrate_forces, integrate_slip  # private: sizes of blocks
+from wearlaw.numerics.totals import Totals  # private: what the integrator returns
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 

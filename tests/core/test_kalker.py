@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.strategies import EPS
-from wearlaw.contact import kalker
+from wearlaw import kalker
 
 NAMES = "c11", "c22", "c23", "c33"
 POISSON_RATIOS = 0.0, 0.25, 0.5

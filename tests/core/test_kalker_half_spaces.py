@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from tests.half_spaces import contact, solved
-from wearlaw.arrays.array import Array
-from wearlaw.contact import kalker
+from wearlaw import Array, kalker
 
 
 def values(axis_ratio: float, poisson_ratio: float) -> list[float]:

@@ -7,8 +7,9 @@ import sys
 import pytest
 
 import wearlaw as wl
-from wearlaw.arrays import kernels
-from wearlaw.arrays.kernels import WORTHWHILE, accelerated
+from wearlaw import accelerated
+from wearlaw.arrays import kernels  # private: the choice between NumPy and numba
+from wearlaw.arrays.kernels import WORTHWHILE  # private: the choice between NumPy and numba
 
 pytestmark = pytest.mark.usefixtures("by_size_again")
 

@@ -14,8 +14,8 @@ import wearlaw as wl
 from tests.core.cases import Linear
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
-from wearlaw.contact.quadrature import ORDER
-from wearlaw.pipeline import prediction as result
+from wearlaw.contact.quadrature import ORDER  # private: rules of quadrature, which no result shows alone
+from wearlaw.pipeline import prediction as result  # private: its limits
 from wearlaw_kit import line_problems
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")

@@ -15,7 +15,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import POINT, case, load, table, wearlaw
 from tests.core.distributions import Install
-from wearlaw.plugins import loader
+from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import case_schema, load_case, written
 from wearlaw_studies.report.tables import parameters
 from wearlaw_studies.study import provenance, run

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.strategies import EPS
-from wearlaw import Array
-from wearlaw.contact.quadrature import ORDER, Nodes, Zone, join, remainder, uniform_cells
+from wearlaw import Array, Nodes
+from wearlaw.contact.quadrature import ORDER, Zone, join, remainder, uniform_cells  # private: no result shows them
 
 HALF_WIDTH, LENGTH = np.array(1.1), np.array(1.4)
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.core.units import TO_SI
 from wearlaw import Q
-from wearlaw.units.quantities import from_si, full_text, text_of
+from wearlaw.units.quantities import from_si, full_text, text_of  # private: texts and floats at the rim
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 

@@ -10,8 +10,8 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw.contact.contact import NODE_VARIABLES
-from wearlaw.units.variables import UNITS
+from wearlaw.contact.contact import NODE_VARIABLES  # private: the list of variables
+from wearlaw.units.variables import UNITS  # private: the list of variables and their units
 
 AREA = np.array([[1.0, 2.0, 3.0], [4.0, 4.0, 4.0]])
 SLIP = np.array([[0.0, 0.1, -0.2], [0.0, 0.0, 0.0]])

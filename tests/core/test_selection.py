@@ -22,7 +22,7 @@ from tests.core.axles import (
 )
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.numerics import integrate
+from wearlaw.numerics import integrate  # private: integrals at the size of blocks
 
 EVERY = (
     "wear_rate", "wear_rate_error", "longitudinal_force", "lateral_force", "spin_moment", "tangential_force",

@@ -14,8 +14,8 @@ import wearlaw as wl
 from tests.plugins.kit.cells import Cells
 from tests.plugins.kit.strips import Strips
 from wearlaw import Array, Q
-from wearlaw.models.contact_model import QUADRATURE
-from wearlaw.numerics.solving import EVERY, Solver
+from wearlaw.models.contact_model import QUADRATURE  # private: the bound of a quadrature
+from wearlaw.numerics.solving import EVERY, Solver  # private: what the solver checks of each block
 
 RIG = wl.TwinDisc.suros()
 RAIL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")

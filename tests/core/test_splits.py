@@ -10,8 +10,8 @@ import pytest
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Array, Q
-from wearlaw.numerics.solving import Solver
-from wearlaw.numerics.splits import split_rates
+from wearlaw.numerics.solving import Solver  # private: what the solver checks of each block
+from wearlaw.numerics.splits import split_rates  # private: rates of split cells, not their sum
 
 RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 FULL_SLIP: Any = {"normal_force": "80 kN", "longitudinal_creepage": "10 %", "friction_coefficient": 0.3}

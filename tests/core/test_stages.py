@@ -12,7 +12,7 @@ import wearlaw as wl
 from tests.core.distributions import Install
 from tests.core.stages import CONDITIONS, EXACT, FASTSIM, GLOBAL, KTH, RIG, predicted, silently
 from wearlaw import Array, Q
-from wearlaw.numerics.integrate import integrate_forces
+from wearlaw.numerics.integrate import integrate_forces  # private: integrals at the size of blocks
 
 EPS = float(np.finfo(np.float64).eps)
 RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="2 m/s")

@@ -15,8 +15,8 @@ from pint.registry import LazyRegistry
 import wearlaw as wl
 from tests.core.units import LENGTH
 from wearlaw import Q
-from wearlaw.units.quantities import from_si
-from wearlaw.units.registry import quantity_class
+from wearlaw.units.quantities import from_si  # private: texts and floats at the rim
+from wearlaw.units.registry import quantity_class  # private: registries of other packages
 
 T = TypeVar("T")
 

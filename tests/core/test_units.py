@@ -13,8 +13,8 @@ from pydantic import TypeAdapter
 
 import wearlaw as wl
 from tests.core.units import LENGTH, TO_SI
-from wearlaw import Q
-from wearlaw.units.quantities import coefficient, from_si, in_unit, real_array
+from wearlaw import Q, coefficient
+from wearlaw.units.quantities import from_si, in_unit, real_array  # private: texts and floats at the rim
 
 CREEPAGE = wl.Unit("", positive=False, limit=1.0)
 

@@ -15,10 +15,9 @@ from scipy import integrate
 
 import wearlaw as wl
 from tests.strategies import EPS, log_uniform
-from wearlaw import Q
-from wearlaw.contact import hertz
-from wearlaw.contact.material import dundurs_beta
-from wearlaw.pipeline.composition import COUPLING
+from wearlaw import Q, hertz
+from wearlaw.contact.material import dundurs_beta  # private: Dundurs' constant, which only a warning shows
+from wearlaw.pipeline.composition import COUPLING  # private: the constant of a formula
 from wearlaw_studies.case import Case
 from wearlaw_studies.study import run
 

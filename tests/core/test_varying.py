@@ -11,10 +11,15 @@ from pydantic import Field
 
 import wearlaw as wl
 from tests.strategies import EPS
-from wearlaw import Q
-from wearlaw.errors import InputError
-from wearlaw.numerics.integrate import BLOCK, integrate_laws
-from wearlaw.settings.parameters import allowed_range, changed, number_in_si, number_like, numbers
+from wearlaw import InputError, Q
+from wearlaw.numerics.integrate import BLOCK, integrate_laws  # private: integrals at the size of blocks
+from wearlaw.settings.parameters import (  # private: the numbers of a record, for fits
+    allowed_range,
+    changed,
+    number_in_si,
+    number_like,
+    numbers,
+)
 
 RIG = wl.TwinDisc.suros()
 

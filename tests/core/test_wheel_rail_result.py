@@ -12,8 +12,8 @@ import wearlaw as wl
 from tests.plugins.kit.strips import Strips
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.numerics import integrate
-from wearlaw.units.variables import VARIABLES
+from wearlaw.numerics import integrate  # private: integrals at the size of blocks
+from wearlaw.units.variables import VARIABLES  # private: the list of variables and their units
 
 RIG = wl.WheelRail(
     wheel_radius=Q(460, "mm"), rail_head_radius=Q(300, "mm"), material=wl.steel(), rolling_speed=Q(30, "m/s")

@@ -23,7 +23,7 @@ from wearlaw.models.reader import Reader
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
-from wearlaw.plugins.shelf import unknown
+from wearlaw.plugins.loader import unknown
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import Q, from_si, text_of

@@ -7,17 +7,41 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import SimpleNamespace
-from typing import Annotated, Any, NotRequired, Protocol, Required, TypeAlias, TypeGuard, Unpack, get_args, get_origin
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    NotRequired,
+    Protocol,
+    Required,
+    TypeAlias,
+    TypeGuard,
+    Unpack,
+    get_args,
+    get_origin,
+)
 from typing import get_type_hints as hints_of
 
 import numpy as np
 import pint
 from numpy.typing import ArrayLike
+from pydantic import Field
 
 from wearlaw.arrays.array import Array, extremes, read_only
 from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described
+from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import item_docstrings
-from wearlaw.units.quantities import Q, QuantityLike, Unit, coefficient, parse, real_array, with_units
+from wearlaw.units.quantities import (
+    Q,
+    Quantity,
+    QuantityLike,
+    Unit,
+    coefficient,
+    parse,
+    real_array,
+    scalar_si,
+    with_units,
+)
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import meaning_of
 
@@ -188,3 +212,35 @@ class Known:
         """Return the condition as an argument for a rig, with a last axis for the samples."""
         values = np.asarray(self.values)[..., None]
         return values if self.unit is None else Q(values, self.unit)
+
+
+class FallingFriction(Configuration):
+    """Friction that falls with the creep speed: μ = μ0 [(1 - A) exp(-B w) + A]. Use it instead of a coefficient.
+
+    w is the magnitude of the rigid slip velocity at the centre of the patch, V √(ξ² + η²), without spin. It is one
+    number for the whole patch, so any contact model can take the resulting friction. Friction that differs from point
+    to point, with the local slip, is another theory.
+
+    Notes
+    -----
+    O. Polach, Wear 258 (2005) 992-1000, eq. (9).
+    """
+
+    static_coefficient: Annotated[float, Field(gt=0.0, strict=True)]
+    """Friction coefficient at rest, μ0 [-]."""
+    limit_ratio: Annotated[float, Field(gt=0.0, le=1.0, strict=True)]
+    """Friction coefficient at infinite creep speed over μ0, A [-]."""
+    decay: Annotated[Quantity, Unit("s/m")]
+    """Coefficient of the exponential fall, B [s/m]."""
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self, *, static_coefficient: float | QuantityLike, limit_ratio: float | QuantityLike, decay: QuantityLike
+        ) -> None: ...
+
+    def coefficient(self, creep_speed: Array) -> Array:
+        """Return μ [-] at creep speeds w ≥ 0 [m/s], of their shape."""
+        falling = (1.0 - self.limit_ratio) * np.exp(-scalar_si(self.decay, "s/m") * creep_speed)
+        coefficient: Array = self.static_coefficient * (falling + self.limit_ratio)
+        return coefficient

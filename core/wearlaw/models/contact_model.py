@@ -4,7 +4,7 @@ A model is its configuration: a frozen pydantic record. Its fields carry units, 
 """
 
 import inspect
-from abc import ABC
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast, final, get_args
@@ -262,3 +262,17 @@ class ContactModel(Model):
     def elliptic_accuracy(self) -> float:
         """Error of sums over the nodes of an elliptic contact, as a share of the sums in full slip."""
         return ELLIPTIC
+
+
+class CreepForceModel(ContactModel):
+    """A contact model that gives Fx, Fy and Mz from the creepages and the spin; its contact is one node of means."""
+
+    scale: ClassVar[Scale] = "patch"
+
+    @abstractmethod
+    def creep_forces(self, problem: Problem) -> CreepForces:
+        """Return the forces and the moment, of the batch shape."""
+
+    def solve_ellipse(self, problem: Problem) -> Contact:
+        """Return the patch means as a contact of one node, of shape (batch, 1, 1)."""
+        return Contact.of_patch(problem, self.creep_forces(problem))

@@ -10,8 +10,7 @@ from wearlaw.errors import ConfigurationError, InputError, shown, with_problems
 from wearlaw.models.law import Law
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.plugins import loader
-from wearlaw.settings.text_files import read_text, reason_of
-from wearlaw.settings.toml_files import LARGEST, parse_toml
+from wearlaw.settings.text_files import LARGEST, parse_toml, read_text, reason_of
 
 DIGESTS = "digests_of_tests"
 """The entry of the provenance with the digests of the tests of a fit."""

@@ -1,13 +1,15 @@
-"""Reading files from outside: up to a size, in the encodings that editors and shells write."""
+"""Reading files from outside: up to a size, in the encodings that editors and shells write, and TOML."""
 
 from __future__ import annotations
 
 import errno
 import os
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
+from typing import Any
 
 from wearlaw.errors import InputError
 
@@ -122,3 +124,21 @@ def decoded(content: bytes, otherwise: str = "utf-8-sig") -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         return content.decode(otherwise)
+
+
+LARGEST = MIB
+"""Size of the largest TOML file that is read [bytes]."""
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """Return the contents of a text in TOML.
+
+    Raises
+    ------
+    InputError
+        If it is not TOML; the message follows the name of the file.
+    """
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"is not valid TOML: {error}") from None

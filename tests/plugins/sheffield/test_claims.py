@@ -399,14 +399,14 @@ def test_the_section_of_a_study_has_a_row_for_each_claim() -> None:
 @pytest.mark.parametrize(
     ("changes", "rig", "names"),
     [
-        ({"friction_coefficient": [0.3, 0.4]}, {}, "sweeps.creepage: .*friction_coefficient"),
-        ({"friction_coefficient": 0.1}, {}, "sweeps.creepage: .* 185.4 N"),
-        # Cells of the exact theory slip by up to ξ + ξ_sat at 0.2 % creepage.
-        ({}, {"rolling_speed": "100 m/s"}, "rig.rolling_speed: .*0.2 m/s"),
+        ({"friction_coefficient": [0.3, 0.4]}, {}, "sweeps.creepage"),
+        ({"friction_coefficient": 0.1}, {}, "sweeps.creepage"),
+        ({}, {"rolling_speed": "2 m/s"}, "rig"),
+        ({}, {"diameter": "60 mm"}, "rig"),
     ],
 )
 def test_a_study_that_the_claims_cannot_be_made_of_is_refused(changes: Any, rig: Any, names: str) -> None:
     study = study_of(**changes)
     study = dataclasses.replace(study, case=study.case.model_copy(update={"rig": wl.TwinDisc.suros(**rig)}))
-    with pytest.raises(wl.InputError, match=f"^{names}"):
+    with pytest.raises(wl.InputError, match=f"^{names}: "):
         Bench.of(study)

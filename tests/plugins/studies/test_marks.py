@@ -133,7 +133,7 @@ def test_results_hold_the_marks_of_each_pair_and_the_limits_of_each_contact_mode
 def test_the_wear_of_a_rail_is_outside_a_law_of_wheel_steel(on_rail: wl.Study) -> None:
     elastic = on_rail.profiles["curve"].outside_range
     assert elastic.sel(pair="kth on strip_theory") == 0
-    wheel, rail, *_ = by_name(on_rail)["curve_profile"].panels
+    wheel, rail, *_ = by_name(on_rail)["curve_across_the_patch"].panels
     assert np.asarray(by_label(rail)["usfd on strip_theory"].outside).all()
     assert not np.asarray(by_label(rail)["kth on strip_theory"].outside).any()
     outside = bool(elastic.sel(pair="usfd on strip_theory").item())

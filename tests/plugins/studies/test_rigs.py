@@ -247,16 +247,10 @@ def test_the_shipped_study_of_a_wheel_runs_from_the_command_line(validator: Any)
     ran = wearlaw("run", "wheel_on_rail", "-o", "out")
     assert ran.exit_code == 0, ran.output
     page = Path("out/report.html").read_text(encoding="utf-8")
-    for text in (
-        "Wear across the profiles in a curve",
-        "The patch and its pressure",
-        "longitudinal force Fx",
-        "rail: greatest depth",
-    ):
+    for text in ("Wear across the patch: curve", "rail: greatest depth", "in 1000 km"):
         assert text in page
     rows = pd.read_csv("out/results.csv")
-    assert set(rows.sweep) == {"creepage", "load", "curve"}
-    assert set(rows.contact_model) == {"strip_theory", "polach", "shen_hedrick_elkins"}
+    assert set(rows.contact_model) == {"strip_theory"}
     with xarray.open_dataset("out/results.nc", group="profiles/curve", engine="h5netcdf") as profile:
         assert float(profile.wheel_depth.max()) > 0.0
     shipped, again = wl.load_case("wheel_on_rail"), wl.load_case("out/case.toml")

@@ -83,13 +83,6 @@ def test_a_large_sweep_keeps_the_outcomes_of_laws_alone_and_says_so(monkeypatch:
     assert list(swept(TOGETHER, outputs=["wear_index"])) == ["wear_index"]
 
 
-def test_a_small_sweep_needs_no_law_and_a_large_one_then_needs_outputs(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert {"tangential_force", "max_pressure"} <= set(swept(RIG | EXACT))
-    monkeypatch.setattr("wearlaw_sweeps.sweep.MOST", 1)
-    with pytest.raises(wl.CompositionError, match=r'or name what to keep, as in outputs=\["tangential_force"\]'):
-        swept(RIG | EXACT)
-
-
 @pytest.mark.usefixtures("small_blocks")
 def test_outcomes_are_the_same_on_processes_and_in_a_store(tmp_path: Path) -> None:
     predict = silently(RIG, FASTSIM, wl.stage("patch_mean"), KTH, Damage(), Heat())

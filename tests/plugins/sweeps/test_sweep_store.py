@@ -156,7 +156,7 @@ def test_another_law_or_version_is_refused(tmp_path: Path, monkeypatch: pytest.M
         patched.setattr("wearlaw_sweeps.provenance.__version__", "99.0")
         with pytest.raises(wl.OutputError, match="wearlaw: "):
             wl.sweep(predict, **GIVEN, store=store, resume=True)
-    monkeypatch.setattr("wearlaw.plugins.shelf.Shelf.distribution", lambda *_: "another 1.2.3")
+    monkeypatch.setattr("wearlaw.plugins.loader.Shelf.distribution", lambda *_: "another 1.2.3")
     with pytest.raises(wl.OutputError, match="wear law held: "):
         wl.sweep(predict, **GIVEN, store=store, resume=True)
 

@@ -16,7 +16,7 @@ import wearlaw as wl
 from tests.core.axles import KTH, Axle
 from tests.plugins.sweeps.sweeps import interrupted_after, predictor
 from wearlaw import Q
-from wearlaw_sweeps import points
+from wearlaw_sweeps import points  # private: small blocks
 
 ROWS = 100
 RANDOM = np.random.default_rng(5)
