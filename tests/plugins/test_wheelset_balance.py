@@ -12,7 +12,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.wheelsets import wheelset
 from wearlaw import Q
-from wearlaw.numerics.integrate import integrate_forces
+from wearlaw.numerics.integrate import integrate_forces  # private: forces of a problem of its own
 from wearlaw_wheelset._candidates import SPACING, candidates, sample
 from wearlaw_wheelset._loads import BALANCED, ROUGH
 from wearlaw_wheelset._search import both_sides, searched
