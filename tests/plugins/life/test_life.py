@@ -195,7 +195,7 @@ def test_a_pair_of_unlike_wheels_has_no_mean() -> None:
 
 def test_several_processes_give_the_same_life(tmp_path: Path, short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
     """From a file, in blocks of a few states."""
-    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)  # private: small blocks
     line().to_csv(tmp_path / "line.csv", index=False)
     lives = [
         wl.wear_out(pipeline(), tmp_path / "line.csv", over="500 km", workers=workers, **GIVEN) for workers in (1, 2)
@@ -206,7 +206,7 @@ def test_several_processes_give_the_same_life(tmp_path: Path, short: Life, monke
 
 def test_a_cluster_gives_the_same_life(short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
     distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)  # private: small blocks
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as machines,
         distributed.Client(machines) as client,

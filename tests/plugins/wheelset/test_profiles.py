@@ -19,9 +19,13 @@ import wearlaw as wl
 import wearlaw_wheelset as ws
 from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
-from wearlaw_wheelset._curve import SPACING, Curve, smoothed
-from wearlaw_wheelset._formulas import FORMULAS
-from wearlaw_wheelset._points import crossed_steps
+from wearlaw_wheelset._curve import (  # private: one step of the contact, against another way to it
+    SPACING,
+    Curve,
+    smoothed,
+)
+from wearlaw_wheelset._formulas import FORMULAS  # private: all pieces that norms state
+from wearlaw_wheelset._points import crossed_steps  # private: one step of the contact, against another way to it
 
 MM = 1e-3
 WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()

@@ -27,7 +27,7 @@ from tests.plugins.wheelset.wheelsets import (
     wheelset,
 )
 from wearlaw import Array, Q
-from wearlaw_wheelset._search_loops import ROLL_ACCURACY, ROUNDING
+from wearlaw_wheelset._search_loops import ROLL_ACCURACY, ROUNDING  # private: the accuracy that a search ends at
 
 SIDE = np.array([-1.0, 1.0])
 STANDARD = wheelset()

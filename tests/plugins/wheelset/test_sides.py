@@ -13,7 +13,7 @@ import wearlaw_wheelset as ws
 from tests.plugins.wheelset.test_positions import assert_same, geometry
 from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
-from wearlaw_wheelset._loads import Pressure
+from wearlaw_wheelset._loads import Pressure  # private: the accuracy that a search ends at
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning")
 
