@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.wheelsets import R0, cone, round_head, wheelset
+from tests.plugins.wheelset.wheelsets import R0, cone, round_head, wheelset
 from wearlaw import Q
 from wearlaw_life import Life
 from wearlaw_life._line import Line  # private: a step that fails
@@ -155,7 +155,7 @@ def test_a_turned_vehicle_wears_the_mean_of_both_sides() -> None:
 def test_each_side_wears_for_itself_and_alike_on_a_symmetric_line(short: Life) -> None:
     found = wl.wear_out(pipeline(), line(), over="1500 km", sides="each", **GIVEN)
     table, (left, right) = found.table, found.worn_profiles[-1]
-    # The mirrored states differ by rounding, which moves contact points by up to 2e-9 m (`test_wheelset_positions`).
+    # The mirrored states differ by rounding, which moves contact points by up to 2e-9 m (`wheelset/test_positions`).
     assert table["depth_left [mm]"].to_numpy() == pytest.approx(table["depth_right [mm]"].to_numpy(), rel=1e-6)
     assert left.points[1].magnitude == pytest.approx(right.points[1].magnitude, abs=1e-6)
     mean = short.table

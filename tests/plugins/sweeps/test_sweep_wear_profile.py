@@ -13,7 +13,7 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
-from tests.plugins.wheelsets import wheelset
+from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.wheelsets import wheelset
+from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
 from wearlaw.numerics.integrate import integrate_forces  # private: forces of a problem of its own
 from wearlaw_wheelset._candidates import (  # private: one step of the contact, against another way to it

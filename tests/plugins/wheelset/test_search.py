@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.wheelsets import (
+from tests.plugins.wheelset.wheelsets import (
     R0,
     Body,
     cone,

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.published_profiles import S1002, UIC60
+from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
 from wearlaw_wheelset._files import LARGEST  # private: the largest file that is read
 
