@@ -5,6 +5,7 @@ xarray and pandas draw. matplotlib is imported so that an error names the extra 
 
 from __future__ import annotations
 
+import itertools
 import math
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
@@ -194,11 +195,8 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
         )
     if not line:
         variable = name or FIELDS[0]
-        mesh = fields[variable].plot.pcolormesh(
-            x="x", y="y", cbar_kwargs={"label": _label(fields[variable])}, **_look(ax)
-        )
-        mesh.axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
-        drawn: Axes = mesh.axes
+        drawn = _cells(prediction, fields, variable, ax)
+        drawn.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
         return drawn
     names = list(ALONG) if name is None else [name]
     table = fields.to_dataframe().reset_index()
@@ -207,6 +205,48 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
     drawn = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
     drawn.set(xlabel=_label(fields["x"]), ylabel=_label(fields[names[0]]) if name else label("pressure", "traction"))
     return drawn
+
+
+def _cells(prediction: Prediction, fields: xarray.Dataset, variable: str, ax: Axes | None) -> Axes:
+    """Draw the cells of the strips of a patch in colours; an ellipse is cut off at its edge, which no node reaches."""
+    from matplotlib.collections import PolyCollection
+    from matplotlib.patches import Ellipse
+    from matplotlib.pyplot import subplots
+
+    x, y, values = (np.asarray(fields[name].transpose("node", "strip").values) for name in ("x", "y", variable))
+    sizes = np.broadcast_to(prediction.contact.area, prediction.contact.pressure.shape).reshape(x.T.shape).T
+    across = _edges(y[:, 0])
+    drawn: Axes = subplots(figsize=SIZE, layout="constrained")[1] if ax is None else ax
+    edge, ends = None, None
+    if prediction.problem.geometry == "ellipse":
+        a, b = prediction.semi_axis_a.m_as("mm"), prediction.semi_axis_b.m_as("mm")
+        edge, ends = Ellipse((0.0, 0.0), 2.0 * a, 2.0 * b, transform=drawn.transData), (-a, a)
+        across[[0, -1]] = np.sign(across[[0, -1]]) * b
+    corners, colours = [], []
+    for strip, low, high in zip(range(len(y)), across[:-1], across[1:], strict=True):
+        there = np.flatnonzero(sizes[strip] > 0.0)
+        order = there[np.argsort(x[strip, there], kind="stable")]
+        along = _edges(x[strip, order])
+        if ends is not None:
+            along[[0, -1]] = ends
+        corners += [((one, low), (two, low), (two, high), (one, high)) for one, two in itertools.pairwise(along)]
+        colours += values[strip, order].tolist()
+    cells = PolyCollection(corners, array=np.array(colours), edgecolors="face", linewidths=0.2)
+    drawn.add_collection(cells)
+    if edge is not None:
+        cells.set_clip_path(edge)
+    drawn.autoscale_view()
+    drawn.figure.colorbar(cells, ax=drawn, label=_label(fields[variable]))
+    return drawn
+
+
+def _edges(nodes: Any) -> Any:
+    """Return the edges of cells around nodes along an axis: half-way between them, and as far beyond the last."""
+    nodes = np.asarray(nodes, dtype=float)
+    if nodes.size < 2:
+        return nodes[0] + np.array([-0.5, 0.5])
+    between = 0.5 * (nodes[1:] + nodes[:-1])
+    return np.concatenate([[2.0 * nodes[0] - between[0]], between, [2.0 * nodes[-1] - between[-1]]])
 
 
 def _map_of_patch(prediction: Prediction) -> xarray.Dataset:
