@@ -11,8 +11,10 @@ import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import matplotlib as matplotlib
 import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.patches import Ellipse
+from matplotlib.pyplot import subplots
 
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
@@ -209,10 +211,6 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
 
 def _cells(prediction: Prediction, fields: xarray.Dataset, variable: str, ax: Axes | None) -> Axes:
     """Draw the cells of the strips of a patch in colours; an ellipse is cut off at its edge, which no node reaches."""
-    from matplotlib.collections import PolyCollection
-    from matplotlib.patches import Ellipse
-    from matplotlib.pyplot import subplots
-
     x, y, values = (np.asarray(fields[name].transpose("node", "strip").values) for name in ("x", "y", variable))
     sizes = np.broadcast_to(prediction.contact.area, prediction.contact.pressure.shape).reshape(x.T.shape).T
     across = _edges(y[:, 0])
