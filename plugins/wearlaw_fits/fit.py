@@ -145,9 +145,10 @@ def fit(
         raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shown(confidence)}")
     if 0 < bootstrap < round(2.0 / (1.0 - confidence), 6):
         raise FitError(f"bootstrap: must be 0 or at least 2/(1 - confidence), got {shown(bootstrap)}")
+    free = [free] if isinstance(free, str) else list(free)
     settings = {
         "predict": predict,
-        "free": [free] if isinstance(free, str) else list(free),
+        "free": free,
         "friction_coefficient": friction_coefficient,
         "scatter": scatter,
         "bounds": bounds,
@@ -156,7 +157,7 @@ def fit(
         "confidence": confidence,
     }
     with steadily():
-        task = _Task.of(predict, tests, settings["free"], friction_coefficient, scatter, bounds or {})
+        task = _Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
         best = task.solve(starts, seed)
         replicates = None
         if bootstrap:

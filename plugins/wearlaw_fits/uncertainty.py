@@ -24,7 +24,7 @@ from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
 from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw_fits.distributions import Distribution, PublishedRange
-from wearlaw_fits.named_numbers import Kind, Place, check_loads_stay, staged_models
+from wearlaw_fits.named_numbers import Kind, Place, check_loads_stay, part_at, staged_models
 from wearlaw_fits.result import Fit
 from wearlaw_fits.uncertain_inputs import OTHERS, Uncertain, UncertainCondition, check_samples, numbers_of, of_fit
 from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis, Shade
@@ -97,7 +97,7 @@ def uncertainty(
     of_conditions = [UncertainCondition.of(name, one) for name, one in given.items() if isinstance(one, Distribution)]
     of_stages = numbers_of(pipeline, "stage", stage or {})
     check_loads_stay(pipeline, "uncertainty", [one.name for one in of_stages])
-    inputs = [*of_conditions, *numbers_of(pipeline, "law", law or {}), *of_stages, *of]
+    inputs: list[Uncertain] = [*of_conditions, *numbers_of(pipeline, "law", law or {}), *of_stages, *of]
     if not inputs:
         raise InputError(
             'nothing is uncertain; give a condition as a distribution, such as creepage=wl.uniform("0.5 %", "1 %"),'
@@ -357,15 +357,8 @@ class Uncertainty:
             conditions |= one.conditions(row)
             numbers |= one.numbers(row)
         predict, laws = self._predict, tuple(self._laws[index] for index in indices)
-        for kind, parts in (("law", self._laws), ("stage", predict.stages)):
-            for index, part in enumerate(parts):
-                own = {
-                    place.field: values
-                    for place, values in numbers.items()
-                    if (place.kind, place.index) == (kind, index)
-                }
-                if own:
-                    check_samples(part, own)
+        for place in numbers:
+            check_samples(part_at(predict, place), _of_part(numbers, place.kind, place.index))
         flat = self._problem(conditions).broadcast_to(shape).flatten()
         watch = RangeWatch(*laws)
         check_traction(predict.contact_model, flat)

@@ -1,21 +1,20 @@
 """Pictures of a prediction: curves, a map or bars over its operating points, and the fields of a single patch.
 
-xarray and pandas draw. matplotlib is imported so that an error names the extra if it is missing.
+xarray and pandas draw, and matplotlib the cells of a patch.
 """
 
 from __future__ import annotations
 
-import itertools
 import math
 import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
-from matplotlib.patches import Ellipse
-from matplotlib.pyplot import subplots
 
+from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import named_outcomes
@@ -197,54 +196,19 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
         )
     if not line:
         variable = name or FIELDS[0]
-        drawn = _cells(prediction, fields, variable, ax)
-        drawn.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
-        return drawn
+        axes: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
+        cells = axes.add_collection(PolyCollection([*_cells(prediction)], array=fields[variable].values.ravel()))
+        axes.figure.colorbar(cells, ax=axes, label=_label(fields[variable]))
+        axes.autoscale_view()
+        axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
+        return axes
     names = list(ALONG) if name is None else [name]
     table = fields.to_dataframe().reset_index()
     style = ["--" if one == "traction_bound" else "-" for one in names]
     labels = [name_of(one) for one in names]
-    drawn = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
+    drawn: Axes = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
     drawn.set(xlabel=_label(fields["x"]), ylabel=_label(fields[names[0]]) if name else label("pressure", "traction"))
     return drawn
-
-
-def _cells(prediction: Prediction, fields: xarray.Dataset, variable: str, ax: Axes | None) -> Axes:
-    """Draw the cells of the strips of a patch in colours; an ellipse is cut off at its edge, which no node reaches."""
-    x, y, values = (np.asarray(fields[name].transpose("node", "strip").values) for name in ("x", "y", variable))
-    sizes = np.broadcast_to(prediction.contact.area, prediction.contact.pressure.shape).reshape(x.T.shape).T
-    across = _edges(y[:, 0])
-    drawn: Axes = subplots(figsize=SIZE, layout="constrained")[1] if ax is None else ax
-    edge, ends = None, None
-    if prediction.problem.geometry == "ellipse":
-        a, b = prediction.semi_axis_a.m_as("mm"), prediction.semi_axis_b.m_as("mm")
-        edge, ends = Ellipse((0.0, 0.0), 2.0 * a, 2.0 * b, transform=drawn.transData), (-a, a)
-        across[[0, -1]] = np.sign(across[[0, -1]]) * b
-    corners, colours = [], []
-    for strip, low, high in zip(range(len(y)), across[:-1], across[1:], strict=True):
-        there = np.flatnonzero(sizes[strip] > 0.0)
-        order = there[np.argsort(x[strip, there], kind="stable")]
-        along = _edges(x[strip, order])
-        if ends is not None:
-            along[[0, -1]] = ends
-        corners += [((one, low), (two, low), (two, high), (one, high)) for one, two in itertools.pairwise(along)]
-        colours += values[strip, order].tolist()
-    cells = PolyCollection(corners, array=np.array(colours), edgecolors="face", linewidths=0.2)
-    drawn.add_collection(cells)
-    if edge is not None:
-        cells.set_clip_path(edge)
-    drawn.autoscale_view()
-    drawn.figure.colorbar(cells, ax=drawn, label=_label(fields[variable]))
-    return drawn
-
-
-def _edges(nodes: Any) -> Any:
-    """Return the edges of cells around nodes along an axis: half-way between them, and as far beyond the last."""
-    nodes = np.asarray(nodes, dtype=float)
-    if nodes.size < 2:
-        return nodes[0] + np.array([-0.5, 0.5])
-    between = 0.5 * (nodes[1:] + nodes[:-1])
-    return np.concatenate([[2.0 * nodes[0] - between[0]], between, [2.0 * nodes[-1] - between[-1]]])
 
 
 def _map_of_patch(prediction: Prediction) -> xarray.Dataset:
@@ -258,6 +222,32 @@ def _map_of_patch(prediction: Prediction) -> xarray.Dataset:
 
     none = prediction.problem.replaced(dims={})
     return labelled(none, {name: values_of(name) for name in ("x", "y")}, {name: values_of(name) for name in FIELDS})
+
+
+def _cells(prediction: Prediction) -> Array:
+    """Return the corners of the cells of a patch [mm], of shape (cells, 4, 2), which fill it up to its edge."""
+    contact = prediction.contact
+    shape = contact.pressure.shape[-2:]
+    width = contact.strip_width.reshape(shape[1])
+    left, right = _ends(contact.x.reshape(shape), contact.area.reshape(shape) / width)
+    low, high = (
+        np.broadcast_to(one, shape)
+        for one in _ends(np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0], width)
+    )
+    corners = [np.stack(corner, axis=-1) for corner in ((left, low), (right, low), (right, high), (left, high))]
+    return 1e3 * np.stack(corners, axis=-2).reshape(-1, 4, 2)
+
+
+def _ends(middle: Array, size: Array) -> tuple[Array, Array]:
+    """Return the ends of cells that lie side by side along the first axis, each about its node."""
+    order = np.argsort(middle, axis=0)
+    sizes, nodes = np.take_along_axis(size, order, axis=0), np.take_along_axis(middle, order, axis=0)
+    ends = np.cumsum(sizes, axis=0)
+    whole = np.maximum(ends[-1], np.finfo(float).tiny)
+    ends = ends + ((nodes - (ends - 0.5 * sizes)) * sizes).sum(axis=0) / whole
+    back = np.argsort(order, axis=0)
+    after = np.take_along_axis(ends, back, axis=0)
+    return after - size, after
 
 
 def _look(ax: Axes | None) -> dict[str, Any]:

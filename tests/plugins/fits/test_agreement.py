@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.strategies import EPS
-from wearlaw_fits.agreement import agreement
+from wearlaw_fits.agreement import agreement  # private: errors of made-up rates, without a law
 
 RATES = st.lists(st.tuples(*[st.floats(1e-6, 1e6)] * 2), min_size=2, max_size=20).map(lambda r: np.array(r).T)
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -69,35 +68,6 @@ def test_a_law_can_be_fitted_on_every_contact_before_it_is_compared(scatter: Lit
     assert fitted.aic["usfd fitted on global"] == pytest.approx(direct.aic, rel=1e-12)
 
 
-def test_a_fit_that_the_tests_do_not_determine_on_one_contact_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    fit = wl.fit
-
-    def refuse_global(predict: Any, *arguments: Any, **options: Any) -> wl.Fit:
-        if predict.contact_model.name == "global":
-            raise wl.FitError("no test determines it")
-        return fit(predict, *arguments, **options)
-
-    monkeypatch.setattr("wearlaw_fits.commands.fit_parameters", refuse_global)
-    result = wearlaw(*COMPARE, "--free", "usfd=q_s")
-    assert result.exit_code == 0
-    assert "note: usfd fitted on global is left out: no test determines it\n" in result.stderr
-    assert "usfd fitted on exact" in result.stdout
-
-
-def test_stages_stand_around_every_contact_model() -> None:
-    result = wearlaw(*COMPARE, "-o", "cmp", "--stage", "patch_mean")
-    assert result.exit_code == 0
-    ranking = pd.read_csv("cmp/ranking.csv").set_index("predictor")
-    assert "brr on exact with patch_mean" in ranking.index
-    # The means of the exact theory in full slip are those of the global model: all tests slip fully.
-    for law in ("brr", "usfd", "kth"):
-        one, other = (ranking.rms_factor[f"{law} on {model} with patch_mean"] for model in ("exact", "global"))
-        assert one == pytest.approx(other, rel=1e-9)
-    assert "--stage patch_mean" not in result.stderr
-    assert "brr on exact is left out" in (without := wearlaw(*COMPARE, "-o", "plain", "--verbose").stderr)
-    assert "add --stage patch_mean" in without
-
-
 def test_a_law_that_has_seen_the_tests_is_marked_and_cross_validation_ranks_fits_by_unseen_tests() -> None:
     assert wearlaw(*FIT, "-o", "fit").exit_code == 0
     marked = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", f"fit/law.toml,{LAW}", "-o", "marked")
@@ -118,20 +88,6 @@ def test_a_law_that_has_seen_the_tests_is_marked_and_cross_validation_ranks_fits
         for folder in ("seen", "cv")
     ]
     assert factors[0] < factors[1]
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        ("--cross-validate", "5"),
-        ("--cross-validate", "some", "--free", f"{LAW}=m_m"),
-        ("--cross-validate", "99", "--free", f"{LAW}=m_m"),
-    ],
-)
-def test_cross_validation_that_cannot_be_is_refused(options: tuple[str, ...]) -> None:
-    result = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", LAW, *options)
-    assert result.exit_code != 0
-    assert re.search("cross.validate: ", result.stderr)
 
 
 ARCHARD = "archard:coefficient=1e-4:hardness=2.6 GPa"

@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import files, wearlaw
-from tests.core.cli_data import CREEPAGE, FIT, HEAD, LAW, listed, rates, rows, write_tests
+from tests.core.cli_data import CREEPAGE, FIT, HEAD, listed, rates, rows, write_tests
 from tests.core.distributions import Install
 from tests.core.test_stages import PLUGIN
 from wearlaw import Q
@@ -45,23 +45,6 @@ def test_a_fit_is_printed_and_its_files_are_listed_as_they_are(folder: Path) -> 
     assert (folder / "my fit" / "fit.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize(
-    ("options", "free"),
-    [
-        (("--law", "archard:coefficient=1e-3:hardness=2.6 GPa"), "coefficient"),
-        (("--law", "archard:coefficient=1e-3", "--fixed", "hardness=2.6 GPa"), "coefficient"),
-        (("--law", "archard:hardness=2.6 GPa", "--fixed", "coefficient=1e-3"), "hardness"),
-        (("--law", "energy:mass_per_energy=5 ug/J"), "mass_per_energy"),
-        (("--law", LAW, "--stage", "third_body:reduction=0.9"), "reduction"),  # as in the help of the command
-        (("--law", LAW, "--stage", "third_body:reduction=1"), "reduction"),
-    ],
-)
-def test_a_number_without_a_unit_is_a_number(options: tuple[str, ...], free: str) -> None:
-    result = wearlaw("fit", "tests.csv", "--contact", "exact", *options, "--free", free, "--bootstrap", "0")
-    assert result.exit_code == 0, result.stderr
-    assert f"  {free} " in result.stdout
-
-
 def test_the_files_of_a_fit_hold_what_it_found() -> None:
     assert wearlaw(*FIT, "--fixed", "tr_sc=94 N/mm^2", "--confidence", "0.8").exit_code == 0
     law: Any = wl.read_wear_law("tests-fit/law.toml")
@@ -80,29 +63,6 @@ def test_the_files_of_a_fit_hold_what_it_found() -> None:
     assert wl.Pipeline.model_validate(record["predict"]).wear_law == law
     residuals = pd.read_csv("tests-fit/residuals.csv")
     np.testing.assert_allclose(residuals["creepage [%]"], CREEPAGE, rtol=1e-15)
-
-
-def test_a_fitted_law_is_taken_where_a_law_is_asked_for() -> None:
-    assert wearlaw(*FIT).exit_code == 0
-    compared = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", "tests-fit/law.toml", "-o", "cmp")
-    assert compared.exit_code == 0
-    assert "\n  tests-fit/law.toml on exact " in compared.stdout
-    again = wearlaw("fit", "tests.csv", "--contact", "exact", "--law", "tests-fit/law.toml", "--free", "q_s",
-                    "--fixed", "m_m=6 ug/m/N", "--bootstrap", "0", "-o", "again")  # fmt: skip
-    assert again.exit_code == 0
-    refitted: Any = wl.read_wear_law("again/law.toml")
-    assert refitted.m_m == Q(6.0, "ug/m/N")
-
-
-def test_the_settings_of_a_fit_are_those_of_the_options() -> None:
-    options = ("--bootstrap", "40", "--seed", "7", "--scatter", "absolute", "--latex", "--figure-format", "pdf")
-    assert wearlaw(*FIT[:-2], *options).exit_code == 0
-    found = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))["provenance"]
-    assert (found["bootstrap"], found["seed"], found["scatter"]) == (40, 7, "absolute")
-    assert Path("tests-fit/parameters.tex").read_text().startswith("% \\usepackage{booktabs}")
-    assert Path("tests-fit/residuals.tex").exists()
-    assert Path("tests-fit/fit.pdf").read_bytes().startswith(b"%PDF")
-    assert not Path("tests-fit/fit.png").exists()
 
 
 def test_the_friction_coefficient_is_fitted_to_traction_without_a_law() -> None:
@@ -132,14 +92,6 @@ def test_a_friction_coefficient_that_the_tests_hold_too_is_noted_and_not_used() 
     )
     assert wearlaw(*FIT, "-o", "without").exit_code == 0
     assert wl.read_wear_law("without/law.toml") == wl.read_wear_law("tests-fit/law.toml")
-
-
-def test_progress_of_the_bootstrap_is_shown_on_a_terminal_and_not_elsewhere() -> None:
-    arguments = [*FIT[:-2], "--bootstrap", "40"]
-    assert "fitting" not in wearlaw(*arguments).stderr
-    on_terminal = wearlaw(*arguments, "--overwrite", FORCE_COLOR="1", TERM="xterm")
-    assert "fitting" in on_terminal.stderr
-    assert "40/40" in on_terminal.stderr
 
 
 def test_a_stage_and_a_law_of_another_outcome_are_fitted_from_the_command_line(install: Install) -> None:
@@ -175,21 +127,3 @@ def test_bounds_keep_a_fit_within_them() -> None:
     assert law.q_s.m_as("ug/m/mm^2") == pytest.approx(40.0, rel=1e-6)  # as near as a fit lies at a bound
     wide = wearlaw(*free, "--bounds", "q_s=20 ug/m/mm^2:80 ug/m/mm^2", "-o", "wide")
     assert "at a bound" not in wide.stderr
-
-
-@pytest.mark.parametrize("bounds", ["q_s", "q_s=40 ug/m/mm^2", "q_x=1:2", "q_s=20:40 ug/m/mm^2"])
-def test_wrong_bounds_are_one_clear_error(bounds: str) -> None:
-    refused = wearlaw(*FIT, "--bounds", bounds)
-    assert refused.exit_code != 0
-    assert "bounds: " in refused.stderr
-    assert bounds.partition("=")[0] in refused.stderr
-
-
-@pytest.mark.parametrize("command", [FIT, ("compare", "tests.csv", "--contacts", "global", "--laws", "usfd")])
-def test_decimal_commas_are_stated(command: tuple[str, ...], folder: Path) -> None:
-    printed = wearlaw(*command, "-o", "out").stdout
-    text = (folder / "tests.csv").read_text(encoding="utf-8")
-    (folder / "tests.csv").write_text(text.replace(",", "|").replace(".", ","), encoding="utf-8")
-    stated = wearlaw(*command, "--sep", "|", "--decimal", ",", "-o", "out", "--overwrite")
-    assert stated.stdout == printed
-    assert "give decimal" in wearlaw(*command, "--sep", "|", "-o", "other").stderr

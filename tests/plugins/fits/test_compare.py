@@ -28,16 +28,6 @@ from wearlaw import Q
 # What is compared
 
 
-def test_every_predictor_gives_what_its_pipeline_gives_for_the_same_tests() -> None:
-    data = scattered()
-    predictors = {"published": EXACT | usfd(), "map": EXACT | wl.wear_law("kth")}
-    found = by_label(wl.compare(predictors, data))
-    for label, pipeline in predictors.items():
-        direct = pipeline(creepage=Q(CREEPAGE, "%"), max_pressure="1500 MPa", friction_coefficient=0.46).wear_rate
-        np.testing.assert_allclose(found[label].predicted, direct.to("kg/m^3").magnitude, rtol=4 * EPS)
-        assert found[label].agreement.tests == len(CREEPAGE)
-
-
 def test_the_measures_are_those_of_the_predicted_and_the_measured_rates() -> None:
     """The tests wear more than predicted by factors of 2 and 1/2, in turn, so that all factors are known."""
     factors = np.array([2.0, 0.5] * 4)
@@ -72,16 +62,6 @@ def test_tests_without_a_wear_rate_are_left_out_for_all() -> None:
     assert comparison.compared[0].agreement.rms_factor == pytest.approx(1.0, rel=1e2 * EPS)
 
 
-def test_the_friction_coefficient_is_that_of_the_tests_or_else_the_given_one() -> None:
-    conditions: dict[str, Any] = {"creepage": Q(CREEPAGE, "%"), "max_pressure": "1500 MPa"}
-    without = wl.WearTests.from_arrays(**conditions, wear_rate=made().wear_rate)
-    given = wl.compare([EXACT | usfd()], without, friction_coefficient=0.46).compared[0]
-    held = wl.compare([EXACT | usfd()], made(), friction_coefficient=0.3).compared[0]
-    np.testing.assert_array_equal(given.predicted, held.predicted)
-    with pytest.raises(wl.ConditionsError, match="friction_coefficient"):
-        wl.compare([EXACT | usfd()], without)
-
-
 def test_the_global_model_takes_the_measured_traction_and_that_is_noted() -> None:
     comparison = wl.compare([EXACT | usfd(), GLOBAL | usfd(fitted_for="global")], made(traction_coefficient=TRACTION))
     found = by_label(comparison)["usfd(fitted_for=global) on global"]
@@ -111,11 +91,6 @@ def test_predictors_are_called_after_their_law_and_contact_model_as_in_a_study()
     }
 
 
-def test_a_fit_is_called_fitted() -> None:
-    fit = wl.fit(EXACT | usfd(), scattered(), ["q_s"], bootstrap=0)
-    assert set(order(wl.compare([EXACT | usfd(), fit], scattered()))) == {"usfd on exact", "usfd fitted on exact"}
-
-
 def test_two_predictors_of_one_name_are_refused() -> None:
     twice = [EXACT | usfd(), wl.TwinDisc.suros(track_width="8 mm") | wl.contact_model("exact") | usfd()]
     with pytest.raises(wl.InputError, match="'usfd on exact'"):
@@ -126,12 +101,6 @@ def test_two_predictors_of_one_name_are_refused() -> None:
 NO_RATE = wl.WearTests.from_arrays(
     creepage=Q(CREEPAGE, "%"), max_pressure="1500 MPa", friction_coefficient=0.46, traction_coefficient=TRACTION
 )
-
-
-@pytest.mark.parametrize("wrong", [[], {}, [EXACT], {"mine": "usfd"}, [None]])
-def test_what_predicts_no_wear_is_refused(wrong: Any) -> None:
-    with pytest.raises(wl.InputError, match="predictor"):
-        wl.compare(wrong, made())
 
 
 def test_what_holds_no_wear_rate_cannot_be_compared() -> None:
@@ -198,15 +167,6 @@ def test_stated_uncertainties_leave_no_scatter_to_be_counted() -> None:
     assert information.aicc == pytest.approx(fit.chi2 + 2 * 2 + 2 * 2 * 3 / (8 - 2 - 1), rel=1e3 * EPS)
 
 
-def test_with_too_few_tests_there_is_no_correction() -> None:
-    data = scattered()[[0, 1, 3, 4]]
-    fit = wl.fit(EXACT | usfd(), data, ["m_m", "q_s"], bootstrap=0)
-    table = wl.compare([fit], data).table()
-    assert table["fitted"].tolist() == [2]
-    assert table["aic"].notna().all()
-    assert table["aicc"].isna().all()
-
-
 def test_a_fit_to_other_tests_predicts_but_has_no_aic() -> None:
     data = scattered()
     fit = wl.fit(EXACT | usfd(), data[[0, 2, 3, 4, 5, 7]], ["q_s"], bootstrap=0)
@@ -214,17 +174,6 @@ def test_a_fit_to_other_tests_predicts_but_has_no_aic() -> None:
     assert comparison.compared[0].information is None
     assert any(note.startswith("usfd fitted on exact: was fitted to other tests") for note in comparison.notes)
     np.testing.assert_allclose(comparison.compared[0].predicted, predicted(fit, 0.46)[1:7], rtol=4 * EPS)
-
-
-def test_fits_that_take_the_tests_to_scatter_differently_have_no_aic() -> None:
-    data = scattered()
-    fits: Any = {
-        "relative": wl.fit(EXACT | usfd(), data, ["q_s"], bootstrap=0),
-        "absolute": wl.fit(EXACT | usfd(), data, ["q_s"], scatter="absolute", bootstrap=0),
-    }
-    comparison = wl.compare(fits, data)
-    assert all(one.information is None for one in comparison.compared)
-    assert "AIC is left blank, since the fits take the tests to scatter in different ways" in comparison.notes
 
 
 def test_a_fitted_friction_coefficient_is_used_in_place_of_that_of_the_tests() -> None:

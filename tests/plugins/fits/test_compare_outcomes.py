@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.outcome_laws import CONDITIONS, MIXED, Damage, Heat, Volume
+from tests.core.outcome_laws import CONDITIONS, Damage, Heat
 from tests.plugins.fits.fits import EXACT
 from tests.plugins.fits.test_fit_stages import SOFT, Softer, made_up
-from wearlaw import Q
 
 FASTSIM = wl.contact_model("fastsim")
 
@@ -37,22 +36,6 @@ def test_predictions_of_heat_are_compared_in_its_unit() -> None:
     assert figure.panels[0].x.label == "predicted heat flux [W/mm²]"
 
 
-def test_a_damage_with_a_sign_is_drawn_on_linear_axes_with_all_tests() -> None:
-    damage = (EXACT | Damage())(**CONDITIONS)["rcf_damage"].magnitude
-    assert (damage < 0.0).any()
-    found = wl.compare([EXACT | Damage(), EXACT | Damage(threshold=Q(1e-9, "N"))], measured({"rcf_damage": damage}))
-    assert [one.agreement.without_ratio for one in found.compared] == [0, (damage < 0.0).sum()]
-    assert any("rcf damage is zero or negative in" in note for note in found.notes)
-    assert repr(found).startswith("2 predictors on 7 tests of rcf damage, best first\n")
-    figure = found.figure_data()
-    (panel,) = figure.panels
-    assert panel.x.scale == "linear"
-    assert panel.curves[0].label == "predicted = measured"
-    assert all(curve.y.size == 7 for curve in panel.curves[1:])
-    assert figure.caption.endswith("The line is equality.")
-    found.plot()
-
-
 def test_one_of_several_outcomes_is_chosen_by_name() -> None:
     predict = EXACT.with_law(wl.wear_law("kth"), Heat(), Damage())
     both = predict(**CONDITIONS)
@@ -71,17 +54,6 @@ def test_one_of_several_outcomes_is_chosen_by_name() -> None:
         wl.compare([EXACT | Damage()], measured({"heat_flux": both["heat_flux"]}))
     (shared,) = wl.compare([EXACT | Heat()], tests).compared
     assert shared.names.label == "heat on exact"
-
-
-def test_the_wear_of_a_body_is_compared_with_that_of_its_law() -> None:
-    predict = (MIXED | FASTSIM).with_law(Volume(body="disc_1"), Volume(body="disc_2", factor=3.0))
-    wear = predict(**CONDITIONS)
-    found = wl.compare([predict], measured({"wear_rate_disc_2": wear["wear_rate_disc_2"]}))
-    assert found.outcome == "wear_rate_disc_2"
-    assert found.compared[0].agreement.rms_factor == pytest.approx(1.0, rel=1e-12)
-    alone = (MIXED | FASTSIM).with_law(Volume(body="disc_2", factor=3.0))
-    tests = wl.WearTests.from_arrays(**CONDITIONS, wear_rate=wear["wear_rate_disc_2"])
-    assert wl.compare([alone], tests).compared[0].agreement.rms_factor == pytest.approx(1.0, rel=1e-12)
 
 
 def test_stages_are_named_and_a_fitted_stage_predicts() -> None:

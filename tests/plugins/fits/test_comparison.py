@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.plugins.fits.comparisons import EXACT, GLOBAL, SCATTER, by_label, made, order, scattered, usfd
+from tests.plugins.fits.comparisons import EXACT, GLOBAL, by_label, made, order, scattered, usfd
 from tests.strategies import EPS
 from wearlaw import Q
 
@@ -36,17 +35,6 @@ def test_the_table_ranks_and_has_its_units_in_the_heads() -> None:
         for measure in ("rms_factor", "bias", "geometric_sd", "largest_factor", "tests", "without_ratio"):
             assert row[measure] == getattr(one.agreement, measure)
         assert row["rms_error [ug/m/mm^2]"] == pytest.approx(one.agreement.rms_error * 1e3, rel=4 * EPS)
-
-
-def test_the_predictions_stand_beside_the_tests() -> None:
-    comparison = wl.compare({"ours": EXACT | usfd()}, scattered())
-    frame = comparison.predictions()
-    assert list(frame.columns) == [
-        "creepage [%]", "max_pressure [MPa]", "friction_coefficient", "wear_rate [ug/m/mm^2]", "ours [ug/m/mm^2]",
-    ]  # fmt: skip
-    rates = made().wear_rate.magnitude
-    np.testing.assert_allclose(frame["wear_rate [ug/m/mm^2]"], rates * SCATTER, rtol=4 * EPS)
-    np.testing.assert_allclose(frame["ours [ug/m/mm^2]"], rates, rtol=4 * EPS)
 
 
 def test_the_figure_has_a_panel_for_each_contact_model_with_measured_over_predicted() -> None:
@@ -97,16 +85,3 @@ def test_no_predicted_wear_where_some_was_measured_ranks_last_and_is_noted(with_
     assert found["above"].agreement.without_ratio == missed
     assert any(note.startswith("above: ") and f"zero in {missed} of 8 tests" in note for note in with_zeros.notes)
     assert any(note.startswith("far: ") and "zero in 1 of 8 tests" in note for note in with_zeros.notes)
-
-
-def test_a_table_holds_blanks_and_nothing_infinite_or_nan(with_zeros: wl.Comparison) -> None:
-    """A law that predicts no wear at all has no ratio."""
-    comparison = wl.compare({"nothing": GLOBAL | Above()}, made()[:2])
-    row = comparison.table().iloc[0]
-    assert [head for head in row.index if row[head] is pd.NA] == [
-        "rms_factor", "bias", "geometric_sd", "largest_factor", "fitted", "aic", "aicc",
-    ]  # fmt: skip
-    for table in (comparison.table(), with_zeros.table()):
-        numbers = table.drop(columns="predictor").astype("Float64")
-        assert np.isfinite(numbers.stack().dropna().to_numpy(dtype=float)).all()
-    assert "nan" not in repr(comparison) + repr(with_zeros)

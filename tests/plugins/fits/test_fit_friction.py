@@ -39,23 +39,6 @@ def test_friction_in_full_slip_is_the_mean_of_the_traction(value: float, interva
         relative.to_toml("nowhere.toml")
 
 
-def test_friction_alone_can_be_fitted_to_wear_and_traction() -> None:
-    predict = usfd("exact")
-    conditions: Any = {"creepage": Q(np.geomspace(0.1, 1.0, 8), "%"), "max_pressure": PRESSURE}
-    r = predict(**conditions, friction_coefficient=0.4)
-    factor = 1.0 + 0.01 * np.array([1, -1, 1, -1, -1, 1, -1, 1])
-    tests = traction_tests(
-        r.traction_coefficient.magnitude * factor, np.geomspace(0.1, 1.0, 8), wear_rate=r.wear_rate * factor[::-1]
-    )
-    fit = wl.fit(predict, tests, free=["friction_coefficient"], bootstrap=0)
-    found = fit.parameters["friction_coefficient"].magnitude
-    low, high = (end.magnitude for end in fit.intervals["friction_coefficient"])
-    assert low < 0.4 < high
-    again: Any = predict(**conditions, friction_coefficient=found)
-    due = [*again.wear_rate.to("ug/m/mm^2").magnitude, *again.traction_coefficient.magnitude]
-    assert fit.residuals["predicted"].tolist() == pytest.approx(due, rel=1e-9)
-
-
 def test_friction_and_law_are_fitted_together_each_by_its_own_scatter() -> None:
     predict = usfd("exact")
     conditions: Any = {"creepage": Q(CREEPAGE, "%"), "max_pressure": PRESSURE, "friction_coefficient": 0.4}

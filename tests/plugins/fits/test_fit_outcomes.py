@@ -35,17 +35,6 @@ def measured_tests(outcomes: Any, **more: Any) -> wl.WearTests:
     return wl.WearTests.from_arrays(**CONDITIONS, outcomes=outcomes, **more)
 
 
-def test_the_number_of_a_law_of_heat_comes_back() -> None:
-    fit = wl.fit(EXACT | Heat(), measured_tests(outcomes_of(TRUE_HEAT)), free=["share"], bootstrap=0)
-    assert fit.parameters["share"].magnitude == pytest.approx(0.3, rel=1e-7)
-    assert fit.law is not None
-    assert fit.law.numbers == {"share": fit.parameters["share"].magnitude}
-    assert list(fit.residuals["observable"].unique()) == ["heat_flux [W/mm^2]"]
-    (panel,) = fit.figure_data().panels
-    assert panel.y.label == "heat flux [W/mm²]"
-    assert repr(fit).startswith("Fit to 7 values of heat flux,")
-
-
 @pytest.mark.parametrize(
     ("start", "true", "free"),
     [
@@ -69,29 +58,6 @@ def test_a_fitted_law_of_any_author_records_its_contact_and_warns_beyond_its_tes
         _ = EXACT.rig | wl.contact_model("fastsim") | law
     with pytest.warns(wl.RangeWarning, match=r"has a known range of mean .* \(fitted to 7 tests\)"):
         (EXACT | law)(**{**CONDITIONS, "normal_force": Q(5.0, "kN")})
-
-
-def test_a_law_of_another_outcome_has_a_file_too(install: Install, tmp_path: Path) -> None:
-    install("own", PLUGIN)
-    fit = wl.fit(EXACT | Heat(), measured_tests(outcomes_of(TRUE_HEAT)), free=["share"], bootstrap=0)
-    fit.to_toml(tmp_path / "law.toml")
-    text = (tmp_path / "law.toml").read_text()
-    assert text.startswith('[law]\nmodel = "heat"\nshare = 0.')
-    (tmp_path / "law.toml").write_text('[law]\nmodel = "tired"\n')
-    assert wl.read_law(tmp_path / "law.toml") == wl.law("tired")
-    with pytest.raises(wl.InputError, match=r"'.*law\.toml' holds law 'tired', which predicts damage and no wear"):
-        wl.read_wear_law(tmp_path / "law.toml")
-
-
-def test_a_law_of_heat_is_fitted_on_an_ellipse() -> None:
-    rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
-    creepages = {"longitudinal_creepage": Q([0.05, 0.1, 0.2], "%"), "spin": Q([0.1, 0.3, 0.2], "1/m")}
-    given: Any = {"normal_force": "80 kN", "friction_coefficient": 0.3}
-    under: Any = {**given, **creepages}
-    heat = outcomes_of(TRUE_HEAT, contact=rig | FASTSIM, **under)
-    tests = wl.WearTests.from_arrays(**given, other_conditions=creepages, outcomes=heat)
-    fit = wl.fit(rig | FASTSIM | Heat(), tests, free=["share"], bootstrap=0)
-    assert fit.parameters["share"].magnitude == pytest.approx(0.3, rel=1e-7)
 
 
 def test_the_fit_of_a_linear_damage_is_that_of_linear_regression() -> None:
@@ -128,22 +94,6 @@ def test_several_laws_are_fitted_together_as_each_alone() -> None:
     assert fit.provenance["laws"].keys() == {"usfd", "heat", "damage"}
     with pytest.raises(wl.FitError, match="several"):
         fit.to_toml("nowhere.toml")
-
-
-def test_only_what_depends_on_the_free_numbers_is_fitted() -> None:
-    measured = outcomes_of(TRUE_HEAT, TRUE_DAMAGE)
-    predict, tests = EXACT | Heat() | Damage(), measured_tests(measured, traction_coefficient=np.full(7, 0.3))
-    assert [one.observable for one in wl.fit(predict, tests, ["share"], bootstrap=0).observations] == ["heat_flux"]
-    fit = wl.fit(predict, tests, ["friction_coefficient"], scatter="absolute", bootstrap=0)
-    assert [one.observable for one in fit.observations] == ["heat_flux", "rcf_damage", "traction_coefficient"]
-
-
-def test_friction_is_fitted_beside_a_law_whose_outcome_is_not_measured() -> None:
-    traction = EXACT(**CONDITIONS).traction_coefficient.magnitude
-    tests = wl.WearTests.from_arrays(**CONDITIONS, traction_coefficient=traction)
-    fit = wl.fit(EXACT | Heat(), tests, ["friction_coefficient"], bootstrap=0)
-    assert fit.parameters["friction_coefficient"].magnitude == pytest.approx(0.4, rel=1e-7)
-    assert fit.law == Heat()
 
 
 def test_wear_of_one_body_is_fitted_by_its_law() -> None:
@@ -208,15 +158,6 @@ def test_columns_of_outcomes_are_read_where_a_law_predicts_them(tmp_path: Path) 
         wl.fit(EXACT | Heat(), tests, ["share"], bootstrap=0)
 
 
-def test_a_measurement_of_an_outcome_may_be_missing(tmp_path: Path) -> None:
-    with pytest.raises(wl.DataError, match="column 'heat_flux"):
-        read(tmp_path, CSV.format("NA"))
-    tests = read(tmp_path, CSV.format("NA"), outcomes=["heat_flux", "crack_growth"])
-    fit = wl.fit(EXACT | Heat(), tests, ["share"], bootstrap=0)
-    assert fit.residuals["measured"].tolist() == pytest.approx([2.0, 8.0])
-    assert fit.residuals["label"].tolist() == ["number 1", "number 3"]
-
-
 def test_outcomes_of_plugins_are_known_when_tests_are_read(install: Install, tmp_path: Path) -> None:
     install("own", PLUGIN)
     text = "creepage [%],normal_force [kN],friction_coefficient,damage\n1,7.4,0.4,2\n2,7.4,0.4,\n"
@@ -233,24 +174,3 @@ def test_the_wear_rate_of_a_body_is_no_misspelt_column(tmp_path: Path) -> None:
         read(tmp_path, text.format("wear_rat"))
     with pytest.raises(wl.DataError, match="unknown column; did you mean 'wear_rate_uncertainty'"):
         read(tmp_path, text.format("wear_rate_uncertaint"))
-
-
-def test_tests_with_outcomes_survive_tables_and_selection(tmp_path: Path) -> None:
-    tests = measured_tests({"heat_flux": Q(np.arange(7.0), "kW/mm^2"), "rcf_damage": np.arange(7.0)}, source="made up")
-    tests.to_dataframe().to_csv(tmp_path / "again.csv", index=False)
-    again = wl.read_tests(tmp_path / "again.csv", outcomes=["heat_flux", "rcf_damage"])
-    for name, unit in (("heat_flux", "W/mm^2"), ("rcf_damage", "")):
-        assert again.measured(name, unit).tolist() == tests.measured(name, unit).tolist()
-    assert "heat_flux              0 to 6 kW/mm²" in repr(tests)
-    assert str(tests[2:3].outcomes["heat_flux"]) == str(Q([2.0], "kW/mm^2"))
-    assert tests == tests[:]
-    assert tests != measured_tests(
-        {"heat_flux": Q(np.arange(7.0), "W/mm^2"), "rcf_damage": np.arange(7.0)}, source="made up"
-    )
-    for given, said in (
-        ({"outcomes": {"wear_rate": "1 ug/m/mm^2"}}, "wear_rate"),
-        ({"outcomes": {"mass": "1 kg"}, "other_conditions": {"mass": "1 kg"}}, "mass"),
-        ({"outcomes": {"heat_flux": Q(np.inf, "W/mm^2")}}, "heat_flux: at index 0"),
-    ):
-        with pytest.raises(wl.DataError, match=said):
-            wl.WearTests.from_arrays(**CONDITIONS, **given)

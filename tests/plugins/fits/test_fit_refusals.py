@@ -13,7 +13,6 @@ import wearlaw as wl
 from tests.plugins.fits.fits import (
     ALL,
     CREEPAGE,
-    EXACT,
     FRICTION,
     GLOBAL,
     PRESSURE,
@@ -85,22 +84,6 @@ def test_a_fit_stays_within_the_limits_of_a_field(free: str, start: Any, true: A
     refused(f"bounds: '{free}'", predict, tests, [free], bounds={free: beyond})
 
 
-class Steps(Narrow):
-    """A law with an `if` on its parameter."""
-
-    name: ClassVar[str] = "steps"
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        return (p["k"] if p["k"] > 0.0 else 0.0) * contact.wear_index_density
-
-
-def test_a_law_with_an_if_on_a_parameter_is_named_and_told_what_to_write() -> None:
-    predict = GLOBAL | Steps(k=Q(5.0, "ug/m/N"))
-    tests = made_up(predict, creepage=np.linspace(1.0, 5.0, 6))
-    with pytest.raises(wl.ModelError, match=r"(?s)^wear law 'steps' failed: ValueError: .*np\.where instead of if"):
-        wl.fit(predict, tests, free=["k"], bootstrap=0)
-
-
 @pytest.mark.parametrize(
     ("predict", "free", "settings", "names"),
     [
@@ -147,15 +130,6 @@ def test_rates_of_zero_are_refused_where_scatter_is_by_a_factor() -> None:
     )
 
 
-@pytest.mark.parametrize("given", [0.0, "0.4", np.nan, [0.4, 0.5, 0.6]])
-@pytest.mark.parametrize("free", ["friction_coefficient", "q_s"])
-def test_a_friction_coefficient_that_is_none_is_refused_by_name(free: str, given: Any) -> None:
-    tests = traction_tests([0.45, 0.46, 0.44], [3.0, 10.0, 20.0], wear_rate=Q([40.0, 50.0, 60.0], "ug/m/mm^2"))
-    predict: Any = usfd("exact") if free == "q_s" else EXACT
-    with pytest.raises(wl.InputError, match=r"^friction_coefficient: "):
-        wl.fit(predict, tests, free=[free], friction_coefficient=given, bootstrap=0)
-
-
 def test_measurements_that_are_not_there_are_refused() -> None:
     predict = usfd("exact")
     only_traction = traction_tests(np.full(5, 0.4), np.linspace(3.0, 9.0, 5), friction_coefficient=0.4)
@@ -197,23 +171,6 @@ def test_a_fit_at_a_bound_is_warned_of_and_the_caller_is_named() -> None:
     with pytest.warns(wl.FitWarning, match="at a bound of q_s") as caught:
         wl.fit(predict, tests, free=["q_s"], bootstrap=0, bounds={"q_s": ("70 ug/m/mm^2", "80 ug/m/mm^2")})
     assert caught[0].filename == __file__
-
-
-def test_a_fit_that_does_not_converge_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw_fits.least_squares.ITERATIONS", 0.2)
-    predict = usfd("exact")
-    refused("has not converged", predict, made_up(predict, 0.1), ALL, starts=0, bounds={})
-
-
-def test_values_that_make_no_law_are_refused() -> None:
-    # A plateau that begins, at q_s/m_m = 84.9 N/mm², behind the third regime.
-    predict = usfd("global")
-    tests = made_up(predict, creepage=np.linspace(1.0, 20.0, 12))
-    w = predict(**tests.conditions(GLOBAL.contact_model)).wear_index_density.magnitude
-    rate = Q(np.minimum(5.3 * w, 450.0) + 61.9 * np.maximum(w - 77.26, 0.0), "ug/m/mm^2")
-    conditions: Any = {"creepage": tests.creepage, "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
-    high = wl.WearTests.from_arrays(**conditions, wear_rate=rate)
-    refused("tr_sc must not lie below", predict, high, ["q_s"])
 
 
 @pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")

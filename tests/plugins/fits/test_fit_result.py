@@ -20,7 +20,6 @@ from tests.plugins.fits.fits import (
     PRESSURE,
     RIG,
     made_up,
-    traction_tests,
     usfd,
 )
 from tests.strategies import EPS
@@ -135,32 +134,6 @@ def test_the_figure_holds_the_measurements_and_a_curve_through_the_fit_with_a_ba
     predicted = exact_fit.residuals["predicted"].to_numpy()
     assert np.interp(points.x, curve.x, curve.y) == pytest.approx(predicted, rel=1e-9)
     assert isinstance(exact_fit.plot(), Figure)
-
-
-def test_the_curve_of_a_contact_that_uses_measured_traction_passes_through_its_predictions() -> None:
-    creepage, traction = np.linspace(0.2, 1.0, 6), np.linspace(0.05, 0.3, 6)
-    conditions: Any = {"creepage": Q(creepage, "%"), "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
-    rate = usfd("global")(**conditions, traction_coefficient=traction).wear_rate
-    tests = traction_tests(traction, creepage, wear_rate=rate * 1.1, friction_coefficient=FRICTION)
-    fit = wl.fit(usfd("global"), tests, free=["m_m"], bootstrap=0)
-    curve, points = fit.figure_data().panels[0].curves
-    assert not curve.points
-    predicted = fit.residuals["predicted"].to_numpy()
-    assert np.interp(points.x, curve.x, curve.y) == pytest.approx(predicted, rel=1e-9)
-
-
-def test_a_law_fitted_down_to_no_creepage_is_stated_from_zero() -> None:
-    predict = usfd("exact")
-    conditions: Any = {
-        "creepage": Q(np.linspace(0.0, 1.0, 6), "%"), "max_pressure": PRESSURE, "friction_coefficient": FRICTION
-    }  # fmt: skip
-    tests = wl.WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate)
-    law: Any = wl.fit(predict, tests, free=["m_m"], scatter="absolute", bootstrap=0).law
-    low, high = law.valid_range["wear_index_density"]
-    assert low == 0.0
-    # Four digits, rounded up.
-    highest = predict(**conditions).wear_index_density.to("N/m^2").magnitude.max()
-    assert highest <= high <= highest * 1.001
 
 
 def test_tests_at_several_loads_are_drawn_against_the_fit() -> None:

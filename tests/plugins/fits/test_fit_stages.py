@@ -71,34 +71,6 @@ def test_the_known_number_of_a_stage_comes_back(free: list[str], scatter: Any) -
     assert fit.law is None
 
 
-def test_a_stage_that_overrides_solve_is_fitted_too_and_keeps_the_unit_of_its_number() -> None:
-    predict = EXACT | Rubbed(share=Q(50.0, "%"))
-    fit = wl.fit(
-        predict,
-        traction_tests(0.6 * np.full(4, 0.4), [3.0, 5.0, 8.0, 9.0], friction_coefficient=0.4),
-        ["share"],
-        bootstrap=0,
-    )
-    assert str(fit.parameters["share"].units) == "percent"
-    # In full slip T/N = share · μ.
-    assert fit.parameters["share"].magnitude == pytest.approx(60.0, rel=1e-7)
-
-
-def test_the_interval_in_full_slip_is_that_of_a_mean() -> None:
-    """In full slip T/N = factor · μ: with absolute scatter, the factor is the mean of T/(N μ)."""
-    measured = np.array([0.30, 0.33, 0.31, 0.32, 0.29])
-    tests = traction_tests(measured, [5.0, 7.5, 10.0, 15.0, 20.0], friction_coefficient=0.5)
-    fit = wl.fit(EXACT | Rubbed(), tests, free="reduction", scatter="absolute", bootstrap=0)
-    share = measured / (0.5 * 0.8)
-    assert fit.parameters["reduction"].magnitude == pytest.approx(share.mean(), rel=1e-7)
-    error = share.std(ddof=1) / np.sqrt(5.0)
-    # Difference quotients are good to about 1e-8. By the delta method about the logarithm: mean · exp(±t s/(mean √n)).
-    assert fit.standard_errors["reduction"].magnitude == pytest.approx(error, rel=1e-6)
-    reach = stats.t.ppf(0.975, 4) * error / share.mean()
-    ends = [end.magnitude for end in fit.intervals["reduction"]]
-    assert ends == pytest.approx([share.mean() * np.exp(-reach), share.mean() * np.exp(reach)], rel=1e-6)
-
-
 @pytest.mark.validates(
     "fitting",
     "Intervals of {level:.0%} hold the known number of a stage that often",
@@ -142,23 +114,6 @@ def test_a_stage_and_a_law_are_fitted_together(tmp_path: Path) -> None:
     assert len(fit.figure_data().panels) == 2
     assert list(fit.table()["parameter"]) == ["reduction", "q_s"]
     assert fit.correlation.shape == (2, 2)
-
-
-def test_wear_alone_determines_a_stage_where_no_traction_is_measured() -> None:
-    usfd = wl.wear_law("usfd", fitted_for="exact")
-    conditions: Any = {"creepage": Q(CREEPAGE, "%"), "max_pressure": PRESSURE, "friction_coefficient": np.full(10, 0.4)}
-    wear = (EXACT | Softer(reduction=0.6) | usfd)(**conditions).wear_rate
-    fit = wl.fit(SOFT | usfd, wl.WearTests.from_arrays(**conditions, wear_rate=wear), ["reduction"], bootstrap=0)
-    assert fit.parameters["reduction"].magnitude == pytest.approx(0.6, rel=1e-7)
-    assert len(fit.observations) == 1
-
-
-def test_a_fit_stays_within_the_range_that_a_stage_allows() -> None:
-    """Tractions that are too steep for any stage end at its bound, 1, and the fit says so."""
-    stiff = traction_tests(1.05 * traction(1.0), CREEPAGE, friction_coefficient=0.4)
-    with pytest.warns(wl.FitWarning, match="lies at a bound of reduction"):
-        fit = wl.fit(SOFT, stiff, free=["reduction"], bootstrap=0)
-    assert 1.0 - 1e-6 < fit.parameters["reduction"].magnitude <= 1.0
 
 
 class Choosy(Softer):
@@ -234,23 +189,3 @@ def test_a_number_that_a_law_and_a_stage_share_is_named_in_full() -> None:
     assert fit.predict.stages[0] == Softer(reduction=fit.parameters["softer.reduction"].magnitude)
     assert fit.law is not None
     assert fit.law.numbers["reduction"] == fit.parameters["factor.reduction"].magnitude
-
-
-class Unbounded(Rubbed):
-    """The same stage, which says nothing of the range of its number."""
-
-    name: ClassVar[str] = "unbounded"
-    reduction: float = 1.0
-
-
-def test_a_number_without_a_stated_range_keeps_its_sign_unless_bounds_say_otherwise() -> None:
-    """Negative friction has no solution, and the search would meet it."""
-    predict = EXACT | Unbounded(share=Q(1.0, ""), reduction=0.9)
-    tests = traction_tests(0.6 * np.full(4, 0.4), [3.0, 5.0, 8.0, 9.0], friction_coefficient=0.4)
-    fit = wl.fit(predict, tests, ["reduction"], bootstrap=0)
-    assert fit.parameters["reduction"].magnitude == pytest.approx(0.6, rel=1e-7)
-    bounds = {"reduction": (0.3, 1.5)}
-    within = wl.fit(predict, tests, ["reduction"], bootstrap=0, bounds=bounds)
-    assert within.parameters["reduction"].magnitude == pytest.approx(0.6, rel=1e-7)
-    said = "that the stage or the contact model does not accept; give bounds, .*: stage 'unbounded'"
-    refused(said, predict, tests, ["reduction"], bounds={"reduction": (-1.0, 1.0)})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import jsonschema  # type: ignore[import-untyped]
 import numpy as np
@@ -20,14 +21,14 @@ FIT = ("fit", "tests.csv", "--contact", "exact", "--law", "usfd:fitted_for=exact
 
 
 @pytest.fixture
-def law() -> wl.Law:
+def law() -> Any:
     """Fit a law on the command line and return it."""
     result = wearlaw(*FIT, "--friction", "0.46", "--label", "our tests", "-o", "fit")
     assert result.exit_code == 0, result.output
     return wl.read_law("fit/law.toml")
 
 
-def test_a_fitted_law_is_compared_under_its_label_and_still_knows_its_tests(law: wl.Law) -> None:
+def test_a_fitted_law_is_compared_under_its_label_and_still_knows_its_tests(law: Any) -> None:
     assert law.label == "our tests"
     laws = "usfd,fit/law.toml,fit/law.toml:label=again"
     result = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", laws, "--friction", "0.46", "-o", "cmp")
@@ -37,7 +38,7 @@ def test_a_fitted_law_is_compared_under_its_label_and_still_knows_its_tests(law:
     assert ranking.in_sample.to_dict() == {"usfd on exact": 0, "our tests on exact": 9, "again on exact": 9}
 
 
-def test_a_case_takes_a_law_file_beside_it_and_its_results_need_the_file_no_more(law: wl.Law) -> None:
+def test_a_case_takes_a_law_file_beside_it_and_its_results_need_the_file_no_more(law: Any) -> None:
     Path("cases").mkdir()
     Path("fit").rename("cases/fit")
     own = ["fit/law.toml", {"model": "fit/law.toml", "label": "half", "q_s": f"{law.q_s.m_as(UNIT) / 2!r} {UNIT}"}]
@@ -47,14 +48,15 @@ def test_a_case_takes_a_law_file_beside_it_and_its_results_need_the_file_no_more
     assert wearlaw("run", "cases/case.toml", "-o", "out").exit_code == 0
     found = pd.read_csv("out/results.csv").set_index("wear_law")["wear_rate [ug/m/mm^2]"]
     assert list(found.index) == ["our tests", "half", "usfd"]
+    given: Any = POINT
     for name, one in (("our tests", law), ("half", law.changed(q_s=law.q_s / 2))):
-        assert found[name] == pytest.approx((EXACT | one)(**POINT).wear_rate.m_as("ug/m/mm^2"), rel=1e-12)
+        assert found[name] == pytest.approx((EXACT | one)(**given).wear_rate.m_as("ug/m/mm^2"), rel=1e-12)
     Path("cases/fit/law.toml").unlink()
     assert wearlaw("run", "out/case.toml", "-o", "again").exit_code == 0
     np.testing.assert_array_equal(found, pd.read_csv("again/results.csv")["wear_rate [ug/m/mm^2]"])
 
 
-def test_a_law_file_that_is_missing_or_of_another_outcome_is_named(law: wl.Law) -> None:  # noqa: ARG001
+def test_a_law_file_that_is_missing_or_of_another_outcome_is_named(law: Any) -> None:  # noqa: ARG001
     write(Path("case.toml"), table(wear_laws=["fitt/law.toml"]))
     result = wearlaw("run", "case.toml")
     assert result.exit_code != 0

@@ -11,13 +11,13 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.outcome_laws import MIXED, Damage, Heat, Volume
+from tests.core.outcome_laws import Damage, Heat
 from tests.plugins.fits.fits import EXACT
 from tests.plugins.fits.test_fit_stages import Rubbed, Softer
 from wearlaw import Q
-from wearlaw_fits.pairs import Pair
-from wearlaw_studies.uncertainty import UncertainPair, uncertainty_of
-from wearlaw_studies.uncertainty_files import LONGEST_NAME, figure_files, write_uncertainty
+from wearlaw_fits.pairs import Pair  # private: for its type
+from wearlaw_studies.uncertainty import uncertainty_of  # private: no public name
+from wearlaw_studies.uncertainty_files import write_uncertainty  # private: no public name
 
 EPS = float(np.finfo(np.float64).eps)
 GIVEN: Any = {"max_pressure": Q(1000, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}  # full slip
@@ -85,21 +85,6 @@ def test_the_variance_of_each_outcome_is_explained_by_its_own_inputs() -> None:
     assert damage.loc["friction_coefficient", "total_order"] == pytest.approx(1.0, abs=0.01)
 
 
-def test_numbers_that_several_laws_have_are_named_in_full() -> None:
-    predict = (MIXED | wl.contact_model("fastsim")).with_law(Volume(body="disc_1"), Volume(body="disc_2", factor=3.0))
-    u = wl.uncertainty(predict, **GIVEN, law={"volume_disc_2.factor": wl.uniform(1.0, 3.0)}, samples=16)
-    one, two = u["wear_rate_disc_1"].magnitude, u["wear_rate_disc_2"].magnitude
-    assert np.ptp(one) == 0.0
-    factors = 1.0 + 2.0 * shares(1, 16)[0]
-    assert two == pytest.approx(factors * one * 8800.0 / 7850.0, rel=1e-12)
-    with pytest.raises(wl.InputError, match=r"'volume_disc_1.factor' or 'volume_disc_2.factor'"):
-        wl.uncertainty(predict, **GIVEN, law={"factor": wl.uniform(1.0, 3.0)})
-    both = EXACT.with_law(KTH, Heat())
-    u = wl.uncertainty(both, **GIVEN, law={"kth.coefficient": wl.published_range()}, samples=16)
-    alone = wl.uncertainty(EXACT.with_law(KTH), **GIVEN, law={"coefficient": wl.published_range()}, samples=16)
-    assert u.wear_rate.magnitude == pytest.approx(alone.wear_rate.magnitude, rel=64 * EPS)
-
-
 @pytest.mark.parametrize("stage", [Softer(), Rubbed()], ids=["altered", "solve"])
 def test_each_sample_of_a_stage_is_the_prediction_with_that_stage(stage: wl.Stage) -> None:
     creepage = Q([0.2, 3.0], "%")
@@ -148,7 +133,9 @@ def test_the_uncertainty_of_a_case_has_rows_for_each_outcome(tmp_path: Path, mon
     (tmp_path / "case.toml").write_text(CASE)
     case = wl.load_case(str(tmp_path / "case.toml"))
     pair = Pair("exact", "kth", EXACT.with_law(KTH, Heat()))
-    monkeypatch.setattr("wearlaw_studies.uncertainty.pairs_of", lambda *_: [pair])
+    monkeypatch.setattr(
+        "wearlaw_studies.uncertainty.pairs_of", lambda *_: [pair]
+    )  # private: one part of a study, without the whole
     found = uncertainty_of(case, 64, 0)
     table = found.wear_rates
     assert table.columns.tolist() == ["point", "pair", "outcome", "unit", "median", "2.5 %", "97.5 %"]
@@ -160,13 +147,3 @@ def test_the_uncertainty_of_a_case_has_rows_for_each_outcome(tmp_path: Path, mon
     (tmp_path / "results").mkdir()
     names = write_uncertainty(case, found, 0, tmp_path / "results")
     assert {"wear_rates.csv", "scatter_kth_on_exact_wear_rate.png", "scatter_kth_on_exact_heat_flux.png"} <= set(names)
-
-
-def test_figures_are_named_by_pair_also_where_labels_are_long_or_alike() -> None:
-    one = wl.uncertainty(EXACT.with_law(KTH), **GIVEN | {"creepage": wl.uniform("1 %", "2 %")}, samples=2)
-    labels = ["kth(body=rail)", "kth(body rail)", "k" * 300, "µ"]
-    pairs = [UncertainPair("scatter", Pair("exact", label, EXACT), one) for label in labels]
-    files = figure_files(pairs)
-    assert files[:2] == ["scatter_kth_body_rail_on_exact", "scatter_kth_body_rail_on_exact_2"]
-    assert len(files[2]) == LONGEST_NAME
-    assert files[3] == "scatter_µ_on_exact"

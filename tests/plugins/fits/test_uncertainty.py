@@ -13,7 +13,6 @@ from tests.plugins.fits.fits import CREEPAGE, EXACT, FRICTION, GLOBAL, PRESSURE,
 from tests.plugins.fits.uncertain import FULL_SLIP, USFD
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_studies.uncertain_point import UncertainPoint
 
 
 @wl.as_wear_law(
@@ -195,31 +194,6 @@ def test_the_figure_of_several_points_is_a_band_in_their_order() -> None:
     assert band.x == pytest.approx([0.5, 1.0, 1.5])
     assert band.low is not None
     assert np.all(band.low < band.y)
-
-
-def test_friction_that_falls_is_evaluated_at_each_sample_of_the_creepage() -> None:
-    friction = wl.FallingFriction(static_coefficient=0.55, limit_ratio=0.4, decay="6 s/m")
-    given: Any = {"max_pressure": Q([1000.0, 1500.0], "MPa"), "friction_coefficient": friction}
-    predict = GLOBAL | linear
-    u = wl.uncertainty(predict, **given, creepage=wl.uniform("2 %", "4 %"), samples=8)
-    probability = stats.qmc.Sobol(1, rng=np.random.default_rng(0)).random_base2(3)[:, 0]
-    given["max_pressure"] = given["max_pressure"][:, None]
-    each = predict(**given, creepage=Q(2.0 + 2.0 * probability, "%"))
-    assert each.friction_coefficient.shape == (2, 8)
-    assert in_microgram(u.wear_rate) == pytest.approx(in_microgram(each.wear_rate), rel=64 * EPS)
-
-
-def test_every_distribution_of_a_case_is_the_one_of_python() -> None:
-    table: Any = {
-        "normal_force": {"normal": ["5 kN", "0.2 kN"]},
-        "creepage": {"uniform": ["1 %", "2 %"]},
-        "friction_coefficient": {"lognormal": [0.4, 1.2]},
-    }
-    assert {name: str(given) for name, given in UncertainPoint(**table).conditions().items()} == {
-        "normal_force": "normal(5.0 kN, 0.2 kN)",
-        "creepage": "uniform(1.0 %, 2.0 %)",
-        "friction_coefficient": "lognormal(0.4, 1.2)",
-    }
 
 
 # Fits

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pint
 import pytest
 from hypothesis import given
 
@@ -54,35 +53,12 @@ def test_columns_come_out_with_the_units_and_gaps_they_went_in_with() -> None:
     assert tests.source == "a test"
 
 
-def test_columns_are_si_arrays_by_name_in_one_order() -> None:
-    tests = made()
-    assert list(tests.columns) == ["creepage", "normal_force", "traction_coefficient", "wear_rate"]
-    np.testing.assert_array_equal(tests.columns["normal_force"], [7000.0, 7500.0, 8000.0])
-    # 1 µg/(m mm²) is 1e-9 kg / 1e-6 m³.
-    np.testing.assert_allclose(tests.columns["wear_rate"], [10e-3, NAN, 50e-3], rtol=4 * EPS)
-
-
-def test_what_was_not_measured_is_missing_in_all_tests_and_what_was_not_given_is_none() -> None:
-    tests = made(traction_coefficient=None)
-    assert np.isnan(tests.traction_coefficient.magnitude).all()
-    assert tests.traction_coefficient.magnitude.shape == (3,)
-    assert np.isnan(made(wear_rate=None).wear_rate.magnitude).all()
-    assert tests.friction_coefficient is None
-    assert tests.wear_rate_uncertainty is None
-
-
 def test_one_value_stands_for_all_tests_and_one_test_is_a_table_too() -> None:
     np.testing.assert_array_equal(made(normal_force="7 kN").columns["normal_force"], [7000.0] * 3)
     one = wl.WearTests.from_arrays(creepage="1 %", max_pressure="1.5 GPa", wear_rate="30 ug/m/mm^2")
     assert len(one) == 1
     assert one.labels == ("",)
     assert one.source == ""
-
-
-def test_quantities_of_another_registry_are_understood() -> None:
-    other: Any = pint.UnitRegistry()
-    tests = made(normal_force=other.Quantity(np.array([7.0, 7.5, 8.0]), "kN"))
-    assert tests == made()
 
 
 # Traction
@@ -167,14 +143,6 @@ def test_measured_traction_is_a_condition_where_all_tests_have_it_and_the_model_
     assert "traction_coefficient" not in tests.conditions(GLOBAL, 0.46)
     assert "traction_coefficient" not in tests[:2].conditions(EXACT, 0.46)
     assert "traction_coefficient" not in made(traction_coefficient=None).conditions(GLOBAL, 0.46)
-
-
-def test_tests_are_predicted_one_by_one() -> None:
-    predict = RIG | EXACT | wl.wear_law("usfd", fitted_for="exact")
-    tests = made(friction_coefficient=0.4)
-    together = predict(**tests.conditions(EXACT)).wear_rate
-    alone = [predict(**one.conditions(EXACT)).wear_rate.magnitude[0] for one in tests]
-    np.testing.assert_allclose(together.magnitude, alone, rtol=16 * EPS)
 
 
 # Records

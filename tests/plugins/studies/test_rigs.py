@@ -22,7 +22,7 @@ from tests.core.distributions import Install
 from tests.plugins.studies.panels import by_label, by_name
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.units.variables import UNITS
+from wearlaw.units.variables import UNITS  # private: the one table of variables
 
 WHEEL = {
     "type": "wheel_rail",

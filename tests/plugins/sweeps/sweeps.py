@@ -114,7 +114,7 @@ def deadly(marker: Path, always: bool = False) -> wl.Pipeline[...]:
 
 def interrupted_after(blocks: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Make as if Ctrl-C was pressed after some blocks, once."""
-    from wearlaw_sweeps.progress import Bar
+    from wearlaw_sweeps.progress import Bar  # private: interrupts come from the bar
 
     left = [None] * (blocks + 1)  # the first call is for what was done before
 

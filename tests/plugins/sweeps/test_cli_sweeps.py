@@ -15,7 +15,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
 from tests.plugins.sweeps.sweeps import contents, interrupted_after
-from wearlaw_sweeps import room
+from wearlaw_sweeps import room  # private: the memory of the machine
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
@@ -62,18 +62,6 @@ def test_a_resumed_run_writes_the_same_bytes_as_an_uninterrupted_one_on_any_numb
 
 
 @pytest.mark.usefixtures("small_blocks")
-def test_a_damaged_block_of_a_run_is_computed_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    case = long_case(folder / "big.toml")
-    interrupted(case, monkeypatch)
-    chunk = folder / "out.partial" / "long-0.zarr" / "wear_rate" / "c" / "1"
-    content = bytearray(chunk.read_bytes())
-    content[9] ^= 1
-    chunk.write_bytes(content)
-    assert wearlaw("run", case, "-o", "out", "--resume").exit_code == 0
-    assert contents(folder / "out") == whole()
-
-
-@pytest.mark.usefixtures("small_blocks")
 def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -84,7 +72,7 @@ def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
     long_case(folder / "big.toml", sweeps={"long": {**LONG, "friction_coefficient": 0.3}})
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "conditions.friction_coefficient: was 0.46, is 0.3")
     long_case(folder / "big.toml")
-    monkeypatch.setattr("wearlaw_sweeps.provenance.__version__", "99.0")
+    monkeypatch.setattr("wearlaw_sweeps.provenance.__version__", "99.0")  # private: another version of wearlaw
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "is 99.0")
     assert contents(folder / "out.partial") == before
 
@@ -183,18 +171,10 @@ def test_a_law_of_which_nothing_is_uncertain_is_left_out_and_said_so(folder: Pat
     assert_refused(result, "nothing in the case is uncertain")
 
 
-def test_a_wear_rate_that_does_not_vary_has_no_indices(folder: Path) -> None:
-    only_friction = {"creepage": "0.001 %", "friction_coefficient": {"uniform": [0.4, 0.5]}, "laws": {}}
-    fields = table(contact_models=["global"], wear_laws=["kth"], uncertainty={"scatter": {**SCATTER, **only_friction}})
-    result = wearlaw("uncertainty", str(write(folder / "case.toml", fields)), "--samples", "64", "-o", "out")
-    assert "the wear rate is the same in all samples" in result.stderr
-    assert not (folder / "out" / "sobol_indices.csv").exists()
-
-
 def test_a_full_disk_is_one_clear_error_and_leaves_nothing_of_the_uncertainty(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw_output.files.save_figure", full_disk)  # after tables were written
+    monkeypatch.setattr("wearlaw_output.files.save_figure", full_disk)  # private: after tables were written
     result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "64", "-o", "out")
     assert_refused(result, "output: cannot write the results: No space left on device")
     assert [path.name for path in folder.iterdir()] == ["case.toml"]

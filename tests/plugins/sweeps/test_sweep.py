@@ -50,14 +50,6 @@ def test_results_are_labelled_as_the_conditions_were_given_with_units() -> None:
     assert json.loads(ds.attrs["provenance"])["plugins"]["wear law usfd"].startswith("wearlaw ")
 
 
-def test_a_wheel_on_a_rail_is_swept_as_well() -> None:
-    rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="20 m/s")
-    predict = rig | wl.contact_model("fastsim") | wl.wear_law("kth")
-    given: Any = {"longitudinal_creepage": Q([0.1, 0.3], "%"), "normal_force": "80 kN", "friction_coefficient": 0.3}
-    ds = wl.sweep(predict, **given, outputs=["wear_rate", "longitudinal_force"])
-    assert ds.longitudinal_force.to_numpy() == pytest.approx(predict(**given).longitudinal_force.magnitude, rel=1e-14)
-
-
 HEADS = {
     "creepage [%]": [1.0, 2.0, 5.0],
     "max_pressure [MPa]": [900.0, 1000.0, 1200.0],
@@ -105,16 +97,6 @@ def with_attribute(unit: str) -> xr.Dataset:
     ds = xr.Dataset({head: ("test", values) for head, values in HEADS.items()})
     ds["creepage [%]"].attrs["units"] = unit
     return ds
-
-
-def test_what_a_dataset_holds_once_is_the_same_in_all_rows() -> None:
-    ds = of_xarray()
-    ds["friction_coefficient"] = 0.4
-    ds["max_pressure"] = ((), 1000, {"units": "MPa"})
-    due = wl.sweep(predictor(), ds[["creepage"]], max_pressure="1000 MPa", friction_coefficient=0.4)
-    found = wl.sweep(predictor(), ds)
-    assert found.max_pressure.to_numpy().tolist() == [1000.0] * found.wear_rate.size
-    assert found.wear_rate.to_numpy().tolist() == due.wear_rate.to_numpy().tolist()
 
 
 @pytest.mark.parametrize(

@@ -73,21 +73,14 @@ def test_a_large_sweep_keeps_the_outcomes_of_laws_alone_and_says_so(monkeypatch:
     assert {"tangential_force", "max_pressure", "stick_ratio", "mass_per_distance", "outside_range"} <= set(whole)
     assert "keeps only" not in whole.attrs["notes"]
     numbers = len(whole.data_vars) * 6
-    monkeypatch.setattr("wearlaw_sweeps.sweep.MOST", numbers)
+    monkeypatch.setattr("wearlaw_sweeps.sweep.MOST", numbers)  # private: small blocks
     assert list(swept(TOGETHER)) == list(whole)
-    monkeypatch.setattr("wearlaw_sweeps.sweep.MOST", numbers - 1)
+    monkeypatch.setattr("wearlaw_sweeps.sweep.MOST", numbers - 1)  # private: small blocks
     cut = swept(TOGETHER)
     assert list(cut) == ["wear_rate", "rcf_damage", "heat_flux"]
     said = f"the sweep is large and keeps only the outcomes of laws: all outputs are {numbers:.2g} numbers"
     assert said in cut.attrs["notes"].splitlines()
     assert list(swept(TOGETHER, outputs=["wear_index"])) == ["wear_index"]
-
-
-def test_a_small_sweep_needs_no_law_and_a_large_one_then_needs_outputs(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert {"tangential_force", "max_pressure"} <= set(swept(RIG | EXACT))
-    monkeypatch.setattr("wearlaw_sweeps.sweep.MOST", 1)
-    with pytest.raises(wl.CompositionError, match=r'or name what to keep, as in outputs=\["tangential_force"\]'):
-        swept(RIG | EXACT)
 
 
 @pytest.mark.usefixtures("small_blocks")
