@@ -23,8 +23,8 @@ from tests.plugins.sheffield.paper import (
     usfd_of,
 )
 from wearlaw import Array
-from wearlaw_sheffield import table_4, tables
-from wearlaw_sheffield.bench import Bench
+from wearlaw_sheffield import table_4, tables  # private: one claim or table, without the study
+from wearlaw_sheffield.bench import Bench  # private: one claim or table, without the study
 
 SUROS: Any = SimpleNamespace(case=SimpleNamespace(rig=wl.TwinDisc.suros()))
 """As much of a study as the tables need."""
