@@ -22,8 +22,11 @@ Model: TypeAlias = Callable[[Array], Array]
 STEP = float(np.sqrt(np.finfo(np.float64).eps))
 """Step of the difference quotients, for which truncation and rounding errors are about equal."""
 
-TOLERANCE = 1e-8
-"""Change of the parameters below which a fit has converged; for the sum of squares, its square as a relative change."""
+TOLERANCE = 1e-9
+"""Change of the parameters below which a fit has converged."""
+
+LEAST_GAIN = float(np.finfo(np.float64).eps)
+"""Relative change of the sum of squares below which a fit has converged: it is rounding."""
 
 ITERATIONS = 100
 """Most iterations of a fit; smooth problems take about ten."""
@@ -223,7 +226,7 @@ class _State:
             better = gain > 0.0
         self._set_damping(who, better, gain, hoped)
         still = np.abs(step).max(axis=-1) <= TOLERANCE
-        little = better & (gain <= TOLERANCE**2 * before)
+        little = better & (gain <= LEAST_GAIN * before)
         stiff = ~better & (self.damping[who] >= STIFFEST)
         self._accept(who[better], moved[better], tried[better], predicted[better])
         ended = still | little | stiff

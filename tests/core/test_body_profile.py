@@ -134,15 +134,10 @@ def test_positions_need_a_rig_that_knows_where_its_patches_lie() -> None:
 
 
 @pytest.mark.parametrize(
-    ("field", "value", "said"),
-    [
-        ("position", np.zeros(3), r"float64 of shape \(3,\) as `profile_position` of wheel; it must be a number or an"),
-        ("position", "here", "as `profile_position` of wheel; it must be a number or an array"),
-        ("direction", np.ones(3), "as `profile_direction` of wheel; it must be a number or an array"),
-        ("direction", 0.5, "a `profile_direction` of wheel that is neither 1 nor -1"),
-    ],
+    ("field", "value"),
+    [("position", np.zeros(3)), ("position", "here"), ("direction", np.ones(3)), ("direction", 0.5)],
 )
-def test_a_wrong_place_on_a_profile_is_the_rigs_fault(field: str, value: Any, said: str) -> None:
+def test_a_wrong_place_on_a_profile_is_the_rigs_fault(field: str, value: Any) -> None:
     class Lost(Placed):
         name: ClassVar[str] = "lost"
 
@@ -151,5 +146,5 @@ def test_a_wrong_place_on_a_profile_is_the_rigs_fault(field: str, value: Any, sa
             changes: Any = {f"profile_{field}": value}
             return found.replaced(bodies={"wheel": dataclasses.replace(found.bodies["wheel"], **changes)})
 
-    with pytest.raises(wl.ModelError, match=f"rig 'lost' gave .*{said}"):
+    with pytest.raises(wl.ModelError, match=f"rig 'lost' .*`profile_{field}`.* of wheel"):
         (Lost() | wl.contact_model("fastsim"))(**GIVEN)

@@ -31,7 +31,7 @@ which moves a number by some 1e-16 for each of the few hundred operations behind
 LOOSER = {"fit": 1e-8, "wheelset": 1e-6}
 """Greatest relative change where rounding counts for more, by the first word of a row's name.
 
-A fit ends at steps of 1e-8. A wheel first touches where its gap is least, and rounding by eps moves a minimum by √eps,
+A fit ends at steps of 1e-9. A wheel first touches where its gap is least, and rounding by eps moves a minimum by √eps,
 or 1.5e-8; shares such as that of stick or of a second patch are differences of numbers up to a hundred times as large.
 """
 

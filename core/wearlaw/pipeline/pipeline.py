@@ -15,7 +15,7 @@ import numpy as np
 import pint
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array, read_only, steadily, steady, type_name
+from wearlaw.arrays.array import Array, read_only, steadily, steady
 from wearlaw.contact.conditions import Condition, FrictionLaw, broadcast, declared, friction_at, is_friction_law
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import (
@@ -28,7 +28,7 @@ from wearlaw.errors import (
     shown,
     warn,
 )
-from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, fault, with_origin
+from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, fault
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.stage import Stage
 from wearlaw.numerics.integrate import integrate_forces, prepared
@@ -206,96 +206,12 @@ class Rig(Model):
         """
         try:
             with Blame(self):
-                problem = _posed(self, conditions)
+                problem = _in_batch(_posed(self, conditions))
         except ModelError:
             self.check_names(conditions)
             raise
-        if not isinstance(problem, Problem):
-            raise fault(self, f"returned {shown(problem)}, not a wearlaw.Problem")
-        if problem.dims:
-            self._check_dims(problem)
-        for body in problem.bodies.values():
-            if body.profile_position is not None:
-                bodies = {name: self._placed(problem, name) for name in problem.bodies}
-                problem = problem.replaced(bodies=bodies)
-                break
-        if problem.exists is not None:
-            problem = self._masked(problem)
         check_problem(self, problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
-
-    def _checked_balance(self, problem: Problem, balanced: object) -> Problem:
-        """Return the result of `balanced` for a problem, with NaN for patches that have lifted off.
-
-        Raises
-        ------
-        ModelError
-            If it is no problem, or not one of the same geometry, shape and axes.
-        """
-        if not isinstance(balanced, Problem):
-            raise ModelError(
-                with_origin(self, f"`balanced` of rig '{self.name}' returned {shown(balanced)}, not a wearlaw.Problem")
-            )
-        shapes = [(one.geometry, one.batch_shape, one.dims) for one in (balanced, problem)]
-        if shapes[0] != shapes[1]:
-            found, given = (f"geometry '{one[0]}', shape {one[1]} and axes {one[2]!r}" for one in shapes)
-            message = (
-                f"`balanced` of rig '{self.name}' returned a problem of {found} for one of {given}; return one like it,"
-                " as from `Problem.replaced`"
-            )
-            raise ModelError(with_origin(self, message))
-        if balanced.exists is not None and balanced.exists is not problem.exists:
-            balanced = self._masked(balanced)
-        check_problem(self, balanced)
-        return balanced
-
-    def _placed(self, problem: Problem, name: str) -> Body:
-        """Return a body with the places of its patches on its profile in the shape of the batch."""
-        body, batch = problem.bodies[name], problem.batch_shape
-        if body.profile_position is None:
-            return body
-        found: dict[str, Any] = {}
-        for field in ("profile_position", "profile_direction"):
-            given = getattr(body, field)
-            try:
-                found[field] = np.broadcast_to(np.asarray(given, dtype=np.float64), batch)
-            except (TypeError, ValueError):
-                raise fault(
-                    self,
-                    f"gave {type_name(given)} of shape {np.shape(given)} as `{field}` of {name}; it"
-                    f" must be a number or an array that broadcasts to the shape of the batch, {batch}",
-                ) from None
-        if not (np.abs(found["profile_direction"]) == 1.0).all():
-            raise fault(self, f"gave a `profile_direction` of {name} that is neither 1 nor -1")
-        return dataclasses.replace(body, **found)
-
-    def _check_dims(self, problem: Problem) -> None:
-        """Raise an error if the labels of the rig's own axes do not fit the shape of the batch."""
-        try:
-            labels = tuple(len(labels) for labels in problem.dims.values())
-        except (AttributeError, TypeError):
-            labels = None
-        if labels is None or problem.batch_shape[-len(labels) :] != labels:
-            raise fault(
-                self,
-                f"gave {problem.dims!r} as `dims` of a batch of shape {problem.batch_shape}; `dims`"
-                ' holds the names of its last axes with a label for each entry, such as {"side": ("left", "right")}',
-            )
-
-    def _masked(self, problem: Problem) -> Problem:
-        """Return the problem with NaN for patches that do not exist."""
-        exists = problem.exists
-        if type(exists) is not np.ndarray or exists.dtype != np.bool_ or exists.shape != problem.batch_shape:
-            raise fault(
-                self,
-                f"gave {type_name(exists)} as `exists`; it must be an array of bool of the shape of"
-                f" the batch, {problem.batch_shape}",
-            )
-        of_strips = exists[..., None]
-        masked = problem.mapped(
-            lambda array: np.where(exists, array, np.nan), lambda array: np.where(of_strips, array, np.nan)
-        )
-        return masked.replaced(exists=exists)
 
     @classmethod
     def check_names(cls, conditions: Mapping[str, object]) -> None:
@@ -371,7 +287,55 @@ def _check_given(rig: type[Rig], names: tuple[str, ...]) -> None:
 @steady
 def _posed(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
     given = {name: value if type(value) in (str, float) else _read_only(value) for name, value in conditions.items()}
-    return rig.problem(**given)
+    problem = rig.problem(**given)
+    if not isinstance(problem, Problem):
+        raise fault(rig, f"returned {shown(problem)}, not a wearlaw.Problem")
+    return problem
+
+
+def _in_batch(problem: Problem) -> Problem:
+    """Return a rig's problem with places on profiles in the shape of its batch, and NaN for patches that do not exist.
+
+    Raises
+    ------
+    ValueError
+        If they do not fit the batch.
+    """
+    batch, labels = problem.batch_shape, tuple(map(len, problem.dims.values()))
+    if batch[len(batch) - len(labels) :] != labels:
+        raise ValueError(f"`dims` must label the last axes of the batch, of shape {batch}; got {problem.dims!r}")
+    placed = {}
+    for name, body in problem.bodies.items():
+        if body.profile_position is not None:
+            try:
+                position, direction = (
+                    np.broadcast_to(np.asarray(value, dtype=np.float64), batch)
+                    for value in (body.profile_position, body.profile_direction)
+                )
+            except ValueError:
+                raise ValueError(f"`profile_position` and `profile_direction` of {name} must fit {batch}") from None
+            if not (np.abs(direction) == 1.0).all():
+                raise ValueError(f"`profile_direction` of {name} must be 1 or -1")
+            placed[name] = dataclasses.replace(body, profile_position=position, profile_direction=direction)
+    if placed:
+        problem = problem.replaced(bodies={**problem.bodies, **placed})
+    return problem if problem.exists is None else _masked(problem)
+
+
+def _axes(problem: Problem) -> tuple[object, ...]:
+    return problem.geometry, problem.batch_shape, problem.dims
+
+
+def _masked(problem: Problem) -> Problem:
+    """Return the problem with NaN for patches that do not exist."""
+    exists = np.asarray(problem.exists)
+    if exists.dtype != np.bool_ or exists.shape != problem.batch_shape:
+        raise ValueError(f"`exists` must be an array of bool of the shape of the batch, {problem.batch_shape}")
+    of_strips = exists[..., None]
+    masked = problem.mapped(
+        lambda array: np.where(exists, array, np.nan), lambda array: np.where(of_strips, array, np.nan)
+    )
+    return masked.replaced(exists=exists)
 
 
 def _read_only(value: Any) -> Any:
@@ -496,7 +460,12 @@ class Pipeline(Configuration, Generic[P]):
             return problem
         with Blame(rig), steadily():
             balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
-        return rig._checked_balance(problem, balanced)
+            if not isinstance(balanced, Problem) or _axes(balanced) != _axes(problem):
+                raise ValueError("`balanced` must return a problem like the one given, as from `Problem.replaced`")
+            if balanced.exists is not None and balanced.exists is not problem.exists:
+                balanced = _masked(balanced)
+        check_problem(rig, balanced)
+        return balanced
 
     def predict(self, problem: Problem, *, on_block: Callable[[int], None] | None = None) -> Prediction:
         """Return the contact and the wear for a contact problem made by the rig.
