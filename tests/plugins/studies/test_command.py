@@ -116,7 +116,8 @@ def test_of_two_runs_into_one_folder_the_second_to_end_replaces_the_first_only_w
     def late(*arguments: Any) -> list[str]:
         monkeypatch.setattr(commands, "write", write_results)
         winners.append(wearlaw("run", "kth.toml", *options))
-        return write_results(*arguments)
+        written: list[str] = write_results(*arguments)
+        return written
 
     monkeypatch.setattr(commands, "write", late)
     last = wearlaw("run", "usfd.toml", *options)
