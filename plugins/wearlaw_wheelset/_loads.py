@@ -472,7 +472,7 @@ class Balance:
             Whether to search within bounds where Newton's method fails, which takes a hundred times as long. Otherwise
             these positions are marked as unbalanced.
         """
-        copies = {name: one.copy() for name, one in vars(self).items() if isinstance(one, np.ndarray)}
+        copies: dict[str, Any] = {name: one.copy() for name, one in vars(self).items() if isinstance(one, np.ndarray)}
         every = np.ones(self.balanced.shape, dtype=np.bool_)
         copies |= {"scale": np.ones(self.scale.shape), "balanced": every}
         touching = Touching(*(array.copy() for array in self.touching))
