@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import signal
 import sys
-import traceback
 from io import TextIOWrapper
 from typing import IO, Any
 
@@ -40,7 +39,7 @@ class Stopped(click.ClickException):
 
 
 class _Commands(click.Group):
-    """The commands. An error of wearlaw, an interrupt, or a plugin that ends the program, prints one clear line."""
+    """The commands. An error of wearlaw or an interrupt prints one clear line."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         return list(commands())
@@ -74,12 +73,6 @@ class _Commands(click.Group):
             raise click.ClickException("\n".join([message_of(error), *getattr(error, "__notes__", [])])) from None
         except KeyboardInterrupt:
             raise Stopped("Stopped") from None
-        except Exception:
-            raise
-        except BaseException as error:  # such as a model's SystemExit(0), which would look like success
-            place = traceback.extract_tb(error.__traceback__)[-1]
-            reason = f"the command was ended by {described(error)}, raised in {place.filename}, line {place.lineno}"
-            raise click.ClickException(reason) from error
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
