@@ -103,7 +103,7 @@ def run_here(command: str) -> str:
 
     `tests/third_party` and `.ci/run` run the program itself.
     """
-    from wearlaw.cli import main
+    from wearlaw.cli import main  # private: the program, in this process
 
     result = CliRunner(env={"COLUMNS": "80"}).invoke(main, shlex.split(command)[1:])
     if result.exception and not isinstance(result.exception, SystemExit):
@@ -146,7 +146,7 @@ def check_matlab(example: Example) -> None:
 
 def read_tables(example: Example) -> None:
     """Read tables of a case file below those of the shipped case."""
-    from wearlaw_studies.case import case_text, load_case
+    from wearlaw_studies.case import case_text, load_case  # private: a case without its files
 
     Path("_tables.toml").write_text(f"{case_text('tassini2010')}\n{example.parsed}", encoding="utf-8")
     load_case("_tables.toml")

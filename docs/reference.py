@@ -28,6 +28,7 @@ TITLES = {
     "wearlaw_sweeps": "Sweeps",
     "wearlaw_fits": "Tests, fits, comparisons, uncertainties",
     "wearlaw_studies": "Studies",
+    "wearlaw_contact_files": "Contacts from files",
     "wearlaw_output": "Data of figures",
     "tables": "Tables",
     "wearlaw_wheelset": "Wheelsets",

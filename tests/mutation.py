@@ -41,7 +41,8 @@ TESTS = {
     "wearlaw_fastsim": "plugins/fastsim/test_kernel.py plugins/fastsim/test_first_slip.py"
     " plugins/fastsim/test_fastsim.py plugins/fastsim/test_solution.py plugins/fastsim/test_strip_forces.py"
     " plugins/fastsim/test_strip_fields.py"
-    " plugins/fastsim/test_march.py plugins/fastsim/test_march_convergence.py",
+    " plugins/fastsim/test_march.py plugins/fastsim/test_march_convergence.py plugins/fastsim/test_limits.py"
+    " plugins/fastsim/test_given_strips.py",
     "wearlaw_global": "plugins/global/test_global.py",
     "wearlaw_kth": "plugins/kth/test_kth.py",
     "wearlaw_linear": "plugins/linear/test_linear.py",
@@ -52,15 +53,16 @@ TESTS = {
     "wearlaw_third_body": "plugins/third_body/test_third_body.py",
     "wearlaw_usfd": "plugins/usfd/test_usfd.py",
     "wearlaw_wlrm": "plugins/wlrm/test_wlrm.py",
-    "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py core/test_wheel_rail.py"
-    " core/test_wheel_rail_result.py core/test_unlike_materials.py core/test_several_patches.py",
+    "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py"
+    " plugins/wheel_rail/test_wheel_rail.py plugins/wheel_rail/test_result.py"
+    " core/test_unlike_materials.py core/test_several_patches.py",
     "wearlaw.contact.hertz": "core/test_hertz.py core/test_unlike_materials.py",
     "wearlaw.contact.hertz_ellipse": "core/test_hertz_ellipse.py",
     "wearlaw.numerics.splits": "core/test_splits.py",
     "wearlaw.settings.parameters": "core/test_varying.py",
     "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py plugins/fits/test_uncertainty.py"
-    " plugins/fits/test_uncertainty_refusals.py plugins/sweeps/test_inverse.py core/test_wheel_rail.py"
-    " core/test_wheel_rail_result.py core/test_models.py",
+    " plugins/fits/test_uncertainty_refusals.py plugins/sweeps/test_inverse.py"
+    " plugins/wheel_rail/test_wheel_rail.py plugins/wheel_rail/test_result.py core/test_models.py",
     "wearlaw.contact.contact": "core/test_records.py core/test_contact_from_arrays.py core/test_elliptic_contact.py"
     " core/test_several_patches.py plugins/fastsim/test_given_strips.py",
     "wearlaw_archard.coefficients": "plugins/archard/test_wear_coefficients.py",

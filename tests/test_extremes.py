@@ -92,7 +92,11 @@ REFUSED: dict[str, tuple[type[wl.WearlawError], str, Any]] = {
     "force beyond floats in SI": (wl.UnitError, "normal_force", lambda: line(normal_force="1.7e308 kN")),
     "force that no disc carries": (wl.ConditionsError, "max pressure", lambda: line(normal_force="1e300 kN")),
     "friction of no contact": (wl.ConditionsError, "friction_coefficient", lambda: line(friction_coefficient=1e-13)),
-    "diameter of nothing": (wl.ConfigurationError, "diameter", lambda: wl.Disc(diameter="5e-324 mm", material="steel")),
+    "diameter of nothing": (
+        wl.ConfigurationError,
+        "diameter",
+        lambda: wl.Disc(diameter="5e-324 mm", material=wl.steel()),
+    ),
     "density beyond floats in SI": (
         wl.ConfigurationError,
         "density",

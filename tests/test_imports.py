@@ -1,13 +1,18 @@
-"""Imports between the files of core and plugins, read from the source: those inside functions and for types count."""
+"""Imports, read from the source: between the files of core and plugins, and by tests of what is private.
+
+Those inside functions and for types count.
+"""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 import pytest
 
+import wearlaw as wl
 from tests.environments import ROOT
 
 DEFERRED = {
@@ -92,18 +97,6 @@ def graph() -> dict[str, set[str]]:
     return graph
 
 
-def test_a_circle_is_found_whichever_way_it_is_imported() -> None:
-    sources = {
-        "a": "from a import b",
-        "a.b": "if TYPE_CHECKING:\n    import a.c",
-        "a.c": "def f():\n    from a.b import X",
-        "d": "import a.b\nfrom a import X",
-    }
-    graph = {name: set(imported(text, sources)) for name, text in sources.items()}
-    assert graph == {"a": {"a.b"}, "a.b": {"a.c"}, "a.c": {"a.b"}, "d": {"a", "a.b"}}
-    assert circles(graph) == [{"a.b", "a.c"}]
-
-
 def test_no_files_import_each_other_in_a_circle(graph: dict[str, set[str]]) -> None:
     assert {"wearlaw", "wearlaw_studies.case", "wearlaw_kth", "_wearlaw_hypothesis"} <= graph.keys()
     assert [sorted(circle) for circle in circles(graph)] == []
@@ -123,3 +116,50 @@ def test_imports_inside_functions_are_few_and_each_has_its_reason() -> None:
     assert [*deferred("import a\ndef f():\n    def g():\n        from b import c, d\n        import e")] == ["b", "e"]
     found = [(name, one) for name, path in modules().items() for one in deferred(path.read_text(encoding="utf-8"))]
     assert sorted(found) == sorted(DEFERRED)
+
+
+OURS = re.compile(r"wearlaw(_\w+)?\.\w")
+"""A name below a package of wearlaw; the package itself is public."""
+
+TESTS = [*(ROOT / "tests").rglob("*.py"), ROOT / "conftest.py"]
+TESTS = [path for path in TESTS if not {"wearlaw-outside", "cases"} & {*path.parts}]
+
+
+def private(source: str, known: Collection[str]) -> Iterator[str]:
+    """Yield the private paths that a source imports, or patches by name, on a line without `# private: why`."""
+    lines = source.splitlines()
+    for node in ast.walk(ast.parse(source)):
+        names: list[str] = []
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            inner = [f"{node.module}.{alias.name}" for alias in node.names if alias.name not in wl.__all__]
+            names = [node.module, *(name for name in inner if name in known)]
+        elif isinstance(node, ast.Call) and getattr(node.func, "attr", "") in ("setattr", "delattr", "setitem"):
+            names = [one.value for one in node.args[:1] if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+        else:
+            continue
+        if not any(re.search("# private: .", line) for line in lines[node.lineno - 1 : node.end_lineno]):
+            yield from (name for name in names if OURS.match(name))
+
+
+@pytest.mark.parametrize(
+    ("source", "found"),
+    [
+        ("from wearlaw import Q, hertz\nimport wearlaw_kit\nfrom wearlaw_wheelset import Wheelset", []),
+        ("import wearlaw.cli", ["wearlaw.cli"]),
+        ("from wearlaw_kit import kit", ["wearlaw_kit.kit"]),
+        ("def f():\n    from wearlaw.cli import (\n        main,\n    )", ["wearlaw.cli"]),
+        ("from wearlaw.cli import (  # private: the program\n    main,\n)", []),
+        ("monkeypatch.setattr('wearlaw_kit.kit.checks', 1)", ["wearlaw_kit.kit.checks"]),
+        ("monkeypatch.setattr('wearlaw_kit.kit.checks', 1)  # private:", ["wearlaw_kit.kit.checks"]),
+    ],
+)
+def test_a_private_path_is_found(source: str, found: list[str]) -> None:
+    assert [*private(source, {"wearlaw_kit.kit", "wearlaw.contact.hertz"})] == found
+
+
+def test_tests_use_public_names_or_say_on_the_line_why_not() -> None:
+    known = modules()
+    found = {path: [*private(path.read_text(encoding="utf-8"), known)] for path in TESTS}
+    assert {str(path.relative_to(ROOT)): names for path, names in found.items() if names} == {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pint
@@ -20,7 +20,9 @@ from wearlaw.units.quantities import Unit, coefficient, from_si
 from wearlaw.units.registry import symbol
 from wearlaw_fits.distributions import Distribution, PublishedRange, uniform
 from wearlaw_fits.named_numbers import Kind, NamedNumbers, Place
-from wearlaw_fits.result import Fit
+
+if TYPE_CHECKING:
+    from wearlaw_fits.result import Fit
 
 OTHERS = "\nThe values are samples of its distribution; choose one without such values, such as lognormal or uniform"
 """The hint for impossible samples."""

@@ -1,6 +1,6 @@
 """Pictures of a prediction: curves, a map or bars over its operating points, and the fields of a single patch.
 
-xarray and pandas draw. matplotlib is imported so that an error names the extra if it is missing.
+xarray and pandas draw, and matplotlib the cells of a patch.
 """
 
 from __future__ import annotations
@@ -10,9 +10,11 @@ import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import matplotlib as matplotlib
 import numpy as np
+from matplotlib import pyplot
+from matplotlib.collections import PolyCollection
 
+from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import named_outcomes
@@ -194,17 +196,17 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
         )
     if not line:
         variable = name or FIELDS[0]
-        mesh = fields[variable].plot.pcolormesh(
-            x="x", y="y", cbar_kwargs={"label": _label(fields[variable])}, **_look(ax)
-        )
-        mesh.axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
-        drawn: Axes = mesh.axes
-        return drawn
+        axes: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
+        cells = axes.add_collection(PolyCollection([*_cells(prediction)], array=fields[variable].values.ravel()))
+        axes.figure.colorbar(cells, ax=axes, label=_label(fields[variable]))
+        axes.autoscale_view()
+        axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
+        return axes
     names = list(ALONG) if name is None else [name]
     table = fields.to_dataframe().reset_index()
     style = ["--" if one == "traction_bound" else "-" for one in names]
     labels = [name_of(one) for one in names]
-    drawn = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
+    drawn: Axes = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
     drawn.set(xlabel=_label(fields["x"]), ylabel=_label(fields[names[0]]) if name else label("pressure", "traction"))
     return drawn
 
@@ -220,6 +222,32 @@ def _map_of_patch(prediction: Prediction) -> xarray.Dataset:
 
     none = prediction.problem.replaced(dims={})
     return labelled(none, {name: values_of(name) for name in ("x", "y")}, {name: values_of(name) for name in FIELDS})
+
+
+def _cells(prediction: Prediction) -> Array:
+    """Return the corners of the cells of a patch [mm], of shape (cells, 4, 2), which fill it up to its edge."""
+    contact = prediction.contact
+    shape = contact.pressure.shape[-2:]
+    width = contact.strip_width.reshape(shape[1])
+    left, right = _ends(contact.x.reshape(shape), contact.area.reshape(shape) / width)
+    low, high = (
+        np.broadcast_to(one, shape)
+        for one in _ends(np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0], width)
+    )
+    corners = [np.stack(corner, axis=-1) for corner in ((left, low), (right, low), (right, high), (left, high))]
+    return 1e3 * np.stack(corners, axis=-2).reshape(-1, 4, 2)
+
+
+def _ends(middle: Array, size: Array) -> tuple[Array, Array]:
+    """Return the ends of cells that lie side by side along the first axis, each about its node."""
+    order = np.argsort(middle, axis=0)
+    sizes, nodes = np.take_along_axis(size, order, axis=0), np.take_along_axis(middle, order, axis=0)
+    ends = np.cumsum(sizes, axis=0)
+    whole = np.maximum(ends[-1], np.finfo(float).tiny)
+    ends = ends + ((nodes - (ends - 0.5 * sizes)) * sizes).sum(axis=0) / whole
+    back = np.argsort(order, axis=0)
+    after = np.take_along_axis(ends, back, axis=0)
+    return after - size, after
 
 
 def _look(ax: Axes | None) -> dict[str, Any]:

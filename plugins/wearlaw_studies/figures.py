@@ -19,7 +19,7 @@ from wearlaw.errors import ConfigurationError, Fault, UnitError, did_you_mean, s
 from wearlaw.models.law import WEAR
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.quantities import Q
-from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw.units.variables import UNITS, label, name_of, readable
 from wearlaw_output.curves import BLACK, OUTSIDE, Curve, FigureData, Map, Panel, PlotAxis, Shade
 from wearlaw_studies.figure_spec import ACROSS, COMMON, OF_PROFILE, FigureSpec, Range, Scale, Window, ends
 from wearlaw_studies.measured import known_variables, measured_points
@@ -257,7 +257,7 @@ def _conditions(grid: Any, free: Collection[str], units: Mapping[str, str]) -> I
     for name in grid.given:
         if name not in free:
             level = grid.level(name, units)
-            value = level if isinstance(level, str) else f"{level:.5g} {units[name]}"
+            value = level if isinstance(level, str) else f"{level:.5g} {readable(units[name])}"
             yield f"{name_of(name)} {value}".rstrip()
 
 

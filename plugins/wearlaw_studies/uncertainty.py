@@ -12,7 +12,7 @@ from wearlaw.errors import InputError
 from wearlaw.models.law import WEAR
 from wearlaw.pipeline.notes import Notes
 from wearlaw.units.quantities import WEAR_RATE
-from wearlaw.units.variables import name_of
+from wearlaw.units.variables import name_of, readable
 from wearlaw_fits.pairs import Pair
 from wearlaw_fits.uncertainty import CONFIDENCE, Uncertainty, uncertainty
 from wearlaw_studies.case import Case
@@ -109,7 +109,7 @@ def uncertainty_of(
     shares = table[[*front, *table.columns.drop(["point", "pair", "outcome"], errors="ignore")]]
     medians = pd.DataFrame(rates)
     if only_wear:
-        ends = {name: f"{name} [{WEAR_RATE}]" for name in medians.columns.drop(["point", "pair"])}
+        ends = {name: f"{name} [{readable(WEAR_RATE)}]" for name in medians.columns.drop(["point", "pair"])}
         medians = medians.drop(columns=["outcome", "unit"]).rename(columns=ends)
     return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, _folded(notes.texts, found))
 

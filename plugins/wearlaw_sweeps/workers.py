@@ -132,9 +132,8 @@ def on_cluster(client: Any, job: bytes, store: str | None, points: Points, block
     waiting: Any = distributed.as_completed([])
 
     def hand_out() -> None:
-        while (
-            len(pending) < AHEAD * max(1, sum(client.nthreads().values())) and (block := next(left, None)) is not None
-        ):
+        threads = max(1, sum(client.nthreads().values()))
+        while len(pending) < AHEAD * threads and (block := next(left, None)) is not None:
             part = points.part(block.slices)
             future = client.submit(_evaluated_elsewhere, job, block, part, store, pure=False)
             pending[future] = block

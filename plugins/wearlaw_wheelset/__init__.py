@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import wearlaw as wl
+from wearlaw_wheelset._formulas import FORMULAS
 from wearlaw_wheelset._geometry import Geometry
 from wearlaw_wheelset._profile import Profile, read_profile, write_profile
 from wearlaw_wheelset._rig import Wheelset
@@ -21,9 +22,14 @@ def wearlaw_models() -> list[type[wl.Rig]]:
 
 @wl.hookimpl
 def wearlaw_resources() -> dict[str, dict[str, Any]]:
-    """Return a study of a wheelset on straight track and in a curve, and the section of its report."""
+    """Return a study of a wheelset on straight track and in a curve, the section of its report, and profiles."""
     case = Path(__file__).with_name("wheelset.toml").read_text(encoding="utf-8")
-    return {"case": {"wheelset": case}, "section": {"wheelset": _make_section}}
+    return {
+        "kind": {"profile": wl.ResourceKind(str, "wearlaw_wheelset._formulas:explain_profile")},
+        "profile": {name: formula.source for name, formula in FORMULAS.items()},
+        "case": {"wheelset": case},
+        "section": {"wheelset": _make_section},
+    }
 
 
 def _make_section(study: wl.Study) -> wl.Section:

@@ -1,10 +1,13 @@
-"""Profiles of standards by their formulas: the wheel S1002 and the head of the rail 60E1."""
+"""Profiles of standards by their formulas."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import textwrap
+from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +15,8 @@ from wearlaw import Array
 from wearlaw_wheelset._curve import Arc, Parametric, Piece
 
 MM = 1e-3
+SIDE = math.atan(20.0)
+"""Angle of the sides of a rail's head [rad]."""
 
 S1002_RUNNING = (
     0.0,
@@ -57,40 +62,102 @@ def s1002() -> list[Piece]:
 
 
 def uic60() -> list[Piece]:
-    """Return the head of the rail 60E1 (UIC 60), from the gauge side to the field side, in SI units.
+    """Return the head of the rail UIC 60, from the gauge side to the field side, in SI units.
 
-    Tangent arcs of 300 mm up to 10.5 mm from the axis, of 80 mm, and of 13 mm, then sides of 1 in 20 down to 37 mm
-    below the top. The head is 72 mm wide where the sides begin, so the arcs of 80 mm end 25.988 mm from the axis.
+    Arcs of 300 mm up to 10.5 mm from the axis, of 80 mm, and of 13 mm. The head is 72 mm wide where the sides begin.
 
-    Source: UIC 861-3 and EN 13674-1. The points of the Manchester contact benchmark, which are canted by 1 in 40, lie
-    within 3e-5 mm of it.
+    Source: UIC 861-3. The points of the Manchester contact benchmark, which are canted by 1 in 40, lie within 3e-5 mm
+    of it.
     """
-    radii, side, corner = (300.0, 80.0, 13.0), math.atan(20.0), 36.0
-    sine = 10.5 / radii[0]
-    centres = [(0.0, radii[0])]
-    centres.append(_tangent(centres[0], radii[0] - radii[1], sine))
-    sine = (corner - radii[2] * math.sin(side) - centres[1][0]) / (radii[1] - radii[2])
-    centres.append(_tangent(centres[1], radii[1] - radii[2], sine))
-    ends = (10.5, centres[1][0] + radii[1] * sine)
-    height = centres[2][1] - radii[2] * math.cos(side) - 20.0 * corner
-    bottom = (37.0 - height) / 20.0
-    bounds = (*ends, corner)
+    middle = 10.5 * (300.0 - 80.0) / 300.0  # that of the arc of 80 mm
+    sine = (36.0 - 13.0 * math.sin(SIDE) - middle) / (80.0 - 13.0)
+    return _head((300.0, 80.0, 13.0), (10.5, middle + 80.0 * sine), 37.0)
+
+
+def rail_60e1() -> list[Piece]:
+    """Return the head of the rail 60E1: arcs of 300 mm, 80 mm and 13 mm."""
+    return _head((300.0, 80.0, 13.0), (0.5 * 20.456, 0.5 * 52.053), 35.0)
+
+
+def rail_60e2() -> list[Piece]:
+    """Return the head of the rail 60E2: arcs of 200 mm, 70 mm, 16 mm and 8 mm."""
+    return _head((200.0, 70.0, 16.0, 8.0), (0.5 * 23.778, 0.5 * 48.913, 0.5 * 70.774), 35.0)
+
+
+def rail_54e1() -> list[Piece]:
+    """Return the head of the rail 54E1 (UIC 54): arcs of 300 mm, 80 mm and 13 mm."""
+    return _head((300.0, 80.0, 13.0), (0.5 * 20.024, 0.5 * 49.727), 33.0)
+
+
+def cone(slope: float) -> list[Piece]:
+    """Return a conical wheel without a flange, whose radius falls outwards by a slope."""
+    return [_line(0.0, -slope, -35.0, 60.0)]
+
+
+class Formula(NamedTuple):
+    """A profile by formula: its kind, the function that returns its pieces, and what `wearlaw show` says of it."""
+
+    kind: str
+    pieces: Callable[[], list[Piece]]
+    source: str
+
+
+DRAWING = (
+    "Arcs that touch each other, then sides of 1 in 20. Source: the drawing in EN 13674-1:2017, read in the package"
+    " EN13674 of A. Rohrbeck (github.com/rohrbecka/EN13674); the head comes out as wide as the standard says."
+)
+
+FORMULAS: dict[str, Formula] = {
+    "s1002": Formula(
+        "wheel",
+        s1002,
+        "S1002 of UIC 510-2 and EN 13715. The points of the Manchester contact benchmark lie within 1.6e-6 mm of it.",
+    ),
+    "uic60": Formula(
+        "rail",
+        uic60,
+        "UIC 60, as in the Manchester contact benchmark, whose points lie within 3e-5 mm of it. rail_60e1"
+        " follows the drawing in EN 13674-1, and lies up to 0.04 mm lower beside the middle.",
+    ),
+    "rail_60e1": Formula("rail", rail_60e1, f"60E1. {DRAWING}"),
+    "rail_60e2": Formula("rail", rail_60e2, f"60E2. {DRAWING}"),
+    "rail_54e1": Formula("rail", rail_54e1, f"54E1, formerly UIC 54. {DRAWING}"),
+    "cone20": Formula("wheel", partial(cone, 1.0 / 20.0), "A cone of 1 in 20 without a flange, from -35 to 60 mm."),
+    "cone40": Formula("wheel", partial(cone, 1.0 / 40.0), "A cone of 1 in 40 without a flange, from -35 to 60 mm."),
+}
+"""Profiles by their names."""
+
+
+def explain_profile(name: str, source: str) -> Iterator[str]:
+    """Yield the lines of `wearlaw show` for a profile by formula."""
+    yield f"profile of a {FORMULAS[name].kind}"
+    yield ""
+    yield from textwrap.wrap(source, 88)
+    yield ""
+    yield f'A case names it: {FORMULAS[name].kind} = "{name}"'
+    yield f'In Python: wearlaw_wheelset.Profile.named("{name}")'
+
+
+def _head(radii: tuple[float, ...], ends: tuple[float, ...], depth: float) -> list[Piece]:
+    """Return the head of a rail down to a depth, from arcs that touch each other at ends, and sides of 1 in 20 [mm]."""
+    centre, arcs = (0.0, radii[0]), [(0.0, radii[0])]
+    for radius, smaller, end in zip(radii, radii[1:], ends, strict=False):
+        sine = (end - centre[0]) / radius
+        centre = (
+            centre[0] + (radius - smaller) * sine,
+            centre[1] - (radius - smaller) * math.sqrt(1.0 - sine**2),
+        )
+        arcs.append(centre)
+    corner = centre[0] + radii[-1] * math.sin(SIDE)
+    height = centre[1] - radii[-1] * math.cos(SIDE) - 20.0 * corner
+    bottom = (depth - height) / 20.0
     right, left = [], []
-    for (y, z), radius, (begin, end) in zip(centres[1:], radii[1:], pairwise(bounds), strict=True):
+    for (y, z), radius, (begin, end) in zip(arcs[1:], radii[1:], pairwise((*ends, corner)), strict=True):
         right.append(_arc((y, z), radius, begin, end))
         left.append(_arc((-y, z), radius, -end, -begin))
-    top = _arc(centres[0], radii[0], -ends[0], ends[0])
+    top = _arc(arcs[0], radii[0], -ends[0], ends[0])
     rises, falls = _line(height, -20.0, -bottom, -corner), _line(height, 20.0, corner, bottom)
     return [rises, *left[::-1], top, *right, falls]
-
-
-FORMULAS: dict[str, tuple[str, Callable[[], list[Piece]]]] = {"s1002": ("wheel", s1002), "uic60": ("rail", uic60)}
-"""Kind and pieces of each profile by its name."""
-
-
-def _tangent(centre: tuple[float, float], difference: float, sine: float) -> tuple[float, float]:
-    """Return the centre of a smaller arc that touches one about `centre` where the angle has this sine."""
-    return centre[0] + difference * sine, centre[1] - difference * math.sqrt(1.0 - sine**2)
 
 
 def _arc(centre: tuple[float, float], radius: float, begin: float, end: float) -> Arc:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -22,6 +23,8 @@ NARROWEST, WIDEST = 20e-3, 300e-3
 """Bounds of the width of a profile [m]."""
 CLEAR = 5e-3
 """Height by which a profile must stand out to show which way up it is, or on which side its flange is [m]."""
+CROWN, WIDEST_HEAD = 12e-3, 92e-3
+"""Depth below its top at which the width of a rail's head is taken, and the width beyond which it is doubted [m]."""
 TIP = 1e-3
 """Height by which the top of a flange stands above both ends of the profile [m]."""
 BLOCK = 64
@@ -112,6 +115,14 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
         raise wl.InputError(
             f"the {kind} is upside down: z is positive down, but its {part} has {_point(place, y, z, name)}, above its"
             f" median height of {_mm(level)}; change the sign of z, in a file by mirror_z=True"
+        )
+    top = y[z < z.min() + CROWN]
+    if kind == "rail" and np.ptp(top) > WIDEST_HEAD:
+        warnings.warn(
+            f"the rail is {_mm(float(np.ptp(top)))} wide {_mm(CROWN)} below its top, but heads of rails have 60 to"
+            " 80 mm; is it the profile of a wheel?",
+            wl.RangeWarning,
+            stacklevel=2,
         )
     place = int(np.argmax(z))
     if kind != "wheel" or down <= CLEAR or y[place] < 0.0:

@@ -27,10 +27,6 @@ if TYPE_CHECKING:
 CONVEX = {"wheel": -1.0, "rail": 1.0}
 """Sign of dθ/ds where a body is convex: the wheel lies above its profile, the rail below."""
 
-CONSTRUCTORS = {"s1002": "Profile.s1002()", "uic60": "Profile.uic60()"}
-"""How each profile by formula is made."""
-
-
 FILE_FIELDS = ("file", "kind", "units", "sep", "decimal", "mirror_y", "mirror_z", "shift_y", "shift_z", "smoothing")
 """Fields of a table that names a file of a profile."""
 
@@ -84,15 +80,15 @@ class Profile(wl.Configuration):
     its origin on the tread, at the taping line, where its radius is the nominal one; its flange is at y < 0. A rail has
     its origin at its top, on its axis, and is not canted; its gauge side is at y < 0.
 
-    Make one by `s1002`, `uic60`, `from_points` or `read_profile`. In files, a profile is the name of a formula, such as
-    "s1002", the path of a file, a table with `file` and options of `read_profile`, or a table of these fields. A
-    formula or the points come first, then the mirror, the turn and the shifts.
+    Make one by `s1002`, `uic60`, `named`, `from_points` or `read_profile`. In files, a profile is the name of a
+    formula, such as "s1002", the path of a file, a table with `file` and options of `read_profile`, or a table of these
+    fields. A formula or the points come first, then the mirror, the turn and the shifts.
     """
 
     kind: Kind
     """Whether it is that of a wheel or of a rail."""
     formula: str | None = None
-    """Name of a formula: "s1002" or "uic60"."""
+    """Name of a formula, such as "s1002"; `wearlaw plugins` lists them."""
     y: Coordinates | None = None
     """Positions of the points outwards [m]."""
     z: Coordinates | None = None
@@ -128,13 +124,18 @@ class Profile(wl.Configuration):
         ) -> None: ...
 
     @classmethod
+    def named(cls, name: str) -> Profile:
+        """Return the profile by formula with a name, such as "rail_60e2"; `wearlaw plugins` lists them."""
+        return cls.model_validate({"formula": name})
+
+    @classmethod
     def s1002(cls) -> Profile:
         """Return the wheel profile S1002 of UIC 510-2 and EN 13715."""
         return cls(kind="wheel", formula="s1002")
 
     @classmethod
     def uic60(cls) -> Profile:
-        """Return the head of the rail 60E1 (UIC 60) of EN 13674-1, not canted, down to 37 mm."""
+        """Return the head of the rail UIC 60, as in the Manchester benchmark, not canted, down to 37 mm."""
         return cls(kind="rail", formula="uic60")
 
     @classmethod
@@ -180,7 +181,7 @@ class Profile(wl.Configuration):
         elif isinstance(given, Mapping) and "file" in given:
             return _of_file(given)
         if isinstance(given, Mapping) and given.get("formula") in FORMULAS and "kind" not in given:
-            return {**given, "kind": FORMULAS[given["formula"]][0]}
+            return {**given, "kind": FORMULAS[given["formula"]].kind}
         return given
 
     @model_validator(mode="after")
@@ -189,11 +190,12 @@ class Profile(wl.Configuration):
             if self.y is not None or self.z is not None or self.weights is not None:
                 raise ValueError("takes a formula or points, not both")
             if self.formula not in FORMULAS:
+                near = did_you_mean(self.formula, FORMULAS)
                 raise ValueError(
-                    f"formula: no profile is called {wl.shown(self.formula)}; there are {', '.join(FORMULAS)}"
+                    f"formula: no profile is called {wl.shown(self.formula)}{near} There are {', '.join(FORMULAS)}"
                 )
-            if self.kind != FORMULAS[self.formula][0]:
-                raise ValueError(f"kind: '{self.formula}' is a {FORMULAS[self.formula][0]}, not a {self.kind}")
+            if self.kind != (kind := FORMULAS[self.formula].kind):
+                raise ValueError(f"kind: '{self.formula}' is a {kind}, not a {self.kind}")
         elif self.y is None or self.z is None:
             raise ValueError("needs the name of a formula, or points with y and z")
         else:
@@ -416,7 +418,11 @@ class Profile(wl.Configuration):
 
     def __repr__(self) -> str:
         if self.formula is not None:
-            text = CONSTRUCTORS[self.formula]
+            text = (
+                f"Profile.{self.formula}()"
+                if self.formula in ("s1002", "uic60")
+                else f"Profile.named('{self.formula}')"
+            )
         else:
             assert self.y is not None
             low, high = 1e3 * _si(self.y).min(), 1e3 * _si(self.y).max()
@@ -440,8 +446,7 @@ def _si(value: wl.Quantity) -> Array:
 
 @cache
 def _by_formula(name: str) -> Curve:
-    kind, pieces = FORMULAS[name]
-    return joined(pieces(), CONVEX[kind])
+    return joined(FORMULAS[name].pieces(), CONVEX[FORMULAS[name].kind])
 
 
 def _path(value: object, name: str) -> str:

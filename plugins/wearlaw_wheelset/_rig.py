@@ -92,6 +92,12 @@ FLANGE_SLOPE = np.radians(50.0)
 MOST_PLAY = 40e-3
 """Greatest distance between flange and rail in the middle of the track [m]: a worn flange in a widened curve has 30."""
 
+LARGEST_RADIUS = 0.7
+"""Radius of a wheel beyond which it is taken for a diameter [m]: locomotives have up to 0.63."""
+
+HIGH_PRESSURE = 3.5e9
+"""Maximum pressure that only the noise of points gives [Pa]: new flanges have up to about 3."""
+
 MOST_YAW = 0.2
 """Greatest yaw [rad]: a locomotive in the tightest curve has a tenth of it."""
 
@@ -304,6 +310,12 @@ class Wheelset(wl.Rig):
                 f" {'give them the other way round' if swapped else 'give one of each'}, or make the profile with the"
                 " other kind"
             )
+        if wl.scalar_si(self.nominal_radius, "m") > LARGEST_RADIUS:
+            warnings.warn(
+                f"nominal_radius: {self.nominal_radius!r} is more than wheels in service have; is it the diameter?",
+                wl.RangeWarning,
+                stacklevel=4,
+            )
         lean, cant = (wl.scalar_si(angle, "rad") for angle in (self.rail.apparent_cant, self.rail_cant))
         if abs(lean) > 0.5 * cant > 0.0:
             raise ValueError(
@@ -464,7 +476,9 @@ class Wheelset(wl.Rig):
                 wl.RangeWarning,
                 stacklevel=4,
             )
-        return self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
+        found = self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
+        self._warn_of_points(found)
+        return found
 
     def _task(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
         """Return what is asked at positions; with a lateral force, they are in the middle of the track at first."""
@@ -617,6 +631,19 @@ class Wheelset(wl.Rig):
             wl.RangeWarning,
             stacklevel=5,
         )
+
+    def _warn_of_points(self, problem: wl.Problem) -> None:
+        """Warn of a pressure that the points of a measured profile give, rather than its shape."""
+        profiles = {name: getattr(self, name) for name in ("wheel", "rail", "left_wheel", "left_rail")}
+        rough = [name for name, one in profiles.items() if one and not one.formula and not one.smoothing.magnitude]
+        greatest = np.nanmax(problem.max_pressure, initial=0.0)
+        if rough and greatest > HIGH_PRESSURE:
+            warnings.warn(
+                f"the maximum pressure of {1e-6 * greatest:.0f} MPa is that of single points: {' and '.join(rough)} run"
+                ' through all of theirs; give smoothing with the profile, such as "0.01 mm"',
+                wl.RangeWarning,
+                stacklevel=5,
+            )
 
     @staticmethod
     def _warn_of_jams(balance: Balance) -> None:

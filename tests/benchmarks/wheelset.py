@@ -24,7 +24,7 @@ from tests.benchmarks import report
 from tests.benchmarks.memory import in_fresh_process, peak_mib
 from tests.benchmarks.report import Gate
 from tests.benchmarks.timing import in_mode, modes, side_by_side
-from tests.plugins.wheelsets import wheelset
+from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
 from wearlaw_wheelset._search import searched as find_contact  # private: timed without the rest
 

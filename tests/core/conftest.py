@@ -14,9 +14,9 @@ import wearlaw as wl
 from tests.core import cli_data
 from tests.core.cases import POINT, case
 from wearlaw.arrays import kernels  # private: the choice between NumPy and numba
-from wearlaw_studies.case import case_schema
-from wearlaw_studies.study import Study, run
-from wearlaw_sweeps import points
+from wearlaw_studies.case import case_schema  # private: a case without its files
+from wearlaw_studies.study import Study, run  # private: a case run without its files
+from wearlaw_sweeps import points  # private: small blocks
 
 
 @pytest.fixture
@@ -34,7 +34,9 @@ def point() -> Study:
 @pytest.fixture
 def blank_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave figures empty, whose drawing takes most of the time of a small run."""
-    monkeypatch.setattr("wearlaw_output.files.draw", lambda _: Figure(figsize=(1.0, 1.0)))
+    monkeypatch.setattr(
+        "wearlaw_output.files.draw", lambda _: Figure(figsize=(1.0, 1.0))
+    )  # private: no figure is drawn
 
 
 @pytest.fixture

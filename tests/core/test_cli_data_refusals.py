@@ -46,7 +46,9 @@ def test_a_full_disk_is_one_clear_error_and_leaves_earlier_results_as_they_were(
 ) -> None:
     assert wearlaw(*command, "-o", "out").exit_code == 0
     before = {name: (folder / name).read_bytes() for name in files(folder)}
-    monkeypatch.setattr("wearlaw_output.files.save_figure", full_disk)  # after tables were written
+    monkeypatch.setattr(
+        "wearlaw_output.files.save_figure", full_disk
+    )  # private: a disk that is full after tables were written
     result = wearlaw(*command, "-o", "out", "--overwrite")
     assert_refused(result, "output: cannot write the results: No space left on device")
     assert {name: (folder / name).read_bytes() for name in files(folder)} == before

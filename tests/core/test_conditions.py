@@ -13,9 +13,9 @@ import wearlaw as wl
 from tests.core import cases
 from wearlaw import Q
 from wearlaw_kit import Check, conformance
-from wearlaw_studies.case import Case
-from wearlaw_studies.report.tables import summaries
-from wearlaw_studies.study import run
+from wearlaw_studies.case import Case  # private: a case without its files
+from wearlaw_studies.report.tables import summaries  # private: a part of the report, without its page
+from wearlaw_studies.study import run  # private: a case run without its files
 
 DISCS = wl.TwinDisc.suros(rolling_speed="1 m/s")
 
@@ -166,8 +166,9 @@ def test_a_list_of_quantities_or_texts_is_an_array(force: Any) -> None:
     ("name", "right"), [("mu", "friction_coefficient"), ("load", "normal_force"), ("slip", "creepage")]
 )
 def test_another_name_of_a_condition_is_told_the_right_one(name: str, right: str) -> None:
+    given: Any = {name: 0.1}
     with pytest.raises(wl.ConditionsError, match=f"^{name}: .* did you mean '{right}'"):
-        (DISCS | wl.contact_model("exact"))(**{name: 0.1})
+        (DISCS | wl.contact_model("exact"))(**given)
 
 
 def test_a_friction_coefficient_above_one_gets_a_word() -> None:

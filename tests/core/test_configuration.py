@@ -16,7 +16,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import Linear
 from wearlaw import Configuration, Q
-from wearlaw_studies.grid import Axis
+from wearlaw_studies.grid import Axis  # private: one part of a study, without the whole
 
 STEEL = wl.steel()
 IN_MM = 'give it in mm or another unit of that dimension, such as "1.0 mm"'

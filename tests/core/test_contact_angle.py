@@ -14,8 +14,8 @@ import scipy
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_studies.case import Case
-from wearlaw_studies.study import run
+from wearlaw_studies.case import Case  # private: a case without its files
+from wearlaw_studies.study import run  # private: a case run without its files
 
 STEEL = wl.steel()
 FLANGE: dict[str, Any] = {

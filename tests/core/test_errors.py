@@ -8,7 +8,7 @@ import pickle
 import pytest
 
 import wearlaw as wl
-from wearlaw import errors
+from wearlaw import errors  # private: how messages are made
 from wearlaw.errors import Fault, did_you_mean  # private: how messages are made
 
 CLASSES = [found for _, found in inspect.getmembers(errors, inspect.isclass) if issubclass(found, Exception)]

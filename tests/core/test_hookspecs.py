@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from wearlaw import hookspecs
+from wearlaw import hookspecs  # private: the hooks by name
 
 ROOT = Path(__file__).parents[2]
 HOOKS = {name: hook for name, hook in inspect.getmembers(hookspecs, inspect.isfunction) if name.startswith("wearlaw_")}

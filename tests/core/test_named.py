@@ -15,8 +15,8 @@ import wearlaw as wl
 from tests.core.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
 from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
-from wearlaw_studies.case import Case, case_schema, case_text, load_case, written
-from wearlaw_studies.study import provenance, run
+from wearlaw_studies.case import Case, case_schema, case_text, load_case, written  # private: a case without its files
+from wearlaw_studies.study import provenance, run  # private: a case run without its files
 
 POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
 RIG = wl.TwinDisc.suros()
@@ -183,7 +183,7 @@ def test_a_run_says_what_it_used(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("wearlaw_studies.written.write_figures", lambda *_: [])
+    monkeypatch.setattr("wearlaw_studies.written.write_figures", lambda *_: [])  # private: results without figures
     install("lab", LAB, version="1.2.3")
     (tmp_path / "own.toml").write_text(LAB_STUDY)
     monkeypatch.chdir(tmp_path)
@@ -259,7 +259,7 @@ def test_a_parameter_set_is_checked_like_a_law(install: Install, monkeypatch: py
         checked.append(model)
         return []
 
-    monkeypatch.setattr("wearlaw_kit.commands.checks", checks)
+    monkeypatch.setattr("wearlaw_kit.commands.checks", checks)  # private: batches of patches
     assert wearlaw("check", "lab_2026").stdout == "0 ok, 0 failed, 0 not claimed\n"
     wearlaw("check", "lab_2026", "--option", "m_c=75 ug/m/N")
     assert checked == [wl.wear_law("lab_2026"), wl.wear_law("lab_2026", m_c="75 ug/m/N")]

@@ -379,6 +379,17 @@ def test_at_one_point_the_fields_of_the_patch_are_shown() -> None:
         GLOBAL(**POINT).plot()
 
 
+def test_the_cells_of_a_patch_fill_its_ellipse_and_no_more() -> None:
+    patch = ON_RAIL(**OF_RAIL)
+    (cells,) = patch.plot().collections
+    corners = np.stack([path.vertices[:4] for path in cells.get_paths()])  # [mm]
+    sides = corners.max(axis=1) - corners.min(axis=1)
+    a, b = patch.semi_axis_a.m_as("mm"), patch.semi_axis_b.m_as("mm")
+    assert sides.prod(axis=1).sum() == pytest.approx(1e6 * patch.contact.area.sum(), rel=1e-12)
+    reach = np.abs(corners).max(axis=(0, 1)) / (a, b)
+    assert np.all((reach > 0.95) & (reach < 1.0 + 1e-9))
+
+
 def test_pictures_of_too_many_axes_or_of_no_values_are_refused() -> None:
     deep = GLOBAL(**{**GRID, "friction_coefficient": np.array([0.2, 0.4])[:, None, None]})
     with pytest.raises(wl.InputError, match="3 axes of operating points, and a picture shows two"):

@@ -53,7 +53,7 @@ WRITERS: dict[str, tuple[Callable[[Path], object], dict[str, Any]]] = {
 
 @pytest.mark.parametrize("kind", WRITERS)
 def test_a_file_gives_what_was_written(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw.tables.CELLS", 30)  # several pieces
+    monkeypatch.setattr("wearlaw.tables.CELLS", 30)  # private: several pieces
     write, options = WRITERS[kind]
     write(tmp_path / "run")
     table = wl.read_table(tmp_path / "run", COLUMNS, **options)
@@ -62,7 +62,7 @@ def test_a_file_gives_what_was_written(kind: str, tmp_path: Path, monkeypatch: p
 
 
 def test_a_dataset_is_read_from_its_file_piece_by_piece(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw.tables.CELLS", 30)
+    monkeypatch.setattr("wearlaw.tables.CELLS", 30)  # private: tables in small pieces
     dataset().to_netcdf(tmp_path / "run.nc")
     with xr.open_dataset(tmp_path / "run.nc", decode_times=False) as run:
         found = wl.read_table(run, COLUMNS)

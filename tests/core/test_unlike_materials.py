@@ -18,8 +18,8 @@ from tests.strategies import EPS, log_uniform
 from wearlaw import Q, hertz
 from wearlaw.contact.material import dundurs_beta  # private: Dundurs' constant, which only a warning shows
 from wearlaw.pipeline.composition import COUPLING  # private: the constant of a formula
-from wearlaw_studies.case import Case
-from wearlaw_studies.study import run
+from wearlaw_studies.case import Case  # private: a case without its files
+from wearlaw_studies.study import run  # private: a case run without its files
 
 STEEL = wl.steel()
 POLYMER = wl.Material(youngs_modulus="3 GPa", poisson_ratio=0.4, density="1200 kg/m^3")

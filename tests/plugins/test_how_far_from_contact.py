@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from docs import how_far_from_contact as page
 from docs.how_far_from_contact import SERVICE, Case, Computed, Rows, compute, of_contact, placed, service
 from tests import wheel_on_rail
-from wearlaw_wheelset._half_space import pressed
+from wearlaw_wheelset._half_space import pressed  # private: the normal problem, against its theory
 
 MODULUS = 82e9 / (1.0 - 0.28)
 

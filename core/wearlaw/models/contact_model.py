@@ -16,6 +16,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import PATCHES, CreepForces, Geometry, Problem
 from wearlaw.errors import CompositionError, InputError, ModelError, WearlawError, described, did_you_mean
+from wearlaw.extras import load
 from wearlaw.settings.configuration import Configuration
 
 Scale: TypeAlias = Literal["patch", "cells"]
@@ -71,6 +72,11 @@ class Model(Configuration, ABC):
     def subject(cls) -> str:
         """Return the name of this model in messages."""
         return cls.name
+
+    def _repr_html_(self) -> str:
+        """Return the model for a notebook: its fields, with a drawing of a rig or the curve of a law."""
+        shown: str = load("wearlaw_output.notebook", "html", "a notebook")(self)
+        return shown
 
     @property
     def exemptions(self) -> Mapping[Claim, str]:

@@ -152,7 +152,7 @@ class Configuration(BaseModel):
         return repr(self)
 
     def __repr__(self) -> str:
-        text = f"{self.__repr_name__()}("
+        text = f"{type(self).__name__}("
         for name, value in self.__repr_args__():
             shown = full_text(value) if isinstance(value, pint.Quantity) else repr(value)
             field = shown if name is None else f"{name}={shown}"

@@ -106,7 +106,7 @@ def with_units(value: object) -> TypeGuard[Sequence[Quantity | str]]:
 
 def text_of(quantity: Quantity) -> str:
     """Return the text of a scalar quantity; `parse` reads it back exactly."""
-    return f"{float(quantity.magnitude)!r} {symbol(quantity.units, '~C') or 'dimensionless'}"
+    return f"{float(quantity.magnitude)!r} {symbol(quantity.units, '~P') or 'dimensionless'}"
 
 
 def full_text(value: object) -> str:

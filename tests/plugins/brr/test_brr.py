@@ -182,3 +182,4 @@ def test_the_declared_borders_are_those_of_tgamma_as_chosen(spin: str) -> None:
     law = wl.wear_law("brr", spin=spin)
     variable = "wear_index" if spin == "included" else "wear_index_without_spin"
     assert list(law.breakpoints(law.numbers) or {}) == list(law.jumps(law.numbers)) == [variable]
+    law.check_variables()  # or a pipeline with the law would raise a ModelError

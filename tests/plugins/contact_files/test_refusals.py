@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.contact_files.files import FILES, HEAD, SUBSURFACE, changed, of_version, rows_of, write_rows
 from wearlaw import Array
-from wearlaw_contact_files.subsurface import read_subsurface
+from wearlaw_contact_files.subsurface import read_subsurface  # private: one reader, without the look-up
 
 TREAD = FILES["tread"]
 LINES = TREAD.read_text(encoding="ascii").splitlines()

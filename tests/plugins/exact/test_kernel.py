@@ -12,8 +12,8 @@ import pytest
 from tests.plugins.excess import DIGITS, Density, Real, copies, crowded, shares
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_exact import _kernel
-from wearlaw_exact._kernel import excess_dissipation
+from wearlaw_exact import _kernel  # private: each copy of the formula
+from wearlaw_exact._kernel import excess_dissipation  # private: each copy of the formula
 
 COPIES = copies(excess_dissipation)
 every_copy = pytest.mark.parametrize("copy", COPIES)

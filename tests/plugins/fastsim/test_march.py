@@ -5,7 +5,10 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import pytest
 
+import wearlaw as wl
+from tests.plugins.ellipses import of_ratio
 from tests.plugins.fastsim.march import CREEPAGES, sample
 from tests.plugins.fastsim.marks import each_bound
 from tests.strategies import EPS
@@ -136,3 +139,37 @@ def test_without_creepage_or_friction_nothing_is_transmitted(elliptic: bool) -> 
     # The growth over the length of a cell, and back.
     creepage = smooth.longitudinal_creepage[:, None, None]
     np.testing.assert_allclose(cells.slip_x, np.broadcast_to(creepage, cells.x.shape), rtol=8.0 * EPS)
+
+
+@pytest.mark.parametrize("bound", ["parabolic", "elliptic"])
+def test_a_uniform_march_has_its_own_forces_near_those_of_the_adaptive_one(bound: str) -> None:
+    problem = of_ratio(1.5, 0.28, longitudinal_creepage=1e-3, lateral_creepage=-5e-4, spin=0.2)
+    uniform, adaptive = (
+        wl.contact_model("fastsim", bound=bound, march=march, strips=20) for march in ("uniform", "adaptive")
+    )
+    contact, forces = uniform.solve(problem), uniform.creep_forces(problem)
+    assert contact.traction_x.shape[-1] == 20, "as many cells in a strip as strips"
+    assert contact.force_x == pytest.approx(forces.longitudinal, rel=1e-12)  # sums of 400 cells
+    assert contact.force_y == pytest.approx(forces.lateral, rel=1e-12)
+    other, full_slip = adaptive.creep_forces(problem), problem.friction_coefficient * problem.normal_force
+    apart = np.hypot(forces.longitudinal - other.longitudinal, forces.lateral - other.lateral) / full_slip
+    assert 1e-6 < apart < uniform.elliptic_accuracy + adaptive.elliptic_accuracy
+
+
+@pytest.mark.parametrize("strips", [1, 1001, 10.0])
+def test_strips_are_a_whole_number_from_2_to_1000(strips: object) -> None:
+    with pytest.raises(wl.ConfigurationError, match="strips"):
+        wl.contact_model("fastsim", strips=strips)
+
+
+def test_settings_of_an_ellipse_are_shown_where_they_differ_from_the_default() -> None:
+    assert "strips" not in repr(wl.contact_model("fastsim"))
+    assert "bound='parabolic'" in repr(wl.contact_model("fastsim", strips=20))
+    assert "strips=20" in repr(wl.contact_model("fastsim", strips=20))
+
+
+@pytest.mark.parametrize(("march", "share"), [("adaptive", 0.5), ("uniform", 1.0)])
+def test_the_stated_accuracy_is_in_inverse_proportion_to_the_strips(march: str, share: float) -> None:
+    model = wl.contact_model("fastsim", march=march, strips=20)
+    assert model.elliptic_accuracy == share / 20
+    assert model.refined() == wl.contact_model("fastsim", march=march, strips=40)

@@ -137,7 +137,7 @@ def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch
         return float((contact.traction_x * contact.slip_x + contact.traction_y * contact.slip_y).min())
 
     assert least_power() >= 0.0
-    monkeypatch.setattr("wearlaw_fastsim._march.drop_gains", lambda _: None)
+    monkeypatch.setattr("wearlaw_fastsim._march.drop_gains", lambda _: None)  # private: a march that gains energy
     assert least_power() < 0.0
 
 

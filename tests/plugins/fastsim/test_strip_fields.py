@@ -15,8 +15,6 @@ from wearlaw import Array
 from wearlaw_fastsim._march import Ellipses  # private: patches with any flexibilities
 from wearlaw_fastsim._strips import even_strips  # private: with any number of nodes
 
-FIELDS = dataclasses.fields(Ellipses)[:-1]
-
 
 @pytest.mark.validates(
     "invariants",
@@ -141,33 +139,6 @@ def test_strips_that_stick_again_meet_the_limit_of_the_plain_march_in_second_ord
     assert fine < coarse / 4**order
 
 
-@each_bound
-def test_strips_that_stick_again_have_slip_stick_and_slip(elliptic: bool) -> None:
-    patches = ellipses([1e-4], [1e-3], [1.5], elliptic=elliptic)
-    fields = strips_at(patches, np.array([-0.01]), 3, 8)
-    slips = np.hypot(fields.slip_x, fields.slip_y)[0, :, 0] > 0.0
-    stuck = np.flatnonzero(~slips[3:])
-    assert slips[3:].sum() == 6
-    assert np.diff(stuck).tolist() == [1]
-    assert 0 < stuck[0] < stuck[-1] < 7
-
-
-@each_bound
-def test_a_strip_is_the_same_alone_and_among_others(elliptic: bool) -> None:
-    patches = ellipses([1e-4, 3e-3, -2e-4], [1e-3, 1e-3, 1e-4], [1.5, 0.2, 2.0], elliptic=elliptic)  # two stick again
-    shares = np.array([-0.7, -0.01, 0.02, 0.3])
-    together = strips_at(patches, shares, 3, 8)
-    for p in range(3):
-        one = dataclasses.replace(patches, **{f.name: getattr(patches, f.name)[p : p + 1] for f in FIELDS})
-        for j in range(4):
-            alone = strips_at(one, shares[j : j + 1], 3, 8)
-            for name in ("x", "length", "traction_x", "traction_y", "slip_x", "slip_y", "bound"):
-                there = getattr(together, name)[p, :, j]
-                np.testing.assert_allclose(
-                    getattr(alone, name)[0, :, 0], there, rtol=1e-9, atol=1e-12 * abs(there).max()
-                )
-
-
 @pytest.mark.validates(
     "elliptic-contact",
     "A strip with the flexibility of a line is the line contact, both bounds",
@@ -260,12 +231,3 @@ def test_compiled_loops_are_the_same_as_numpy(elliptic: bool) -> None:
         plain, compiled = (getattr(fields, name) for fields in found)
         # rounding of some ten operations in each of the nodes, as where a patch is mirrored
         np.testing.assert_allclose(compiled, plain, rtol=0.0, atol=1000 * EPS * np.abs(plain).max(), err_msg=name)
-
-
-@each_bound
-def test_without_creepage_there_is_no_traction_and_no_slip(elliptic: bool) -> None:
-    found = solve(ellipses(0.0, elliptic=elliptic))
-    # the trailing edge keeps a slip zone of 1e-90 of its half length
-    assert not (np.hypot(found.fields.traction_x, found.fields.traction_y) > 1e-80).any()
-    for total in (*dataclasses.astuple(found.forces), found.power):
-        assert total[0] == pytest.approx(0.0, abs=1e-80)

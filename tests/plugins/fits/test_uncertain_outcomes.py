@@ -133,7 +133,9 @@ def test_the_uncertainty_of_a_case_has_rows_for_each_outcome(tmp_path: Path, mon
     (tmp_path / "case.toml").write_text(CASE)
     case = wl.load_case(str(tmp_path / "case.toml"))
     pair = Pair("exact", "kth", EXACT.with_law(KTH, Heat()))
-    monkeypatch.setattr("wearlaw_studies.uncertainty.pairs_of", lambda *_: [pair])
+    monkeypatch.setattr(
+        "wearlaw_studies.uncertainty.pairs_of", lambda *_: [pair]
+    )  # private: one part of a study, without the whole
     found = uncertainty_of(case, 64, 0)
     table = found.wear_rates
     assert table.columns.tolist() == ["point", "pair", "outcome", "unit", "median", "2.5 %", "97.5 %"]

@@ -10,7 +10,7 @@ import wearlaw as wl
 from tests.plugins.contact_files.files import FILES
 from tests.plugins.full_theory import spheres
 from wearlaw import Array
-from wearlaw_kit.reduced import random_ellipses
+from wearlaw_kit.reduced import random_ellipses  # private: batches of patches
 
 CARTER = 0.3 * 972253.0
 """μN [N] of the cylinder that CONTACT solved."""

@@ -13,7 +13,7 @@ import pytest
 
 import wearlaw as wl
 from tests.plugins.life.test_life import GIVEN, line, pipeline
-from tests.plugins.wheelsets import cone, on_round_heads
+from tests.plugins.wheelset.wheelsets import cone, on_round_heads
 from wearlaw_life import Life
 
 pytestmark = pytest.mark.filterwarnings(

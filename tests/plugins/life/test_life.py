@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.wheelsets import R0, cone, round_head, wheelset
+from tests.plugins.wheelset.wheelsets import R0, cone, round_head, wheelset
 from wearlaw import Q
 from wearlaw_life import Life
 from wearlaw_life._line import Line  # private: a step that fails
@@ -155,7 +155,7 @@ def test_a_turned_vehicle_wears_the_mean_of_both_sides() -> None:
 def test_each_side_wears_for_itself_and_alike_on_a_symmetric_line(short: Life) -> None:
     found = wl.wear_out(pipeline(), line(), over="1500 km", sides="each", **GIVEN)
     table, (left, right) = found.table, found.worn_profiles[-1]
-    # The mirrored states differ by rounding, which moves contact points by up to 2e-9 m (`test_wheelset_positions`).
+    # The mirrored states differ by rounding, which moves contact points by up to 2e-9 m (`wheelset/test_positions`).
     assert table["depth_left [mm]"].to_numpy() == pytest.approx(table["depth_right [mm]"].to_numpy(), rel=1e-6)
     assert left.points[1].magnitude == pytest.approx(right.points[1].magnitude, abs=1e-6)
     mean = short.table
@@ -195,7 +195,7 @@ def test_a_pair_of_unlike_wheels_has_no_mean() -> None:
 
 def test_several_processes_give_the_same_life(tmp_path: Path, short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
     """From a file, in blocks of a few states."""
-    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)  # private: small blocks
     line().to_csv(tmp_path / "line.csv", index=False)
     lives = [
         wl.wear_out(pipeline(), tmp_path / "line.csv", over="500 km", workers=workers, **GIVEN) for workers in (1, 2)
@@ -206,7 +206,7 @@ def test_several_processes_give_the_same_life(tmp_path: Path, short: Life, monke
 
 def test_a_cluster_gives_the_same_life(short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
     distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)
+    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)  # private: small blocks
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as machines,
         distributed.Client(machines) as client,

@@ -10,11 +10,11 @@ import pytest
 import wearlaw as wl
 import wearlaw_sheffield
 from tests.plugins.sheffield.paper import HEAT, SPEED, mean_speed
-from wearlaw.models.labels import labels
-from wearlaw.plugins import loader
-from wearlaw_fits.read_tests import text_of_tests
-from wearlaw_studies.case import Case, case_text, load_case
-from wearlaw_studies.study import run
+from wearlaw.models.labels import labels  # private: how laws are labelled in figures and tables
+from wearlaw.plugins import loader  # private: what is installed, changed for a test
+from wearlaw_fits.read_tests import text_of_tests  # private: one part of a fit, without the whole
+from wearlaw_studies.case import Case, case_text, load_case  # private: a case without its files
+from wearlaw_studies.study import run  # private: a case run without its files
 
 
 def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:

@@ -40,9 +40,9 @@ from tests.plugins.sheffield.paper import (
     usfd,
     usfd_of,
 )
-from wearlaw_sheffield import claims
-from wearlaw_sheffield.bench import Bench
-from wearlaw_studies.study import run
+from wearlaw_sheffield import claims  # private: one claim or table, without the study
+from wearlaw_sheffield.bench import Bench  # private: one claim or table, without the study
+from wearlaw_studies.study import run  # private: a case run without its files
 
 BEGIN, END = GLOBAL[1] / GLOBAL[0] * AREA, GLOBAL[3] * AREA
 """Where severe and where catastrophic wear begin [N]."""

@@ -25,11 +25,11 @@ from tests.plugins.sheffield.paper import (
 )
 from tests.plugins.studies.panels import assert_shows, by_label, by_name, one_panel
 from tests.strategies import EPS
-from wearlaw_output.curves import Curve, FigureData
-from wearlaw_sheffield import figures
-from wearlaw_sheffield.bench import Bench
-from wearlaw_studies.case import Case, case_text, load_case
-from wearlaw_studies.study import run
+from wearlaw_output.curves import Curve, FigureData  # private: figures without their files
+from wearlaw_sheffield import figures  # private: one claim or table, without the study
+from wearlaw_sheffield.bench import Bench  # private: one claim or table, without the study
+from wearlaw_studies.case import Case, case_text, load_case  # private: a case without its files
+from wearlaw_studies.study import run  # private: a case run without its files
 
 WEAR_INDICES = np.array([50.0, 150.0, 199.9, 200.0001, 700.0])
 

@@ -23,8 +23,8 @@ from tests.plugins.sheffield.paper import (
     usfd_of,
 )
 from wearlaw import Array
-from wearlaw_sheffield import table_4, tables
-from wearlaw_sheffield.bench import Bench
+from wearlaw_sheffield import table_4, tables  # private: one claim or table, without the study
+from wearlaw_sheffield.bench import Bench  # private: one claim or table, without the study
 
 SUROS: Any = SimpleNamespace(case=SimpleNamespace(rig=wl.TwinDisc.suros()))
 """As much of a study as the tables need."""
@@ -124,15 +124,19 @@ def test_the_fits_are_those_over_cells(bench: Bench, model: str, highest: float,
     assert list(found.parameters.values()) == pytest.approx(list(over_cells), rel=cell)
 
 
-def test_the_root_mean_squares_are_those_of_the_residuals(bench: Bench) -> None:
-    one = table_4.fitted(bench, "exact", 25.0, "absolute")
+@pytest.mark.parametrize(
+    ("norm", "difference"),
+    [("absolute", lambda local, target: local - target), ("relative", lambda local, target: np.log(local / target))],
+)
+def test_the_root_mean_squares_are_those_of_the_residuals(bench: Bench, norm: Any, difference: Any) -> None:
+    one = table_4.fitted(bench, "exact", 25.0, norm)
     creepage = np.linspace(0.125, 25.0, 200)
     target = np.array([usfd_of(index(x) / AREA) for x in creepage])
     w = densities("exact", creepage, 4000)
     for parameters, rms in (((*one.parameters.values(),), one.rms), (CORRECTED["exact"][1:], one.rms_published)):
         q_s, m_c, transition = parameters
         local = (np.minimum(5.3 * w, q_s) + m_c * np.maximum(w - transition, 0.0)).mean(axis=1)
-        assert rms == pytest.approx(float(np.sqrt(np.mean((local - target) ** 2))), rel=1.0 / 4000)
+        assert rms == pytest.approx(float(np.sqrt(np.mean(difference(local, target) ** 2))), rel=1.0 / 4000)
 
 
 def made(model: str, highest: float, norm: Any, **parameters: float) -> table_4.Fitted:
@@ -149,11 +153,11 @@ def test_the_fits_are_listed_behind_the_papers_set_of_their_model() -> None:
 
 
 def test_the_claim_says_how_many_fits_are_near_and_which_is_nearest() -> None:
-    near = made("exact", 22.0, "absolute", q_s=52.0, m_c=84.0, tr_sc=94.0)
-    far = made("exact", 18.0, "relative", q_s=52.0, m_c=120.0, tr_sc=94.0)
+    near = made("exact", 22.0, "absolute", q_s=50.5, m_c=84.0, tr_sc=94.0)
+    far = made("exact", 18.0, "relative", q_s=50.5, m_c=120.0, tr_sc=94.0)
     other = made("fastsim", 25.0, "absolute", q_s=55.0, m_c=83.7, tr_sc=95.0)
     claim = table_4.follows_from_a_fit([far, near, other])
-    nearest = f"closest to {100.0 * 3.0 / 55.0:.1f} % (exact theory)"
+    nearest = f"closest to {100.0 * 4.5 / 55.0:.1f} % (exact theory)"
     assert f"1 of 2 fits similar, the {nearest}; 0 of 1 fits similar" in claim.ours
     assert claim.verdict == "holds in part"
     published = {model: dict(zip(table_4.FREE, CORRECTED[model][1:], strict=True)) for model in ("exact", "fastsim")}
@@ -172,3 +176,23 @@ def test_the_residuals_of_the_papers_set_and_of_the_fit_are_drawn(bench: Bench) 
     for curve, parameters in zip(panel.curves, sets, strict=True):
         expected = 100.0 * (reference.usfd_mean(solution, *parameters) / target - 1.0)
         assert curve.y[at] == pytest.approx(expected, abs=1e-6)
+
+
+def test_the_section_has_each_fit_and_draws_those_up_to_20_5_per_cent(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fitted(_: Bench, model: str, highest: float, norm: Any) -> table_4.Fitted:
+        q_s = 50.0 + 0.1 * highest + (norm == "relative")  # tells the fits from each other
+        return made(model, highest, norm, q_s=q_s, m_c=84.0, tr_sc=94.0)
+
+    monkeypatch.setattr(table_4, "fitted", fitted)
+    monkeypatch.setattr(table_4.Bench, "of", lambda _: bench)
+    section = table_4.section(SUROS)
+    fits = section.tables["table_4_fit"]
+    assert sorted(fits["up to creepage [%]"].dropna()) == sorted([18.0, 20.5, 22.0, 25.0] * 4)
+    (figure,) = section.figures
+    expected = table_4.residual_figure(bench, {"exact": fitted(bench, "exact", 20.5, "absolute")}).panels[0].curves
+    for curve, same in zip(figure.panels[0].curves, expected, strict=True):
+        np.testing.assert_array_equal(curve.y, same.y)
+        assert curve.x.min() == 0.2, "the least creepage of the tests"
+    assert [(curve.colour, curve.dash) for curve in expected] == [(0, 0), (1, 1)], "each has its own look"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -109,13 +110,14 @@ def test_of_two_runs_into_one_folder_the_second_to_end_replaces_the_first_only_w
     if overwrite:
         assert wearlaw("run", "usfd.toml", "-o", "out").exit_code == 0
     options = ["-o", "out", "--figure-format", "svg", *(["--overwrite"] if overwrite else [])]
-    write_results: Any = commands.write  # type: ignore[attr-defined]
+    write_results: Callable[..., list[str]] = commands.write  # type: ignore[attr-defined]
     winners: list[Result] = []
 
     def late(*arguments: Any) -> list[str]:
         monkeypatch.setattr(commands, "write", write_results)
         winners.append(wearlaw("run", "kth.toml", *options))
-        return write_results(*arguments)
+        written: list[str] = write_results(*arguments)
+        return written
 
     monkeypatch.setattr(commands, "write", late)
     last = wearlaw("run", "usfd.toml", *options)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from wearlaw import Q
-from wearlaw.arrays.array import Array
+from wearlaw import Array, Q
 from wearlaw_studies.grid import MOST_POINTS, Grid  # private: its errors without those of the rest of a case
 
 RIG = wl.TwinDisc.suros()

@@ -365,7 +365,7 @@ def test_blocks_hold_fewer_points_of_several_patches_and_workers_give_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(points, "BLOCK", 8)  # two points of four patches
-    from wearlaw_sweeps import evaluation, workers
+    from wearlaw_sweeps import evaluation, workers  # private: a fault in one part of a sweep
 
     blocks = []
 

@@ -22,7 +22,7 @@ from tests.core.distributions import Install
 from tests.plugins.studies.panels import by_label, by_name
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw.units.variables import UNITS
+from wearlaw.units.variables import UNITS  # private: the one table of variables
 
 WHEEL = {
     "type": "wheel_rail",
@@ -238,7 +238,7 @@ def test_its_uncertainty_is_that_of_direct_samples() -> None:
                 samples=256,
                 **{**CURVE, "spin": wl.normal("1 1/m", "0.1 1/m")},
             )
-        assert row["median [ug/m/mm^2]"] == pytest.approx(direct.median.m_as("ug/m/mm^2"), rel=1e-12)
+        assert row["median [µg/m/mm²]"] == pytest.approx(direct.median.m_as("ug/m/mm^2"), rel=1e-12)
 
 
 @pytest.mark.usefixtures("folder", "blank_figures")

@@ -50,6 +50,7 @@ def test_a_cluster_can_also_hand_results_back(client: Any) -> None:
 def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers_live_on(
     client: Any, error: str
 ) -> None:
+    client.wait_for_workers(2)  # one may have died before
     before = set(client.nthreads())
     with pytest.raises(wl.ModelError, match=f"{error}: 0"):
         wl.sweep(ending(error), **CONDITIONS, client=client)

@@ -70,7 +70,9 @@ def test_a_resumed_sweep_has_the_same_bytes(workers: int, tmp_path: Path, monkey
     left = xr.open_zarr(tmp_path / "resumed.zarr", chunks=None, consolidated=False)
     assert left.wear_rate.dims == DIMS
     told: list[int] = []
-    monkeypatch.setattr("wearlaw_sweeps.progress.Bar.__call__", lambda _, points: told.append(points))
+    monkeypatch.setattr(
+        "wearlaw_sweeps.progress.Bar.__call__", lambda _, points: told.append(points)
+    )  # private: what is told on the way
     with pytest.warns(wl.ResumeWarning):
         resumed = wl.sweep(pipeline(), **given, store=tmp_path / "resumed.zarr", workers=workers, resume=True)
     assert told[0] > 0
@@ -81,7 +83,9 @@ def test_a_resumed_sweep_has_the_same_bytes(workers: int, tmp_path: Path, monkey
 @pytest.mark.parametrize("workers", [1, 2])
 def test_progress_counts_operating_points(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[int] = []
-    monkeypatch.setattr("wearlaw_sweeps.progress.Bar.__call__", lambda _, points: told.append(points))
+    monkeypatch.setattr(
+        "wearlaw_sweeps.progress.Bar.__call__", lambda _, points: told.append(points)
+    )  # private: what is told on the way
     wl.sweep(pipeline(), **AXES, workers=workers)
     assert sum(told) == 40
     assert len([points for points in told if points]) > 5

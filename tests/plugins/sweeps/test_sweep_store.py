@@ -83,7 +83,9 @@ def test_a_resumed_sweep_gives_the_same_as_an_uninterrupted_one(
 ) -> None:
     interrupted(tmp_path / "map.zarr", monkeypatch, workers)
     advances: list[int] = []
-    monkeypatch.setattr("wearlaw_sweeps.progress.Bar.__call__", lambda _, points: advances.append(points))
+    monkeypatch.setattr(
+        "wearlaw_sweeps.progress.Bar.__call__", lambda _, points: advances.append(points)
+    )  # private: what is told on the way
     with pytest.warns(wl.ResumeWarning, match=r"\d of 10 blocks are kept in '.*map.zarr'; the others are"):
         resumed = wl.sweep(held(tmp_path / "gate"), **GIVEN, store=tmp_path / "map.zarr", workers=workers, resume=True)
     assert advances[0] >= 3 * 24  # not computed again
@@ -153,10 +155,12 @@ def test_another_law_or_version_is_refused(tmp_path: Path, monkeypatch: pytest.M
     with pytest.raises(wl.OutputError, match=r"predict.laws.0.slope: "):
         wl.sweep(other, **GIVEN, store=store, resume=True)
     with monkeypatch.context() as patched:
-        patched.setattr("wearlaw_sweeps.provenance.__version__", "99.0")
+        patched.setattr("wearlaw_sweeps.provenance.__version__", "99.0")  # private: another version of wearlaw
         with pytest.raises(wl.OutputError, match="wearlaw: "):
             wl.sweep(predict, **GIVEN, store=store, resume=True)
-    monkeypatch.setattr("wearlaw.plugins.loader.Shelf.distribution", lambda *_: "another 1.2.3")
+    monkeypatch.setattr(
+        "wearlaw.plugins.loader.Shelf.distribution", lambda *_: "another 1.2.3"
+    )  # private: what is installed, changed for a test
     with pytest.raises(wl.OutputError, match="wear law held: "):
         wl.sweep(predict, **GIVEN, store=store, resume=True)
 

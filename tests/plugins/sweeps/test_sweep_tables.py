@@ -63,7 +63,7 @@ def of_netcdf(folder: Path) -> Any:
 def test_a_file_gives_what_its_arrays_give(
     table_of: Callable[[Path], Any], stored: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw.tables.CELLS", 28)
+    monkeypatch.setattr("wearlaw.tables.CELLS", 28)  # private: tables in small pieces
     if stored:
         pytest.importorskip("zarr")
     ds = swept(table_of(tmp_path), store=tmp_path / "map.zarr" if stored else None)
@@ -165,9 +165,9 @@ def test_wrong_files_are_refused_with_line_and_column(name: str, folder: Path) -
 
 
 def test_a_fault_far_down_is_found_in_any_piece(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw.tables.CELLS", 28)
-    monkeypatch.setattr("wearlaw_sweeps.sweep.SAMPLE", 5)
-    monkeypatch.setattr("wearlaw_sweeps.sweep.BLOCK", 11)
+    monkeypatch.setattr("wearlaw.tables.CELLS", 28)  # private: tables in small pieces
+    monkeypatch.setattr("wearlaw_sweeps.sweep.SAMPLE", 5)  # private: small blocks
+    monkeypatch.setattr("wearlaw_sweeps.sweep.BLOCK", 11)  # private: small blocks
     table = frame()
     table.loc[63, "Fz [N]"] = -1.0
     table.to_csv(tmp_path / "run.csv", index=False)
@@ -184,7 +184,7 @@ def test_a_fault_far_down_is_found_in_any_piece(tmp_path: Path, monkeypatch: pyt
 def test_a_row_that_only_its_block_shows_to_be_wrong_is_named(
     workers: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw_sweeps.sweep.SAMPLE", 10)  # of a rig with several patches, before it starts
+    monkeypatch.setattr("wearlaw_sweeps.sweep.SAMPLE", 10)  # private: of a rig with several patches, before it starts
     table: Any = pd.DataFrame({"y [mm]": np.linspace(-5.0, 5.0, 60), "mu": 0.3})
     table.loc[33, "mu"] = -0.3
     table.to_csv(tmp_path / "run.csv", index=False)
@@ -235,7 +235,9 @@ def test_an_interrupted_sweep_over_a_file_is_resumed(tmp_path: Path, monkeypatch
         with pytest.raises(KeyboardInterrupt):
             swept(tmp_path / "run.csv", store=tmp_path / "map.zarr")
     seen: list[int] = []
-    monkeypatch.setattr("wearlaw_sweeps.progress.Bar.__call__", lambda _, points: seen.append(points))
+    monkeypatch.setattr(
+        "wearlaw_sweeps.progress.Bar.__call__", lambda _, points: seen.append(points)
+    )  # private: what is told on the way
     with pytest.warns(wl.ResumeWarning):
         resumed = swept(tmp_path / "run.csv", store=tmp_path / "map.zarr", resume=True)
     assert 0 < seen[1] < ROWS  # done before, and not again
@@ -268,10 +270,10 @@ def peak_of(rows: int, folder: Path) -> int:
 
 def test_four_times_the_rows_take_no_more_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("zarr")
-    monkeypatch.setattr("wearlaw.tables.CELLS", 4000)
+    monkeypatch.setattr("wearlaw.tables.CELLS", 4000)  # private: tables in small pieces
     monkeypatch.setattr(points, "BLOCK", 1000)
-    monkeypatch.setattr("wearlaw_sweeps.sweep.BLOCK", 1000)
-    monkeypatch.setattr("wearlaw_sweeps.provenance.BLOCK", 1000)
+    monkeypatch.setattr("wearlaw_sweeps.sweep.BLOCK", 1000)  # private: small blocks
+    monkeypatch.setattr("wearlaw_sweeps.provenance.BLOCK", 1000)  # private: small blocks
     peak_of(2000, tmp_path)  # imports
     few, many = peak_of(40_000, tmp_path), peak_of(160_000, tmp_path)
     assert many < few + 120_000  # a byte for each row; one column of doubles would take eight

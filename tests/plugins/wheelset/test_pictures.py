@@ -8,7 +8,7 @@ import pytest
 import wearlaw_wheelset as ws
 from docs.wheelset_benchmark import wheelset
 from wearlaw import Q
-from wearlaw_wheelset._pictures import APART, LINES
+from wearlaw_wheelset._pictures import APART, LINES  # private: one step of the contact, against another way to it
 
 
 @pytest.fixture(scope="module")

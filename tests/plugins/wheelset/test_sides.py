@@ -10,10 +10,10 @@ import pytest
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.test_wheelset_positions import assert_same, geometry
-from tests.plugins.wheelsets import wheelset
+from tests.plugins.wheelset.test_positions import assert_same, geometry
+from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
-from wearlaw_wheelset._loads import Pressure
+from wearlaw_wheelset._loads import Pressure  # private: the accuracy that a search ends at
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning")
 

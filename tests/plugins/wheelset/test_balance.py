@@ -10,12 +10,16 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.wheelsets import wheelset
+from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
 from wearlaw.numerics.integrate import integrate_forces  # private: forces of a problem of its own
-from wearlaw_wheelset._candidates import SPACING, candidates, sample
-from wearlaw_wheelset._loads import BALANCED, ROUGH
-from wearlaw_wheelset._search import both_sides, searched
+from wearlaw_wheelset._candidates import (  # private: one step of the contact, against another way to it
+    SPACING,
+    candidates,
+    sample,
+)
+from wearlaw_wheelset._loads import BALANCED, ROUGH  # private: the accuracy that a search ends at
+from wearlaw_wheelset._search import both_sides, searched  # private: one step of the contact, against another way to it
 
 MODEL = wl.contact_model("fastsim")
 

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from tests import normal_patches
-from tests.plugins.test_wheelset_normal import assert_near_full_theory
+from tests.plugins.wheelset.test_normal import assert_near_full_theory
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[3] / "docs"
 ROWS = {(row[0], row[1]): row for row in csv.reader(normal_patches.FILE.read_text(encoding="utf-8").splitlines()[1:])}
 FULL = {
     "S1002 on 60E1, 0.5 mm": (9870.0, 632.5, 0.02, 0.12),

@@ -17,11 +17,15 @@ import scipy
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.published_profiles import S1002, UIC60
+from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
-from wearlaw_wheelset._curve import SPACING, Curve, smoothed
-from wearlaw_wheelset._formulas import FORMULAS
-from wearlaw_wheelset._points import crossed_steps
+from wearlaw_wheelset._curve import (  # private: one step of the contact, against another way to it
+    SPACING,
+    Curve,
+    smoothed,
+)
+from wearlaw_wheelset._formulas import FORMULAS  # private: all pieces that norms state
+from wearlaw_wheelset._points import crossed_steps  # private: one step of the contact, against another way to it
 
 MM = 1e-3
 WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()
@@ -522,7 +526,7 @@ def test_a_disc_and_a_cone_are_not_upside_down() -> None:
     [
         ({"kind": "wheel"}, "needs the name of a formula, or points with y and z"),
         ({"kind": "wheel", "y": Q(Y, "mm")}, "needs the name of a formula, or points"),
-        ({"kind": "wheel", "formula": "s1003"}, "no profile is called 's1003'; there are s1002, uic60"),
+        ({"kind": "wheel", "formula": "s1003"}, "no profile is called 's1003'; did you mean 's1002'"),
         ({"kind": "rail", "formula": "s1002"}, "kind: 's1002' is a wheel, not a rail"),
         ({"kind": "wheel", "formula": "s1002", "y": Q(Y, "mm")}, "takes a formula or points, not both"),
         ({"kind": "tram", "formula": "s1002"}, "kind: input should be 'wheel' or 'rail'"),

@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 import wearlaw_wheelset as ws
 from wearlaw import Q
-from wearlaw_wheelset import _loads
+from wearlaw_wheelset import _loads  # private: the accuracy that a search ends at
 
 FIELDS: dict[str, Any] = {
     "wheel": ws.Profile.s1002(),

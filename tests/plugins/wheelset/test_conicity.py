@@ -6,7 +6,10 @@ import scipy
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_wheelset._conicity import NODES, equivalent_conicity
+from wearlaw_wheelset._conicity import (  # private: one step of the contact, against another way to it
+    NODES,
+    equivalent_conicity,
+)
 
 E, R0 = 1.5, 0.46
 """Distance of the rolling circles and nominal radius [m]; the conicity depends on neither."""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import wearlaw as wl
 import wearlaw_wheelset as ws
 from tests.plugins.full_theory import rows
-from tests.plugins.wheelsets import R0, Body, wheelset
+from tests.plugins.wheelset.wheelsets import R0, Body, wheelset
 from wearlaw import Array, Q
 
 SIDES = ("left", "right")

@@ -7,7 +7,7 @@ import pytest
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.wheelsets import wheelset
+from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Array, Q
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")

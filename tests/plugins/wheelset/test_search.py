@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.wheelsets import (
+from tests.plugins.wheelset.wheelsets import (
     R0,
     Body,
     cone,
@@ -27,7 +27,7 @@ from tests.plugins.wheelsets import (
     wheelset,
 )
 from wearlaw import Array, Q
-from wearlaw_wheelset._search_loops import ROLL_ACCURACY, ROUNDING
+from wearlaw_wheelset._search_loops import ROLL_ACCURACY, ROUNDING  # private: the accuracy that a search ends at
 
 SIDE = np.array([-1.0, 1.0])
 STANDARD = wheelset()

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.wheelsets import cone, middle_of_head, on_round_heads, wheelset
+from tests.plugins.wheelset.wheelsets import cone, middle_of_head, on_round_heads, wheelset
 from wearlaw import Array, Q
-from wearlaw_wheelset import _normal
-from wearlaw_wheelset._loads import BALANCED
+from wearlaw_wheelset import _normal  # private: the normal problem, against its theory
+from wearlaw_wheelset._loads import BALANCED  # private: the accuracy that a search ends at
 
 FASTSIM = wl.contact_model("fastsim")
 Pressure = Literal["kpec", "hertz"]

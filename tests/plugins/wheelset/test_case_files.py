@@ -11,8 +11,8 @@ import pytest
 
 import wearlaw_wheelset as ws
 from tests.core.cases import wearlaw, write
-from wearlaw.plugins import loader
-from wearlaw_studies.case import case_text, load_case
+from wearlaw.plugins import loader  # private: what is installed, changed for a test
+from wearlaw_studies.case import case_text, load_case  # private: a case without its files
 
 
 def profiles_of(name: str) -> dict[str, ws.Profile]:

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.wheelsets import R0, cone, on_round_heads, wheelset
+from tests.plugins.wheelset.wheelsets import R0, cone, on_round_heads, wheelset
 from wearlaw import Array, Q
 
 STENCIL = {1: 4.0 / 5.0, 2: -1.0 / 5.0, 3: 4.0 / 105.0, 4: -1.0 / 280.0}

@@ -10,12 +10,12 @@ import pytest
 
 import wearlaw as wl
 from tests import normal_half_space, wheel_on_rail
-from tests.plugins.test_wheelset_roll import STEEL, service
-from tests.plugins.wheelsets import R0, wheelset
+from tests.plugins.wheelset.test_roll import STEEL, service
+from tests.plugins.wheelset.wheelsets import R0, wheelset
 from wearlaw import Q
-from wearlaw_wheelset._half_space import pressed
-from wearlaw_wheelset._motion import placed
-from wearlaw_wheelset._normal import hertz
+from wearlaw_wheelset._half_space import pressed  # private: the normal problem, against its theory
+from wearlaw_wheelset._motion import placed  # private: one step of the contact, against another way to it
+from wearlaw_wheelset._normal import hertz  # private: the normal problem, against its theory
 
 A, MODULUS = 1.0 / (2.0 * R0), 82e9 / (1.0 - 0.28)
 FASTSIM = wl.contact_model("fastsim")

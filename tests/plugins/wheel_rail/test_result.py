@@ -216,7 +216,7 @@ def test_a_contact_is_solved_once_whatever_is_read_of_it(use_patch_mean: bool) -
 
 
 def test_the_slip_of_many_ellipses_is_kept_though_their_contacts_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw.numerics.integrate.ELLIPSE_NODES", 2 * 140)  # blocks of two
+    monkeypatch.setattr("wearlaw.numerics.integrate.ELLIPSE_NODES", 2 * 140)  # private: blocks of two
     creepage = np.linspace(0.01, 1.0, 11)
     conditions = {**CONDITIONS, "longitudinal_creepage": Q(creepage, "%")}
     Counted.solved.clear()

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.wheelsets import wheelset
+from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Array, Q
-from wearlaw_wheelset._search import Touching, searched
-from wearlaw_wheelset._search_loops import ROLL_ACCURACY
+from wearlaw_wheelset._search import Touching, searched  # private: one step of the contact, against another way to it
+from wearlaw_wheelset._search_loops import ROLL_ACCURACY  # private: the accuracy that a search ends at
 
 STANDARD = wheelset()
 ROUNDING = 2e-9

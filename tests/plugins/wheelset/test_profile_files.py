@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.plugins.published_profiles import S1002, UIC60
+from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
-from wearlaw_wheelset._files import LARGEST
+from wearlaw_wheelset._files import LARGEST  # private: the largest file that is read
 
 WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()
 ENDINGS = {"wheel": (".prw", ".whl", ".csv", ".txt"), "rail": (".prr", ".ban", ".csv", ".txt")}
