@@ -9,7 +9,7 @@ from typing import IO, Any
 
 import click
 
-from wearlaw.errors import WearlawError, described, did_you_mean, shown
+from wearlaw.errors import WearlawError, described, did_you_mean, message_of, shown
 from wearlaw.extras import MissingPackageError, load
 from wearlaw.hookspecs import Command
 from wearlaw.plugins import loader
@@ -56,7 +56,7 @@ class _Commands(click.Group):
         try:
             command: click.Command = load(module, function, f"wearlaw {cmd_name}")
         except MissingPackageError as error:
-            raise click.ClickException(str(error)) from error
+            raise click.ClickException(message_of(error)) from error
         except Exception as error:
             of = "" if cmd_name in own else f" of {loader.installed().commands.origin(cmd_name)}"
             raise click.ClickException(f"command {shown(cmd_name)}{of} cannot be loaded: {described(error)}") from error
@@ -70,7 +70,7 @@ class _Commands(click.Group):
         try:
             return super().invoke(ctx)
         except WearlawError as error:
-            raise click.ClickException("\n".join([str(error), *getattr(error, "__notes__", [])])) from None
+            raise click.ClickException("\n".join([message_of(error), *getattr(error, "__notes__", [])])) from None
         except KeyboardInterrupt:
             raise Stopped("Stopped") from None
 
