@@ -24,6 +24,7 @@ from wearlaw.errors import (
     WearlawError,
     WearlawWarning,
     described,
+    message_of,
     shown,
 )
 from wearlaw.models.contact_model import Model
@@ -180,7 +181,7 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
             raise TypeError(f"it must be a Section, got {shown(section)}")
     except WearlawError as error:
         raise InputError(
-            f"{subject}: {error!s}\nTo run the case without this section, take '{name}' out of `sections`"
+            f"{subject}: {message_of(error)}\nTo run the case without this section, take '{name}' out of `sections`"
         ) from error
     except KeyboardInterrupt:
         raise
