@@ -204,9 +204,19 @@ def warn(message: str | Warning, category: type[Warning] | None = None) -> None:
     warnings.warn(message, category, stacklevel=level)
 
 
+def message_of(error: BaseException) -> str:
+    """Return the message of an exception, or a remark if its `__str__` fails, which can happen in a plugin."""
+    try:
+        return str(error)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as another:
+        return f"(its message cannot be shown: {type(another).__name__})"
+
+
 def described(error: BaseException) -> str:
     """Return the type and the message of an exception."""
-    message = str(error)
+    message = message_of(error)
     return f"{type(error).__name__}: {message}" if message else type(error).__name__
 
 

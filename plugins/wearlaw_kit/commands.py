@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from wearlaw.cli.show import accuracies
-from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, shown
+from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, message_of, shown
 from wearlaw.models.contact_model import ContactModel, Model
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.pipeline import Rig
@@ -113,7 +113,7 @@ def _outcome(check: Check, expected: str | None) -> str:
         if expected is not None:
             echo(f"failed as expected {check.name}: {expected}")
             return "failed as expected"
-        reason = str(error) or check.doc
+        reason = message_of(error) or check.doc
         echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
         return "failed"
     if expected is not None:

@@ -35,8 +35,6 @@ from wearlaw.errors import (
     Fault,
     InputError,
     PluginWarning,
-    WearlawError,
-    WearlawWarning,
     described,
     did_you_mean,
     shown,
@@ -47,7 +45,7 @@ from wearlaw.models.labels import labelled, labels
 from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.pipeline.composition import several_patches
-from wearlaw.pipeline.pipeline import Pipeline, Rig, RigField
+from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
 from wearlaw.plugins.law_files import is_law_file
@@ -303,7 +301,7 @@ class Case(Configuration):
     def _consistent(self) -> Case:
         wrong = [*self._wrong_names(), *self._wrong_units()]
         if not wrong:  # the others need labels and units
-            wrong = [*self._wrong_axes(), *self._wrong_outcomes(), *self._wrong_stages(), *self._wrong_others()]
+            wrong = [*self._wrong_axes(), *self._wrong_outcomes(), *self._wrong_others()]
         if wrong:
             raise ConfigurationError(self.subject(), wrong)
         return self
@@ -369,27 +367,6 @@ class Case(Configuration):
                 yield Fault(path, f"its outcome '{outcome.name}' is the name of another column of results; rename it")
             if any(law.name == wear_law.name for wear_law in self.wear_laws):
                 yield Fault(path, f"a wear law of the case is called '{law.name}' too; put it in a case of its own")
-
-    def _wrong_stages(self) -> Iterator[Fault]:
-        """Yield the stages that fail around a contact model, tried at the first operating point of the first sweep."""
-        if not self.stages:
-            return
-        problem = next(iter(self.sweeps.values())).problem(self.rig)
-        for label, model in labelled(self.contact_models).items():
-            for count in range(len(self.stages) + 1):
-                try:
-                    with warnings.catch_warnings():
-                        warnings.simplefilter("ignore", WearlawWarning)  # running the case repeats them
-                        Pipeline(rig=self.rig, contact_model=model, stages=self.stages[:count]).predict(problem)
-                except WearlawError as error:
-                    if count:  # otherwise the model does not suit the rig, which running the case notes
-                        name = self.stages[count - 1].name
-                        yield Fault(
-                            ("stages", str(count - 1)),
-                            f"{name} cannot stand around {label}: {error}; leave one of them out",
-                        )
-                        return
-                    break
 
 
 def case_text(name_or_path: str) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-import math
 import textwrap
 import warnings
 from collections.abc import Callable, Mapping
@@ -25,6 +24,7 @@ from wearlaw.errors import (
     WearlawError,
     WearlawWarning,
     described,
+    message_of,
     shown,
 )
 from wearlaw.models.contact_model import Model
@@ -181,7 +181,7 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
             raise TypeError(f"it must be a Section, got {shown(section)}")
     except WearlawError as error:
         raise InputError(
-            f"{subject}: {error!s}\nTo run the case without this section, take '{name}' out of `sections`"
+            f"{subject}: {message_of(error)}\nTo run the case without this section, take '{name}' out of `sections`"
         ) from error
     except KeyboardInterrupt:
         raise
@@ -351,21 +351,6 @@ def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
     known = {*axes, *of_point, *(v for variables in of_contact.values() for v in variables)}
     fixed = {name: level for name, level in conditions.items() if name not in known}
     return _Variables(of_contact, [v for v in (*OF_POINT, *OF_PATCH) if v in of_point], fixed)
-
-
-def numbers(case: Case) -> int:
-    """Return the number of values in the results of all sweeps of a case."""
-    pairs, total = pairs_of(case, Notes()), 0
-    for name, grid in case.sweeps.items():
-        usable = _usable(f"sweep '{name}'", grid, pairs, Notes())
-        found = _variables(grid, case, usable)
-        of_contact = sum(len(variables) for variables in found.of_contact.values())
-        first = grid.problem(case.rig)
-        of_pair = len(usable) * len({v for pair in usable for v in (*_of_pair(pair, first), *_band_names(pair))})
-        patches = math.prod(map(len, first.dims.values()))
-        total += grid.size * (patches * (len(found.of_point) + of_contact + of_pair) + len(found.conditions))
-        total += sum(grid.axes().values())
-    return total
 
 
 def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:

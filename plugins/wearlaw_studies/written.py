@@ -20,7 +20,7 @@ from wearlaw_studies.case import CASE_FILE, Case, written
 from wearlaw_studies.report.page import report
 from wearlaw_studies.report.tables import tables
 from wearlaw_studies.results import patch_axes
-from wearlaw_studies.study import Study, numbers
+from wearlaw_studies.study import Study
 from wearlaw_sweeps.points import ITEM
 from wearlaw_sweeps.room import check_disk, check_memory, set_size
 
@@ -29,6 +29,8 @@ CSV = "results.csv"
 FIGURES = "figures"
 REPORT = "report.html"
 TABLES = "tables"
+VARIABLES = 20
+"""Most numbers that a row of results takes; pairs share those of their contact model."""
 COPIES = 2
 """Number of copies of a result in memory: the computed one, and one in the stack of all pairs."""
 ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
@@ -37,8 +39,6 @@ MOST_ROWS = 2**20 - 1
 """Most rows of a table of results that is written unasked: those that a sheet of Excel holds below the head."""
 SPARE = 2**20
 """Bytes of a netCDF file beside its numbers, at most."""
-CHUNK = 2**16
-"""Rows that are written before progress is shown."""
 T = TypeVar("T")
 
 
@@ -85,7 +85,7 @@ def check_room(case: Case, folder: Path, csv: bool = True) -> None:
     InputError
         If they would not; the message says how much they need.
     """
-    count, rows = numbers(case), rows_of(case) if csv else 0
+    count, rows = VARIABLES * rows_of(case), rows_of(case) if csv else 0
     check_memory(COPIES * ITEM * count + ROW_IN_MEMORY * rows, "give the sweeps fewer points")
     check_disk(2 * ITEM * count + ROW_ON_DISK * rows, folder)
 
@@ -125,7 +125,7 @@ def write(
         on_stage("writing results")
         write_netcdf(study, folder / RESULTS)
         if csv:
-            _write_csv(table(study), folder / CSV, on_stage)
+            disarmed(table(study)).to_csv(folder / CSV, index=False, encoding="utf-8", errors="replace")
         for name, text in case_files.items():
             (folder / name).write_text(text, encoding="utf-8")
         names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files, *_write_tables(study, folder, latex)]
@@ -133,15 +133,6 @@ def write(
         on_stage("writing the report")
         (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
     return names
-
-
-def _write_csv(rows: pd.DataFrame, path: Path, on_stage: Callable[[str], None]) -> None:
-    """Write the table of results, with progress if it is long."""
-    with path.open("w", encoding="utf-8", errors="replace", newline="") as file:
-        for start in range(0, len(rows), CHUNK):
-            if start:
-                on_stage(f"writing {path.name}, {start / len(rows):.0%}")
-            disarmed(rows[start : start + CHUNK]).to_csv(file, index=False, header=start == 0)
 
 
 def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:

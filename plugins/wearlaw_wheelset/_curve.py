@@ -13,9 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 import wearlaw as wl
 from wearlaw import Array
 
-steady = np.errstate(divide="warn", over="warn", under="ignore", invalid="warn")
-"""Decorator for public functions, so that they give the same under any `np.errstate` of the caller."""
-
 SPACING = 5e-5
 """Largest spacing of the table of a curve [m]."""
 

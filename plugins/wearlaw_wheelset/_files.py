@@ -10,7 +10,7 @@ import math
 import os
 import re
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -366,16 +366,13 @@ def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
         If the file cannot be written.
     """
     ending = path.suffix.lower()
-    if ending not in ENDINGS:
-        raise wl.InputError(f"cannot write {wl.shown(path)}: its ending must be one of {', '.join(ENDINGS)}")
-    if KINDS.get(ending, kind) != kind:
-        right = next(one for one in (SIMPACK if ending in SIMPACK else MINIPROF) if KINDS[one] == kind)
+    endings = (".prw" if kind == "wheel" else ".prr", ".csv", ".txt")
+    if ending not in endings:
         raise wl.InputError(
-            f"cannot write {wl.shown(path)}: the profile is that of a {kind}, so its ending must be {right}"
+            f"cannot write {wl.shown(path)}: the ending of a {kind}'s file must be one of {', '.join(endings)}"
         )
-    writers: dict[str, Callable[[str, Array, Array], list[str]]] = dict.fromkeys(SIMPACK, _as_simpack)
-    writers |= dict.fromkeys(MINIPROF, _as_miniprof)
-    text = "\n".join(writers.get(ending, _as_columns)(kind, 1e3 * y, 1e3 * z)) + "\n"
+    lines = (_as_simpack if ending in SIMPACK else _as_columns)(kind, 1e3 * y, 1e3 * z)
+    text = "\n".join(lines) + "\n"
     temporary = path.parent / f".{uuid4().hex}"  # short, since the name of the file may be as long as names can be
     try:
         try:
@@ -396,13 +393,6 @@ def _as_simpack(kind: str, y: Array, z: Array) -> list[str]:
     head += ["approx.smooth = 0.0", f"comment = 'wearlaw {wl.__version__}'", "mirror.y = 0", "mirror.z = 0"]
     head += ["inversion = 0", "units.len.f = 1000.0", "units.ang.f = 1.0", "point.begin"]
     return [*head, *_rows(y, z, " "), "point.end", "spline.end"]
-
-
-def _as_miniprof(kind: str, y: Array, z: Array) -> list[str]:
-    sign = 1.0 if kind == "wheel" else -1.0
-    head = ["ProgramName=wearlaw", f"ProgramVer={wl.__version__}", "XOffset=0.0", "YOffset=0.0"]
-    head += [f"{TAPING}=0.0"] if kind == "wheel" else []
-    return [*head, "ColumnDef=X,Y", f"XYPoints={y.size}", "", *_rows(sign * y, sign * z, " ")]
 
 
 def _as_columns(kind: str, y: Array, z: Array) -> list[str]:

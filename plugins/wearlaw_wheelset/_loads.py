@@ -472,33 +472,11 @@ class Balance:
             Whether to search within bounds where Newton's method fails, which takes a hundred times as long. Otherwise
             these positions are marked as unbalanced.
         """
-        names = (
-            "roll",
-            "penetration",
-            "rotation",
-            "whole",
-            "sampled",
-            "searched",
-            "height",
-            "lever",
-            "roll_rate",
-            "imbalance",
-            "share",
-            "vertical",
-            "lateral",
-            "correction",
-        )
-        copies = {name: getattr(self, name).copy() for name in names}
+        copies: dict[str, Any] = {name: one.copy() for name, one in vars(self).items() if isinstance(one, np.ndarray)}
         every = np.ones(self.balanced.shape, dtype=np.bool_)
-        found = replace(
-            self,
-            scale=np.ones(self.scale.shape),
-            balanced=every,
-            shapes=dict(self.shapes),
-            starts=dict(self.starts),
-            touching=Touching(*(array.copy() for array in self.touching)),
-            **copies,
-        )
+        copies |= {"scale": np.ones(self.scale.shape), "balanced": every}
+        touching = Touching(*(array.copy() for array in self.touching))
+        found = replace(self, touching=touching, shapes=dict(self.shapes), starts=dict(self.starts), **copies)
         found.found = self.found.part(np.arange(self.found.point.size))
         rolls = self.task.free and forces is not None
         if rolls:

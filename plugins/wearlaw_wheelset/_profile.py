@@ -15,7 +15,7 @@ from pydantic_core import core_schema
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_wheelset._curve import Curve, joined, steady, through_points
+from wearlaw_wheelset._curve import Curve, joined, through_points
 from wearlaw_wheelset._files import Kind, points_of, write_points
 from wearlaw_wheelset._formulas import FORMULAS
 from wearlaw_wheelset._points import check_orientation, check_points
@@ -235,7 +235,6 @@ class Profile(wl.Configuration):
         turn, y, z = wl.scalar_si(self.turn, "rad"), wl.scalar_si(self.shift_y, "m"), wl.scalar_si(self.shift_z, "m")
         return (-1.0 if self.mirror else 1.0), turn, y, z
 
-    @steady
     def _moved(self, y: Array, z: Array) -> tuple[Array, Array]:
         """Return positions after the mirror, the turn and the shifts; the mirror does not change their order."""
         sign, turn, shift_y, shift_z = self._motion
@@ -245,7 +244,6 @@ class Profile(wl.Configuration):
         return cosine * sign * y - sine * z + shift_y, sine * sign * y + cosine * z + shift_z
 
     @cached_property
-    @steady
     def curve(self) -> Curve:
         """The profile by its arc length."""
         if self.formula is not None:
@@ -291,7 +289,6 @@ class Profile(wl.Configuration):
         new = self._motion[2] + float(unit.si(y, "y")), self._motion[3] + float(unit.si(z, "z"))
         return self._with_motion(self._motion[1], *new)
 
-    @steady
     def turned(self, angle: wl.QuantityLike) -> Profile:
         """Return the profile turned about the origin by an angle, positive from y to z.
 
@@ -307,7 +304,6 @@ class Profile(wl.Configuration):
             update={"turn": wl.Q(turn, "rad"), "shift_y": wl.Q(1e3 * y, "mm"), "shift_z": wl.Q(1e3 * z, "mm")}
         )
 
-    @steady
     def worn(self, s: wl.Quantity, depth: wl.Quantity | str, *, smoothing: wl.QuantityLike = "0 mm") -> Profile:
         """Return the profile after wear, which removes a depth along the normal.
 
@@ -556,8 +552,8 @@ def read_profile(
 def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
     """Write a profile to a file, whole or not at all; `read_profile` reads it.
 
-    The ending gives the format: .prr of Simpack for a rail and .prw for a wheel, .ban and .whl of MiniProf, or .csv and
-    .txt with two columns. The file holds the points, or those of the curve if they are smoothed, in mm with nine
+    The ending gives the format: .prr of Simpack for a rail and .prw for a wheel, or .csv and .txt with two columns. The
+    file holds the points, or those of the curve if they are smoothed, in mm with nine
     decimals.
 
     Raises

@@ -15,7 +15,6 @@ from pydantic import BeforeValidator, Field, model_validator
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset._conicity import equivalent_conicity
-from wearlaw_wheelset._curve import steady
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
 from wearlaw_wheelset._guidance import guided
 from wearlaw_wheelset._loads import Balance, Elastic, Friction, Pressure, Task
@@ -353,7 +352,6 @@ class Wheelset(wl.Rig):
             "rail": wl.Body(self.rail_material or self.material, np.inf),
         }
 
-    @steady
     def geometry(
         self,
         *,
@@ -411,7 +409,6 @@ class Wheelset(wl.Rig):
         """Return the right wheel and its rail in the middle of the track, as SI arrays."""
         return profiles(self._section, wl.scalar_si(self.nominal_radius, "m"))
 
-    @steady
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel."""
         most = _one(wl.Unit("mm"), amplitude, "amplitude")
@@ -441,7 +438,8 @@ class Wheelset(wl.Rig):
         sides = [conditions.get(f"vertical_load_{side}") is None for side in DIMS["side"]]
         if sides[0] != sides[1] or sides[0] == (conditions.get("vertical_load") is None):
             raise wl.ConditionsError("give vertical_load, or vertical_load_left and vertical_load_right")
-        _check_given(arrays)
+        if (arrays["curve_radius"] == 0.0).any():
+            raise wl.ConditionsError("curve_radius: must not be zero; straight track has an infinite radius, 'inf m'")
         shape = arrays["yaw"].shape
         flat = {name: array.reshape(-1) for name, array in arrays.items()}
         # Laws of friction stay as they are given: each patch has a creep speed of its own.
@@ -713,22 +711,3 @@ def _one(unit: wl.Unit, value: wl.QuantityLike, name: str) -> float:
     if array.ndim:
         raise wl.UnitError(f"{name}: must be one value, got an array of shape {array.shape}")
     return float(array)
-
-
-LEAST_RADIUS, LEAST_LOAD, LEAST_FRICTION = 1e-3, 1e-6, 1e-12
-"""Smallest curve radius [m], vertical load [N] and friction coefficient: below them, numbers overflow or vanish."""
-
-
-def _check_given(arrays: Mapping[str, Array]) -> None:
-    """Raise an error for a curve without a radius, or a load or friction of nothing."""
-    radius = arrays["curve_radius"]
-    if (radius == 0.0).any():
-        raise wl.ConditionsError("curve_radius: must not be zero; straight track has an infinite radius, 'inf m'")
-    if (np.abs(radius) < LEAST_RADIUS).any():
-        raise wl.ConditionsError(f"curve_radius: must be {LEAST_RADIUS:g} m or more, got {np.abs(radius).min():g} m")
-    for name in ("vertical_load", "vertical_load_left", "vertical_load_right"):
-        if name in arrays and (arrays[name] < LEAST_LOAD).any():
-            raise wl.ConditionsError(f"{name}: must be {LEAST_LOAD:g} N or more, got {arrays[name].min():g} N")
-    for name in ("friction_coefficient", "flange_friction_coefficient"):
-        if name in arrays and (arrays[name] < LEAST_FRICTION).any():
-            raise wl.ConditionsError(f"{name}: must be {LEAST_FRICTION:g} or more, got {arrays[name].min():g}")

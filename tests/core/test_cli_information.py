@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import textwrap
 from pathlib import Path
 
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import assert_refused, table, wearlaw, write
+from tests.core.cases import table, wearlaw, write
 from tests.core.distributions import FIRST_PARTY_MODELS, Install
 from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import case_schema, case_text  # private: a case without its files
@@ -97,6 +96,10 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
             ["case", name, "wearlaw", wl.__version__]
             for name in ("my_tests", "tassini2010", "two_discs", "wheel_life", "wheel_on_rail", "wheelset")
         ),
+        *(
+            ["profile", name, "wearlaw", wl.__version__]
+            for name in ("cone20", "cone40", "rail_54e1", "rail_60e1", "rail_60e2", "s1002", "uic60")
+        ),
         ["section", "life", "wearlaw", wl.__version__],
         *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4", "tables")),
         ["section", "wheelset", "wearlaw", wl.__version__],
@@ -164,14 +167,6 @@ def test_a_model_without_a_schema_is_left_out_of_it_with_its_plugin_named(
     names, *tables = json.loads(result.stdout)["properties"]["wear_laws"]["items"]["anyOf"]
     assert set(names["enum"]) == {*names_before["enum"], "mute"}  # its name alone is still right
     assert tables == [*tables_before, {"const": "mute_set"}]
-
-
-def test_a_model_that_ends_the_program_gives_an_error_that_says_where(install: Install, tmp_path: Path) -> None:
-    source = UNDESCRIBED.format(error="SystemExit(0)")
-    install("undescribed", source)
-    line = textwrap.dedent(source).splitlines().index("        raise SystemExit(0)") + 1
-    place = f"{tmp_path / 'undescribed.py'}, line {line}"
-    assert_refused(wearlaw("show", "mute"), f"the command was ended by SystemExit: 0, raised in {place}")
 
 
 def test_what_failed_to_load_is_named_once_with_its_cause(install: Install) -> None:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import signal
 import sys
-import traceback
 from io import TextIOWrapper
 from typing import IO, Any
 
 import click
 
-from wearlaw.errors import WearlawError, described, did_you_mean, shown
+from wearlaw.errors import WearlawError, described, did_you_mean, message_of, shown
 from wearlaw.extras import MissingPackageError, load
 from wearlaw.hookspecs import Command
 from wearlaw.plugins import loader
@@ -40,7 +39,7 @@ class Stopped(click.ClickException):
 
 
 class _Commands(click.Group):
-    """The commands. An error of wearlaw, an interrupt, or a plugin that ends the program, prints one clear line."""
+    """The commands. An error of wearlaw or an interrupt prints one clear line."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         return list(commands())
@@ -57,7 +56,7 @@ class _Commands(click.Group):
         try:
             command: click.Command = load(module, function, f"wearlaw {cmd_name}")
         except MissingPackageError as error:
-            raise click.ClickException(str(error)) from error
+            raise click.ClickException(message_of(error)) from error
         except Exception as error:
             of = "" if cmd_name in own else f" of {loader.installed().commands.origin(cmd_name)}"
             raise click.ClickException(f"command {shown(cmd_name)}{of} cannot be loaded: {described(error)}") from error
@@ -71,15 +70,9 @@ class _Commands(click.Group):
         try:
             return super().invoke(ctx)
         except WearlawError as error:
-            raise click.ClickException("\n".join([str(error), *getattr(error, "__notes__", [])])) from None
+            raise click.ClickException("\n".join([message_of(error), *getattr(error, "__notes__", [])])) from None
         except KeyboardInterrupt:
             raise Stopped("Stopped") from None
-        except Exception:
-            raise
-        except BaseException as error:  # such as a model's SystemExit(0), which would look like success
-            place = traceback.extract_tb(error.__traceback__)[-1]
-            reason = f"the command was ended by {described(error)}, raised in {place.filename}, line {place.lineno}"
-            raise click.ClickException(reason) from error
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -188,9 +188,9 @@ def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: 
 def check_results(model: ContactModel, problem: Problem, found: Any, name: str = "result") -> None:
     """Raise a `ModelError` unless each array among results holds finite float64 for each operating point."""
     if isinstance(found, tuple):
-        for index, one in enumerate(found):
+        for field, one in zip(getattr(found, "_fields", (name,) * len(found)), found, strict=True):
             if one is not None and type(one) is not Across:  # made of checked rates
-                check_results(model, problem, one, found._fields[index] if hasattr(found, "_fields") else name)
+                check_results(model, problem, one, field)
         return
     check_type(model, name, found, problem.batch_shape)
     low, high = extremes(found)

@@ -164,10 +164,7 @@ def _position(name: str, given: object, size: int) -> Position:
     """Return a position along an axis, without negative numbers."""
     if isinstance(given, slice):
         return given
-    try:
-        numbers = np.asarray(given)
-    except Exception:  # whatever the `__array__` of another package's type raises
-        numbers = np.asarray(None)
+    numbers = np.asarray(given)
     if numbers.ndim > 1 or (numbers.size and numbers.dtype.kind not in "iu"):
         raise InputError(f"isel: {name} must be an integer, a list of integers or a slice, got {shown(given)}")
     wrong = numbers[(numbers < -size) | (numbers >= size)]

@@ -197,3 +197,4 @@ def test_a_notebook_shows_a_fit_and_a_comparison_as_tables(exact_fit: wl.Fit) ->
     found = wl.compare({"a <b>": exact_fit, "plain": exact_fit.predict}, exact_fit.tests)._repr_html_()
     assert "a &lt;b&gt;" in found
     assert found.count("<tr") == 3
+    assert "2 predictors on 20 tests" in found

@@ -84,8 +84,6 @@ def test_a_wheelset_that_cannot_be_is_refused(changed: dict[str, Any], message: 
         ({"axle_torque": "20 kN*m"}, wl.ConditionsError, "axle_torque: .* is more than friction can transmit"),
         ({"axle_torque": "1 N*m", "angular_speed": "43 rad/s"}, wl.ConditionsError, "not both"),
         ({"curve_radius": "0 m"}, wl.ConditionsError, "curve_radius: must not be zero; straight track has"),
-        ({"curve_radius": "-5e-10 m"}, wl.ConditionsError, "curve_radius: must be 0.001 m or more, got 5e-10 m"),
-        ({"vertical_load": "1e-30 kN"}, wl.ConditionsError, "vertical_load: must be 1e-06 N or more, got 1e-27 N"),
         ({"rolled_distance": "-2 km"}, wl.UnitError, "rolled_distance: must not be negative, got -2.000 km"),
         ({"displacement": "1 mm"}, wl.ConditionsError, "displacement: unknown condition"),
         ({"vertical_load": None}, wl.WearlawError, "vertical_load"),

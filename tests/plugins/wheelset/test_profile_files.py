@@ -19,7 +19,7 @@ from wearlaw import Array, Q
 from wearlaw_wheelset._files import LARGEST  # private: the largest file that is read
 
 WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()
-ENDINGS = {"wheel": (".prw", ".whl", ".csv", ".txt"), "rail": (".prr", ".ban", ".csv", ".txt")}
+ENDINGS = {"wheel": (".prw", ".csv", ".txt"), "rail": (".prr", ".csv", ".txt")}
 
 BACK, SIDE = np.array([70.0, 0.0]), np.array([2.0, 0.0])
 
@@ -341,7 +341,7 @@ def profiles(draw: st.DrawFn) -> ws.Profile:
 
 
 @settings(max_examples=30, deadline=None)
-@given(profile=profiles(), number=st.integers(0, 3))
+@given(profile=profiles(), number=st.integers(0, 2))
 def test_a_written_profile_is_read_again(tmp_path_factory: pytest.TempPathFactory, profile: Any, number: int) -> None:
     path = tmp_path_factory.mktemp("written") / f"a{ENDINGS[profile.kind][number]}"
     ws.write_profile(path, profile)
@@ -370,16 +370,9 @@ def test_a_smoothed_profile_is_written_smooth(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(
-    ("name", "message"),
-    [
-        ("a.prr", r"a\.prr': the profile is that of a wheel, so its ending must be \.prw"),
-        ("a.ban", r"its ending must be \.whl"),
-        ("a.xls", r"its ending must be one of \.prw, \.whl, \.prr, \.ban, \.csv, \.txt"),
-    ],
-)
-def test_a_wrong_ending_is_refused(tmp_path: Path, name: str, message: str) -> None:
-    with pytest.raises(wl.InputError, match=message):
+@pytest.mark.parametrize("name", ["a.prr", "a.whl", "a.xls"])
+def test_a_wrong_ending_is_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(wl.InputError, match=r"\.prw, \.csv, \.txt"):
         ws.write_profile(tmp_path / name, WHEEL)
     assert list(tmp_path.iterdir()) == []
 
