@@ -276,6 +276,13 @@ def jumps_into_full_slip(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
     return times(contact, np.where(below.any(axis=(-2, -1) if contact.on_strips else -1), share, 1.0))
 
 
+@wrong("full_slip_is_met_from_both_sides", LINE)
+def steps_into_full_slip(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+    """The force lacks a millionth just below full slip."""
+    below = reduced(problem)
+    return times(contact, np.where(below < 1.0, 1.0 - 1e-6 * below**4, 1.0))
+
+
 @wrong("full_slip_is_reached", LINE)
 def not_quite_full_slip(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
     """A hundred-thousandth is missing in full slip."""
