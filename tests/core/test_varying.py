@@ -172,6 +172,8 @@ class Bounded(wl.Configuration):
 
     plain: float = 1.0
     above: Annotated[float, Field(gt=0.5)] = 1.0
+    above_zero: Annotated[float, Field(gt=0.0)] = 1.0
+    above_less: Annotated[float, Field(gt=-0.5)] = 1.0
     below_zero: Annotated[float, Field(gt=-2.0, lt=0.0)] = -1.0
     share: Annotated[float, Field(ge=0.0, le=1.0)] = 1.0
     length: wl.Length = Q(1.0, "mm")
@@ -192,6 +194,8 @@ def test_the_range_that_a_field_allows_is_that_of_its_annotation() -> None:
     due = {
         "plain": (-inf, inf, False),
         "above": (0.5, inf, True),
+        "above_zero": (0.0, inf, True),
+        "above_less": (-0.5, inf, False),
         "below_zero": (-2.0, 0.0, False),
         "share": (0.0, 1.0, False),
         "length": (0.0, inf, True),
