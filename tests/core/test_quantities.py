@@ -107,6 +107,14 @@ def test_parse_refuses_text_that_is_no_quantity(text: str) -> None:
     assert "is not a" in str(caught.value)
 
 
+def test_a_list_of_quantities_takes_the_unit_of_the_first() -> None:
+    read = wl.parse(["1 kN", Q(2000.0, "N")])
+    assert read.units == Q(1, "kN").units
+    assert list(read.magnitude) == [1.0, 2.0]
+    with pytest.raises(wl.UnitError, match="from 'millimeter'"):
+        wl.parse(["1 kN", "2 mm"])
+
+
 @pytest.mark.parametrize("quantity", [Q(27.70413, "ug/m/mm^2"), Q([[1.0, 2.5]], "kN"), Q(1, "%")])
 def test_quantities_survive_pickling(quantity: wl.Quantity) -> None:
     loaded = pickle.loads(pickle.dumps(quantity))
