@@ -10,7 +10,8 @@ from tests.interface import AGREED, interface
 WHAT_TO_DO = """\
 The interface is not that of tests/interface.txt. What is new gets a line in CHANGELOG.md, under "Added". What is gone
 or takes other arguments breaks plugins and scripts: keep the old beside the new, with a DeprecationWarning, or once its
-time is over drop it, and raise INTERFACE_VERSION if plugins used it; docs/hooks.md says when. Then write the file anew:
+time is over drop it, and raise INTERFACE_VERSION if plugins used it; docs/other-models.md says when.
+Then write the file anew:
 python -m tests.interface
 """
 

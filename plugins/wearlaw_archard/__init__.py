@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import Field
@@ -28,6 +29,8 @@ class SteelWithHardness(wl.Material):
     """Yield stress in shear, k [Pa]; None if not known, and then no contact counts as yielding."""
     hardness: wl.Stress
     """Hardness, H [Pa]. A Brinell or Vickers number is in kgf/mm²."""
+    source: str | None = None
+    """Where the hardness and the yield stress are from."""
 
     if TYPE_CHECKING:  # checkers do not know that a text is accepted for a quantity
 
@@ -39,7 +42,41 @@ class SteelWithHardness(wl.Material):
             density: wl.QuantityLike = ...,
             shear_yield_stress: wl.QuantityLike | None = ...,
             hardness: wl.QuantityLike,
+            source: str | None = ...,
         ) -> None: ...
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with some fields changed; another hardness or yield stress has not the same source."""
+        if update and not {"hardness", "shear_yield_stress"}.isdisjoint(update):
+            update = {"source": None, **update}
+        return super().model_copy(update=update, deep=deep)
+
+
+HARDNESS_OF_RAILS = {
+    "R200": (200, 240),
+    "R220": (220, 260),
+    "R260": (260, 300),
+    "R260Mn": (260, 300),
+    "R320Cr": (320, 360),
+    "R350HT": (350, 390),
+    "R350LHT": (350, 390),
+}
+"""Brinell numbers [kgf/mm²] of rail steels by EN 13674-1:2008, as printed in the railway track manual of ThyssenKrupp
+GfT Gleistechnik, page 211-07 (2010)."""
+
+
+def _rail_steel(least: int, greatest: int) -> SteelWithHardness:
+    """Return a rail steel of the least hardness that the standard allows, with k from it as in `wearlaw.steel`."""
+    yield_stress = least * 9.80665 / (2.8 * 3.0**0.5)  # Tabor, then von Mises [MPa]
+    return SteelWithHardness(
+        hardness=f"{least} kgf/mm^2",
+        shear_yield_stress=f"{yield_stress:.4g} MPa",
+        source=(
+            f"hardness: the least of EN 13674-1:2008, {least} to {greatest} HBW, as printed in ThyssenKrupp"
+            " GfT Gleistechnik, Railway track manual, page 211-07; shear_yield_stress: an estimate from"
+            " the hardness, H/(2.8 √3)"
+        ),
+    )
 
 
 class Archard(wl.WearLaw):
@@ -106,5 +143,6 @@ def wearlaw_models() -> list[type[wl.WearLaw]]:
 
 @wl.hookimpl
 def wearlaw_named() -> dict[str, wl.Material | type[wl.Material]]:
-    """Return the class of steels with a hardness, so that files can name it."""
-    return {"SteelWithHardness": SteelWithHardness}
+    """Return the class of steels with a hardness, so that files can name it, and the rail steels of EN 13674-1."""
+    rails = {name: _rail_steel(*numbers) for name, numbers in HARDNESS_OF_RAILS.items()}
+    return {"SteelWithHardness": SteelWithHardness, **rails}

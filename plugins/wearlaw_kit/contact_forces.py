@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays.array import Array
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw_kit.bisection import Indices, find_jumps
@@ -57,6 +58,12 @@ SMALL = 0.1
 
 SLOPE = 1e-3
 """Error of initial slopes on an ellipse: half of the last digit of Kalker's coefficients."""
+
+
+FALL = 0.02
+"""Share to which the difference between partial and full slip falls, from 1e-4 to 1e-8 away from full slip: a hundredth
+for a square root c √gap, the steepest onset in theories of contact, and a fiftieth for c √gap (1 + d √gap) with a d as
+low as -50."""
 
 
 @on_problems(*SHAPES)
@@ -217,6 +224,41 @@ def full_slip_is_reached(model: ContactModel, shape: Shape) -> None:
 def _cross(first: Array, second: Array) -> Array:
     cross: Array = first[0] * second[1] - first[1] * second[0]
     return cross
+
+
+@on_shapes(*SHAPES, claims=("saturation",))
+def full_slip_is_met_from_both_sides(model: ContactModel, shape: Shape) -> None:
+    """Where full slip begins, force and mean slip over creepage have the same limit from both sides, without spin.
+
+    The difference between the sides falls with the distance from full slip at least as its square root.
+    """
+    problem = without_spin(shape.draw(POINTS))
+
+    def solved(reduced: Array) -> Contact:
+        return model.solve(at_magnitude(problem, reduced))
+
+    full = np.full(POINTS, FAR)  # the least creepages, to rounding, with the force of full slip and no stick
+    low, limit = np.zeros(POINTS), solved(full).tangential_force * (1.0 - SAME)
+    for _ in range(60):
+        middle = 0.5 * (low + full)
+        contact = solved(middle)
+        reached = (contact.tangential_force >= limit) & (contact.stick_ratio <= SUM)
+        low, full = np.where(reached, low, middle), np.where(reached, middle, full)
+
+    def step(gap: float) -> dict[str, Array]:
+        """Return the relative differences between a `gap` below and a `gap` above full slip."""
+        below, above = (solved(full * (1.0 + side * gap)) for side in (-1.0, 1.0))
+        slip = below.mean_slip / above.mean_slip * (1.0 + gap) / (1.0 - gap)
+        return {"force": np.abs(1.0 - below.tangential_force / above.tangential_force), "mean slip": np.abs(1.0 - slip)}
+
+    far, near = step(1e-4), step(1e-8)
+    error = max(SUM, error_of_sums(model, problem))
+    for name, rounding in (("force", SUM), ("mean slip", error)):
+        wrong = ~(near[name] <= FALL * far[name] + 2.0 * rounding)
+        assert not wrong.any(), (
+            f"the {name} jumps by {near[name][wrong].max():.2g} of its value into full slip, at the reduced creepage"
+            f" {full[wrong][0]:g}"
+        )
 
 
 @on_problems(LINE, claims=("initial_slope",))

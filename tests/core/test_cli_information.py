@@ -90,7 +90,10 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
         *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("archard", "brr", "energy", "kth", "usfd")),
         ["law", "wlrm", "wearlaw", wl.__version__],
         ["reader", "contact_mat", "wearlaw", wl.__version__],
-        ["material", "steel", "wearlaw", wl.__version__],
+        *(
+            ["material", name, "wearlaw", wl.__version__]
+            for name in ("R200", "R220", "R260", "R260Mn", "R320Cr", "R350HT", "R350LHT", "steel")
+        ),
         ["material", "type", "SteelWithHardness", "wearlaw", wl.__version__],
         *(
             ["case", name, "wearlaw", wl.__version__]

@@ -158,9 +158,9 @@ def test_a_material_of_a_script_works_everywhere_but_in_files(tmp_path: Path) ->
     with pytest.raises(wl.CaseError) as error:
         load_case(str(tmp_path / "case.toml"))
     assert str(error.value).splitlines()[1] == (
-        "  rig.disc_1.material: no material is called 'Own'. Installed: steel, SteelWithHardness. `type` names a"
-        " material or a class of materials of an installed plugin; ship a class of a script in a plugin, or leave"
-        " `type` out for a plain Material"
+        "  rig.disc_1.material: no material is called 'Own'. Installed: R200, R220, R260, R260Mn, R320Cr, R350HT,"
+        " R350LHT, steel, SteelWithHardness. `type` names a material or a class of materials of an"
+        " installed plugin; ship a class of a script in a plugin, or leave `type` out for a plain Material"
     )
 
 

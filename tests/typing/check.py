@@ -22,7 +22,7 @@ ROOT = HERE.parents[1]
 CASES = sorted((HERE / "cases").glob("*.py"))
 PLUGIN = re.compile(r":caption: (?:[\w-]+/)?(\w+\.py)\n\n(.*?)\n```", re.DOTALL)
 """The name and the text of a module on a page."""
-PAGES = ("write-a-law", "validate-in-ci", "other-models", "hooks")
+PAGES = ("write-a-law", "validate-in-ci", "other-models")
 MARK = "# expect-error"
 
 Found = dict[tuple[str, int], str]

@@ -131,11 +131,51 @@ def test_a_hardness_of_the_law_goes_before_that_of_the_material() -> None:
 def test_a_steel_with_a_hardness_is_the_steel_but_for_its_hardness() -> None:
     fields = dict(SOFT)
     assert fields.pop("hardness") == Q(2, "GPa")
+    assert fields.pop("source") is None
     assert fields == dict(wl.steel())
     assert wl.material("SteelWithHardness", hardness="2 GPa") == SOFT
     assert SteelWithHardness(hardness="260 kgf/mm^2").hardness.to("GPa").m == pytest.approx(2.549729, rel=1e-9)
     with pytest.raises(wl.ConfigurationError, match=r"SteelWithHardness: hardness: is missing"):
         wl.material("SteelWithHardness")
+
+
+RAILS = {"R200": 200, "R220": 220, "R260": 260, "R260Mn": 260, "R320Cr": 320, "R350HT": 350, "R350LHT": 350}
+"""Least Brinell numbers of EN 13674-1:2008."""
+
+
+@pytest.mark.parametrize("name", RAILS)
+def test_a_rail_steel_has_the_least_hardness_of_the_standard_and_the_yield_stress_that_tabor_estimates_from_it(
+    name: str,
+) -> None:
+    grade: Any = wl.material(name)
+    assert grade.hardness.m_as("MPa") == pytest.approx(9.80665 * RAILS[name], rel=1e-12)
+    tension = np.sqrt(3.0) * grade.shear_yield_stress.m_as("MPa")  # von Mises
+    assert 2.8 * tension == pytest.approx(grade.hardness.m_as("MPa"), rel=2e-4)
+    assert f"EN 13674-1:2008, {RAILS[name]} to {RAILS[name] + 40} HBW" in grade.source
+    assert grade.youngs_modulus == wl.steel().youngs_modulus
+    assert grade.density == wl.steel().density
+
+
+def test_a_near_name_of_a_rail_steel_is_suggested() -> None:
+    for name, near in (("r260", "R260"), ("R 350HT", "R350HT")):
+        with pytest.raises(wl.UnknownModelError, match=f"did you mean '{near}'"):
+            wl.material(name)
+
+
+def test_a_changed_hardness_or_yield_stress_has_no_source_of_the_grade() -> None:
+    for changed in ({"hardness": "3 GPa"}, {"shear_yield_stress": "300 MPa"}):
+        assert getattr(wl.material("R260", **changed), "source") is None  # noqa: B009
+    assert "EN 13674-1" in getattr(wl.material("R260", density="7800 kg/m^3"), "source")  # noqa: B009
+    table = wl.material("R260").model_dump(mode="json")
+    assert wl.material(table.pop("type"), **table) == wl.material("R260")
+
+
+def test_a_soft_rail_steel_flows_where_a_hard_one_does_not() -> None:
+    # without traction the shakedown limit of a line is p0 = 4 k: 1618 MPa for R200 and 2831 MPa for R350HT
+    at: Any = {"max_pressure": Q(2000, "MPa"), "creepage": Q(0.001, "%"), "friction_coefficient": 0.4}
+    with pytest.warns(wl.PlasticityWarning, match=r"is beyond the shakedown limit, 161\d MPa"):
+        (discs(material=wl.material("R200")) | wl.contact_model("exact"))(**at)
+    (discs(material=wl.material("R350HT")) | wl.contact_model("exact"))(**at)  # warnings are errors
 
 
 def test_a_material_without_a_hardness_is_an_error_that_says_what_to_do() -> None:

@@ -186,7 +186,7 @@ def test_the_section_has_each_fit_and_draws_those_up_to_20_5_per_cent(
         return made(model, highest, norm, q_s=q_s, m_c=84.0, tr_sc=94.0)
 
     monkeypatch.setattr(table_4, "fitted", fitted)
-    monkeypatch.setattr(table_4.Bench, "of", lambda _: bench)
+    monkeypatch.setattr(Bench, "of", lambda _: bench)
     section = table_4.section(SUROS)
     fits = section.tables["table_4_fit"]
     assert sorted(fits["up to creepage [%]"].dropna()) == sorted([18.0, 20.5, 22.0, 25.0] * 4)
