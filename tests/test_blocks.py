@@ -77,10 +77,6 @@ NOT_RUN = {
     ("CONTRIBUTING.md", HOUSE): "no code; tests/test_contributing.py compares it with the code",
     ("docs/case-files.md", 'T = readtable("out/results.csv", VariableNamingRule="preserve");'): MATLAB,
     ("docs/case-files.md", 'creepage = ncread("out/results.nc", "/sweeps/creepage/creepage");'): MATLAB,
-    (
-        "docs/case-files.md",
-        'provenance = jsondecode(ncreadatt("out/results.nc", "/sweeps/creepage", "provenance"));',
-    ): MATLAB,
 }
 """Blocks that no test runs, by page and first line, with the reason."""
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -18,11 +17,11 @@ from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.prediction import SHOWN
 from wearlaw.units.variables import VARIABLES, label
 
-POINTS, FEW_POINTS = 31, 9
-"""Points of a curve; few for a rig that balances its loads at each, which takes a thousand times as long."""
+POINTS = 25
+"""Points of a curve."""
 
 SLOW = 0.3
-"""Time of a contact beyond which there is no curve [s]: elements on half-spaces take that long."""
+"""Time of a contact beyond which there is no curve [s]: elements on half-spaces take longer."""
 
 
 class Slider(NamedTuple):
@@ -93,8 +92,7 @@ class Subject:
     def python(self, model: str, laws: Sequence[str], conditions: Mapping[str, Any]) -> str:
         """Return the Python that predicts the numbers on the page."""
         given = ", ".join(f"{name}={value!r}" for name, value in conditions.items())
-        with unwarned():
-            prints = [f"print((contact{self.composed(model, law)[1]})(**conditions))\n" for law in laws]
+        prints = [f"print((contact{self.composed(model, law)[1]})(**conditions))\n" for law in laws]
         head = f"import wearlaw as wl\n\n{self.setup}contact = {self.code} | {model}\nconditions = dict({given})\n"
         return head + "".join(prints)
 
@@ -113,14 +111,6 @@ def together(conditions: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str
     """Return conditions with more of them; a load replaces the other one."""
     replaced = LOADS if set(LOADS) & set(more) else ()
     return {**{name: value for name, value in conditions.items() if name not in replaced}, **more}
-
-
-@contextmanager
-def unwarned() -> Iterator[None]:
-    """Keep quiet of what the answer has noted already."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        yield
 
 
 class Answer:
@@ -148,13 +138,10 @@ class Answer:
 
     def curve(self, slider: Slider) -> dict[str, dict[str, Any]]:
         """Return creepages x and wear rates y by law; {} if it would take too long, or there is no contact."""
-        rig = self.subject.rig
-        balances = type(rig).balanced is not wl.Rig.balanced
-        if not self.predictions or (self.seconds > SLOW * len(self.laws) and not balances):
+        if not self.predictions or self.seconds > SLOW * len(self.laws):
             return {}
-        low = slider.low if slider.low > 0.0 or balances else slider.high / POINTS
-        x = np.linspace(low, slider.high, FEW_POINTS if balances else POINTS)
-        conditions = {**self.conditions, rig.creepage: wl.Q(x, slider.unit)}
+        x = np.linspace(slider.low, slider.high, POINTS)
+        conditions = {**self.conditions, self.subject.rig.creepage: wl.Q(x, slider.unit)}
         found = self._predicted(conditions, Notes()).items()  # with notes about points that nobody chose
         return {law: {"x": x, "y": worst(one.wear_rate.magnitude, x.size)} for law, one in found}
 

@@ -10,7 +10,7 @@ from bokeh.models import CustomJS
 
 import wearlaw as wl
 from wearlaw_explore._answer import Subject
-from wearlaw_explore._page import page
+from wearlaw_explore._page import Page
 from wearlaw_output.commands import echo, values
 from wearlaw_studies.case import load_case
 
@@ -37,7 +37,7 @@ def explore(rig: str, conditions: tuple[str, ...], port: int, browser: bool) -> 
     """  # noqa: D301
     subject = named(rig)
     start = values("--set", conditions)
-    page(subject, start)  # an error before the server starts
+    Page(subject, start)  # an error before the server starts
     server: Any = pn.serve(
         lambda: _served(subject, start), port=port, address="localhost", show=browser, start=False, verbose=False,
         title=f"wearlaw: {subject.rig.name}",
@@ -49,7 +49,7 @@ def explore(rig: str, conditions: tuple[str, ...], port: int, browser: bool) -> 
 def _served(subject: Subject, start: dict[str, str | float]) -> Any:
     page_document: Any = pn.state.curdoc
     page_document.js_on_event("document_ready", CustomJS(code=VIEWPORT))
-    return page(subject, start)
+    return Page(subject, start).layout
 
 
 def named(rig: str) -> Subject:

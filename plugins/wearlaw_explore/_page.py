@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from html import escape
 from typing import Any
@@ -44,15 +45,12 @@ def explore(predict: Any, /, **conditions: Any) -> Any:
     laws = {f"predict.laws[{i}]": law for i, law in enumerate(predict.laws) if isinstance(law, wl.WearLaw)}
     stages = {f"predict.stages[{i}]": stage for i, stage in enumerate(predict.stages)}
     models = {"predict.contact_model": predict.contact_model}
-    return page(Subject(predict.rig, "predict.rig", "", models, laws, stages), conditions)
+    return Page(Subject(predict.rig, "predict.rig", "", models, laws, stages), conditions).layout
 
 
-def page(subject: Subject, given: Mapping[str, Any]) -> Any:
-    """Return the page of a rig that starts from conditions."""
-    return _Page(subject, given).layout
+class Page:
+    """The page of a rig that starts from conditions."""
 
-
-class _Page:
     def __init__(self, subject: Subject, given: Mapping[str, Any]) -> None:
         self.subject, self.start = subject, together(subject.rig.example, given)
         found = {name: subject.slider(name, self.start) for name in self.start}
@@ -117,6 +115,11 @@ class _Page:
             document.add_next_tick_callback(self._update)
 
     def _update(self) -> None:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wl.WearlawWarning)  # the answer has them as notes
+            self._show()
+
+    def _show(self) -> None:
         values = {name: self.sliders[name].condition(widget.value) for name, widget in self.widgets.items()}
         conditions = {**self.start, **values}
         self.answer = answer = Answer(self.subject, self.model.value, tuple(self.laws.value), conditions)

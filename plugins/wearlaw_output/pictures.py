@@ -197,8 +197,8 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
     if not line:
         variable = name or FIELDS[0]
         axes: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
-        cells = axes.add_collection(PolyCollection([*_cells(prediction)], array=fields[variable].values.ravel()))
-        axes.figure.colorbar(cells, ax=axes, label=_label(fields[variable]))
+        drawn_cells = axes.add_collection(PolyCollection([*cells(prediction)], array=fields[variable].values.ravel()))
+        axes.figure.colorbar(drawn_cells, ax=axes, label=_label(fields[variable]))
         axes.autoscale_view()
         axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
         return axes
@@ -224,7 +224,7 @@ def _map_of_patch(prediction: Prediction) -> xarray.Dataset:
     return labelled(none, {name: values_of(name) for name in ("x", "y")}, {name: values_of(name) for name in FIELDS})
 
 
-def _cells(prediction: Prediction) -> Array:
+def cells(prediction: Prediction) -> Array:
     """Return the corners of the cells of a patch [mm], of shape (cells, 4, 2), which fill it up to its edge."""
     contact = prediction.contact
     shape = contact.pressure.shape[-2:]
