@@ -11,11 +11,13 @@ import xarray
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_life._removal import Profile, normal_depth, positions
+from wearlaw_life._removal import normal_depth, positions
 from wearlaw_output.plot import plot
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from wearlaw_wheelset import Profile
 
 UNITS = {
     "distance": "km",
@@ -71,13 +73,8 @@ class Life:
 
     @property
     def profile(self) -> Profile:
-        """The worn profile, that of the right side if each side has its own."""
+        """The worn profile; that of the right side if each has its own, as `worn_profiles[-1]` has both."""
         return self.worn_profiles[-1][-1]
-
-    @property
-    def left_profile(self) -> Profile:
-        """The worn profile of the left side."""
-        return self.worn_profiles[-1][0]
 
     @property
     def sides(self) -> tuple[str, ...]:

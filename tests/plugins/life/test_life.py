@@ -176,7 +176,7 @@ def test_a_line_of_right_hand_curves_wears_its_sides_differently() -> None:
     for side, first, worn in zip(("left", "right"), start, found.worn_profiles[-1], strict=True):
         assert swept(first, worn, R0) * 7850.0 == pytest.approx(row[f"mass_{side}"], rel=1e-10)
     rig = found.pipeline.rig
-    assert (rig.left_wheel, rig.wheel) == (found.left_profile, found.profile)  # type: ignore[attr-defined]
+    assert (rig.left_wheel, rig.wheel) == found.worn_profiles[-1]  # type: ignore[attr-defined]
 
 
 def test_each_rail_wears_for_itself() -> None:
@@ -184,7 +184,7 @@ def test_each_rail_wears_for_itself() -> None:
     one_sided.iloc[:, 0] += 2.0
     found = wl.wear_out(pipeline(), one_sided, over=2e4, body="rail", sides="each", **GIVEN)
     assert found.rows[-1]["mass_right"] > 1.2 * found.rows[-1]["mass_left"]
-    assert found.left_profile.kind == "rail"
+    assert found.worn_profiles[-1][0].kind == "rail"
 
 
 def test_a_pair_of_unlike_wheels_has_no_mean() -> None:
