@@ -289,10 +289,14 @@ def _peak(measure: str, nu: float, traction: _Value, friction: _Value, axis_rati
     """Return the greatest value of the deciding shear stress over p0 [-], of a point or of arrays of one shape."""
     if axis_ratio is None:
         return _interpolated(_table(measure, nu, 0.0), traction, friction, 0.5)
-    place: Any = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
-    lows = np.minimum(np.floor(place), LAST_STEP)
-    low = lows.min()
-    if low == lows.max():
+    if isinstance(axis_ratio, float):
+        place: Any = PER_OCTAVE * min(max(math.log2(axis_ratio), -OCTAVES), OCTAVES)
+        low = highest = lows = min(float(math.floor(place)), LAST_STEP)
+    else:
+        place = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
+        lows = np.minimum(np.floor(place), LAST_STEP)
+        low, highest = lows.min(), lows.max()
+    if low == highest:
         at_low, at_high = (
             _interpolated(_table(measure, nu, 2.0 ** (end / PER_OCTAVE)), traction, friction, 1.0 / 3.0)
             for end in (low, low + 1.0)
