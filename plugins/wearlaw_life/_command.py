@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import shutil
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +14,7 @@ from wearlaw.pipeline.notes import Notes
 from wearlaw_life._life import Life
 from wearlaw_output.commands import echo, folder_for, print_notes, print_results, value, values
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import save_figure, save_table, writing, written_formats
+from wearlaw_output.files import write_files, written_formats
 from wearlaw_output.folder import results_folder
 from wearlaw_studies.case import load_case
 
@@ -84,32 +82,24 @@ def life(
                 until=values("--until", limits), body=body, sides=sides, depth_step=depth_step, smoothing=smoothing,
                 workers=workers, store=partial, resume=resume, progress=True, **given,
             )  # fmt: skip
-        names = _write(found, notes.texts, fresh, figure_formats, latex)
+        laws = [repr(law) for law in found.pipeline.laws]
+        record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": notes.texts}
+        figures = {"life": found.figure()}
+        names = write_files(fresh, LIFE, record, _tables(found), figures, figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
     print_notes(notes.texts)
     echo(repr(found))
     print_results(folder, names)
 
 
-def _write(
-    found: Life, notes: Sequence[str], folder: Path, figure_formats: Sequence[FigureFormat], latex: bool
-) -> list[str]:
-    """Write a life into an empty folder and return the names of the files."""
+def _tables(found: Life) -> dict[str, pd.DataFrame]:
+    """Return the measures, the profiles at each step, and the last ones, by the names of their files."""
     profiles = found.profiles
     columns = profiles.reset_coords("body", drop=True).to_dataframe().reset_index()
     units = {name: profiles[name].attrs.get("units", "") for name in columns}
-    tables = {
-        "life": found.table,
-        "profiles": columns.rename(columns=lambda name: f"{name} [{units[name]}]".removesuffix(" []")),
-    }
+    heads = {name: f"{name} [{unit}]".removesuffix(" []") for name, unit in units.items()}
+    tables = {"life": found.table, "profiles": columns.rename(columns=heads)}
     for side, profile in zip(found.sides, found.worn_profiles[-1], strict=True):
         y, z = (value.magnitude for value in profile.points)
         tables["worn" if side == "mean" else f"worn_{side}"] = pd.DataFrame({"y [mm]": y, "z [mm]": z})
-    laws = [repr(law) for law in found.pipeline.laws]
-    record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": list(notes)}
-    with writing():
-        names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
-        names += save_figure(found.figure(), folder, "life", figure_formats)
-        text = json.dumps(record, indent=2, ensure_ascii=False)
-        (folder / LIFE).write_text(text + "\n", encoding="utf-8")
-    return [*names, LIFE]
+    return tables

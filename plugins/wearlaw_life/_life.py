@@ -11,11 +11,14 @@ import xarray
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_life._removal import Profile, normal_depth, positions
+from wearlaw.units.variables import readable
+from wearlaw_life._removal import normal_depth, positions
 from wearlaw_output.plot import plot
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from wearlaw_wheelset import Profile
 
 UNITS = {
     "distance": "km",
@@ -71,13 +74,8 @@ class Life:
 
     @property
     def profile(self) -> Profile:
-        """The worn profile, that of the right side if each side has its own."""
+        """The worn profile; that of the right side if each has its own, as `worn_profiles[-1]` has both."""
         return self.worn_profiles[-1][-1]
-
-    @property
-    def left_profile(self) -> Profile:
-        """The worn profile of the left side."""
-        return self.worn_profiles[-1][0]
 
     @property
     def sides(self) -> tuple[str, ...]:
@@ -182,7 +180,7 @@ class Life:
         lines = [f"Life of a {self.body}: {run}{why}"]
         for name, value in values.items():
             if _base(name) != "factor" and np.isfinite(value[-1]):
-                unit = (unit_of(name) or "").replace("^2", "²")
+                unit = readable(unit_of(name) or "")
                 lines.append(f"  {_shown(name):<26}{_number(value[0])} to {_number(value[-1])} {unit}".rstrip())
         return "\n".join(lines)
 
@@ -207,7 +205,8 @@ def _head(name: str) -> str:
 
 
 def _label(name: str) -> str:
-    return _head(name).replace("_", " ")
+    unit = unit_of(name)
+    return name.replace("_", " ") + (f" [{readable(unit)}]" if unit else "")
 
 
 def _number(value: Any) -> str:

@@ -35,9 +35,7 @@ def flange(y: Array, z: Array, back: float) -> tuple[float, float, float]:
 
     Notes
     -----
-    The quantities and the three distances are those of MiniProf's calculation "Wheel wear". That "above" counts from
-    the datum agrees with the distance between the flanks of a wheelset, which is measured 10 mm above the running
-    circle (EN 15313 as cited by de.wikipedia.org/wiki/Spurmaß). The text of EN 15313 itself was not read.
+    The quantities are those of MiniProf's calculation "Wheel wear"; the text of EN 15313 was not read.
     """
     tip = int(np.argmax(z))
     outer = slice(tip, None)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import scipy
@@ -11,32 +11,8 @@ import scipy
 import wearlaw as wl
 from wearlaw import Array
 
-
-class Profile(Protocol):
-    """What a body of a rig needs in order to wear, as `wearlaw_wheelset.Profile` has it."""
-
-    @property
-    def curve(self) -> Any:
-        """The profile by its arc length: arrays s, y, z [m] and angle [rad], and a method `at`."""
-        ...
-
-    @property
-    def kind(self) -> str:
-        """Whether it is that of a "wheel" or a "rail"."""
-        ...
-
-    @property
-    def points(self) -> tuple[wl.Quantity, wl.Quantity]:
-        """Coordinates y and z of its points."""
-        ...
-
-    def model_dump_json(self) -> str:
-        """Return the fields as JSON, as any `wearlaw.Configuration` does."""
-        ...
-
-    def worn(self, s: wl.Quantity, depth: wl.Quantity | str, /) -> Self:
-        """Return the profile after wear along its normal, with points at even arc lengths."""
-        ...
+if TYPE_CHECKING:
+    from wearlaw_wheelset import Profile  # or what has its `curve`, `kind`, `points` and `worn`
 
 
 ACCURACY = 5e-11

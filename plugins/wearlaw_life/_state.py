@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from wearlaw import Array
 from wearlaw_life._line import Wear
-from wearlaw_life._removal import Profile
+
+if TYPE_CHECKING:
+    from wearlaw_wheelset import Profile
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,6 @@ class Plan:
     smoothing: float
     spacing: float
     conicity_step: float
-    amplitude: float
     each: bool
     until: Mapping[str, float]
 

@@ -7,7 +7,6 @@ import os
 import tempfile
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -19,7 +18,7 @@ from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw_life._life import SIDES, UNITS, Life, unit_of
 from wearlaw_life._line import Line, Wear
 from wearlaw_life._measures import NAMES, flange, hollow
-from wearlaw_life._removal import Profile, conserving, even, normal_depth, positions, smoothed, swept
+from wearlaw_life._removal import conserving, even, normal_depth, positions, smoothed, swept
 from wearlaw_life._state import Plan, State
 from wearlaw_sweeps.progress import Bar
 from wearlaw_sweeps.tables import from_table
@@ -27,6 +26,7 @@ from wearlaw_sweeps.wear_profile import SHARE
 
 if TYPE_CHECKING:
     from wearlaw_life._store import Store
+    from wearlaw_wheelset import Profile
 
 DEEPEST = 1e-4
 """Largest depth of a step [m]: contacts move with the wear."""
@@ -57,6 +57,9 @@ NEAR = 1e-9
 EDGE = 1e-3
 """Share of the deepest wear at an end of a profile that says that the profile is too short."""
 
+Limits = list[tuple[str, float]]
+"""Limits of measures in SI, by column."""
+
 
 def wear_out(
     predict: wl.Pipeline[...],
@@ -73,7 +76,6 @@ def wear_out(
     body: str = "wheel",
     sides: Literal["mean", "each"] = "mean",
     conicity_step: float = 0.005,
-    amplitude: wl.QuantityLike = "3 mm",
     workers: int = 1,
     client: Any = None,
     store: str | os.PathLike[str] | None = None,
@@ -118,8 +120,6 @@ def wear_out(
         "each" they wear for themselves.
     conicity_step : float
         Largest change of the equivalent conicity in a step, if the rig has one; math.inf for any.
-    amplitude : Quantity or str
-        Amplitude of the lateral displacement at which the conicity is taken [m].
     workers : int
         Number of processes on this machine.
     client : distributed.Client, optional
@@ -148,12 +148,27 @@ def wear_out(
         If `store` holds anything but the same life.
     """
     expect_pipeline(predict)
-    plan = _plan(predict, body, over, depth_step, smoothing, spacing, conicity_step, amplitude, sides, until)
-    first = tuple(even(one) for one in _given(predict.rig, plan))
+    first = tuple(even(one) for one in _given(predict.rig, body, sides))
+    length = wl.Unit("mm")
+    plan = Plan(
+        body=body,
+        over=_distance(body, over),
+        depth_step=float(length.si(depth_step, "depth_step")),
+        smoothing=float(wl.Unit("mm", positive=False).si(smoothing, "smoothing")),
+        spacing=float(length.si(spacing, "spacing")),
+        conicity_step=float(conicity_step),
+        each=sides == "each",
+        until=_in_si(until or {}),
+    )
+    if plan.depth_step > DEEPEST:
+        raise wl.InputError(
+            f"depth_step: must be at most {1e3 * DEEPEST:g} mm, since contacts move as a profile wears; got"
+            f" {1e3 * plan.depth_step:.4g} mm"
+        )
+    if not (plan.conicity_step > 0.0 and plan.smoothing >= 0.0):
+        raise wl.InputError("conicity_step and smoothing: must be positive; only smoothing may be zero")
     count = math.ceil(max(np.ptp(one.curve.s) for one in first) / plan.spacing) + 1
     at = positions(first, count)
-    if not isinstance(share, str):
-        raise wl.InputError(f"share: must be the name of the column with the shares, got {wl.shown(share)}")
     beside = Path(tempfile.gettempdir(), "line") if store is None else Path(store)
     read = from_table(
         line, conditions, columns=columns, keep={SHARE: share}, check=predict.rig.check_names, on_disk=beside,
@@ -176,28 +191,29 @@ def _run(
     predict: wl.Pipeline[...], line: Line, plan: Plan, first: tuple[Profile, ...], store: Store | None, bar: Bar,
     unit: float,
 ) -> Life:  # fmt: skip
-    states = [] if store is None else list(store.states)
-    ended, done = "", 0
+    states, ended, quiet = [] if store is None else list(store.states), "", False
+    rig = with_profiles(predict, plan, first).rig
+    row = {plan.along: 0.0, **_measured(rig, plan, first, first, {}, np.zeros(line.sides))}
+    limits = _limits(plan, row)
 
     def life() -> Life:
         profiles, rows = tuple(one.profiles for one in states), tuple(one.row for one in states)
         return Life(with_profiles(predict, plan, profiles[-1]), plan.body, ended, profiles, rows)
 
+    def add(state: State) -> None:
+        states.append(state)
+        if store is not None:
+            store.add(len(states) - 1, state)
+
+    if not states:
+        add(State(first, row))
+    done = 0
     try:
-        quiet = False
-        while not states or not (ended := _reached(plan, states[0].row, states[-1].row)):
-            if states:
-                state = _step(predict, line, plan, first, states[-1], quiet)
-                states[-1] = states[-1]._replace(wear=None)  # only the last one goes on
-                quiet = True
-            else:
-                rig = with_profiles(predict, plan, first).rig
-                row = {plan.along: 0.0, **_measured(rig, plan, first, first, {}, np.zeros(line.sides))}
-                state = State(first, row)
-                _check_limits(plan, row)
-            states.append(state)
-            if store is not None:
-                store.add(len(states) - 1, state)
+        while not (ended := _reached(plan, limits, row, states[-1].row)):
+            state = _step(predict, line, plan, limits, first, states[-1], quiet)
+            states[-1] = states[-1]._replace(wear=None)  # only the last one goes on
+            quiet = True
+            add(state)
             bar(round(unit * state.row[plan.along]) - done)
             done = round(unit * state.row[plan.along])
     except (wl.WearlawError, KeyboardInterrupt) as error:
@@ -212,8 +228,9 @@ def _run(
 
 
 def _step(
-    predict: wl.Pipeline[...], line: Line, plan: Plan, first: tuple[Profile, ...], now: State, quiet: bool
-) -> State:
+    predict: wl.Pipeline[...], line: Line, plan: Plan, limits: Limits, first: tuple[Profile, ...], now: State,
+    quiet: bool,
+) -> State:  # fmt: skip
     """Return the state after one more step."""
     pipeline = with_profiles(predict, plan, now.profiles)
     at = positions(now.profiles, line.job.at.size)
@@ -233,9 +250,7 @@ def _step(
             step = min(step, AIM * plan.conicity_step / now.change * now.step)
     body = pipeline.rig.bodies[plan.body]
     density, radius = wl.scalar_si(body.material.density, "kg/m^3"), float(np.asarray(body.rolling_radius))
-    tried = 0
-    while True:
-        tried += 1
+    for _ in range(TRIES):
         middle = _of_middle(wear, now.wear, step, now.step)
         removals = []
         for profile, depth, mass in zip(now.profiles, middle.depth, plan.of_profiles(middle.mass), strict=True):
@@ -246,15 +261,13 @@ def _step(
         row = {plan.along: now.row[plan.along] + step}
         row |= _measured(with_profiles(predict, plan, after).rig, plan, first, after, now.row, step * middle.mass)
         row |= {f"factor{side}": one.factor for side, one in zip(SIDES[len(after)], removals, strict=True)}
-        share = _share_to_limit(plan, now.row, row)
+        share = _share_to_limit(limits, now.row, row)
         change = abs(row["equivalent_conicity"] - now.row["equivalent_conicity"])
         if change > plan.conicity_step and step * deepest > SHORTEST * plan.depth_step:
             step *= max(AIM * plan.conicity_step / change, 0.25)
         elif share < 1.0 - 1e-6:
             step *= share
         else:
-            break
-        if tried == TRIES:
             break
     return State(after, row, wear, step, change)
 
@@ -270,44 +283,80 @@ def _of_middle(wear: Wear, before: Wear | None, step: float, step_before: float)
     return Wear(np.maximum(middle.depth, 0.0), middle.mass)
 
 
-def _limits(plan: Plan, row: Mapping[str, float]) -> list[tuple[str, float]]:
-    """Return the limits by the columns of their measures: a column of its own, or those of both sides."""
-    return [
-        (column, limit)
-        for name, limit in plan.until.items()
-        for column in ([name] if name in row else [f"{name}{side}" for side in SIDES[2]])
-        if column in row
-    ]
+def _limits(plan: Plan, row: Mapping[str, float]) -> Limits:
+    """Return the limits by the columns of their measures: a column of its own, or those of both sides.
+
+    Raises
+    ------
+    InputError
+        If these profiles lack a measure.
+    """
+    found: list[tuple[str, float]] = []
+    there = {name: value for name, value in row.items() if math.isfinite(value)}
+    for name, limit in plan.until.items():
+        columns = [one for one in ([name] if name in row else [f"{name}{side}" for side in SIDES[2]]) if one in there]
+        if not columns:
+            raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
+        found += [(column, limit) for column in columns]
+    return found
 
 
-def _share_to_limit(plan: Plan, before: Mapping[str, float], after: Mapping[str, float]) -> float:
+def _share_to_limit(limits: Limits, before: Mapping[str, float], after: Mapping[str, float]) -> float:
     """Return the share of a step at which the first measure reaches its limit, one if none does."""
     passed = (
         (limit - before[column]) / (after[column] - before[column])
-        for column, limit in _limits(plan, after)
+        for column, limit in limits
         if (before[column] - limit) * (after[column] - limit) < 0.0
     )
     return min(passed, default=1.0)
 
 
-def _reached(plan: Plan, first: Mapping[str, float], now: Mapping[str, float]) -> str:
+def _reached(plan: Plan, limits: Limits, first: Mapping[str, float], now: Mapping[str, float]) -> str:
     """Return why a life ends, "" if it goes on."""
-    for column, limit in _limits(plan, now):
+    for column, limit in limits:
         if (first[column] - limit) * (now[column] - limit) <= NEAR * (first[column] - limit) ** 2:
             return column
     return "over" if now[plan.along] >= plan.over * (1.0 - 1e-12) else ""
 
 
-def _given(rig: Any, plan: Plan) -> tuple[Profile, ...]:
+def _given(rig: Any, body: str, sides: str) -> tuple[Profile, ...]:
     """Return the profiles of a rig, one or those of the left and the right side."""
-    right, left, fields = getattr(rig, plan.body), f"left_{plan.body}", type(rig).model_fields
-    if plan.each and left not in fields:
+    right: Any = getattr(rig, body, None)
+    left, fields = f"left_{body}", type(rig).model_fields
+    if body not in rig.bodies or not hasattr(right, "worn"):
+        raise wl.InputError(
+            f"body: the rig {rig.name!r} has no profile of {wl.shown(body)} that can wear; take a rig with profiles,"
+            " such as wearlaw_wheelset.Wheelset, and its 'wheel' or 'rail'"
+        )
+    if sides not in ("mean", "each"):
+        raise wl.InputError(f"sides: must be 'mean' or 'each', got {wl.shown(sides)}")
+    if sides == "each" and left not in fields:
         raise wl.InputError(f"sides: the rig {rig.name!r} has one profile for both sides; give 'mean'")
-    if not plan.each and getattr(rig, left, None) is not None:
+    if sides == "mean" and getattr(rig, left, None) is not None:
         raise wl.InputError(
             f"sides: the rig has a {left} of its own, which has no mean with the right one; give 'each'"
         )
-    return (getattr(rig, left) or right, right) if plan.each else (right,)
+    return (getattr(rig, left) or right, right) if sides == "each" else (right,)
+
+
+def _distance(body: str, over: Any) -> float:
+    """Return the distance [m], or the number of passages of a rail."""
+    if body != "rail":
+        return float(wl.Unit("km").si(over, "over"))
+    if isinstance(over, str | wl.Quantity) or not over > 0.0:
+        raise wl.InputError(f"over: a rail wears by passages; give their number, such as 1e6, got {wl.shown(over)}")
+    return float(over)
+
+
+def _in_si(until: Mapping[str, wl.QuantityLike | float]) -> dict[str, float]:
+    """Return the limits of measures in SI."""
+    limits = {}
+    for name, value in until.items():
+        unit = unit_of(name)
+        if unit is None:
+            raise wl.InputError(f"until: there is no measure {wl.shown(name)}; there are {', '.join(UNITS)}")
+        limits[name] = float(wl.Unit(unit).si(value, f"until: {name}") if unit else value)  # type: ignore[arg-type]
+    return limits
 
 
 def with_profiles(predict: wl.Pipeline[...], plan: Plan, profiles: tuple[Profile, ...]) -> wl.Pipeline[...]:
@@ -338,14 +387,14 @@ def _measured(
             back = wl.scalar_si(getattr(rig, "flange_back_position", wl.Q(-70.0, "mm")), "m")
             values = (*flange(y, z, back), hollow(z))
             row |= {f"{name}{side}": value for name, value in zip(NAMES, values, strict=True)}
-    row["equivalent_conicity"] = _conicity(rig, plan.amplitude)
+    row["equivalent_conicity"] = _conicity(rig)
     return row | {f"factor{side}": 1.0 for side in SIDES[len(profiles)]}
 
 
-def _conicity(rig: Any, amplitude: float) -> float:
-    """Return the equivalent conicity, NaN where the rig or the profile has none."""
+def _conicity(rig: Any) -> float:
+    """Return the equivalent conicity at 3 mm, NaN where the rig or the profile has none."""
     try:
-        return float(rig.equivalent_conicity(amplitude=wl.Q(1e3 * amplitude, "mm")).m_as(""))
+        return float(rig.equivalent_conicity(amplitude="3 mm").m_as(""))
     except (AttributeError, wl.InputError):
         return math.nan
 
@@ -357,63 +406,3 @@ def _check_ends(profile: Profile, at: Array, depth: Array, body: str) -> None:
                 f"{body}: the profile is too short for the wear, which reaches {value / depth.max():.2g} of its deepest"
                 f" place at the {name} point; give a wider profile, or less smoothing"
             )
-
-
-def _check_limits(plan: Plan, row: Mapping[str, float]) -> None:
-    """Raise an error for a limit of a measure that this profile lacks, or has reached."""
-    there = {name: value for name, value in row.items() if math.isfinite(value)}
-    for name in plan.until:
-        columns = _limits(replace(plan, until={name: plan.until[name]}), there)
-        if not columns:
-            raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
-        if any(there[column] == limit for column, limit in columns):
-            raise wl.InputError(f"until: {name} has its limit already; give another one")
-
-
-def _plan(
-    predict: wl.Pipeline[...],
-    body: str,
-    over: Any,
-    depth_step: wl.QuantityLike,
-    smoothing: wl.QuantityLike,
-    spacing: wl.QuantityLike,
-    conicity_step: float,
-    amplitude: wl.QuantityLike,
-    sides: str,
-    until: Mapping[str, Any] | None,
-) -> Plan:
-    """Return the settings in SI, checked."""
-    if body not in predict.rig.bodies or not hasattr(getattr(predict.rig, body, None), "worn"):
-        raise wl.InputError(
-            f"body: the rig {predict.rig.name!r} has no profile of {wl.shown(body)} that can wear; take a rig with"
-            " profiles, such as wearlaw_wheelset.Wheelset, and its 'wheel' or 'rail'"
-        )
-    if sides not in ("mean", "each"):
-        raise wl.InputError(f"sides: must be 'mean' or 'each', got {wl.shown(sides)}")
-    if body == "rail" and (isinstance(over, str | wl.Quantity) or not over > 0.0):
-        raise wl.InputError(f"over: a rail wears by passages; give their number, such as 1e6, got {wl.shown(over)}")
-    length, limits = wl.Unit("mm"), {}
-    for name, value in (until or {}).items():
-        unit = unit_of(name) if name != "factor" else None
-        if unit is None:
-            raise wl.InputError(f"until: there is no measure {wl.shown(name)}; there are {', '.join(UNITS)}")
-        limits[name] = float(wl.Unit(unit).si(value, f"until: {name}")) if unit else float(value)
-    plan = Plan(
-        body=body,
-        over=float(over) if body == "rail" else float(wl.Unit("km").si(over, "over")),
-        depth_step=float(length.si(depth_step, "depth_step")),
-        smoothing=float(wl.Unit("mm", positive=False).si(smoothing, "smoothing")),
-        spacing=float(length.si(spacing, "spacing")),
-        conicity_step=float(conicity_step),
-        amplitude=float(length.si(amplitude, "amplitude")),
-        each=sides == "each",
-        until=limits,
-    )
-    if plan.depth_step > DEEPEST:
-        raise wl.InputError(
-            f"depth_step: must be at most {1e3 * DEEPEST:g} mm, since contacts move as a profile wears; got"
-            f" {1e3 * plan.depth_step:.4g} mm"
-        )
-    if not (plan.conicity_step > 0.0 and plan.smoothing >= 0.0):
-        raise wl.InputError("conicity_step and smoothing: must be positive; only smoothing may be zero")
-    return plan

@@ -177,27 +177,26 @@ class TwinDisc(wl.Rig):
         """
         constants = self._constants
         arrays = self.in_si(conditions, lambda a: self._mean_speed(a["creepage"]) * np.abs(a["creepage"]))
+        creepage = arrays["creepage"]
         per_width = self._normal_force_per_width(arrays)
         half_width = wl.hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
-        creepage = arrays["creepage"]
-        shape = creepage.shape
-        same: dict[str, Any] = self._same
-        rolling_speed = self._mean_speed(creepage)
-        if shape:
-            same = {name: np.broadcast_to(value, shape) for name, value in same.items()}
-            rolling_speed = np.broadcast_to(rolling_speed, shape)
+        loaded: dict[str, Any] = {
+            **self._same,
+            "a": half_width,
+            "normal_force": per_width * constants["track_width"],
+            "max_pressure": wl.hertz.max_pressure(per_width, half_width),
+            "rolling_speed": self._mean_speed(creepage),
+        }
+        if creepage.ndim:
+            loaded = {name: np.broadcast_to(value, creepage.shape) for name, value in loaded.items()}
         return wl.Problem(
             geometry="line",
-            a=half_width,
-            normal_force=per_width * constants["track_width"],
-            max_pressure=wl.hertz.max_pressure(per_width, half_width),
             friction_coefficient=arrays["friction_coefficient"],
             longitudinal_creepage=creepage,
-            rolling_speed=rolling_speed,
             traction_coefficient=arrays.get("traction_coefficient"),
             rolled_distance=arrays.get("rolled_distance"),
             bodies=self._bodies,
-            **same,
+            **loaded,
         ).checked()
 
     @property
@@ -219,15 +218,14 @@ class TwinDisc(wl.Rig):
         return speed
 
     def _normal_force_per_width(self, arrays: dict[str, Array]) -> Array:
+        """Return P [N/m], as one number if it is the same at all points."""
         constants = self._constants
-        if "max_pressure" in arrays:
-            return wl.hertz.force_from_max_pressure(
-                arrays["max_pressure"], constants["relative_radius"], constants["effective_modulus"]
-            )
-        if "normal_force" in arrays:
-            per_width: Array = arrays["normal_force"] / constants["track_width"]
-            return per_width
-        return arrays["normal_force_per_width"]
+        name, load = next((name, arrays[name]) for name in self.choices[0] if name in arrays)
+        if not any(load.strides):
+            load = load[(0,) * load.ndim]
+        if name == "max_pressure":
+            return wl.hertz.force_from_max_pressure(load, constants["relative_radius"], constants["effective_modulus"])
+        return load / constants["track_width"] if name == "normal_force" else load
 
     @cached_property
     def _constants(self) -> dict[str, Any]:

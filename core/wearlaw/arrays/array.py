@@ -36,7 +36,7 @@ def read_only(array: ArrayT) -> ArrayT:
     """Return an array that cannot be written to: itself, or a view of it, so that its owner still can write."""
     if array.flags.num & WRITEABLE:
         array = array.view()
-        array.flags.writeable = False
+        array.setflags(write=False)
     return array
 
 
@@ -55,10 +55,10 @@ def type_name(value: object) -> str:
 
 def extremes(array: Array) -> tuple[float, float]:
     """Return the smallest and the largest entry; NaN if any entry is NaN."""
-    if not array.ndim:  # NumPy's methods take twenty times as long
-        value = float(array)
-        return value, value
-    return float(array.min()), float(array.max())
+    if array.ndim and array.size != 1:
+        return float(array.min()), float(array.max())
+    value = float(array.item() if array.ndim else array)  # NumPy's methods take twenty times as long
+    return value, value
 
 
 def same(one: object, other: object) -> bool:

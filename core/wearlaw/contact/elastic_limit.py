@@ -236,24 +236,32 @@ def _most_stressed(poisson_ratio: float, friction_coefficient: _Value) -> _Value
 def _furthest(
     measure: str, k: float, nu: float, least: float, max_pressure: Array, traction: Array, *more: Array
 ) -> list[float]:
-    """Return p0, T/N, μ and a/b of the point with the greatest deciding shear stress; [] if it is at most `least` k.
+    """Return p0, T/N, μ and a/b of the point with the greatest deciding shear stress, if one is above `least` k.
 
-    Points are left out whose bound is below the stress of one that is close to the greatest.
+    Points are left out whose p0 is so low that their stress is below that of one that is close to the greatest.
     """
     points = (traction, *more)
     first = int((max_pressure * traction).argmax())
     least = max(least, float(max_pressure[first] * _peak(measure, nu, *(float(array[first]) for array in points)) / k))
-    mu = np.maximum(traction, more[0])
-    if measure == "forward":  # at most 0.25 without traction, μ with much, within the error of the tables
-        most = np.maximum(0.251 + 0.326 * mu, (1.0 + 1e-9 if len(more) == 1 else 1.008) * mu)
-    else:
-        most = _most_stressed(nu, mu)
-    chosen = np.flatnonzero(max_pressure * most >= least * k)
-    if not chosen.size:
-        return []
+    mu = np.maximum(np.maximum(traction, more[0]), TINY)
+    most = _greatest(measure, nu, float(mu.max()), float((traction / mu).max()), line=len(more) == 1)
+    chosen = np.append(first, np.flatnonzero(max_pressure * most > (1.0 + 1e-9) * least * k))
     load = max_pressure[chosen] * _peak(measure, nu, *(array[chosen] for array in points))
     at = chosen[load.argmax()]
     return [float(array[at]) for array in (max_pressure, *points)]
+
+
+def _greatest(measure: str, nu: float, friction: float, sliding: float, *, line: bool) -> float:
+    """Return an upper bound of `_peak` for all points up to μ and up to a share T/μN.
+
+    On a line it is the greatest value of the table's row up to that share, since stresses grow with μ.
+    """
+    if line:
+        table = np.maximum.accumulate(_table(measure, nu, 0.0).reshape(-1, WIDTH), axis=1).reshape(-1)
+        return _interpolated(table, sliding * friction, friction, 0.5)
+    if measure == "forward":  # at most 0.25 without traction, μ with much, within the error of the tables
+        return max(0.251 + 0.326 * friction, 1.008 * friction)
+    return _most_stressed(nu, friction)
 
 
 def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike | None, axis_ratio: ArrayLike) -> Array:
@@ -281,10 +289,14 @@ def _peak(measure: str, nu: float, traction: _Value, friction: _Value, axis_rati
     """Return the greatest value of the deciding shear stress over p0 [-], of a point or of arrays of one shape."""
     if axis_ratio is None:
         return _interpolated(_table(measure, nu, 0.0), traction, friction, 0.5)
-    place: Any = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
-    lows = np.minimum(np.floor(place), LAST_STEP)
-    low = lows.min()
-    if low == lows.max():
+    if isinstance(axis_ratio, float):
+        place: Any = PER_OCTAVE * min(max(math.log2(axis_ratio), -OCTAVES), OCTAVES)
+        low = highest = lows = min(float(math.floor(place)), LAST_STEP)
+    else:
+        place = PER_OCTAVE * np.clip(np.log2(axis_ratio), -OCTAVES, OCTAVES)
+        lows = np.minimum(np.floor(place), LAST_STEP)
+        low, highest = lows.min(), lows.max()
+    if low == highest:
         at_low, at_high = (
             _interpolated(_table(measure, nu, 2.0 ** (end / PER_OCTAVE)), traction, friction, 1.0 / 3.0)
             for end in (low, low + 1.0)

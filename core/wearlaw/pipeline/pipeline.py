@@ -15,7 +15,7 @@ import numpy as np
 import pint
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array, read_only, steadily, steady
+from wearlaw.arrays.array import Array, extremes, read_only, steadily, steady
 from wearlaw.contact.conditions import Condition, FrictionLaw, broadcast, declared, friction_at, is_friction_law
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import (
@@ -505,8 +505,9 @@ class Pipeline(Configuration, Generic[P]):
         If the rig declares its geometry or its bodies, composing the pipeline gave the warning. A friction coefficient
         above 1 gets a word too.
         """
-        if (problem.friction_coefficient > 1.0).any():
-            most = np.nanmax(problem.friction_coefficient)
+        friction = problem.friction_coefficient
+        _, most = extremes(friction if problem.exists is None else friction[problem.exists])
+        if most > 1.0:
             warn(
                 f"friction_coefficient: reaches {most:.4g}; values above 1 are rare, is it in percent?",
                 RangeWarning,

@@ -176,7 +176,7 @@ def test_a_line_of_right_hand_curves_wears_its_sides_differently() -> None:
     for side, first, worn in zip(("left", "right"), start, found.worn_profiles[-1], strict=True):
         assert swept(first, worn, R0) * 7850.0 == pytest.approx(row[f"mass_{side}"], rel=1e-10)
     rig = found.pipeline.rig
-    assert (rig.left_wheel, rig.wheel) == (found.left_profile, found.profile)  # type: ignore[attr-defined]
+    assert (rig.left_wheel, rig.wheel) == found.worn_profiles[-1]  # type: ignore[attr-defined]
 
 
 def test_each_rail_wears_for_itself() -> None:
@@ -184,7 +184,7 @@ def test_each_rail_wears_for_itself() -> None:
     one_sided.iloc[:, 0] += 2.0
     found = wl.wear_out(pipeline(), one_sided, over=2e4, body="rail", sides="each", **GIVEN)
     assert found.rows[-1]["mass_right"] > 1.2 * found.rows[-1]["mass_left"]
-    assert found.left_profile.kind == "rail"
+    assert found.worn_profiles[-1][0].kind == "rail"
 
 
 def test_a_pair_of_unlike_wheels_has_no_mean() -> None:
@@ -270,10 +270,13 @@ def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
     assert len(short.plot().axes) == len(short.figure().panels)
 
 
-def test_life_ends_at_a_limit() -> None:
-    found = wl.wear_out(pipeline(), line(), over="10000 km", until={"depth": "0.02 mm"}, **GIVEN)
-    assert found.ended == "depth"
-    assert found.rows[-1]["depth"] == pytest.approx(0.02e-3, rel=2e-2)
+@pytest.mark.parametrize(("sides", "column"), [("mean", "depth"), ("each", "depth_right")])
+def test_life_ends_at_the_limit_that_is_reached_first(sides: Any, column: str) -> None:
+    to_the_right = line(3)
+    to_the_right.iloc[:, 0] += 1.0
+    found = wl.wear_out(pipeline(), to_the_right, over="10000 km", until={"depth": "0.02 mm"}, sides=sides, **GIVEN)
+    assert found.ended == column
+    assert found.rows[-1][column] == pytest.approx(0.02e-3, rel=2e-2)
 
 
 def test_rail_wears_by_passages() -> None:
@@ -317,6 +320,7 @@ def changed(**columns: Any) -> pd.DataFrame:
         (line(3), {"depth_step": "0.2 mm"}, wl.InputError, "depth_step"),
         (line(3), {"until": {"flange": "25 mm"}}, wl.InputError, "until"),
         (line(3), {"until": {"flange_thickness": 25.0}}, wl.UnitError, "flange_thickness"),
+        (line(3), {"body": "rail", "over": 10.0, "until": {"hollow": "1 mm"}}, wl.InputError, "has no 'hollow'"),
         (line(3), {"body": "axle"}, wl.InputError, "body"),
         (line(3), {"body": "rail"}, wl.InputError, "passages"),
     ],
