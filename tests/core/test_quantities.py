@@ -148,3 +148,12 @@ def test_powers_that_no_unit_has_are_refused_and_not_computed(unit: str) -> None
 @pytest.mark.parametrize("unit", ["N/mm^2", "ug/m/mm**2", "m**0.3333", "(m/s)**2", "1/s", "µg·m⁻¹", "m^-1*s^-2", "mm²"])
 def test_powers_of_units_are_taken(unit: str) -> None:
     assert Q(1.0, unit).magnitude == 1.0
+
+
+def test_a_unit_for_values_from_zero_to_a_limit_names_the_value_that_is_out_of_range() -> None:
+    unit = wl.Unit("m", positive=False, negative=False, limit=2.0)
+    assert unit.in_si(Q([0.0, 2.0], "m"), "depth").tolist() == [0.0, 2.0]
+    with pytest.raises(wl.UnitError, match=r"depth: must not be negative, got -0\.5"):
+        unit.in_si(Q([0.0, -0.5], "m"), "depth")
+    with pytest.raises(wl.UnitError, match=r"depth: must not exceed 2 m in magnitude, got 3"):
+        unit.in_si(Q([0.0, 0.5, 3.0], "m"), "depth")

@@ -257,18 +257,11 @@ class Unit:
     def _scalar(self, value: object) -> Quantity:
         try:
             quantity, in_si = self._checked(value)
-            size = abs(in_si) if in_si.ndim == 0 else 1.0
-            if (self.positive and size < SMALLEST) or GREATEST < size < np.inf:
-                raise UnitError(f"must lie between {SMALLEST:g} and {GREATEST:g} in SI units, got {quantity!r}")
         except UnitError as error:
             raise UnitError(f"{error}; {self._fix('it', value)}") from None
         if in_si.ndim != 0:
             raise UnitError(f"must be one value, got an array of shape {in_si.shape}")
         return Q(float(quantity.magnitude), str(quantity.units))
-
-
-SMALLEST, GREATEST = 1e-100, 1e300
-"""Ends of the positive numbers in SI that a field may have: formulas divide by them, and square the quotient."""
 
 
 @np.errstate(over="ignore", under="ignore")
