@@ -44,7 +44,7 @@ def freeze(record: object, names: Iterable[str]) -> None:
     """Make those fields of a frozen record read-only that are arrays."""
     for name in names:
         value = getattr(record, name)
-        if type(value) is np.ndarray and value.flags.num & WRITEABLE:
+        if type(value) is np.ndarray:
             object.__setattr__(record, name, read_only(value))
 
 
