@@ -14,6 +14,7 @@ from wearlaw.models.law import Law
 from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.plugins.fields import specification
+from wearlaw.units.variables import readable
 from wearlaw.version import __version__
 from wearlaw_contact_files._reading import read_contact
 from wearlaw_contact_files._worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
@@ -140,6 +141,8 @@ def _print(table: pd.DataFrame) -> None:
     """
     across = table.set_index("contact").T
     across.columns.name = None
+    heads = [head.partition(" [") for head in across.index]
+    across.index = pd.Index([name + bracket + readable(unit) for name, bracket, unit in heads])
     space = shutil.get_terminal_size((80, 24)).columns - max(map(len, across.index))
     count = max(1, space // (2 + max(NUMBER, *map(len, across.columns))))
     shown = min(across.shape[1], BLOCKS * count)

@@ -23,7 +23,7 @@ from wearlaw.plugins.fields import specification
 from wearlaw.plugins.law_files import DIGESTS
 from wearlaw.settings.text_files import reason_of
 from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
-from wearlaw.units.registry import si_factor
+from wearlaw.units.registry import si_factor, symbol
 from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import SAME, LackOfFit
@@ -175,7 +175,7 @@ class Fit:
                     "low": low.magnitude,
                     "high": high.magnitude,
                     "standard_error": self.standard_errors[name].magnitude,
-                    "unit": f"{value.units:~C}",
+                    "unit": symbol(value.units, "~C"),
                 }
             )
         return pd.DataFrame(rows)

@@ -11,6 +11,7 @@ import xarray
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw.units.variables import readable
 from wearlaw_life._removal import normal_depth, positions
 from wearlaw_output.plot import plot
 
@@ -179,7 +180,7 @@ class Life:
         lines = [f"Life of a {self.body}: {run}{why}"]
         for name, value in values.items():
             if _base(name) != "factor" and np.isfinite(value[-1]):
-                unit = (unit_of(name) or "").replace("^2", "²")
+                unit = readable(unit_of(name) or "")
                 lines.append(f"  {_shown(name):<26}{_number(value[0])} to {_number(value[-1])} {unit}".rstrip())
         return "\n".join(lines)
 
@@ -204,7 +205,8 @@ def _head(name: str) -> str:
 
 
 def _label(name: str) -> str:
-    return _head(name).replace("_", " ")
+    unit = unit_of(name)
+    return name.replace("_", " ") + (f" [{readable(unit)}]" if unit else "")
 
 
 def _number(value: Any) -> str:

@@ -23,7 +23,7 @@ from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.selection import in_words
 from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
 from wearlaw.units.quantities import in_unit
-from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw.units.variables import UNITS, label, name_of, readable
 
 if TYPE_CHECKING:
     import xarray
@@ -280,5 +280,4 @@ def _label(one: xarray.DataArray) -> str:
 
 
 def _unit(one: xarray.DataArray) -> str:
-    unit: str = one.attrs.get("units", "")
-    return unit.replace("ug", "µg").replace("um", "µm").replace("mm^2", "mm²").replace("*", "·")
+    return readable(one.attrs.get("units", ""))

@@ -312,7 +312,7 @@ def _unit(value: Any) -> str | None:
 
 def _symbol(quantity: Quantity) -> str:
     """Return the unit of a quantity in the notation of `variables.UNITS`."""
-    return symbol(quantity.units, "~C").replace("µ", "u").replace("**", "^")
+    return symbol(quantity.units, "~C")
 
 
 def _converted(name: str, values: Any, unit: str | None, wanted: str) -> tuple[Any, str | None]:

@@ -18,7 +18,7 @@ from wearlaw.models.law import BreakpointMap, Numbers
 from wearlaw.models.wear_law import WearLaw
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, Unit, in_unit, text_of
 from wearlaw.units.registry import unit_in_si
-from wearlaw.units.variables import UNITS
+from wearlaw.units.variables import UNITS, readable
 
 Function = Callable[..., Any]
 
@@ -135,7 +135,7 @@ def _fields(function: Function, units: Mapping[str, str]) -> dict[str, Any]:
             Annotated[Quantity, Unit(unit, positive=False)],
             Field(
                 default_factory=functools.partial(Q, signature[name].default, unit),
-                description=f"Parameter {name} of {function.__name__} [{unit or '-'}].",
+                description=f"Parameter {name} of {function.__name__} [{readable(unit) or '-'}].",
             ),
         )
         for name, unit in units.items()

@@ -134,7 +134,7 @@ def outcome_units(laws: Sequence[Law]) -> dict[str, str]:
 def unit_of(name: str, value: Quantity, laws: Sequence[Law]) -> str:
     """Return the unit of a variable in results, in the notation of `UNITS`."""
     known = {**UNITS, **outcome_units(laws)}
-    return known[name] if name in known else symbol(value.units, "~C").replace("µ", "u").replace("**", "^")
+    return known[name] if name in known else symbol(value.units, "~C")
 
 
 def long_name(variable: str, laws: Sequence[Law]) -> str:

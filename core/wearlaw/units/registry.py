@@ -91,8 +91,8 @@ def _coherent(registry: pint.UnitRegistry[Any], unit: str) -> float:
 def symbol(unit: Any, style: str) -> str:
     """Return a unit's symbol in one of pint's styles, with the same micro sign and dot in all versions of pint.
 
-    Since version 0.26, pint writes the Greek letter mu and the dot operator, which look the same but are other
-    characters.
+    The style for files, "~C", gives "ug/m/mm^2", and that for readers, "~P", "µg/m/mm²". Since version 0.26, pint
+    writes the Greek letter mu and the dot operator, which look the same but are other characters.
     """
     return _symbol(unit._REGISTRY, unit._units, style)
 
@@ -103,6 +103,8 @@ _ONE_CHARACTER = str.maketrans("\u03bc\u22c5", "\u00b5\u00b7")
 @functools.lru_cache(maxsize=512)
 def _symbol(registry: pint.UnitRegistry[Any], container: Any, style: str) -> str:
     text = format(registry.Unit(container), style).translate(_ONE_CHARACTER)
+    if style == "~C":
+        text = text.replace("µ", "u").replace("**", "^")
     return "N·m" if text == "m·N" else text  # pint sorts by letter, but engineers write moments as N·m
 
 

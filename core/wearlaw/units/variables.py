@@ -203,7 +203,7 @@ def label(*variables: str, units: Mapping[str, str] = UNITS) -> str:
 
 def readable(unit: str) -> str:
     """Return a unit for a reader, as in "µg/m/mm²"."""
-    return unit.replace("ug", "µg").replace("um", "µm").replace("mm^2", "mm²").replace("*", "·")
+    return unit.replace("ug", "µg").replace("um", "µm").replace("^2", "²").replace("*", "·")
 
 
 def expected(*names: str) -> dict[str, Unit]:

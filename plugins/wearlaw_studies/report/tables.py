@@ -244,7 +244,7 @@ def profiles(study: Study) -> list[NamedTable]:
         rows = [(pair, patch) for pair in profile.pair.values.tolist() for patch in patches_of(profile)]
         columns: dict[str, Any] = {"pair": [labelled_by(patch, pair) for pair, patch in rows]}
         for body in _worn(profile, study):
-            unit = profile[f"{body}_depth"].attrs["units"].replace("um", "µm")
+            unit = readable(profile[f"{body}_depth"].attrs["units"])
             deepest = [_deepest(study, profile.sel(patch), pair, body) for pair, patch in rows]
             columns[f"{body}: greatest depth [{unit}]"], columns[f"{body}: at y [mm]"] = zip(*deepest, strict=True)
         title = f"Profile '{name}': wear across the patch, {_per(profile, study)}"

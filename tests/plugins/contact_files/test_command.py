@@ -45,6 +45,7 @@ def test_forces_powers_and_wear_of_each_body_are_printed(folder: Path) -> None:
     assert rows["power_of_creepages"] == ["1197"]
     assert rows["power_of_slip"] == ["1083"]
     assert rows["wear_rate_wheel"] == rows["wear_rate_rail"] == [f"{found.wear_rate.m:.4g}"]
+    assert "wear_rate_wheel [µg/m/mm²]" in result.stdout
     assert "note: half_space.0001.mat: the slip of the nodes dissipates 1083 W, the creepages 1197 W; the laws" in (
         result.stderr
     )

@@ -122,6 +122,16 @@ def test_an_ellipse_answers_within_a_fifth_of_a_second() -> None:
     assert min(seconds() for _ in range(3)) < 0.2
 
 
+def test_a_slow_contact_has_no_curve_on_a_wheelset_either() -> None:
+    one = answer("fastsim", "usfd", rig="wheelset")
+    slider = one.subject.slider("lateral_displacement", one.conditions)
+    assert slider is not None
+    one.seconds = 0.1
+    assert len(one.curve(slider)) == 1
+    one.seconds = 8.0  # as elements on half-spaces take, and as many times for a curve as it has points
+    assert one.curve(slider) == {}
+
+
 def test_the_python_on_the_page_gives_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     one = answer("global", "brr", rig="twin_disc", creepage="2 %")
     exec(one.subject.python(one.model, one.laws, one.conditions), {})

@@ -51,6 +51,7 @@ def test_the_files_of_a_fit_hold_what_it_found() -> None:
     table = pd.read_csv("tests-fit/parameters.csv").set_index("parameter")
     record = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))
     assert list(table.index) == ["m_m", "q_s"]
+    assert list(table.unit) == ["ug/m/N", "ug/m/mm^2"]
     for name in table.index:
         value = getattr(law, name)
         assert wl.parse(record["parameters"][name]) == value
