@@ -152,8 +152,8 @@ def test_powers_of_units_are_taken(unit: str) -> None:
 
 def test_a_unit_for_values_from_zero_to_a_limit_names_the_value_that_is_out_of_range() -> None:
     unit = wl.Unit("m", positive=False, negative=False, limit=2.0)
-    assert unit.in_si(Q([0.0, 2.0], "m"), "depth").tolist() == [0.0, 2.0]
+    assert unit.si(Q([0.0, 2.0], "m"), "depth").tolist() == [0.0, 2.0]
     with pytest.raises(wl.UnitError, match=r"depth: must not be negative, got -0\.5"):
-        unit.in_si(Q([0.0, -0.5], "m"), "depth")
+        unit.si(Q([0.0, -0.5], "m"), "depth")
     with pytest.raises(wl.UnitError, match=r"depth: must not exceed 2 m in magnitude, got 3"):
-        unit.in_si(Q([0.0, 0.5, 3.0], "m"), "depth")
+        unit.si(Q([0.0, 0.5, 3.0], "m"), "depth")
