@@ -13,9 +13,10 @@ import click
 from wearlaw.cli.show import accuracies
 from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, message_of, shown
 from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
+from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw.plugins.loader import Shelf, unknown
 from wearlaw_kit.kit import Check, checks, validate_expected
 from wearlaw_kit.scaffold import Kind, write_plugin
@@ -70,11 +71,12 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
     wearlaw check usfd
     wearlaw check usfd --option fitted_for=exact
     wearlaw check my_set                            a parameter set of a plugin
+    wearlaw check fit/law.toml                      the law in a file
     wearlaw check twin_disc --option track_width="8 mm"
     wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
     """  # noqa: D301
     source, given = _installed(name), values("--option", options)
-    model = _made(source, given) if isinstance(source, type) else loader.wear_law(name, **given)
+    model = _made(source, given) if isinstance(source, type) else source.changed(**given)
     reasons = fields("--expect-failure", expected, "CHECK=REASON")
     found = list(checks(model))
     validate_expected("--expect-failure", model, found, reasons)
@@ -123,14 +125,16 @@ def _outcome(check: Check, expected: str | None) -> str:
     return "ok"
 
 
-def _installed(name: str) -> type[Model] | WearLaw:
-    """Return the class of the model with this name, or the law of a parameter set."""
+def _installed(name: str) -> type[Model] | Law:
+    """Return the class of the model with this name, or the law of a parameter set or of a file."""
+    if is_law_file(name):
+        return read_law(name)
     found = loader.installed()
     models = (found.wear_laws, found.laws, found.contact_models, found.stages, found.rigs, found.readers)
     shelves: tuple[Shelf[Any], ...] = (*models, found.parameter_sets)
     for shelf in shelves:
         if name in shelf.providers:
-            model: type[Model] | WearLaw = shelf.find(name, found.broken)
+            model: type[Model] | Law = shelf.find(name, found.broken)
             return model
     for shelf in found.shelves():
         if name in shelf.providers:

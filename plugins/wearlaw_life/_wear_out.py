@@ -149,12 +149,10 @@ def wear_out(
     """
     expect_pipeline(predict)
     first = tuple(even(one) for one in _given(predict.rig, body, sides))
-    if body == "rail" and (isinstance(over, str | wl.Quantity) or not over > 0.0):
-        raise wl.InputError(f"over: a rail wears by passages; give their number, such as 1e6, got {wl.shown(over)}")
     length = wl.Unit("mm")
     plan = Plan(
         body=body,
-        over=float(over) if body == "rail" else float(wl.Unit("km").si(over, "over")),  # type: ignore[arg-type]
+        over=_distance(body, over),
         depth_step=float(length.si(depth_step, "depth_step")),
         smoothing=float(wl.Unit("mm", positive=False).si(smoothing, "smoothing")),
         spacing=float(length.si(spacing, "spacing")),
@@ -291,7 +289,7 @@ def _limits(plan: Plan, row: Mapping[str, float]) -> Limits:
     Raises
     ------
     InputError
-        If these profiles lack a measure, or have reached its limit.
+        If these profiles lack a measure.
     """
     found: list[tuple[str, float]] = []
     there = {name: value for name, value in row.items() if math.isfinite(value)}
@@ -299,8 +297,6 @@ def _limits(plan: Plan, row: Mapping[str, float]) -> Limits:
         columns = [one for one in ([name] if name in row else [f"{name}{side}" for side in SIDES[2]]) if one in there]
         if not columns:
             raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
-        if any(there[column] == limit for column in columns):
-            raise wl.InputError(f"until: {name} has its limit already; give another one")
         found += [(column, limit) for column in columns]
     return found
 
@@ -325,7 +321,8 @@ def _reached(plan: Plan, limits: Limits, first: Mapping[str, float], now: Mappin
 
 def _given(rig: Any, body: str, sides: str) -> tuple[Profile, ...]:
     """Return the profiles of a rig, one or those of the left and the right side."""
-    right, left, fields = getattr(rig, body, None), f"left_{body}", type(rig).model_fields
+    right: Any = getattr(rig, body, None)
+    left, fields = f"left_{body}", type(rig).model_fields
     if body not in rig.bodies or not hasattr(right, "worn"):
         raise wl.InputError(
             f"body: the rig {rig.name!r} has no profile of {wl.shown(body)} that can wear; take a rig with profiles,"
@@ -342,11 +339,20 @@ def _given(rig: Any, body: str, sides: str) -> tuple[Profile, ...]:
     return (getattr(rig, left) or right, right) if sides == "each" else (right,)
 
 
+def _distance(body: str, over: Any) -> float:
+    """Return the distance [m], or the number of passages of a rail."""
+    if body != "rail":
+        return float(wl.Unit("km").si(over, "over"))
+    if isinstance(over, str | wl.Quantity) or not over > 0.0:
+        raise wl.InputError(f"over: a rail wears by passages; give their number, such as 1e6, got {wl.shown(over)}")
+    return float(over)
+
+
 def _in_si(until: Mapping[str, wl.QuantityLike | float]) -> dict[str, float]:
     """Return the limits of measures in SI."""
     limits = {}
     for name, value in until.items():
-        unit = unit_of(name) if name != "factor" else None
+        unit = unit_of(name)
         if unit is None:
             raise wl.InputError(f"until: there is no measure {wl.shown(name)}; there are {', '.join(UNITS)}")
         limits[name] = float(wl.Unit(unit).si(value, f"until: {name}") if unit else value)  # type: ignore[arg-type]

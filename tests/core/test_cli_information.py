@@ -184,6 +184,16 @@ def test_what_failed_to_load_is_named_once_with_its_cause(install: Install) -> N
     assert "wearlaw_wear_law" in misspelt
 
 
+def test_a_law_in_a_file_is_shown_with_its_own_values(folder: Path) -> None:
+    (folder / "law.toml").write_text('[wear_law]\nmodel = "usfd"\nq_s = "22 ug/m/mm^2"\n', encoding="utf-8")
+    lines = wearlaw("show", "law.toml").stdout.splitlines()
+    assert lines[0].startswith("law.toml: ")
+    assert lines[1].startswith("usfd: a wear law of wearlaw")
+    assert "  q_s = 22.0 µg/m/mm²" in lines
+    assert any("branches in wear_index_density at 4.151 N/mm²" in line for line in lines)  # q_s/m_m
+    assert wearlaw("show", "missing.toml").exit_code == 1
+
+
 def test_a_rig_of_discs_shows_the_fields_of_a_disc_once() -> None:
     shown = wearlaw("show", "twin_disc").stdout
     assert shown.count("Diameter, D [m]") == 1

@@ -44,7 +44,7 @@ def freeze(record: object, names: Iterable[str]) -> None:
     """Make those fields of a frozen record read-only that are arrays."""
     for name in names:
         value = getattr(record, name)
-        if type(value) is np.ndarray and value.flags.num & WRITEABLE:
+        if type(value) is np.ndarray:
             object.__setattr__(record, name, read_only(value))
 
 
@@ -55,9 +55,9 @@ def type_name(value: object) -> str:
 
 def extremes(array: Array) -> tuple[float, float]:
     """Return the smallest and the largest entry; NaN if any entry is NaN."""
-    if array.ndim and array.size != 1:
+    if array.ndim and array.size != 1 and any(array.strides):
         return float(array.min()), float(array.max())
-    value = float(array.item() if array.ndim else array)  # NumPy's methods take twenty times as long
+    value = float(array.item(0) if array.ndim else array)  # one number, maybe broadcast
     return value, value
 
 

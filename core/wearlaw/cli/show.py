@@ -23,6 +23,7 @@ from wearlaw.models.reader import Reader
 from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
+from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw.plugins.loader import unknown
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
@@ -52,7 +53,7 @@ def list_plugins() -> None:
 @click.command()
 @click.argument("name")
 def show(name: str) -> None:
-    """Explain anything that `wearlaw plugins` lists, by its name.
+    """Explain anything that `wearlaw plugins` lists, by its name, or a law by its file, such as fit/law.toml.
 
     A model shows its fields with units and defaults, its source, and what it declares; a material its values; a case
     its models and sweeps; a test set its source and columns; a section the cases that have it.
@@ -61,13 +62,18 @@ def show(name: str) -> None:
 
 
 def explain(name: str) -> str:
-    """Return the descriptions of everything with a name, separated by blank lines.
+    """Return the descriptions of everything with a name, separated by blank lines, or of the law in a file.
 
     Raises
     ------
+    InputError
+        If the file cannot be read.
     UnknownModelError
         If there is nothing of that name, or two distributions provide a thing of one kind.
     """
+    if is_law_file(name):
+        law = read_law(name)
+        return describe(type(law), f"{name}: a file of a law, for", law)
     found = loader.installed()
     shelves = [shelf for shelf in found.shelves() if name in shelf.providers]
     if not shelves:
@@ -78,7 +84,8 @@ def explain(name: str) -> str:
 
 def _explained(kind: str, name: str, item: Any) -> str:
     if kind == "parameter set":
-        return describe(type(item), name)
+        origin = loader.installed().parameter_sets.origin(name)
+        return describe(type(item), f"{name}: a parameter set of {origin}, for", item)
     found = loader.installed()
     tell = _TELL.get(kind)
     if kind in found.explanations:
@@ -115,13 +122,14 @@ _TELL: dict[str, Callable[[str, Any], Iterator[str]]] = {
 """What makes the lines of the kinds that are no models."""
 
 
-def describe(model: type[Model], parameter_set: str | None = None) -> str:
+def describe(model: type[Model], head: str | None = None, law: Law | None = None) -> str:
     """Return the description of a model: theory, source, fields with defaults, and declarations.
 
-    With the name of a parameter set of the law, the fields and declarations are those of the set.
+    With a law, such as a parameter set, the fields and declarations are its own, and the head says what it is.
     """
-    default = _default(model) if parameter_set is None else loader.wear_law(parameter_set)
-    lines = [*_headline(model, parameter_set), "", inspect.getdoc(model) or ""]
+    default = law or _default(model)
+    headline = f"{model.name}: a {model.kind} of {loader.installed().of_kind(model.kind).origin(model.name)}"
+    lines = [*([head] if head else []), headline, "", inspect.getdoc(model) or ""]
     lines += ["", *wrapped("source: ", model.source), "", "fields:", *fields_of(model, default)]
     if issubclass(model, Rig):
         conditions = ["", "conditions:", *_conditions(model)]
@@ -161,13 +169,6 @@ def _is_table(part: Any) -> TypeGuard[type[Configuration]]:
         return False
     written: dict[str, Any] = part.model_json_schema(by_alias=False).get("properties", {})
     return field_docstrings(part).keys() <= written.keys()
-
-
-def _headline(model: type[Model], parameter_set: str | None) -> Iterator[str]:
-    found = loader.installed()
-    if parameter_set is not None:
-        yield f"{parameter_set}: a parameter set of {found.parameter_sets.origin(parameter_set)}, for"
-    yield f"{model.name}: a {model.kind} of {found.of_kind(model.kind).origin(model.name)}"
 
 
 def _conditions(rig: type[Rig]) -> Iterator[str]:

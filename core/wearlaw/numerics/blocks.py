@@ -25,14 +25,13 @@ much of the memory that a block frees, for the next block. Otherwise it would re
 request it again, which takes as long as the arithmetic."""
 
 
-def each(function: Callable[..., Any], *results: Any) -> Any:
+def each(function: Callable[..., Any], first: Any, *others: Any) -> Any:
     """Return results with a function applied to each array; of several like ones, to the arrays in one place."""
-    first = results[0]
     if first is None:
         return None
     if not isinstance(first, tuple):
-        return function(*results)
-    parts = (each(function, *some) for some in zip(*results, strict=True))
+        return function(first, *others)
+    parts = [each(function, *some) for some in zip(first, *others, strict=True)]
     return type(first)(*parts) if hasattr(first, "_fields") else tuple(parts)
 
 

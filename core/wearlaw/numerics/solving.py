@@ -176,8 +176,6 @@ def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: 
     values = np.asarray(values)
     if problem.exists is not None:
         values = values[problem.exists]
-    elif not any(values.strides):  # one number for all operating points
-        values = values.reshape(-1)[:1]
     lowest, highest = extremes(values) if values.size else (1.0, 1.0)
     if not least < lowest <= highest < math.inf:  # as for NaN
         wrong = lowest if not lowest > least else highest

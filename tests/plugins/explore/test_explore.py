@@ -9,6 +9,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -122,10 +123,34 @@ def test_an_ellipse_answers_within_a_fifth_of_a_second() -> None:
     assert min(seconds() for _ in range(3)) < 0.2
 
 
+def test_a_slow_contact_has_no_curve_on_a_wheelset_either() -> None:
+    one = answer("fastsim", "usfd", rig="wheelset")
+    slider = one.subject.slider("lateral_displacement", one.conditions)
+    assert slider is not None
+    one.seconds = 0.1
+    assert len(one.curve(slider)) == 1
+    one.seconds = 8.0  # as elements on half-spaces take, and as many times for a curve as it has points
+    assert one.curve(slider) == {}
+
+
 def test_the_python_on_the_page_gives_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
     one = answer("global", "brr", rig="twin_disc", creepage="2 %")
     exec(one.subject.python(one.model, one.laws, one.conditions), {})
     assert capsys.readouterr().out.strip() == repr(one.predictions['wl.wear_law("brr")'])
+
+
+def test_a_law_in_a_file_stands_first_and_its_python_reads_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("law.toml").write_text('[wear_law]\nmodel = "usfd"\nq_s = "22 ug/m/mm^2"\n', encoding="utf-8")
+    subject = named("twin_disc", ["law.toml"])
+    code = 'wl.read_wear_law("law.toml")'
+    assert next(iter(subject.laws)) == code
+    one = Answer(subject, 'wl.contact_model("global")', [code], together(subject.rig.example, {"creepage": "3 %"}))
+    assert one.predictions[code].wear_rate.m_as("ug/m/mm^2") == pytest.approx(22.0)  # the severe plateau
+    exec(subject.python(one.model, one.laws, one.conditions), {})
+    assert capsys.readouterr().out.strip() == repr(one.predictions[code])
 
 
 def test_errors_are_notes_and_a_load_replaces_the_other() -> None:

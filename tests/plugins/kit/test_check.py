@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -100,6 +101,18 @@ def test_an_expected_failure_is_counted_apart_and_a_failure_once_it_passes(insta
     lines, exit_code = checked(install_model, Own, *expected)
     assert any(line.startswith("FAILED no_slip_no_wear: it passes, but is expected to fail") for line in lines)
     assert exit_code == 1
+
+
+def test_a_law_in_a_file_is_checked_with_its_own_values(
+    install_model: InstallModel, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install_model(Own)  # whose slope must be given
+    monkeypatch.chdir(tmp_path)
+    Path("law.toml").write_text('[wear_law]\nmodel = "own"\nslope = "1 m"\n', encoding="utf-8")
+    checked_file = wearlaw("check", "law.toml")
+    assert checked_file.exit_code == 0
+    assert "not claimed each_node_wears_by_itself: the hottest node" in checked_file.stdout
+    assert_refused(wearlaw("check", "law.toml", "--option", "slope=1 kg"), "slope")
 
 
 def test_a_rig_is_checked_with_its_example_fields_unless_they_are_given(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -270,10 +270,13 @@ def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
     assert len(short.plot().axes) == len(short.figure().panels)
 
 
-def test_life_ends_at_a_limit() -> None:
-    found = wl.wear_out(pipeline(), line(), over="10000 km", until={"depth": "0.02 mm"}, **GIVEN)
-    assert found.ended == "depth"
-    assert found.rows[-1]["depth"] == pytest.approx(0.02e-3, rel=2e-2)
+@pytest.mark.parametrize(("sides", "column"), [("mean", "depth"), ("each", "depth_right")])
+def test_life_ends_at_the_limit_that_is_reached_first(sides: Any, column: str) -> None:
+    to_the_right = line(3)
+    to_the_right.iloc[:, 0] += 1.0
+    found = wl.wear_out(pipeline(), to_the_right, over="10000 km", until={"depth": "0.02 mm"}, sides=sides, **GIVEN)
+    assert found.ended == column
+    assert found.rows[-1][column] == pytest.approx(0.02e-3, rel=2e-2)
 
 
 def test_rail_wears_by_passages() -> None:
@@ -317,6 +320,7 @@ def changed(**columns: Any) -> pd.DataFrame:
         (line(3), {"depth_step": "0.2 mm"}, wl.InputError, "depth_step"),
         (line(3), {"until": {"flange": "25 mm"}}, wl.InputError, "until"),
         (line(3), {"until": {"flange_thickness": 25.0}}, wl.UnitError, "flange_thickness"),
+        (line(3), {"body": "rail", "over": 10.0, "until": {"hollow": "1 mm"}}, wl.InputError, "has no 'hollow'"),
         (line(3), {"body": "axle"}, wl.InputError, "body"),
         (line(3), {"body": "rail"}, wl.InputError, "passages"),
     ],
