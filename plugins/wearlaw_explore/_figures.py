@@ -117,8 +117,9 @@ class Curves:
 
     def show(self, curves: Any) -> None:
         """Show curves by law; other laws have none."""
-        for law, source in self.sources.items():
+        for (law, source), entry in zip(self.sources.items(), self.figure.legend[0].items, strict=True):
             source.data = curves.get(law, NONE)
+            entry.visible = law in curves
 
 
 class OnProfiles:

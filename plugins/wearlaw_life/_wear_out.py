@@ -240,12 +240,11 @@ def _step(
     if not deepest > 0.0:
         raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
     left = plan.over - now.row[plan.along]
-    step = min((1.0 if now.step else START) * plan.depth_step / deepest, left)
-    if now.step:
+    step = min((START if now.wear is None else 1.0) * plan.depth_step / deepest, left)
+    if now.wear is not None:
         step = min(step, GROWTH * now.step)
-        if now.wear is not None:
-            rise = float(np.abs(wear.depth - now.wear.depth).max())
-            step = min(step, plan.depth_step * math.sqrt(2.0 * CORRECTION * now.step / rise)) if rise else step
+        rise = float(np.abs(wear.depth - now.wear.depth).max())
+        step = min(step, plan.depth_step * math.sqrt(2.0 * CORRECTION * now.step / rise)) if rise else step
         if now.change > 0.0:
             step = min(step, AIM * plan.conicity_step / now.change * now.step)
     body = pipeline.rig.bodies[plan.body]

@@ -285,8 +285,9 @@ def test_panels_stand_below_each_other_on_a_phone_and_do_not_overlap(
 ) -> None:
     parts = "#figure-three .xy, #figure-three .x2y2, #figure-three .x3y3"
     script = "return [...document.querySelectorAll(arguments[0])].map(e => e.getBoundingClientRect())"
-    drags = browser.execute_script(script, ", ".join(f"{part} .nsewdrag" for part in parts.split(", ")))
-    assert len(drags) == 3
+    every = ", ".join(f"{part} .nsewdrag" for part in parts.split(", "))
+    wait(browser, lambda: len(browser.execute_script(script, every)) == 3)  # plotly may be drawing anew
+    drags = browser.execute_script(script, every)
     across = {round(box["left"]) for box in drags}
     assert len(across) == (1 if screen[0] < 640 else 2)
     titles = browser.execute_script(script, "#figure-three .xtitle, #figure-three .x2title, #figure-three .x3title")
