@@ -188,6 +188,7 @@ def test_a_coefficient_may_be_given_in_percent() -> None:
     for value in (Q(46, "%"), "46 %", "0.46 dimensionless"):
         # The factor of a percent and the product are rounded.
         assert wl.coefficient(value, "friction_coefficient") == pytest.approx(0.46, rel=np.finfo(float).eps)
+    assert wl.coefficient("0 %", "mean_slip", positive=False) == 0.0
 
 
 def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
