@@ -391,8 +391,8 @@ def head(name: str) -> str:
 
 def plain(values: Values) -> Array:
     """Return values without their unit."""
-    array: Array = values.magnitude if isinstance(values, pint.Quantity) else values
-    return array
+    array: Any = values.magnitude if isinstance(values, pint.Quantity) else values
+    return array  # type: ignore[no-any-return]
 
 
 def faulty_names(names: Collection[str], outcomes: Collection[str]) -> list[str]:

@@ -249,7 +249,9 @@ def _step(
             step = min(step, AIM * plan.conicity_step / now.change * now.step)
     body = pipeline.rig.bodies[plan.body]
     density, radius = wl.scalar_si(body.material.density, "kg/m^3"), float(np.asarray(body.rolling_radius))
-    for _ in range(TRIES):
+    tries = 0
+    while True:
+        tries += 1
         middle = _of_middle(wear, now.wear, step, now.step)
         removals = []
         for profile, depth, mass in zip(now.profiles, middle.depth, plan.of_profiles(middle.mass), strict=True):
@@ -262,13 +264,14 @@ def _step(
         row |= {f"factor{side}": one.factor for side, one in zip(SIDES[len(after)], removals, strict=True)}
         share = _share_to_limit(limits, now.row, row)
         change = abs(row["equivalent_conicity"] - now.row["equivalent_conicity"])
+        if tries == TRIES:
+            return State(after, row, wear, step, change)
         if change > plan.conicity_step and step * deepest > SHORTEST * plan.depth_step:
             step *= max(AIM * plan.conicity_step / change, 0.25)
         elif share < 1.0 - 1e-6:
             step *= share
         else:
-            break
-    return State(after, row, wear, step, change)
+            return State(after, row, wear, step, change)
 
 
 def _of_middle(wear: Wear, before: Wear | None, step: float, step_before: float) -> Wear:

@@ -333,8 +333,8 @@ def _series(results: Results, data: xarray.Dataset, spec: FigureSpec, variable: 
             raise ConfigurationError("figure", [Fault(("pairs",), f"none of the pairs predicts {variable}")])
         return found
     if "contact_model" in dims and variable not in COMMON:
-        styles = {model: (models.index(model),) * 2 for model in chosen}
-        return [_Series(variable, model, data.sel(contact_model=model), style) for model, style in styles.items()]
+        places = {model: models.index(model) for model in chosen}
+        return [_Series(variable, model, data.sel(contact_model=model), (at, at)) for model, at in places.items()]
     one = data.sel(contact_model=chosen[0]) if variable in COMMON and "contact_model" in dims else data
     return [_Series(variable, "", one, (0, 0))]
 

@@ -88,8 +88,8 @@ class Candidates:
         base = np.clip(u.astype(np.intp) - 1, 0, SAMPLES - 4)
         near = np.take_along_axis(values[:, None], base[..., None] + np.arange(4), axis=-1)
         with np.errstate(invalid="ignore"):  # infinite gaps
-            found: Array = sum(w * near[..., i] for i, w in enumerate(lagrange(u - base, (0.0, 1.0, 2.0, 3.0))))
-        return found
+            found: Any = sum(w * near[..., i] for i, w in enumerate(lagrange(u - base, (0.0, 1.0, 2.0, 3.0))))
+        return np.asarray(found)
 
     def part(self, rows: NDArray[Any]) -> Candidates:
         """Return some of the places."""

@@ -441,6 +441,7 @@ class Balance:
             part = found.part(rows[open_])
             load = self.task.load[part.point, part.side] / part.cosine
             depth, power, step, before = penetration[open_], np.full(open_.size, 1.5), 0.0 * load, 0.0 * load
+            patch: Any = None
             for _ in range(2):
                 patch = self._penetrated(part, depth * part.cosine, 5)
                 borne = np.log(np.maximum(patch.normal_force / load, LEAST_SHARE))

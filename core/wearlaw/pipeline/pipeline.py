@@ -506,8 +506,9 @@ class Pipeline(Configuration, Generic[P]):
         above 1 gets a word too.
         """
         friction = problem.friction_coefficient
-        _, most = extremes(friction if problem.exists is None else friction[problem.exists])
-        if most > 1.0:
+        if problem.exists is not None:
+            friction = friction[problem.exists]
+        if friction.size and (most := extremes(friction)[1]) > 1.0:
             warn(
                 f"friction_coefficient: reaches {most:.4g}; values above 1 are rare, is it in percent?",
                 RangeWarning,

@@ -94,7 +94,7 @@ def main_table(study: Study) -> NamedTable:
         of_pair, law = sweep.sel(pair=pair.label), pair.pipeline.laws[0]
         values = of_pair[outcome]
         row: dict[str, Any] = {"pair": pair.label}
-        known = bool(values.notnull().any())
+        known, point = bool(values.notnull().any()), {}
         for word, find in (("least ", values.argmin), ("most ", values.argmax))[0 if axes else 1 :]:
             found: Any = find(...) if known else {}
             word = word if axes else ""
