@@ -650,7 +650,7 @@ class Balance:
     def _state(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
         """Return the loads of some positions as they are."""
         rows = np.flatnonzero(open_[self.found.point])
-        part = self.found.part(rows)
+        part = self.found if rows.size == self.found.point.size else self.found.part(rows)
         normal = {"hertz": self._ellipses, "kpec": self._strips, "half_space": self._half_spaces}
         shapes = normal[self.pressure](part)
         if rows.size == self.found.point.size:
