@@ -304,6 +304,8 @@ class Gaps(NamedTuple):
         Place on the locus [m].
     rail_slope : ndarray
         Slope of the rail below it, dz/dy [-].
+    radius : ndarray
+        Radius of the wheel there [m].
     """
 
     gap: Array
@@ -312,6 +314,7 @@ class Gaps(NamedTuple):
     y: Array
     z: Array
     rail_slope: Array
+    radius: Array
 
 
 def gaps(section: Section, position: Position, arc: Array) -> Gaps:
@@ -333,7 +336,7 @@ def _gaps(
     turn = np.sin(roll), np.cos(roll), np.sin(yaw), np.cos(yaw)
     place_x, place_y, down, steep = locus(y, radius, slope, displacement, turn)
     rail, rail_slope = rail_at(place_y)
-    return Gaps(rail - down, rail_slope - steep, place_x, place_y, down, rail_slope)
+    return Gaps(rail - down, rail_slope - steep, place_x, place_y, down, rail_slope, radius)
 
 
 class Touching(NamedTuple):

@@ -187,10 +187,15 @@ def touch(
         end = begin + WINDOW
     for patch in range(PATCHES):
         place[patch], height[patch], cell[patch] = np.nan, np.inf, -1
+    moved, z_end = abs(turn[0]) + abs(turn[2]), z_start + z_step * z_cubics.shape[1]
     for k in range(begin, end, every):
-        _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
-        rail, rail_slope = near(across, z_start, z_step, z_cubics)
-        gap[k], rise[k] = rail - down, rail_slope - steep
+        away = moved * (radius[k] + y[k])  # farther than roll and yaw move the point across the rail
+        if y[k] + shift < z_start - away or y[k] + shift > z_end + away:
+            gap[k], rise[k] = np.inf, 0.0
+        else:
+            _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
+            rail, rail_slope = near(across, z_start, z_step, z_cubics)
+            gap[k], rise[k] = rail - down, rail_slope - steep
         if k == begin:
             continue
         last = k - every
