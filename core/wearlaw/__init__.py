@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop
-from wearlaw.contact import elastic_limit, half_space, hertz, hertz_ellipse, kalker
+from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
 from wearlaw.contact.conditions import Coefficient, Condition, Creepage, FallingFriction, Friction
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
 from wearlaw.contact.material import Material, steel
@@ -198,7 +198,6 @@ __all__ = [
     "elastic_limit",
     "explore",
     "fit",
-    "half_space",
     "hertz",
     "hertz_ellipse",
     "hookimpl",

@@ -69,7 +69,7 @@ ellipse = wl.Problem.ellipse(
 )
 solved = wl.contact_model("fastsim", bound="elliptic").solve(ellipse)
 assert_type(solved, wl.Contact)
-assert_type(solved.longitudinal_force, wl.Quantity)
+assert_type(solved.force_x, wl.Array)
 
 
 class Roller(wl.Rig):
