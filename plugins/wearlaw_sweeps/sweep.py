@@ -251,9 +251,8 @@ def _checked_job(
 
 
 def checked_profile(
-    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool, elsewhere: bool,
-    kind: type[ProfileJob] = ProfileJob,
-) -> ProfileJob:  # fmt: skip
+    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool, elsewhere: bool
+) -> ProfileJob:
     """Return the job of the wear across a profile, after a prediction of it at the first operating point.
 
     Raises
@@ -267,7 +266,7 @@ def checked_profile(
         check_importable(pipeline)
     unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
     positions = VARIABLES[POSITION].expected.si(at, "at")
-    return kind.of(pipeline, first, body, positions, summed)
+    return ProfileJob.of(pipeline, first, body, positions, summed)
 
 
 def check_importable(pipeline: Pipeline[...]) -> None:
