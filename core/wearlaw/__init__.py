@@ -45,13 +45,20 @@ from wearlaw.errors import (
 )
 from wearlaw.extras import load as _load
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
-from wearlaw.models.contact_model import Claim, ContactModel, CreepForceModel, Scale
+from wearlaw.models.contact_model import (
+    ContactModel,
+    CreepForceModel,
+    FieldVariable,
+    Forces,
+    LineContactModel,
+    Scale,
+    Solve,
+    Stage,
+)
 from wearlaw.models.functions import as_wear_law
-from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome
-from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
+from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome, WearLaw
+from wearlaw.models.model import Claim
 from wearlaw.models.reader import Reader
-from wearlaw.models.stage import Forces, Solve, Stage
-from wearlaw.models.wear_law import LocalWear, WearLaw
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.plugins.fields import ContactModelField, LawField, MaterialField, StageField, WearLawField
@@ -137,7 +144,6 @@ __all__ = [
     "LineContactModel",
     "LineFields",
     "LocalOutcome",
-    "LocalWear",
     "Material",
     "MaterialField",
     "ModelError",

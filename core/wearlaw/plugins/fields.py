@@ -20,10 +20,9 @@ from wearlaw.errors import (
     did_you_mean,
     shown,
 )
-from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.law import Law
-from wearlaw.models.stage import Stage
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.contact_model import ContactModel, Stage
+from wearlaw.models.law import Law, WearLaw
+from wearlaw.models.model import Model
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw.settings.configuration import Configuration, known_name

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from wearlaw.errors import ConfigurationError, InputError, shown, with_problems
-from wearlaw.models.law import Law
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law, WearLaw
 from wearlaw.plugins import loader
 from wearlaw.settings.text_files import LARGEST, parse_toml, read_text, reason_of
 

@@ -23,11 +23,10 @@ import pluggy
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
 from wearlaw.errors import PluginWarning, UnknownModelError, described, did_you_mean, shown
-from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.law import Law
+from wearlaw.models.contact_model import ContactModel, Stage
+from wearlaw.models.law import Law, WearLaw
+from wearlaw.models.model import Model
 from wearlaw.models.reader import Reader
-from wearlaw.models.stage import Stage
-from wearlaw.models.wear_law import WearLaw
 from wearlaw.settings.configuration import Configuration, known_as
 
 
