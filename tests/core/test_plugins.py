@@ -90,10 +90,6 @@ BROKEN = {
         "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version 3;"
         " upgrade the plugin",
     ),
-    "law_of_an_older_interface": (
-        textwrap.dedent(LAW).format(name="outside").replace("contact, p)", "contact)"),
-        "TypeError: Outside.rate must take (self, contact, p): p holds the law's numbers in SI; it takes (self,",
-    ),
     "interface_that_is_no_number": (
         "wearlaw_interface = '1'",
         "TypeError: wearlaw_interface must be a whole number, got '1'",
