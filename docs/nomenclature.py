@@ -20,7 +20,7 @@ from wearlaw_wheelset._rig import WheelsetProblem
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
-CLASSES = (wl.Problem, wl.Contact, wl.Prediction, wl.LocalWear, wl.CreepForces, wl.Body, WheelsetProblem)
+CLASSES = (wl.Problem, wl.Contact, wl.Prediction, wl.CreepForces, wl.Body, WheelsetProblem)
 OF_ANY_UNIT = ("outcome", "outcome_error", "value", "local_value")
 """Quantities of a law, whose unit is that of its outcome."""
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop
-from wearlaw.contact import elastic_limit, half_space, hertz, hertz_ellipse, kalker
+from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
 from wearlaw.contact.conditions import Coefficient, Condition, Creepage, FallingFriction, Friction
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
 from wearlaw.contact.material import Material, steel
@@ -45,13 +45,20 @@ from wearlaw.errors import (
 )
 from wearlaw.extras import load as _load
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
-from wearlaw.models.contact_model import Claim, ContactModel, CreepForceModel, Scale
+from wearlaw.models.contact_model import (
+    ContactModel,
+    CreepForceModel,
+    FieldVariable,
+    Forces,
+    LineContactModel,
+    Scale,
+    Solve,
+    Stage,
+)
 from wearlaw.models.functions import as_wear_law
-from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome
-from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
+from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome, WearLaw
+from wearlaw.models.model import Claim
 from wearlaw.models.reader import Reader
-from wearlaw.models.stage import Forces, Solve, Stage
-from wearlaw.models.wear_law import LocalWear, WearLaw
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.plugins.fields import ContactModelField, LawField, MaterialField, StageField, WearLawField
@@ -137,7 +144,6 @@ __all__ = [
     "LineContactModel",
     "LineFields",
     "LocalOutcome",
-    "LocalWear",
     "Material",
     "MaterialField",
     "ModelError",
@@ -198,7 +204,6 @@ __all__ = [
     "elastic_limit",
     "explore",
     "fit",
-    "half_space",
     "hertz",
     "hertz_ellipse",
     "hookimpl",

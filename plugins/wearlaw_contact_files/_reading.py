@@ -15,9 +15,8 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Body, Problem, Strips
 from wearlaw.errors import DataError, InputError, ModelError, UnknownModelError, did_you_mean, shown
-from wearlaw.models.contact_model import Blame, fault
-from wearlaw.models.reader import Reader
-from wearlaw.numerics.solved import Solved, flat
+from wearlaw.models.model import Blame, fault
+from wearlaw.models.reader import Reader, Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.plugins import loader
 

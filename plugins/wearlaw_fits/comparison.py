@@ -22,9 +22,8 @@ from wearlaw.errors import (
     did_you_mean,
     shown,
 )
-from wearlaw.models.contact_model import Model
-from wearlaw.models.labels import labels
 from wearlaw.models.law import WEAR, Law, named_outcomes
+from wearlaw.models.model import Model, labels
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.arguments import expect
 from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from wearlaw.errors import CompositionError, InputError
-from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, Outcome
-from wearlaw.models.stage import Stage
 from wearlaw.pipeline.composition import TAKE_MEANS
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.several import composed

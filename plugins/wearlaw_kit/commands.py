@@ -11,8 +11,9 @@ import click
 
 from wearlaw.cli.show import accuracies
 from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, shown
-from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
+from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import is_law_file, read_law

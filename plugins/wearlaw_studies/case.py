@@ -40,10 +40,9 @@ from wearlaw.errors import (
     shown,
     with_problems,
 )
-from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.labels import labelled, labels
-from wearlaw.models.law import WEAR, Law, Outcome
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.law import WEAR, Law, Outcome, WearLaw
+from wearlaw.models.model import Model, labelled, labels
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader

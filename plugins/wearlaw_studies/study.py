@@ -26,9 +26,8 @@ from wearlaw.errors import (
     described,
     shown,
 )
-from wearlaw.models.contact_model import Model
-from wearlaw.models.law import WEAR
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import WEAR, WearLaw
+from wearlaw.models.model import Model
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction

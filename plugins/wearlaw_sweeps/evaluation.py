@@ -15,8 +15,8 @@ from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, RangeWarning, caught_warnings, did_you_mean, shown
-from wearlaw.models.contact_model import fault
 from wearlaw.models.law import named_outcomes
+from wearlaw.models.model import fault
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction, unsolved

@@ -13,7 +13,7 @@ import pint
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import WORTHWHILE, accelerated
 from wearlaw.errors import OutputError, shown, with_problems
-from wearlaw.models.contact_model import Model
+from wearlaw.models.model import Model
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import parts
 from wearlaw.units.quantities import text_of

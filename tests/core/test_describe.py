@@ -16,7 +16,7 @@ from tests.core.test_outcomes import Damage as BaseOfDamage
 from tests.core.test_outcomes import Heat
 from tests.plugins.kit.wrong_rigs import Weight
 from wearlaw.cli.show import describe  # private: the program, in this process
-from wearlaw.models.contact_model import Model  # private: the bound of a quadrature
+from wearlaw.models.model import Model  # private: the bound of a quadrature
 from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 from wearlaw.settings.docstrings import field_docstrings  # private: what `show`, schemas and signatures say of fields
 

@@ -56,10 +56,6 @@ BROKEN = {
         "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version 3;"
         " upgrade the older of the two",
     ),
-    "law_of_an_older_interface": (
-        textwrap.dedent(LAW).format(name="outside").replace("contact, p)", "contact)"),
-        "TypeError: Outside.rate must take (self, contact, p): p holds the law's numbers in SI; it takes (self,",
-    ),
     "abstract_model": (
         "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    class Half(wearlaw.WearLaw):\n"
         "        name = 'half'\n    return [Half]",

@@ -168,8 +168,8 @@ def _of_arrays() -> dict[str, Any]:
         rolling_speed=Q(30, "m/s"),
     )
     wear, of_means = contact | wl.wear_law("kth"), contact.patch_mean() | wl.wear_law("brr")
-    return {"local": wear.local_wear_rate, "mean": wear.wear_rate, "mass": wear.mass_per_distance,
-        "of means": of_means.wear_rate}  # fmt: skip
+    mass = (wear.value * Q(contact.patch_area, "m^2")).to("ug/m")
+    return {"local": wear.local_value, "mean": wear.value, "mass": mass, "of means": of_means.value}
 
 
 def _temperatures() -> dict[str, Any]:

@@ -18,10 +18,10 @@ from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError, PluginWarning, UnknownModelError
 from wearlaw.extras import load
 from wearlaw.hookspecs import Command
-from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import WEAR, Law
+from wearlaw.models.model import Model
 from wearlaw.models.reader import Reader
-from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import is_law_file, read_law

@@ -14,8 +14,7 @@ from pydantic import Field, create_model
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import PATCH_VARIABLES, Contact, variable_at_nodes
 from wearlaw.errors import ConfigurationError, Fault, UnitError, did_you_mean
-from wearlaw.models.law import BreakpointMap, Numbers
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import BreakpointMap, Numbers, WearLaw
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, Unit, in_unit, text_of
 from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import UNITS, readable

@@ -10,10 +10,9 @@ from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema, cr
 
 from wearlaw.contact.material import TYPE, Material
 from wearlaw.errors import ConfigurationError, Fault, InputError
-from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.law import Law
-from wearlaw.models.stage import Stage
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.contact_model import ContactModel, Stage
+from wearlaw.models.law import Law, WearLaw
+from wearlaw.models.model import Model
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw.plugins.loader import Preset

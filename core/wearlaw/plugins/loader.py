@@ -21,11 +21,10 @@ import pluggy
 from wearlaw import hookspecs
 from wearlaw.contact.material import Material
 from wearlaw.errors import PluginWarning, UnknownModelError, described, did_you_mean, shown, warn
-from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.law import Law
+from wearlaw.models.contact_model import ContactModel, Stage
+from wearlaw.models.law import Law, WearLaw
+from wearlaw.models.model import Model
 from wearlaw.models.reader import Reader
-from wearlaw.models.stage import Stage
-from wearlaw.models.wear_law import WearLaw
 from wearlaw.settings.configuration import known_as
 
 MODELS = ("rig", "contact model", "stage", "wear law", "law", "reader")
@@ -208,12 +207,24 @@ def _entry_points() -> list[tuple[EntryPoint, Origin]]:
     found: dict[str, list[tuple[EntryPoint, Origin]]] = {}
     for distribution in distributions():
         if f"[{hookspecs.PROJECT}]" in (distribution.read_text("entry_points.txt") or ""):  # parse only the few plugins
-            name, version = distribution.name, distribution.version
+            metadata = distribution.metadata
+            name, version = metadata["Name"], metadata["Version"]
             points = distribution.entry_points.select(group=hookspecs.PROJECT)
             found.setdefault(
                 re.sub(r"[-_.]+", "-", name).lower(), [(point, Origin(point.name, name, version)) for point in points]
             )
     return sorted(chain.from_iterable(found.values()), key=lambda pair: (pair[1].distribution, pair[1].entry_point))
+
+
+class _Manager(pluggy.PluginManager):
+    """A plugin manager that inspects marked names only; inspecting all names takes most of pluggy's time."""
+
+    def parse_hookspec_opts(self, module_or_class: Any, name: str) -> Any:
+        return getattr(getattr(module_or_class, name), f"{hookspecs.PROJECT}_spec", None)
+
+    def parse_hookimpl_opts(self, plugin: Any, name: str) -> Any:
+        marked = hasattr(getattr(plugin, name, None), f"{hookspecs.PROJECT}_impl")
+        return super().parse_hookimpl_opts(plugin, name) if marked else None
 
 
 def _hooks(entry_point: EntryPoint, origin: Origin) -> pluggy.HookRelay:
@@ -225,7 +236,7 @@ def _hooks(entry_point: EntryPoint, origin: Origin) -> pluggy.HookRelay:
             f"it is built for version {shown(needed)} of the plugin interface, but this wearlaw has version"
             f" {hookspecs.INTERFACE_VERSION}; upgrade the older of the two"
         )
-    manager = pluggy.PluginManager(hookspecs.PROJECT)
+    manager = _Manager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
     manager.register(plugin, str(origin))
     manager.check_pending()
