@@ -55,7 +55,6 @@ from wearlaw.models.contact_model import (
     Solve,
     Stage,
 )
-from wearlaw.models.functions import as_wear_law
 from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome, WearLaw
 from wearlaw.models.model import Claim
 from wearlaw.models.reader import Reader
@@ -193,7 +192,6 @@ __all__ = [
     "__version__",
     "accelerate",
     "accelerated",
-    "as_wear_law",
     "beside",
     "coefficient",
     "compare",

@@ -159,12 +159,16 @@ def test_parameters_of_another_scale_are_warned_of() -> None:
 
 
 def test_negative_wear_is_refused() -> None:
-    gain = wl.as_wear_law(inputs={"pressure": "MPa"}, returns="ug/m/mm^2", breakpoints={}, source="made up")(
-        lambda pressure: -pressure
-    )
+    class Gain(wl.WearLaw):
+        name = "gain"
+        source = "made up"
+
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+            return -contact.pressure
+
     contact = wl.Contact.from_arrays(**{**FOUR_NODES, "slip": "1 %"})
     with pytest.raises(wl.ModelError, match="gives a negative wear rate"):
-        contact | gain
+        contact | Gain()
 
 
 def test_only_a_contact_comes_before_a_law() -> None:
