@@ -10,12 +10,12 @@ import click
 import pandas as pd
 
 import wearlaw as wl
-from wearlaw.pipeline.notes import Notes
 from wearlaw_life._life import Life
 from wearlaw_output.commands import echo, folder_for, print_notes, print_results, value, values
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import write_files, written_formats
 from wearlaw_output.folder import results_folder
+from wearlaw_output.notes import Notes
 from wearlaw_studies.case import load_case
 
 LIFE = "life.json"

@@ -21,6 +21,7 @@ from wearlaw.errors import (
     ConditionsError,
     InputError,
     ResumeWarning,
+    caught_warnings,
     shown,
 )
 from wearlaw.pipeline.composition import warn_of_unlike_materials
@@ -29,7 +30,6 @@ from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.pipeline.worn import POSITION
 from wearlaw.settings.arguments import expect_names
-from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.settings.configuration import parts
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.evaluation import Job, output_units, range_warnings

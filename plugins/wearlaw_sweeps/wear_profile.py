@@ -14,11 +14,10 @@ from pydantic import TypeAdapter
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, DataError, shown
+from wearlaw.errors import ConditionsError, DataError, caught_warnings, shown
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.worn import PATCH, POSITION
-from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.units.quantities import Q, coefficient
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_sweeps.points import Block, Points
