@@ -26,12 +26,12 @@ from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.contact.quadrature import Zone, join, remainder
 from wearlaw.errors import CompositionError
-from wearlaw.models.contact_model import Blame, ContactModel
+from wearlaw.models.contact_model import ContactModel, LineContactModel
 from wearlaw.models.law import Law, Numbers
-from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.model import Blame
+from wearlaw.models.reader import Solved
 from wearlaw.numerics.blocks import OfBlock, OnBlock, ResultT, blocks, by_block, each
 from wearlaw.numerics.crossings import crossings
-from wearlaw.numerics.solved import Solved
 from wearlaw.numerics.solving import Solver, check_results, check_type
 from wearlaw.numerics.splits import split_rates
 from wearlaw.numerics.staged import Staged

@@ -21,11 +21,11 @@ from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Problem, Strips
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import ModelError, shown
-from wearlaw.models.contact_model import QUADRATURE, Blame, ContactModel, Model, fault
+from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel
 from wearlaw.models.law import Law, Numbers
-from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.model import Blame, Model, fault
+from wearlaw.models.reader import Solved
 from wearlaw.numerics.blocks import OfBlock, OnBlock, ResultT, by_block, each
-from wearlaw.numerics.solved import Solved
 from wearlaw.numerics.totals import Across
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import VARIABLES

@@ -18,8 +18,9 @@ from wearlaw.errors import (
     shown,
     warn,
 )
-from wearlaw.models.contact_model import ContactModel, Model, Scale
+from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
+from wearlaw.models.model import Model
 from wearlaw.numerics.staged import without_stages
 from wearlaw.plugins import loader
 

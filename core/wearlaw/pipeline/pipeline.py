@@ -28,9 +28,9 @@ from wearlaw.errors import (
     shown,
     warn,
 )
-from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, fault
+from wearlaw.models.contact_model import ContactModel, Scale, Stage
 from wearlaw.models.law import WEAR, Law
-from wearlaw.models.stage import Stage
+from wearlaw.models.model import Blame, Model, fault
 from wearlaw.numerics.integrate import integrate_forces, prepared
 from wearlaw.numerics.solving import check_problem
 from wearlaw.numerics.staged import staged

@@ -17,11 +17,10 @@ from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
 from wearlaw.extras import load
-from wearlaw.models.contact_model import ContactModel, Scale
+from wearlaw.models.contact_model import ContactModel, LineContactModel, Scale
 from wearlaw.models.law import Law, named_outcomes
-from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.reader import Solved, flat
 from wearlaw.numerics import integrate
-from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.numerics.staged import without_stages
 from wearlaw.numerics.totals import SlipTotals, Totals

@@ -13,9 +13,9 @@ from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import WEAR, Law
+from wearlaw.models.reader import Solved
 from wearlaw.numerics import integrate
 from wearlaw.numerics.blocks import each
-from wearlaw.numerics.solved import Solved
 from wearlaw.numerics.totals import Across, SlipTotals, Totals
 from wearlaw.pipeline.composition import law_among, warn_of_body
 from wearlaw.pipeline.datasets import Conditions

@@ -255,7 +255,7 @@ def test_the_contact_is_what_the_law_saw() -> None:
     predicted = (RIG | FASTSIM | wl.patch_mean() | wl.wear_law("kth"))(**CONDITIONS)
     assert predicted.contact.pressure.size == 1
     seen = predicted.contact | wl.wear_law("kth")
-    assert seen.wear_rate.magnitude == pytest.approx(predicted.wear_rate.magnitude, rel=4 * EPS)
+    assert seen.value.magnitude == pytest.approx(predicted.wear_rate.magnitude, rel=4 * EPS)
 
 
 @pytest.mark.parametrize("fitted_for", ["global", "exact", "fastsim"])
