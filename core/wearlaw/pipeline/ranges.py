@@ -12,7 +12,6 @@ from wearlaw.contact.elastic_limit import Overload, first_yield, overload, shake
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, RangeWarning, warn
 from wearlaw.models.law import Law
-from wearlaw.models.model import Blame
 from wearlaw.numerics.totals import Totals
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import UNITS
