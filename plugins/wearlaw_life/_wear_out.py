@@ -170,10 +170,8 @@ def wear_out(
     count = math.ceil(max(np.ptp(one.curve.s) for one in first) / plan.spacing) + 1
     at = positions(first, count)
     beside = Path(tempfile.gettempdir(), "line") if store is None else Path(store)
-    read = from_table(
-        line, conditions, columns=columns, keep={SHARE: share}, check=predict.rig.check_names, on_disk=beside,
-        progress=progress,
-    )  # fmt: skip
+    check = predict.rig.check_names
+    read = from_table(line, conditions, columns=columns, keep={SHARE: share}, check=check, on_disk=beside)
     with ExitStack() as stack:
         states = Line.of(predict, stack.enter_context(read), share, body, at, workers, client)
         kept = None

@@ -120,10 +120,6 @@ _QUANTITY_TEXT = re.compile(
     r"\s*(?P<number>[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan))\s*(?P<unit>(?:(?:(?<=\s)1(?=\s*/)|[^\d\s+.-]).*)?)"
 )
 
-_WORDS = r"[^\[\]\s]*+(?:\s++[^\[\]\s]++)*+"
-HEAD = re.compile(rf"(?P<name>{_WORDS})\s*+(?:\[\s*+(?P<unit>{_WORDS})\s*+\])?")
-"""The head of a column, as in "creepage [%]": a name and an optional unit; the time is linear in the length."""
-
 
 @dataclass(frozen=True)
 class Unit:
