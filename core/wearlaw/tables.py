@@ -336,7 +336,7 @@ class FrameTable(Table):
         super().__init__("table", map(str, frame.columns))
         if frame.index.nlevels > 1:
             raise DataError("table: its index has several levels; call reset_index() on it")
-        self.dim = str(frame.index.name or ROW)
+        self.dim = ROW if frame.index.name is None else str(frame.index.name)
         self.labels = {self.dim: (self.dim, frame.index.to_numpy())}
         self._frame = frame.set_axis(range(frame.shape[1]), axis=1)
 
