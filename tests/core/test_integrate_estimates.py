@@ -12,9 +12,9 @@ import pytest
 import wearlaw as wl
 from tests import reference
 from tests.core.integrals import MEANS, REFERENCE, Points, integrate_wear
+from tests.line import uniform_cells
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array
-from wearlaw.contact.quadrature import uniform_cells  # private: rules of quadrature, which no result shows alone
 from wearlaw.numerics.integrate import integrate_forces  # private: integrals at the size of blocks
 from wearlaw.numerics.staged import staged  # private: a stage around a model without a pipeline
 
