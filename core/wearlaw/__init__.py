@@ -222,7 +222,6 @@ __all__ = [
     "read_law",
     "read_table",
     "read_tests",
-    "read_wear_law",
     "readers",
     "rig",
     "rigs",
@@ -242,7 +241,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from wearlaw.plugins.law_files import read_law, read_wear_law
+    from wearlaw.plugins.law_files import read_law
     from wearlaw_archard.coefficients import wear_coefficient
     from wearlaw_contact_files._reading import read_contact
     from wearlaw_explore import explore
@@ -266,7 +265,6 @@ if TYPE_CHECKING:
 _LATE = {
     "creepage_for": "wearlaw_sweeps.inverse",
     "read_law": "wearlaw.plugins.law_files",
-    "read_wear_law": "wearlaw.plugins.law_files",
     "wear_coefficient": "wearlaw_archard.coefficients",
     "read_contact": "wearlaw_contact_files._reading",
     "explore": "wearlaw_explore",

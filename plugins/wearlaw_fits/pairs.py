@@ -10,9 +10,9 @@ from wearlaw.errors import CompositionError, InputError
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, Outcome
 from wearlaw.pipeline.composition import TAKE_MEANS
-from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.several import composed
+from wearlaw_output.notes import Notes
 
 
 @dataclass(frozen=True)

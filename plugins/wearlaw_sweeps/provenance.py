@@ -29,7 +29,7 @@ def provenance_of(job: Job, points: Points) -> Provenance:
     """Return versions, pipeline, conditions, outputs and blocks of a sweep; columns of numbers by their digest."""
     installed = loader.installed()
     provided = {
-        f"{part.kind} {part.name}": installed.of_kind(part.kind).distribution(part.name, type(part))
+        f"{part.kind} {part.name}": installed[part.kind].distribution(part.name, type(part))
         for part in parts(job.pipeline)
         if isinstance(part, Model)
     }

@@ -21,6 +21,7 @@ from wearlaw.errors import (
     ConditionsError,
     InputError,
     ResumeWarning,
+    caught_warnings,
     shown,
 )
 from wearlaw.pipeline.composition import warn_of_unlike_materials
@@ -29,7 +30,6 @@ from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.pipeline.worn import POSITION
 from wearlaw.settings.arguments import expect_names
-from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.settings.configuration import parts
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.evaluation import Job, output_units, range_warnings
@@ -251,9 +251,8 @@ def _checked_job(
 
 
 def checked_profile(
-    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool, elsewhere: bool,
-    kind: type[ProfileJob] = ProfileJob,
-) -> ProfileJob:  # fmt: skip
+    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool, elsewhere: bool
+) -> ProfileJob:
     """Return the job of the wear across a profile, after a prediction of it at the first operating point.
 
     Raises
@@ -267,7 +266,7 @@ def checked_profile(
         check_importable(pipeline)
     unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
     positions = VARIABLES[POSITION].expected.si(at, "at")
-    return kind.of(pipeline, first, body, positions, summed)
+    return ProfileJob.of(pipeline, first, body, positions, summed)
 
 
 def check_importable(pipeline: Pipeline[...]) -> None:

@@ -124,7 +124,7 @@ def installer(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
     origin = Origin("testing", "wearlaw-testing", "9.8.7")
 
     def install(model: type[Model]) -> None:
-        providers: Any = found.of_kind(model.kind).providers
+        providers: Any = found[model.kind].providers
         monkeypatch.setitem(providers, model.name, [(model, origin)])
 
     return install

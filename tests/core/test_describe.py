@@ -128,7 +128,7 @@ EXPECTED: dict[str, list[str]] = {
 
 def test_there_is_an_expectation_for_every_model_of_the_package() -> None:
     ours = {
-        name for shelf in (loader.installed().contact_models, loader.installed().wear_laws)
+        name for shelf in (loader.installed()["contact model"], loader.installed()["wear law"])
         for name in shelf.items() if shelf.origin(name).distribution == "wearlaw"
     }  # fmt: skip
     assert ours == EXPECTED.keys()

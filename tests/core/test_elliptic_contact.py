@@ -76,6 +76,7 @@ def test_totals_are_forces_and_what_the_creepages_feed_in() -> None:
     assert contact.moment_z[0] == 2.0
     assert contact.tangential_force.tolist() == [5e3, 5e3]
     assert contact.wear_index == pytest.approx([0.002 * 3e3 + 0.001 * 4e3 + 0.5 * 2.0] * 2, rel=4 * EPS)
+    assert contact.wear_index_without_spin == pytest.approx([0.002 * 3e3 + 0.001 * 4e3] * 2, rel=4 * EPS)
 
 
 def test_integrals_along_strips_add_up_to_the_sum_over_nodes() -> None:

@@ -54,6 +54,7 @@ from wearlaw.pipeline.solution import Solution
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, Configuration
+from wearlaw.units.registry import with_magnitude
 
 ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
 
@@ -343,7 +344,7 @@ def _read_only(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return read_only(value)
     if isinstance(value, pint.Quantity) and isinstance(value.magnitude, np.ndarray):
-        return type(value)(read_only(value.magnitude), value.units)
+        return with_magnitude(value, read_only(value.magnitude))
     return value
 
 

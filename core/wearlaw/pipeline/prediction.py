@@ -66,20 +66,25 @@ class Prediction:
     ----------
     problem : Problem
         The contact problem that the contact model solved, as SI arrays.
-    contact_model : ContactModel
-        The theory of the tangential contact, without stages.
-    scale : {"patch", "cells"}
-        Whether the laws saw the means of the patch or its cells.
     laws : tuple of Law
         The laws; empty if only the contact was predicted.
     """
 
     def __init__(self, solution: Solution) -> None:
         self.problem = solution.problem
-        self.contact_model = without_stages(solution.model)
-        self.scale: Scale = solution.model.scale
         self.laws = solution.laws
         self._solution = solution
+
+    @property
+    def contact_model(self) -> ContactModel:
+        """The theory of the tangential contact, without stages."""
+        return without_stages(self._solution.model)
+
+    @property
+    def scale(self) -> Scale:
+        """Whether the laws saw the means of the patch or its cells, "patch" or "cells"."""
+        scale: Scale = self._solution.model.scale
+        return scale
 
     @classmethod
     def of(cls, contact: Contact, law: Law, /, *more: Law) -> Prediction:

@@ -18,7 +18,7 @@ from wearlaw_studies.study import run  # private: a case run without its files
 
 
 def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    cases = loader.installed().resources["case"].items()
+    cases = loader.installed()["case"].items()
     assert list(cases) == [
         "my_tests",
         "tassini2010",
