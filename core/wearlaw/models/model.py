@@ -86,7 +86,7 @@ def fault(model: Model, what: str) -> ModelError:
     ----------
     model : Model
     what : str
-        What the model did, such as "returned rates of shape (3,)"; the message begins with kind and name of the model.
+        What the model did, such as "returned values of shape (3,)"; the message begins with kind and name of the model.
     """
     return ModelError(with_origin(model, f"{model.kind} '{model.name}' {what}"))
 
