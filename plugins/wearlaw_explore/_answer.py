@@ -13,9 +13,9 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw.contact.conditions import LOADS
-from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.prediction import SHOWN
 from wearlaw.units.variables import VARIABLES, label
+from wearlaw_output.notes import Notes
 
 POINTS = 25
 """Points of a curve."""

@@ -73,5 +73,5 @@ def named(rig: str, chosen: Sequence[str] = ()) -> Subject:
 
 def _law(name: str) -> tuple[str, wl.WearLaw]:
     """Return the Python that makes a law of a name or a file, and the law."""
-    function = "read_wear_law" if is_law_file(name) else "wear_law"
+    function = "read_law" if is_law_file(name) else "wear_law"
     return f"wl.{function}({json.dumps(name, ensure_ascii=False)})", getattr(wl, function)(name)

@@ -99,9 +99,6 @@ def test_an_unknown_scale_is_refused_where_it_is_written(base: type[Any], words:
     message = rf"Wrong.scale: is 'pach'; did you mean 'patch'\? It must be {words}"
     with pytest.raises(wl.ModelError, match=message):
         type("Wrong", (base,), {"scale": "pach", "__module__": __name__})
-    wrong: Any = type("Wrong", (base,), {"scale": property(lambda _: "pach"), "__module__": __name__})
-    with pytest.raises(wl.ModelError, match=message):
-        wrong()
 
 
 @pytest.mark.parametrize(
@@ -126,7 +123,7 @@ def test_an_unknown_variable_is_refused_and_not_ignored(declared: str, name: str
     with pytest.raises(wl.ModelError) as error:
         RIG | wl.contact_model("exact") | Wrong()
     assert str(error.value).startswith(
-        f"wear law 'declares': `{declared}` names the variable '{name}', which is unknown{hint}"
+        f"wear law 'declares' names the variable '{name}' in `{declared}`, which is unknown{hint}"
     )
 
 
@@ -137,7 +134,7 @@ def test_an_unknown_variable_in_monotone_in_is_refused_too() -> None:
         monotone_in: ClassVar[Any] = ("wear_indx",)
 
     with pytest.raises(
-        wl.ModelError, match=r"`monotone_in` names the variable 'wear_indx'.* did you mean 'wear_index'"
+        wl.ModelError, match=r"names the variable 'wear_indx' in `monotone_in`.* did you mean 'wear_index'"
     ):
         RIG | wl.contact_model("exact") | Wrong()
 

@@ -8,7 +8,7 @@ batch are the *nodes* of the patch. An ellipse has two of them, along a strip an
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, Self, TypeAlias, get_args
 
@@ -17,8 +17,8 @@ import numpy as np
 from wearlaw.arrays.array import Array, freeze
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, InputError, ModelError, did_you_mean, shown
-from wearlaw.units.quantities import Quantity, QuantityLike, from_si
+from wearlaw.errors import CompositionError, InputError
+from wearlaw.units.quantities import QuantityLike
 from wearlaw.units.variables import expected
 
 NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density")
@@ -41,16 +41,6 @@ LawVariable: TypeAlias = Literal[
 """A variable of a `Contact` in which a law can branch, jump or be monotone."""
 
 LAW_VARIABLES: tuple[str, ...] = get_args(LawVariable)
-
-
-def check_variables(subject: str, names: Iterable[str], known: Collection[str] = LAW_VARIABLES) -> None:
-    """Raise a `ModelError` for the first name that is not one of the known variables."""
-    for name in names:
-        if name not in known:
-            hint = did_you_mean(str(name), known)
-            raise ModelError(
-                f"{subject} names the variable {shown(name)}, which is unknown{hint} There are: {', '.join(known)}"
-            )
 
 
 def variable_at_nodes(contact: Contact, name: str) -> Array:
@@ -506,21 +496,6 @@ class Contact:
     def forces(self) -> CreepForces:
         """The forces and the moment transmitted by the contact."""
         return CreepForces(longitudinal=self.force_x, lateral=self.force_y, spin_moment=self.moment_z)
-
-    @property
-    def longitudinal_force(self) -> Quantity:
-        """Longitudinal force, Fx [N], with the sign of the creepage."""
-        return from_si(self.force_x, "N")
-
-    @property
-    def lateral_force(self) -> Quantity:
-        """Lateral force, Fy [N], with the sign of the creepage."""
-        return from_si(self.force_y, "N")
-
-    @property
-    def spin_moment(self) -> Quantity:
-        """Spin moment, Mz [N m], with the sign of the spin."""
-        return from_si(self.moment_z, "N*m")
 
     def over_strip(self, value: Array) -> Array:
         """Return ∫ value dx along each strip of an ellipse, of shape (batch, strips)."""

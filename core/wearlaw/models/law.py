@@ -1,6 +1,5 @@
 """The base class of laws of any outcome, `Law`, its `Outcome`, and the record of the fit of its parameters."""
 
-import inspect
 import math
 import warnings
 from abc import abstractmethod
@@ -18,7 +17,6 @@ from wearlaw.contact.contact import (
     PATCH_VARIABLES,
     Contact,
     LawVariable,
-    check_variables,
     variable_at_nodes,
 )
 from wearlaw.contact.material import Material
@@ -27,15 +25,15 @@ from wearlaw.errors import (
     CalibrationWarning,
     CompositionError,
     InputError,
-    ModelError,
     UnitError,
     did_you_mean,
     shown,
 )
-from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale, fault, with_origin
+from wearlaw.models.contact_model import ContactModel, Scale
+from wearlaw.models.model import Blame, Model, check_scale, fault
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
-from wearlaw.units.quantities import Quantity, Unit, from_si
+from wearlaw.units.quantities import WEAR_RATE, Quantity, Unit, from_si
 from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import UNITS, VARIABLES
 
@@ -54,9 +52,6 @@ SCALES = ("patch", "any")
 
 WEAR = "wear_rate"
 """Name of the outcome of wear laws."""
-
-TAKE_NUMBERS = {"rate": ("self", "contact", "p"), **dict.fromkeys(("breakpoints", "ramps", "jumps"), ("self", "p"))}
-"""The methods of a law that take its numbers, with their arguments."""
 
 
 class Calibration(Configuration):
@@ -147,7 +142,7 @@ class Outcome:
             raise InputError(
                 f"outcome: its name must be made of letters, digits and underscores, got {shown(self.name)}"
             )
-        if not isinstance(self.of, str) or self.of not in ("area mean", "patch"):
+        if self.of not in ("area mean", "patch"):
             raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shown(self.of)}")
         known = VARIABLES.get(self.name)
         if known is not None:
@@ -238,50 +233,42 @@ class Law(Model):
 
         @classmethod
         def __pydantic_init_subclass__(cls, **options: Any) -> None:
-            """Raise an error for a law without an outcome, or with methods that do not take its numbers."""
+            """Raise an error for a law without an outcome."""
             super().__pydantic_init_subclass__(**options)
             if not isinstance(getattr(cls, "outcome", None), Outcome):
                 raise TypeError(
                     f"{cls.__name__} has no outcome; add what it predicts, as in"
                     ' outcome = wl.Outcome("rcf_damage", unit="", of="patch"), or derive it from wl.WearLaw'
                 )
-            check_scale(cls, inspect.getattr_static(cls, "scale"), SCALES)
-            for name, arguments in TAKE_NUMBERS.items():
-                _check_arguments(cls, name, arguments)
+            check_scale(cls, SCALES)
             known = cls.__pydantic_fields__
             for name in Law.model_fields:
                 if known[name].default is None:
                     known[name] = known.pop(name)  # last where fields are shown
 
-    @model_validator(mode="after")
-    def _has_a_scale(self) -> Self:
-        check_scale(self, self.scale, SCALES)
-        return self
-
     def check_variables(self) -> None:
         """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` names no variable."""
         with Blame(self):
+            points = {"breakpoints": self.breakpoints(self.numbers) or {}, "jumps": self.jumps(self.numbers)}
             known = (*LAW_VARIABLES, *self.own_variables)
             declared = {
-                "breakpoints": (self.breakpoints(self.numbers) or {}, known),
-                "jumps": (self.jumps(self.numbers), known),
+                **{name: (variables, known) for name, variables in points.items()},
                 "monotone_in": (self.monotone_in, LAW_VARIABLES),
                 "valid_range": (self.valid_range, PATCH_VARIABLES),
             }
-        for name, (variables, allowed) in declared.items():
-            if name in ("breakpoints", "jumps"):
-                self._check_points(name, variables)
-            try:
-                check_variables(f"{self.kind} '{self.name}': `{name}`", variables, allowed)
-            except ModelError as error:
-                raise ModelError(with_origin(self, str(error))) from None
-
-    def _check_points(self, name: str, points: object) -> None:
-        """Raise a `ModelError` unless the values of each variable are a sequence, as in {"pressure": (2.1e9,)}."""
-        by_variable = points if isinstance(points, Mapping) else {"": points}
-        for values in by_variable.values():
-            if not isinstance(values, tuple | list | np.ndarray):
-                raise fault(self, f'gives {shown(points)} as `{name}`; it must be like {{"pressure": (2.1e9,)}}')
+            for name, by_variable in points.items():
+                if not all(isinstance(values, tuple | list | np.ndarray) for values in by_variable.values()):
+                    raise fault(
+                        self, f'gives {shown(by_variable)} as `{name}`; it must be like {{"pressure": (2.1e9,)}}'
+                    )
+            for name, (variables, allowed) in declared.items():
+                for variable in variables:
+                    if variable not in allowed:
+                        raise fault(
+                            self,
+                            f"names the variable {shown(variable)} in `{name}`, which is unknown"
+                            f"{did_you_mean(variable, allowed)} There are: {', '.join(allowed)}",
+                        )
 
     def __repr_args__(self) -> Any:
         inherited = Law.model_fields
@@ -320,35 +307,20 @@ class Law(Model):
         with Blame(self, p):
             rate = self.rate(contact, p)
         if type(rate) not in (np.ndarray, np.float64) or rate.dtype != np.float64:
-            raise fault(self, f"returned {self._values} of type {type_name(rate)}; it must return a float64 array")
+            raise fault(self, f"returned values of type {type_name(rate)}; it must return a float64 array")
         of_patch = self.outcome.of == "patch"
         shape = contact.rolling_speed.shape if of_patch else contact.pressure.shape
         if rate.shape != shape:
-            raise fault(
-                self,
-                f"returned {self._values} of shape {rate.shape} for"
-                f" {'patches' if of_patch else 'nodes'} of shape {shape}; it must return one"
-                f" {'value a patch' if of_patch else f'{self._values[:-1]} a node'}",
-            )
+            each = "patch" if of_patch else "node"
+            raise fault(self, f"returned values of shape {rate.shape}; it must return one a {each}, of shape {shape}")
         low, high = extremes(rate) if rate.size else (0.0, 0.0)
         if not (math.isfinite(low) and math.isfinite(high)):
             raise fault(
-                self,
-                f"returned a {self._values[:-1]} that is not finite; are its numbers, the"
-                " loads and the materials right?",
+                self, "returned a value that is not finite; are its numbers, the loads and the materials right?"
             )
         if self.zero_in_stick and not of_patch and rate[contact.slip == 0.0].any():
-            raise fault(
-                self,
-                f"gives {'wear' if self.outcome.name == WEAR else self.outcome.name} where"
-                f" the bodies stick; the {self._values[:-1]} must be zero if the slip is zero",
-            )
+            raise fault(self, "gives values where the bodies stick; they must be zero where the slip is zero")
         return rate
-
-    @property
-    def _values(self) -> str:
-        """Word for the values of `rate` in messages."""
-        return "rates" if self.outcome.name == WEAR else "values"
 
     def __ror__(self, contact: Contact) -> LocalOutcome:
         """Return the outcome in a contact solved elsewhere, as in ``Contact.from_arrays(...) | law``.
@@ -368,9 +340,6 @@ class Law(Model):
         self._warn_of_calibration(contact, scale)
         rate = self.checked_rate(contact)
         self.check_not_negative(rate)
-        return self._local(contact, rate)
-
-    def _local(self, contact: Contact, rate: Array) -> LocalOutcome:
         return LocalOutcome(contact, rate, self.outcome)
 
     def check_not_negative(self, value: Array, error: Callable[[], Array] = lambda: np.zeros(())) -> None:
@@ -478,6 +447,24 @@ class Law(Model):
         return None
 
 
+class WearLaw(Law):
+    """A law of wear: from a solved contact to the wear rate at each of its nodes.
+
+    Its `rate` is the mass lost per metre rolled and contact area [kg/m/m²]. It is not negative, and it is zero where
+    nothing slips.
+    """
+
+    kind: ClassVar[str] = "wear law"
+    outcome: ClassVar[Outcome] = Outcome(WEAR, WEAR_RATE, of="area mean")
+    zero_in_stick: ClassVar[bool] = True
+
+    if TYPE_CHECKING:  # for checkers, these methods of `Law` return wear laws
+
+        def explicit(self) -> "WearLaw": ...  # noqa: D102
+
+        def band(self) -> "tuple[WearLaw, WearLaw, WearLaw] | None": ...  # noqa: D102
+
+
 def named_outcomes(laws: Sequence[Law]) -> dict[str, int]:
     """Return the index of each law by the name of its outcome in results, such as "wear_rate".
 
@@ -488,16 +475,3 @@ def named_outcomes(laws: Sequence[Law]) -> dict[str, int]:
         name if names.count(name) == 1 else f"{name}_{law.body}": index
         for index, (name, law) in enumerate(zip(names, laws, strict=True))
     }
-
-
-def _check_arguments(law: type[Law], name: str, arguments: tuple[str, ...]) -> None:
-    """Raise a `TypeError` if a method of a law does not take these arguments."""
-    method = inspect.getattr_static(law, name)
-    rule = f"{law.__name__}.{name} must take ({', '.join(arguments)}): p holds the law's numbers in SI"
-    if isinstance(method, property | cached_property):
-        raise TypeError(f"{rule}; it is a property, make it a method")
-    if inspect.isfunction(method):
-        try:
-            inspect.signature(method).bind(*arguments)
-        except TypeError:
-            raise TypeError(f"{rule}; it takes {inspect.signature(method)}") from None

@@ -14,14 +14,13 @@ import pint
 from wearlaw.arrays.array import same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
-from wearlaw.contact.quadrature import uniform_cells
+from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
 from wearlaw.extras import load
-from wearlaw.models.contact_model import ContactModel, Scale
+from wearlaw.models.contact_model import ContactModel, LineContactModel, Scale
 from wearlaw.models.law import Law, named_outcomes
-from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.reader import Solved, flat
 from wearlaw.numerics import integrate
-from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.numerics.staged import without_stages
 from wearlaw.numerics.totals import SlipTotals, Totals
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
 
 
 PROFILE_CELLS = 200
-"""Cells of a profile along the patch."""
+"""Points of a profile along the patch, in the middles of equal cells."""
 
 FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
 
@@ -67,20 +66,25 @@ class Prediction:
     ----------
     problem : Problem
         The contact problem that the contact model solved, as SI arrays.
-    contact_model : ContactModel
-        The theory of the tangential contact, without stages.
-    scale : {"patch", "cells"}
-        Whether the laws saw the means of the patch or its cells.
     laws : tuple of Law
         The laws; empty if only the contact was predicted.
     """
 
     def __init__(self, solution: Solution) -> None:
         self.problem = solution.problem
-        self.contact_model = without_stages(solution.model)
-        self.scale: Scale = solution.model.scale
         self.laws = solution.laws
         self._solution = solution
+
+    @property
+    def contact_model(self) -> ContactModel:
+        """The theory of the tangential contact, without stages."""
+        return without_stages(self._solution.model)
+
+    @property
+    def scale(self) -> Scale:
+        """Whether the laws saw the means of the patch or its cells, "patch" or "cells"."""
+        scale: Scale = self._solution.model.scale
+        return scale
 
     @classmethod
     def of(cls, contact: Contact, law: Law, /, *more: Law) -> Prediction:
@@ -488,14 +492,16 @@ class Prediction:
         return along_patch(self.problem, columns)
 
     def _cells(self) -> Contact:
-        """Return the contact of the existing patches, on uniform cells if the model can give them."""
+        """Return the contact of the existing patches, at equal distances if the model can give them."""
         model, problem = self._solution.model, self.problem
         problem.needs("line", "profile")
         if problem.size == 0:
             raise InputError("profile: none of these patches exists; select others")
         if self.scale == "cells" and isinstance(model, LineContactModel):
             there = problem.existing()
-            return Solver(model).at(there, uniform_cells(there.half_width, PROFILE_CELLS), totals=False)
+            share = (2.0 * np.arange(PROFILE_CELLS) + 1.0) / PROFILE_CELLS - 1.0
+            nodes = Nodes.at(share * there.half_width[..., None], there.half_width)
+            return Solver(model).at(there, nodes, totals=False)
         return self.contact if problem.exists is None else self.contact[problem.exists]
 
     def wear_profile(self, body: str, strips: int | None = None, at: QuantityLike | None = None) -> xarray.Dataset:

@@ -145,7 +145,7 @@ def test_a_law_in_a_file_stands_first_and_its_python_reads_it(
     monkeypatch.chdir(tmp_path)
     Path("law.toml").write_text('[wear_law]\nmodel = "usfd"\nq_s = "22 ug/m/mm^2"\n', encoding="utf-8")
     subject = named("twin_disc", ["law.toml"])
-    code = 'wl.read_wear_law("law.toml")'
+    code = 'wl.read_law("law.toml")'
     assert next(iter(subject.laws)) == code
     one = Answer(subject, 'wl.contact_model("global")', [code], together(subject.rig.example, {"creepage": "3 %"}))
     assert one.predictions[code].wear_rate.m_as("ug/m/mm^2") == pytest.approx(22.0)  # the severe plateau
