@@ -52,7 +52,7 @@ FIELDS = ("traction", "pressure", "slip")
 """Fields of a patch that is not a line; the first is shown if none is named."""
 
 SIDE = 9
-"""Corners along each side of a cell of an ellipse."""
+"""Corners along each side of a cell."""
 
 
 def draw(prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
@@ -237,7 +237,7 @@ def fields_of(prediction: Prediction) -> xarray.Dataset:
 def cells(prediction: Prediction) -> Array:
     """Return the outlines of the cells of a patch [mm], of shape (cells, corners, 2), which fill it up to its edge.
 
-    The cells of an ellipse have bent sides, which lie on its edge at both ends of a strip.
+    Their sides are bent like the edge: that of an ellipse, or else a smooth one through the ends of the strips.
     """
     contact, problem = prediction.contact, prediction.problem
     shape = contact.pressure.shape[-2:]
@@ -245,13 +245,16 @@ def cells(prediction: Prediction) -> Array:
     length = contact.area.reshape(shape) / width
     left, right = _ends(contact.x.reshape(shape), length)
     low, high = _ends(np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0], width)
+    bend = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, SIDE))[:, None]
+    y = low + (high - low) * bend
+    half_length = 0.5 * length.sum(axis=0)
     if problem.geometry == "ellipse":
-        a, b = float(problem.a), float(problem.b)
-        angle = np.linspace(*(np.arcsin(np.clip(end / b, -1.0, 1.0)) for end in (low, high)), SIDE)
-        y, half_length = b * np.sin(angle), a * np.cos(angle)
-        stretch = half_length / np.maximum(0.5 * length.sum(axis=0), np.finfo(float).tiny)
+        edge = problem.a * np.sqrt(np.maximum(1.0 - (y / problem.b) ** 2, 0.0))
     else:
-        y, stretch = np.stack([low, high]), np.ones((2, 1))
+        order = np.argsort(low)
+        places = np.concatenate([[low.min()], 0.5 * (low + high)[order], [high.max()]])
+        edge = np.sqrt(np.interp(y, places, np.concatenate([[0.0], half_length[order] ** 2, [0.0]])))
+    stretch = edge / np.maximum(half_length, np.finfo(float).tiny)
     y, stretch = y[:, None], stretch[:, None]  # (places along a side, nodes, strips)
     sides = [np.stack(np.broadcast_arrays(end * stretch, y), axis=-1) for end in (left, right)]
     outlines = np.concatenate([sides[0], sides[1][::-1]])
