@@ -9,9 +9,8 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
-from itertools import count
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, sleep
 from typing import Any
 
 import numpy as np
@@ -121,11 +120,20 @@ def test_an_ellipse_answers_within_a_fifth_of_a_second() -> None:
 
 
 def test_a_slow_contact_has_no_curve_and_waits_for_the_release_of_a_slider(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw_explore._page.perf_counter", count(step=8.0).__next__)  # as elements on half-spaces
-    page = Page(named("wheel_rail"), {})
+    subject = named("wheel_rail")
+    predict = subject.predict
+
+    def late(*arguments: Any) -> dict[str, wl.Prediction]:
+        sleep(0.4)  # elements on half-spaces take longer
+        return predict(*arguments)
+
+    monkeypatch.setattr(subject, "predict", late)
+    page = Page(subject, {})
     assert page.curves == {}
     page.sliders["normal_force"].value = 81.0
     assert "normal_force='80 kN'" in page.python.object
+    page._update()
+    assert "normal_force='81 kN'" in page.python.object
 
 
 def test_a_wheelset_shows_its_profiles_their_contacts_and_the_wear_across() -> None:
