@@ -121,7 +121,7 @@ def _texts(annotation: Any) -> Iterator[str]:
 
 def published() -> Iterator[tuple[wl.WearLaw, dict[str, str]]]:
     """Yield the shipped wear laws in all their sets, each with what chooses the set."""
-    found = installed().wear_laws
+    found = installed()["wear law"]
     for name, law in found.items().items():
         if found.origin(name).distribution == "wearlaw":
             fields = options(law)
@@ -135,7 +135,7 @@ def published() -> Iterator[tuple[wl.WearLaw, dict[str, str]]]:
 
 def left_out() -> set[str]:
     """Return the names of the shipped wear laws without values of their own."""
-    found = installed().wear_laws
+    found = installed()["wear law"]
     shipped = {name for name in found.items() if found.origin(name).distribution == "wearlaw"}
     return shipped - {law.name for law, _ in published()}
 

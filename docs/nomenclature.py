@@ -20,7 +20,7 @@ from wearlaw_wheelset._rig import WheelsetProblem
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
-CLASSES = (wl.Problem, wl.Contact, wl.Prediction, wl.LocalWear, wl.CreepForces, wl.Body, WheelsetProblem)
+CLASSES = (wl.Problem, wl.Contact, wl.Prediction, wl.CreepForces, wl.Body, WheelsetProblem)
 OF_ANY_UNIT = ("outcome", "outcome_error", "value", "local_value")
 """Quantities of a law, whose unit is that of its outcome."""
 
@@ -84,11 +84,11 @@ def falling_friction() -> wl.FallingFriction:
 def shipped_models() -> Iterator[wl.Law | wl.ContactModel]:
     """Yield the models that ship with wearlaw, with their defaults, and laws with numbers in place of names."""
     found = installed()
-    for name, model in found.contact_models.items().items():
-        if found.contact_models.origin(name).distribution == "wearlaw":
+    for name, model in found["contact model"].items().items():
+        if found["contact model"].origin(name).distribution == "wearlaw":
             yield model()
-    for name, law in found.wear_laws.items().items():
-        if found.wear_laws.origin(name).distribution == "wearlaw":
+    for name, law in found["wear law"].items().items():
+        if found["wear law"].origin(name).distribution == "wearlaw":
             yield from (law(**fields).explicit() for fields in WITHOUT_DEFAULTS.get(name, ({},)))
 
 

@@ -46,9 +46,9 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
     def write(name: str, source: str, version: str = "1.0") -> None:
         write_distribution(tmp_path, name, source, version)
         importlib.invalidate_caches()
-        loader._search.cache_clear()
+        loader._FOUND.clear()
 
-    loader._search.cache_clear()
+    loader._FOUND.clear()
     yield write
     for module in set(sys.modules) - known:
         if (
@@ -56,7 +56,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install
             and tmp_path in Path(str(sys.modules[module].__file__)).parents
         ):
             del sys.modules[module]
-    loader._search.cache_clear()
+    loader._FOUND.clear()
 
 
 @pytest.fixture

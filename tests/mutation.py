@@ -55,7 +55,7 @@ TESTS = {
     "wearlaw_wlrm": "plugins/wlrm/test_wlrm.py",
     "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py"
     " plugins/wheel_rail/test_wheel_rail.py plugins/wheel_rail/test_result.py"
-    " core/test_unlike_materials.py core/test_several_patches.py",
+    " core/test_unlike_materials.py core/test_several_patches.py core/test_outcomes.py",
     "wearlaw.contact.hertz": "core/test_hertz.py core/test_unlike_materials.py",
     "wearlaw.contact.hertz_ellipse": "core/test_hertz_ellipse.py",
     "wearlaw.numerics.splits": "core/test_splits.py",
@@ -63,8 +63,9 @@ TESTS = {
     "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py plugins/fits/test_uncertainty.py"
     " plugins/fits/test_uncertainty_refusals.py plugins/sweeps/test_inverse.py"
     " plugins/wheel_rail/test_wheel_rail.py plugins/wheel_rail/test_result.py core/test_models.py",
-    "wearlaw.contact.contact": "core/test_records.py core/test_contact_from_arrays.py core/test_elliptic_contact.py"
-    " core/test_several_patches.py plugins/fastsim/test_given_strips.py",
+    "wearlaw.contact.contact": "core/test_contact_from_arrays.py core/test_elliptic_contact.py core/test_records.py"
+    " plugins/fastsim/test_given_strips.py core/test_several_patches.py core/test_outcomes.py"
+    " core/test_materials.py core/test_scale.py core/test_blame.py",
     "wearlaw_archard.coefficients": "plugins/archard/test_wear_coefficients.py",
     "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py",
 }

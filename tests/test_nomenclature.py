@@ -83,26 +83,18 @@ def test_all_quantities_of_results_are_in_the_table_with_a_unit_of_their_dimensi
 ) -> None:
     predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact")
     r = predict(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.46)
-    node: dict[str, wl.QuantityLike] = {
-        "pressure": "1 GPa",
-        "traction": wl.Q([0.4], "GPa"),
-        "slip": "1 %",
-        "area": "1 mm^2",
-    }
-    local = wl.Contact.from_arrays(**node, rolling_speed="1 m/s") | wl.wear_law("usfd")
     roll = nomenclature.wheel_rail() | wl.contact_model("fastsim") | wl.wear_law("kth")
     on_rail = roll(normal_force="80 kN", longitudinal_creepage="1 %", friction_coefficient=0.3)
     values = {
         **quantities(r, wl.Prediction),
         **quantities(on_rail, wl.Prediction),
-        **quantities(local, wl.LocalWear),
         ("Prediction", "wear_rate_of"): r.wear_rate_of("disc_1"),
         ("Prediction", "depth_per_distance"): r.depth_per_distance("disc_1"),
         ("Prediction", "profile_area_rate"): r.profile_area_rate("disc_1"),
         ("Prediction", "mass_lost"): r.mass_lost("1 km", "disc_1"),
         ("Prediction", "mass_per_cycle"): r.mass_per_cycle("disc_1"),
     }
-    results = ("Prediction", "LocalWear")
+    results = ("Prediction",)
     units = {(one.where, one.name): one.unit for one in documented if one.where in results}
     of_known_unit = {place: value for place, value in values.items() if place[1] not in nomenclature.OF_ANY_UNIT}
     assert units.keys() == of_known_unit.keys()

@@ -77,7 +77,7 @@ def test_every_shipped_contact_model_and_law_can_be_chosen() -> None:
     plugins = installed()
     shipped = [
         name
-        for kind in (plugins.contact_models, plugins.wear_laws, plugins.laws)
+        for kind in map(plugins.__getitem__, ("contact model", "wear law", "law"))
         for name in kind.items()
         if kind.origin(name).distribution == "wearlaw"
     ]

@@ -56,17 +56,17 @@ def test_everything_that_comes_with_wearlaw_comes_by_the_hooks_of_plugins(monkey
     }
     assert {name for name, found in implemented.items() if not found or found - hooks} == set()
     monkeypatch.setattr(loader, "_entry_points", lambda: iter(()))
-    loader._search.cache_clear()
+    loader._FOUND.clear()
     try:
         assert loader.installed().listing() == []
     finally:
-        loader._search.cache_clear()
+        loader._FOUND.clear()
 
 
 def shipped_laws() -> dict[str, type[wl.Law]]:
     return {
         name: law
-        for shelf in (loader.installed().wear_laws, loader.installed().laws)
+        for shelf in (loader.installed()["wear law"], loader.installed()["law"])
         for name, law in shelf.items().items()
         if shelf.origin(name).distribution == "wearlaw"
     }

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop
-from wearlaw.contact import elastic_limit, half_space, hertz, hertz_ellipse, kalker
+from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
 from wearlaw.contact.conditions import Coefficient, Condition, Creepage, FallingFriction, Friction
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
 from wearlaw.contact.material import Material, steel
@@ -45,13 +45,19 @@ from wearlaw.errors import (
 )
 from wearlaw.extras import load as _load
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
-from wearlaw.models.contact_model import Claim, ContactModel, CreepForceModel, Scale
-from wearlaw.models.functions import as_wear_law
-from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome
-from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
+from wearlaw.models.contact_model import (
+    ContactModel,
+    CreepForceModel,
+    FieldVariable,
+    Forces,
+    LineContactModel,
+    Scale,
+    Solve,
+    Stage,
+)
+from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome, WearLaw
+from wearlaw.models.model import Claim
 from wearlaw.models.reader import Reader
-from wearlaw.models.stage import Forces, Solve, Stage
-from wearlaw.models.wear_law import LocalWear, WearLaw
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.plugins.fields import ContactModelField, LawField, MaterialField, StageField, WearLawField
@@ -137,7 +143,6 @@ __all__ = [
     "LineContactModel",
     "LineFields",
     "LocalOutcome",
-    "LocalWear",
     "Material",
     "MaterialField",
     "ModelError",
@@ -187,7 +192,6 @@ __all__ = [
     "__version__",
     "accelerate",
     "accelerated",
-    "as_wear_law",
     "beside",
     "coefficient",
     "compare",
@@ -198,7 +202,6 @@ __all__ = [
     "elastic_limit",
     "explore",
     "fit",
-    "half_space",
     "hertz",
     "hertz_ellipse",
     "hookimpl",
@@ -219,7 +222,6 @@ __all__ = [
     "read_law",
     "read_table",
     "read_tests",
-    "read_wear_law",
     "readers",
     "rig",
     "rigs",
@@ -239,7 +241,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from wearlaw.plugins.law_files import read_law, read_wear_law
+    from wearlaw.plugins.law_files import read_law
     from wearlaw_archard.coefficients import wear_coefficient
     from wearlaw_contact_files._reading import read_contact
     from wearlaw_explore._page import explore
@@ -263,7 +265,6 @@ if TYPE_CHECKING:
 _LATE = {
     "creepage_for": "wearlaw_sweeps.inverse",
     "read_law": "wearlaw.plugins.law_files",
-    "read_wear_law": "wearlaw.plugins.law_files",
     "wear_coefficient": "wearlaw_archard.coefficients",
     "read_contact": "wearlaw_contact_files._reading",
     "explore": "wearlaw_explore._page",

@@ -11,9 +11,11 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
+from threading import RLock
 
 import numpy as np
 
@@ -204,20 +206,32 @@ def warn(message: str | Warning, category: type[Warning] | None = None) -> None:
     warnings.warn(message, category, stacklevel=level)
 
 
-def message_of(error: BaseException) -> str:
-    """Return the message of an exception, or a remark if its `__str__` fails, which can happen in a plugin."""
-    try:
-        return str(error)
-    except KeyboardInterrupt:
-        raise
-    except BaseException as another:
-        return f"(its message cannot be shown: {type(another).__name__})"
+_CATCHING = RLock()
+
+
+@contextmanager
+def caught_warnings(*kinds: type[Warning]) -> Iterator[list[Warning]]:
+    """Yield a list that holds the warnings of some kinds, by default all of wearlaw's, when the context ends.
+
+    All other warnings are shown as ever. Python's `catch_warnings` changes settings of the process, and two threads
+    that enter it at once leave the changes behind, so one thread at a time enters it here.
+    """
+    kept = kinds or (WearlawWarning,)
+    found: list[Warning] = []
+    with _CATCHING, warnings.catch_warnings(record=True) as caught:
+        for kind in kept:
+            warnings.simplefilter("always", kind)
+        yield found
+    for one in caught:
+        if issubclass(one.category, kept):
+            found.append(one.message)  # type: ignore[arg-type]
+        else:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
 
 
 def described(error: BaseException) -> str:
     """Return the type and the message of an exception."""
-    message = message_of(error)
-    return f"{type(error).__name__}: {message}" if message else type(error).__name__
+    return f"{type(error).__name__}: {error}".removesuffix(": ")
 
 
 def with_problems(head: str, problems: Iterable[object]) -> str:

@@ -13,8 +13,8 @@ import pluggy
 
 if TYPE_CHECKING:
     from wearlaw.contact.material import Material
-    from wearlaw.models.contact_model import Model
-    from wearlaw.models.wear_law import WearLaw
+    from wearlaw.models.law import WearLaw
+    from wearlaw.models.model import Model
 
 PROJECT = "wearlaw"
 

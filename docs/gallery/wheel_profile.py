@@ -5,16 +5,8 @@ import matplotlib.pyplot as plt
 import wearlaw as wl
 from wearlaw import Q
 
-
-@wl.as_wear_law(
-    inputs={"wear_index_density": "N/mm^2"}, returns="ug/m/mm^2", breakpoints={}, source="USFD's mild regime"
-)
-def energy_law(wear_index_density):
-    return 5.3 * wear_index_density
-
-
 rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
-predict = rig | wl.contact_model("fastsim") | energy_law
+predict = rig | wl.contact_model("fastsim") | wl.wear_law("energy", mass_per_energy="5.3 ug/J")
 
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 for spin, line in zip((0.0, 0.3, 0.6), ("-", "--", ":"), strict=True):

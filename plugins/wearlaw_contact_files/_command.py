@@ -11,7 +11,6 @@ import pandas as pd
 
 from wearlaw.contact.contact import Contact
 from wearlaw.models.law import Law
-from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.plugins.fields import specification
 from wearlaw.units.variables import readable
@@ -29,6 +28,7 @@ from wearlaw_output.commands import (
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import named, write_files, written_formats
 from wearlaw_output.folder import results_folder
+from wearlaw_output.notes import Notes
 
 NUMBER = 10
 """Most characters of a printed number."""

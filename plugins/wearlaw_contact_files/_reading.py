@@ -15,13 +15,10 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Body, Problem, Strips
 from wearlaw.errors import DataError, InputError, ModelError, UnknownModelError, did_you_mean, shown
-from wearlaw.models.contact_model import Blame, fault
-from wearlaw.models.reader import Reader
-from wearlaw.numerics.solved import Solved, flat
+from wearlaw.models.model import Blame, fault
+from wearlaw.models.reader import Reader, Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.plugins import loader
-from wearlaw.plugins.loader import unknown
-from wearlaw.settings.text_files import read_start
 
 File: TypeAlias = str | os.PathLike[str]
 """The path of a file."""
@@ -68,7 +65,7 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
 def _read(path: Path, name: str | None, options: dict[str, Any]) -> Contact:
     """Return the contact in a file, checked."""
     head = _head(path)
-    reader = (_recognised(path, head) if name is None else _by_name(name))(**options)
+    reader = (_recognised(path, head) if name is None else loader.installed().find("reader", name))(**options)
     with Blame(reader):
         contact = reader.read(path)
     if not isinstance(contact, Contact) or contact.problem is None:
@@ -84,31 +81,27 @@ def _read(path: Path, name: str | None, options: dict[str, Any]) -> Contact:
 def _head(path: Path) -> bytes:
     """Return the first bytes of a file."""
     try:
-        return read_start(path, HEAD)
+        with path.open("rb") as file:
+            return file.read(HEAD)
     except FileNotFoundError:
         beside = sorted(one.name for one in path.parent.glob(f"[!.]*{escape(path.suffix)}"))
         raise DataError(f"there is no file {shown(path)}{did_you_mean(path.name, beside)}") from None
-    except InputError as error:
-        raise DataError(f"cannot read {shown(path)}: {error}") from None
-
-
-def _by_name(name: str) -> type[Reader]:
-    found = loader.installed()
-    return found.readers.find(name, found.broken)
+    except OSError as error:
+        raise DataError(f"cannot read {shown(path)}: {error.strerror}") from None
 
 
 def _recognised(path: Path, head: bytes) -> type[Reader]:
     """Return the one reader for the ending and the content of a file."""
     found = loader.installed()
-    shelf = found.readers
-    by_ending = {
+    shelf = found["reader"]
+    by_ending: dict[str, list[tuple[type[Reader], Any]]] = {
         name: [(one, origin) for one, origin in providers if path.suffix.lower() in one.suffixes]
         for name, providers in shelf.providers.items()
     }
     candidates = [(name, one, origin) for name, some in by_ending.items() for one, origin in some]
     if not candidates:
         endings = sorted({suffix for one in shelf.items().values() for suffix in one.suffixes})
-        known = unknown("reader", path.suffix or path.name, shelf.items(), found.broken).partition("Installed: ")[2]
+        known = found.unknown("reader", path.suffix or path.name, shelf.items()).partition("Installed: ")[2]
         raise DataError(
             f"cannot read {shown(path)}: no reader reads files that end in {shown(path.suffix)}; those of the"
             f" installed readers end in {', '.join(endings) or 'nothing'}. Installed: {known}. If it is a file of"

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from wearlaw.models.model import labelled
 
 import wearlaw as wl
-from wearlaw.models.labels import labelled
-from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.prediction import SHOWN
 from wearlaw.pipeline.several import composed
 from wearlaw.units.variables import name_of
+from wearlaw_output.notes import Notes
 
 MEANS: Any = wl.patch_mean()
 """The stage for a law of patch means."""

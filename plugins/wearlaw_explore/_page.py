@@ -19,13 +19,13 @@ from bokeh.plotting import figure
 import wearlaw as wl
 from wearlaw.contact.conditions import Known
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.plugins.law_files import is_law_file
 from wearlaw.units.variables import VARIABLES, label, name_of
 from wearlaw_explore._models import Subject, by_patch, largest, numbered, numbers
 from wearlaw_output.commands import echo, values
 from wearlaw_output.drawing import PALETTE
+from wearlaw_output.notes import Notes
 from wearlaw_output.pictures import cells, fields_of
 from wearlaw_studies.case import load_case
 
@@ -311,7 +311,7 @@ def named(rig: str, chosen: Iterable[str] = ()) -> Subject:
     """Return an installed rig with example values, or that of a case with its models and laws; with chosen laws."""
     laws = {}
     for name in chosen:
-        read = wl.read_wear_law if is_law_file(name) else wl.wear_law
+        read = wl.read_law if is_law_file(name) else wl.wear_law
         laws[read(name)] = f"wl.{read.__name__}({name!r})"
     found = wl.rigs().get(rig)
     if found is not None:

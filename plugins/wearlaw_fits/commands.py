@@ -12,7 +12,6 @@ import click
 
 from wearlaw.errors import FitError, PlasticityWarning, shown
 from wearlaw.models.law import Law
-from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import numbers
 from wearlaw.units.quantities import text_of
@@ -40,6 +39,7 @@ from wearlaw_output.commands import (
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import CommandT, named, write_files, written_formats
 from wearlaw_output.folder import results_folder
+from wearlaw_output.notes import Notes
 from wearlaw_sweeps.progress import Bar
 
 FIT, COMPARISON, LAW = "fit.json", "comparison.json", "law.toml"

@@ -18,16 +18,14 @@ from wearlaw.errors import (
     InputError,
     PlasticityWarning,
     RangeWarning,
+    caught_warnings,
     did_you_mean,
     shown,
 )
-from wearlaw.models.contact_model import Model
-from wearlaw.models.labels import labels
 from wearlaw.models.law import WEAR, Law, named_outcomes
-from wearlaw.pipeline.notes import Notes
+from wearlaw.models.model import Model, labels
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.arguments import expect
-from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
 from wearlaw.units.variables import label, name_of
 from wearlaw_fits.agreement import Agreement, Information, agreement
@@ -38,6 +36,7 @@ from wearlaw_fits.observations import test_names
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.curves import BLACK, Curve, FigureData
+from wearlaw_output.notes import Notes
 from wearlaw_output.parity import parity_panels
 from wearlaw_output.plot import plot
 from wearlaw_sweeps.progress import Bar

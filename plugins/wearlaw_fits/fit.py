@@ -448,7 +448,7 @@ def _provenance(
     """Return the provenance of a fit, as a TOML table; it holds the stages with their fitted numbers."""
     model = predict.contact_model
     found = loader.installed()
-    origins = [(law, found.of_kind(law.kind).distribution(law.name, type(law))) for law in predict.laws]
+    origins = [(law, found[law.kind].distribution(law.name, type(law))) for law in predict.laws]
     origin: dict[str, Any] = {law.kind.replace(" ", "_"): where for law, where in origins[:1]}
     if len(origins) > 1:
         origin = {"laws": {law.name: where for law, where in origins}}
@@ -456,7 +456,7 @@ def _provenance(
     return {
         "wearlaw": __version__,
         **origin,
-        "contact_model": found.contact_models.distribution(model.name, type(model)),
+        "contact_model": found["contact model"].distribution(model.name, type(model)),
         **({"stages": stages} if stages else {}),
         "tests": task.tests.source,
         "measurements": {one.observable: one.measured.size for one in task.observations},

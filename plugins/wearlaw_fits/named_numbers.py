@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import CompositionError, InputError, shown
-from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
-from wearlaw.models.stage import Stage
 from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.settings.parameters import changed, number_like, numbers

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from wearlaw.errors import CompositionError, InputError
-from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, Outcome
-from wearlaw.models.stage import Stage
 from wearlaw.pipeline.composition import TAKE_MEANS
-from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.several import composed
+from wearlaw_output.notes import Notes
 
 
 @dataclass(frozen=True)

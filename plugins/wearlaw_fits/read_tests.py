@@ -69,14 +69,14 @@ def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
         If there is no such file and no such tests, or the file is not text.
     """
     found = loader.installed()
-    if path_or_name in found.resources["test set"].providers:
-        text: str = found.resources["test set"].find(str(path_or_name), found.broken)
+    if path_or_name in found["test set"].providers:
+        text: str = found.find("test set", str(path_or_name))
         return text
     path = Path(path_or_name)
     try:
         return read_text(path, LARGEST)
     except FileNotFoundError:
-        shipped = list(found.resources["test set"].items())
+        shipped = list(found["test set"].items())
         beside = sorted(one.name for one in path.parent.glob("*.csv")) if path.parent.is_dir() else []
         hint = did_you_mean(path.name, [*beside, *shipped])
         raise DataError(f"there is no file {shown(path)}{hint} Shipped tests: {', '.join(shipped) or 'none'}") from None

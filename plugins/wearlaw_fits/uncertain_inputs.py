@@ -12,8 +12,8 @@ import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, did_you_mean, shown
+from wearlaw.models.contact_model import Stage
 from wearlaw.models.law import Law
-from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.settings.parameters import changed, number_in_si, number_like, numbers
 from wearlaw.units.quantities import Unit, coefficient, from_si

@@ -10,6 +10,7 @@ from pydantic import Field
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw_half_space._influence import influence as influence
 from wearlaw_half_space._patch import Patch
 
 SETTLED, ROUNDS = 1e-7, 100

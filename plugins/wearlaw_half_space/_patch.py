@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import wearlaw as wl
 from wearlaw import Array
+from wearlaw_half_space._influence import influence
 
 MISS = 1e-10
 """Traction that is left to correct, over the greatest bound."""
@@ -50,7 +50,7 @@ class Patch:
         """Area of each element."""
         # All pairs of rows, at each distance along x and at one more.
         between = np.arange(-len(x), len(x)) * self.step
-        tables = wl.half_space.influence(between, (y[:, None] - y)[..., None], self.step, width[:, None], poisson_ratio)
+        tables = influence(between, (y[:, None] - y)[..., None], self.step, width[:, None], poisson_ratio)
         place = (row[:, None] * len(y) + row) * (len(between) - 1) + (column[:, None] - column + len(x) - 1)
         along, across, mixed = (
             np.take(np.diff(table, axis=-1).ravel() / (math.pi * self.step), place) for table in tables

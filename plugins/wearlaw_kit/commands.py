@@ -6,18 +6,17 @@ import shlex
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import click
 
 from wearlaw.cli.show import accuracies
-from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, message_of, shown
-from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, shown
+from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
+from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import is_law_file, read_law
-from wearlaw.plugins.loader import Shelf, unknown
 from wearlaw_kit.kit import Check, checks, validate_expected
 from wearlaw_kit.scaffold import Kind, write_plugin
 from wearlaw_output.commands import echo, fields, values
@@ -115,7 +114,7 @@ def _outcome(check: Check, expected: str | None) -> str:
         if expected is not None:
             echo(f"failed as expected {check.name}: {expected}")
             return "failed as expected"
-        reason = message_of(error) or check.doc
+        reason = str(error) or check.doc
         echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
         return "failed"
     if expected is not None:
@@ -130,16 +129,12 @@ def _installed(name: str) -> type[Model] | Law:
     if is_law_file(name):
         return read_law(name)
     found = loader.installed()
-    models = (found.wear_laws, found.laws, found.contact_models, found.stages, found.rigs, found.readers)
-    shelves: tuple[Shelf[Any], ...] = (*models, found.parameter_sets)
-    for shelf in shelves:
-        if name in shelf.providers:
-            model: type[Model] | Law = shelf.find(name, found.broken)
+    kinds = ("wear law", "law", "contact model", "stage", "rig", "reader", "parameter set")
+    for kind in kinds:
+        if name in found[kind].providers:
+            model: type[Model] | Law = found.find(kind, name)
             return model
-    for shelf in found.shelves():
+    for kind, shelf in found.shelves.items():
         if name in shelf.providers:
-            raise UnknownModelError(
-                f"{shown(name)} is a {shelf.kind}, which has no checks; wearlaw show {name} explains it"
-            )
-    known = [one for shelf in shelves for one in shelf.items()]
-    raise UnknownModelError(unknown("model", name, known, found.broken))
+            raise UnknownModelError(f"{shown(name)} is a {kind}, which has no checks; wearlaw show {name} explains it")
+    raise UnknownModelError(found.unknown("model", name, [one for kind in kinds for one in found[kind].items()]))

@@ -11,8 +11,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact import hertz, hertz_ellipse
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import CreepForces, Problem
-from wearlaw.models.contact_model import QUADRATURE, ContactModel
-from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel
 from wearlaw.numerics.integrate import integrate_laws
 from wearlaw.plugins import loader
 from wearlaw_kit.bisection import lost_digits

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from wearlaw.errors import InputError, WearlawWarning, did_you_mean
-from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
-from wearlaw.models.stage import Stage
+from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw_kit import (  # each registers its rules  # noqa: F401
     contact,

@@ -14,8 +14,7 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact
 from wearlaw.errors import WearlawError
-from wearlaw.models.law import Law, Numbers
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import Law, Numbers, WearLaw
 from wearlaw.settings.parameters import changed, number_like, numbers
 from wearlaw.units.quantities import Quantity
 from wearlaw_kit.examples import SAME, assert_close

@@ -21,9 +21,7 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import join
-from wearlaw.models.contact_model import QUADRATURE, ContactModel
-from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.models.stage import Stage
+from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel, Stage
 from wearlaw.numerics.staged import staged
 from wearlaw.plugins import loader
 from wearlaw_kit.examples import SAME, assert_close, failing, for_each

@@ -7,7 +7,7 @@ import operator
 import numpy as np
 
 from wearlaw.contact.problem import Problem
-from wearlaw.models.stage import Stage
+from wearlaw.models.contact_model import Stage
 from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.numerics.solving import Solver
 from wearlaw_kit.contact import assert_digits, assert_finite

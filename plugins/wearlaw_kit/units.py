@@ -11,10 +11,9 @@ import pint
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import accelerate
 from wearlaw.errors import InputError
-from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.contact_model import ContactModel, LineContactModel, Stage
 from wearlaw.models.law import Law
-from wearlaw.models.line_contact_model import LineContactModel
-from wearlaw.models.stage import Stage
+from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.units.quantities import Q
 from wearlaw_kit.examples import assert_close

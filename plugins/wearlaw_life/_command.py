@@ -10,12 +10,12 @@ import click
 import pandas as pd
 
 import wearlaw as wl
-from wearlaw.pipeline.notes import Notes
 from wearlaw_life._life import Life
 from wearlaw_output.commands import echo, folder_for, print_notes, print_results, value, values
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import write_files, written_formats
 from wearlaw_output.folder import results_folder
+from wearlaw_output.notes import Notes
 from wearlaw_studies.case import load_case
 
 LIFE = "life.json"
@@ -28,7 +28,7 @@ LIFE = "life.json"
 @click.option("--over", required=True, metavar="DISTANCE", help='Distance, as in "100000 km"; passages for a rail.')
 @click.option("--share", default="share", show_default=True, help="Column of LINE with the shares of the distance.")
 @click.option("--set", "conditions", metavar="CONDITION=VALUE", multiple=True, help="Condition of all states.")
-@click.option("--until", "limits", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
+@click.option("--until", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
 @click.option("--body", default="wheel", show_default=True, help="The body that wears: wheel or rail.")
 @click.option("--sides", type=click.Choice(["mean", "each"]), default="mean", show_default=True,
               help="Whether both sides wear by their mean, or each for itself.")  # fmt: skip
@@ -43,19 +43,13 @@ def life(
     case: str,
     line: Path,
     over: str,
-    share: str,
     conditions: tuple[str, ...],
-    limits: tuple[str, ...],
-    body: str,
-    sides: Any,
-    workers: int,
-    depth_step: str,
-    smoothing: str,
-    resume: bool,
+    until: tuple[str, ...],
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
+    **options: Any,
 ) -> None:
     """Wear a profile over a distance: CASE is a case file with a rig, LINE a table of states with their shares.
 
@@ -70,17 +64,16 @@ def life(
     folder = output if output is not None else folder_for(str(line), "life")
     partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
     loaded, notes = load_case(case), Notes()
-    given: dict[str, Any] = values("--set", conditions)
+    options |= values("--set", conditions)
     with results_folder(folder, overwrite, LIFE) as fresh:
         with notes.of("life"):
-            pipeline = loaded.rig | loaded.contact_models[0]
+            predict: wl.Pipeline[...] = loaded.rig | loaded.contact_models[0]
             for stage in loaded.stages:
-                pipeline = pipeline | stage
-            predict = pipeline | loaded.wear_laws[0]
+                predict = predict | stage
+            predict = predict | loaded.wear_laws[0]
             found = wl.wear_out(
-                predict, line, over=value(over) if body == "rail" else over, share=share,
-                until=values("--until", limits), body=body, sides=sides, depth_step=depth_step, smoothing=smoothing,
-                workers=workers, store=partial, resume=resume, progress=True, **given,
+                predict, line, over=value(over), until=values("--until", until), store=partial, progress=True,
+                **options,
             )  # fmt: skip
         laws = [repr(law) for law in found.pipeline.laws]
         record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": notes.texts}
@@ -94,12 +87,11 @@ def life(
 
 def _tables(found: Life) -> dict[str, pd.DataFrame]:
     """Return the measures, the profiles at each step, and the last ones, by the names of their files."""
-    profiles = found.profiles
-    columns = profiles.reset_coords("body", drop=True).to_dataframe().reset_index()
-    units = {name: profiles[name].attrs.get("units", "") for name in columns}
-    heads = {name: f"{name} [{unit}]".removesuffix(" []") for name, unit in units.items()}
-    tables = {"life": found.table, "profiles": columns.rename(columns=heads)}
-    for side, profile in zip(found.sides, found.worn_profiles[-1], strict=True):
+    profiles = found.profiles.drop_vars("body")
+    units = {name: one.attrs.get("units") for name, one in profiles.variables.items()}
+    heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit}
+    tables = {"life": found.table, "profiles": profiles.to_dataframe().reset_index().rename(columns=heads)}
+    for side, profile in zip(profiles["side"].values, found.worn_profiles[-1], strict=True):
         y, z = (value.magnitude for value in profile.points)
         tables["worn" if side == "mean" else f"worn_{side}"] = pd.DataFrame({"y [mm]": y, "z [mm]": z})
     return tables

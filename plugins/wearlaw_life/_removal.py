@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
@@ -12,14 +12,16 @@ import wearlaw as wl
 from wearlaw import Array
 
 if TYPE_CHECKING:
-    from wearlaw_wheelset import Profile  # or what has its `curve`, `kind`, `points` and `worn`
-
+    from wearlaw_wheelset import Profile  # or what has its `curve`, `kind`, `points`, `worn`, `depth_to` and `measures`
 
 ACCURACY = 5e-11
 """Share of the predicted mass by which the removed one may differ, after the factor."""
 
 STEPS = 6
 """Most steps of the secant method for the factor; two are usual."""
+
+EDGE = 1e-3
+"""Share of the deepest wear at an end of a profile that says that the profile is too short."""
 
 
 def positions(profiles: Sequence[Profile], count: int) -> Array:
@@ -30,26 +32,18 @@ def positions(profiles: Sequence[Profile], count: int) -> Array:
 
 def even(profile: Profile) -> Profile:
     """Return a profile with points at even arc lengths."""
-    s = profile.curve.s
-    return profile.worn(wl.Q(1e3 * s[[0, -1]], "mm"), "0 mm")
+    return profile.worn(wl.Q(1e3 * profile.curve.s[[0, -1]], "mm"), "0 mm")
 
 
 def smoothed(depth: Array, at: Array, length: float) -> Array:
-    """Return depths smoothed by a Gaussian kernel; their sum stays.
+    """Return depths at even positions [m], smoothed by a Gaussian kernel of a standard deviation [m]; their sum stays.
 
-    Parameters
-    ----------
-    depth : ndarray, (..., positions)
-        Depths at even positions, in any unit.
-    at : ndarray, (positions,)
-        The positions [m].
-    length : float
-        Standard deviation of the kernel [m]; it reaches four times as far, and mirrors at the ends of the profile.
+    The kernel reaches four times as far, and mirrors at the ends of the profile.
     """
     if not length:
         return depth
-    kernel: Array = scipy.ndimage.gaussian_filter1d(depth, length / (at[1] - at[0]), mode="reflect")
-    return kernel
+    found: Array = scipy.ndimage.gaussian_filter1d(depth, length / (at[1] - at[0]), mode="reflect")
+    return found
 
 
 def removed(profile: Profile, at: Array, depth: Array) -> Profile:
@@ -62,8 +56,8 @@ def removed(profile: Profile, at: Array, depth: Array) -> Profile:
     return profile.worn(wl.Q(1e3 * s, "mm"), wl.Q(1e3 * between, "mm"))
 
 
-def swept(old: Profile, new: Profile, radius: float | None) -> float:
-    """Return the volume between two profiles [m³], or the area of the section [m²] if they do not turn.
+def swept(old: Profile, new: Profile, radius: float = np.inf) -> float:
+    """Return the volume between two profiles of a wheel [m³], or the area of the section [m²] if they do not turn.
 
     Both are taken as polygons through their points, closed at their ends. A wheel turns about an axis at a distance
     `radius` from z = 0 [m]; the volume is exact for frustums of cones.
@@ -71,24 +65,29 @@ def swept(old: Profile, new: Profile, radius: float | None) -> float:
     ends = [[1e-3 * value.magnitude for value in one.points] for one in (old, new)]
     y, z = (np.concatenate([ends[0][axis], ends[1][axis][::-1], ends[0][axis][:1]]) for axis in (0, 1))
     low, high = z[:-1], z[1:]
-    height = low + high if radius is None else 2.0 * radius * (low + high)
-    integrand = 0.5 * height if radius is None else np.pi * (0.5 * height + (low**2 + low * high + high**2) / 3.0)
-    return float(abs((integrand * np.diff(y)).sum()))
+    section = 0.5 * (low + high)
+    if np.isfinite(radius):
+        section = np.pi * (2.0 * radius * section + (low**2 + low * high + high**2) / 3.0)
+    return float(abs((section * np.diff(y)).sum()))
 
 
-class Removal(NamedTuple):
-    """A profile after a step, and what the depths were multiplied by so that the removed mass is the predicted one."""
-
-    profile: Profile
-    factor: float
-
-
-def conserving(profile: Profile, at: Array, depth: Array, volume: float, radius: float | None) -> Removal:
-    """Return the profile after removal of depths, multiplied by one factor so that a given volume is removed.
+def conserving(profile: Profile, at: Array, depth: Array, volume: float, radius: float) -> tuple[Profile, float]:
+    """Return the profile after removal of depths, and the factor that makes them remove a given volume.
 
     Without the factor the volume differs: a depth along the normal of a curved profile sweeps an area that also depends
     on the curvature, and smoothing moves wear to other radii.
+
+    Raises
+    ------
+    InputError
+        If the profile is too short for the wear.
     """
+    for name, value in zip(("first", "last"), np.interp(profile.curve.s[[0, -1]], at, depth), strict=True):
+        if value > EDGE * depth.max():
+            raise wl.InputError(
+                f"{profile.kind}: the profile is too short for the wear, which reaches {value / depth.max():.2g} of its"
+                f" deepest place at the {name} point; give a wider profile, or less smoothing"
+            )
 
     def by(factor: float) -> tuple[Profile, float]:
         new = removed(profile, at, factor * depth)
@@ -102,19 +101,4 @@ def conserving(profile: Profile, at: Array, depth: Array, volume: float, radius:
             break
         slope = (found - before[1]) / (factor - before[0])
         before, factor = (factor, found), factor + (volume - found) / slope
-    return Removal(new, factor)
-
-
-def normal_depth(first: Profile, now: Profile, s: Array) -> Array:
-    """Return the depth between two profiles along the normals of the first one, at its arc lengths [m]."""
-    y, z, angle, _ = first.curve.at(s)
-    curve = now.curve
-    share = (s - first.curve.s[0]) / np.ptp(first.curve.s)
-    place = curve.s[0] + share * np.ptp(curve.s)
-    for _ in range(4):
-        there = curve.at(np.clip(place, curve.s[0], curve.s[-1]))
-        along = (there[0] - y) * np.cos(angle) + (there[1] - z) * np.sin(angle)
-        place = place - along / np.cos(there[2] - angle)
-    there = curve.at(np.clip(place, curve.s[0], curve.s[-1]))
-    depth = (there[0] - y) * np.sin(angle) - (there[1] - z) * np.cos(angle)
-    return np.asarray(-depth if first.kind == "rail" else depth)
+    return new, factor

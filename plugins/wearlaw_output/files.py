@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from errno import EDQUOT, ENOSPC
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -14,7 +15,7 @@ import matplotlib as mpl
 import pandas as pd
 
 from wearlaw.errors import OutputError
-from wearlaw.settings.text_files import FULL, reason_of
+from wearlaw.settings.text_files import reason_of
 from wearlaw_output.commands import verbose
 from wearlaw_output.curves import FigureData, FigureFormat
 from wearlaw_output.drawing import draw
@@ -34,7 +35,11 @@ def writing() -> Iterator[None]:
     except OutputError:
         raise
     except OSError as error:
-        advice = "make room, or choose another folder with -o" if error.errno in FULL else "choose another with -o"
+        advice = (
+            "make room, or choose another folder with -o"
+            if error.errno in (ENOSPC, EDQUOT)
+            else "choose another with -o"
+        )
         raise OutputError(f"output: cannot write the results: {reason_of(error)}; {advice}") from None
 
 

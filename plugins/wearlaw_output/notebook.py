@@ -11,8 +11,8 @@ from html import escape
 import numpy as np
 
 from wearlaw.errors import WearlawError, WearlawWarning
-from wearlaw.models.contact_model import Model
 from wearlaw.models.law import Law
+from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.plugins import loader
 from wearlaw.units.quantities import Q

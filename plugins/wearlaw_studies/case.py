@@ -40,14 +40,13 @@ from wearlaw.errors import (
     shown,
     with_problems,
 )
-from wearlaw.models.contact_model import ContactModel, Model
-from wearlaw.models.labels import labelled, labels
-from wearlaw.models.law import WEAR, Law, Outcome
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.law import WEAR, Law, Outcome, WearLaw
+from wearlaw.models.model import Model, labelled, labels
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
-from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, known_presets, preset_fields
+from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, preset_fields
 from wearlaw.plugins.law_files import is_law_file
 from wearlaw.plugins.loader import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
@@ -93,18 +92,18 @@ def _name_of(value: Any) -> str:
 def _other_law(value: Any) -> Any:
     """Raise an error for the name of a wear law, or of no law."""
     found, name = loader.installed(), _name_of(value)
-    wear = {*found.wear_laws.providers, *found.parameter_sets.providers}
+    wear = {*found["wear law"].providers, *found["parameter set"].providers}
     if name in wear or (isinstance(value, Law) and value.outcome.name == WEAR):
         raise InputError(f"{name or value.name} predicts the wear rate; list it under wear_laws")
     if name and not is_law_file(name):
-        found.laws.find(name, found.broken)
+        found.find("law", name)
     return value
 
 
 def _wear_law(value: Any) -> Any:
     """Raise an error for a law of another outcome."""
     found, name = loader.installed(), _name_of(value)
-    law = value if isinstance(value, Law) else None if name in found.wear_laws.providers else loader.laws().get(name)
+    law = value if isinstance(value, Law) else None if name in found["wear law"].providers else loader.laws().get(name)
     if law is not None and law.outcome.name != WEAR:
         raise InputError(f"{law.name} predicts {law.outcome.name}, not wear; list it under laws")
     return value
@@ -144,8 +143,7 @@ def _unmet(name: str, versions: str) -> str:
 
 
 def _section(name: str) -> str:
-    found = loader.installed()
-    found.resources["section"].find(name, found.broken)
+    loader.installed().find("section", name)
     return name
 
 
@@ -380,9 +378,9 @@ def case_text(name_or_path: str) -> str:
         If several plugins ship a case of that name.
     """
     found = loader.installed()
-    known = found.resources["case"].items()
-    if name_or_path in found.resources["case"].providers:
-        text: str = found.resources["case"].find(name_or_path, found.broken)
+    known = found["case"].items()
+    if name_or_path in found["case"].providers:
+        text: str = found.find("case", name_or_path)
         return text
     try:
         return read_text(name_or_path, LARGEST)
@@ -400,15 +398,10 @@ def case_schema() -> dict[str, Any]:
     schema = Case.model_json_schema(by_alias=True)
     definitions = schema["$defs"]
     properties, found = schema["properties"], loader.installed()
-    shelves: dict[str, Shelf[Any]] = {
-        "contact_models": found.contact_models,
-        "stages": found.stages,
-        "laws": found.laws,
-        "wear_laws": found.wear_laws,
-    }
-    for field, shelf in shelves.items():
+    for field in ("contact_models", "stages", "laws", "wear_laws"):
+        shelf = found[field.replace("_", " ").removesuffix("s")]
         properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
-    sets = found.parameter_sets
+    sets = found["parameter set"]
     for laws in ("laws", "wear_laws"):
         file = {"type": "string", "pattern": r"\.toml$"}
         properties[laws]["items"]["anyOf"] += [
@@ -421,14 +414,16 @@ def case_schema() -> dict[str, Any]:
     ]
     schema["anyOf"] = [{"required": [name], "properties": {name: {"minItems": 1}}} for name in ("wear_laws", "laws")]
     for window in ("FigureSpec", "Window"):
-        _add_outcomes(definitions[window]["properties"]["y"], [law.outcome.name for law in found.laws.items().values()])
-    properties["sections"]["items"] = {"enum": list(found.resources["section"].items())}
-    rigs = found.rigs.items()
+        _add_outcomes(
+            definitions[window]["properties"]["y"], [law.outcome.name for law in found["law"].items().values()]
+        )
+    properties["sections"]["items"] = {"enum": list(found["section"].items())}
+    rigs = found["rig"].items()
     bare = [name for name, rig in rigs.items() if not any(one.is_required() for one in rig.model_fields.values())]
     properties["rig"] = {"anyOf": [{"enum": bare}]}
     axis, schema["allOf"] = definitions["FigureSpec"]["properties"]["x"], []
     for name, rig in rigs.items():
-        with _left_out(found.rigs, name):
+        with _left_out(found["rig"], name):
             tables, known = list(_rig_tables(name, rig, definitions)), rig.conditions()
             if known:
                 this = {"properties": {"rig": {"anyOf": _named(name, rig)}}}
@@ -449,7 +444,7 @@ def _add_outcomes(schema: Any, outcomes: list[str]) -> None:
 
 
 @contextmanager
-def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
+def _left_out(shelf: Shelf, name: str) -> Iterator[None]:
     """Leave a model out, with a warning, if its schema raises an error."""
     try:
         yield
@@ -463,18 +458,24 @@ def _left_out(shelf: Shelf[Any], name: str) -> Iterator[None]:
 def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """Yield the schemas of a rig's table: one with its fields, and one for each preset."""
     yield _model_schema(name, rig, definitions, "type")
-    for preset in rig.presets():
-        table = preset_fields(rig, preset).model_json_schema(ref_template=f"#/$defs/{name}.{preset}.{{model}}")
+    for preset in _presets(rig):
+        fields = preset_fields(loader.installed().find("preset", preset))
+        table = fields.model_json_schema(ref_template=f"#/$defs/{name}.{preset}.{{model}}")
         definitions.update({f"{name}.{preset}.{key}": value for key, value in table.pop("$defs", {}).items()})
-        named = {"type": {"const": name}, "preset": {"const": preset}}
         required = ["preset", *table.get("required", [])]
-        yield {**table, "properties": {**named, **table.get("properties", {})}, "required": required}
+        properties = {"preset": {"const": preset}, **table.get("properties", {})}
+        yield {**table, "properties": properties, "required": required}
+
+
+def _presets(rig: type[Rig]) -> list[str]:
+    """Return the names of the presets of a rig."""
+    return [name for name, preset in loader.installed()["preset"].items().items() if preset.rig is rig]
 
 
 def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
     """Return the schemas that identify a rig: its name, a table with its type, or one with a preset of its own."""
     typed = {"type": "object", "properties": {"type": {"const": name}}, "required": ["type"]}
-    presets = [preset for preset, owners in known_presets().items() if owners == [rig]]
+    presets = _presets(rig)
     by_preset = {"type": "object", "properties": {"preset": {"enum": presets}}, "required": ["preset"]}
     return [{"const": name}, typed, *([by_preset] if presets else [])]
 
@@ -496,7 +497,7 @@ def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _tables(shelf: Shelf[Any], definitions: dict[str, Any]) -> list[dict[str, Any]]:
+def _tables(shelf: Shelf, definitions: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the schema of each model's table."""
     found = []
     for name, item in shelf.items().items():
@@ -537,7 +538,7 @@ def load_case(name_or_path: str) -> Case:
     except InputError as error:
         raise CaseError(f"case {shown(Path(name_or_path))} {error}") from None
     try:
-        if name_or_path in loader.installed().resources["case"].providers:
+        if name_or_path in loader.installed()["case"].providers:
             return known_as(name_or_path, Case(**fields))
         with reading(name_or_path):
             return Case(**_beside(fields))
@@ -550,7 +551,7 @@ def _beside(fields: dict[str, Any]) -> dict[str, Any]:
     measured = fields.get("measured")
     if isinstance(measured, dict):
         tests = measured.get("tests")
-        if isinstance(tests, str) and tests not in loader.installed().resources["test set"].providers:
+        if isinstance(tests, str) and tests not in loader.installed()["test set"].providers:
             return {**fields, "measured": {**measured, "tests": str(beside(tests))}}
     return fields
 

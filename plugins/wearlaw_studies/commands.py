@@ -15,12 +15,12 @@ from rich.text import Text
 
 from wearlaw.cli import Stopped
 from wearlaw.errors import OutputError, shown
-from wearlaw.pipeline.notes import Notes
 from wearlaw.version import __version__
 from wearlaw_output.commands import echo, folder_for, print_notes, print_results
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import written_formats
 from wearlaw_output.folder import results_folder
+from wearlaw_output.notes import Notes
 from wearlaw_studies.case import load_case
 from wearlaw_studies.notes import grouped
 from wearlaw_studies.report.tables import NamedTable, summaries

@@ -41,7 +41,7 @@ def explain_section(name: str, make: Callable[..., Any]) -> Iterator[str]:
     if documented:
         yield from (documented, "")
     yield f'A case adds it to its report with sections = ["{name}"].'
-    cases = loader.installed().resources["case"].items()
+    cases = loader.installed()["case"].items()
     users = [case for case, text in cases.items() if name in _sections(text)]
     if users:
         yield f"Shipped cases with it: {', '.join(users)}"

@@ -59,7 +59,7 @@ class MeasuredTests(Configuration):
     @property
     def shipped(self) -> bool:
         """Whether a plugin ships the tests, rather than a file holding them."""
-        return self.tests in loader.installed().resources["test set"].providers
+        return self.tests in loader.installed()["test set"].providers
 
 
 def known_variables(tests: WearTests) -> tuple[str, ...]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from wearlaw.pipeline.notes import Notes
 from wearlaw_fits.pairs import Pair, compose
+from wearlaw_output.notes import Notes
 
 TAKE_MEANS_IN_A_CASE = 'write stages = ["patch_mean"] in the case, or use the contact model "global"'
 """Remedy in a case for a law of the whole patch on a contact resolved into cells."""

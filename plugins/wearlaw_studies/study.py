@@ -24,14 +24,11 @@ from wearlaw.errors import (
     WearlawError,
     WearlawWarning,
     described,
-    message_of,
     shown,
 )
-from wearlaw.models.contact_model import Model
-from wearlaw.models.law import WEAR
-from wearlaw.models.wear_law import WearLaw
+from wearlaw.models.law import WEAR, WearLaw
+from wearlaw.models.model import Model
 from wearlaw.pipeline.composition import warn_of_unlike_materials
-from wearlaw.pipeline.notes import Notes
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
@@ -41,6 +38,7 @@ from wearlaw.settings.configuration import LINE, known_name, parts
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
 from wearlaw_fits.pairs import Pair
+from wearlaw_output.notes import Notes
 from wearlaw_studies.case import Case
 from wearlaw_studies.figures import figures_of, wrong_figures
 from wearlaw_studies.pairs import pairs_of
@@ -171,9 +169,8 @@ def _check_figures(case: Case, pairs: list[Pair], profiles: dict[str, xarray.Dat
 def _section(name: str, study: Study, notes: Notes) -> Section:
     """Return the section that a plugin makes from a study."""
     found = loader.installed()
-    sections = found.resources["section"]
-    make = sections.find(name, found.broken)
-    subject = f"section '{name}' of {sections.origin(name)}"
+    make = found.find("section", name)
+    subject = f"section '{name}' of {found['section'].origin(name)}"
     try:
         with notes.of(f"section '{name}'"):
             section = make(_copied(study))
@@ -181,7 +178,7 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
             raise TypeError(f"it must be a Section, got {shown(section)}")
     except WearlawError as error:
         raise InputError(
-            f"{subject}: {message_of(error)}\nTo run the case without this section, take '{name}' out of `sections`"
+            f"{subject}: {error}\nTo run the case without this section, take '{name}' out of `sections`"
         ) from error
     except KeyboardInterrupt:
         raise
@@ -218,29 +215,25 @@ def provenance(case: Case) -> dict[str, Any]:
 def used(case: Case) -> dict[str, dict[str, str]]:
     """Return the models and other named items of a case, by kind and name, with distribution and version."""
     found = loader.installed()
-    named: dict[type, Shelf[Any]] = {
-        WearLaw: found.parameter_sets,
-        Material: found.materials,
-        Case: found.resources["case"],
+    named: dict[type, Shelf] = {
+        WearLaw: found["parameter set"],
+        Material: found["material"],
+        Case: found["case"],
     }
-    origins: dict[str, dict[str, str]] = {shelf.kind: {} for shelf in found.shelves()}
+    origins: dict[str, dict[str, str]] = {kind: {} for kind in found.shelves}
     for part in parts(case):
         if isinstance(part, Model):
-            origins[part.kind][part.name] = found.of_kind(part.kind).distribution(part.name, type(part))
+            origins[part.kind][part.name] = found[part.kind].distribution(part.name, type(part))
         name = known_name(part)
         if name is not None:
             (shelf,) = (shelf for kind, shelf in named.items() if isinstance(part, kind))
             origins[shelf.kind][name] = shelf.distribution(name)
         if isinstance(part, Material) and type(part) is not Material:
-            types, cls = found.material_types, type(part)
+            types, cls = found["material type"], type(part)
             origins[types.kind][cls.__name__] = types.distribution(cls.__name__, cls)
     if case.measured is not None and case.measured.shipped:
-        origins[found.resources["test set"].kind] = {
-            case.measured.tests: found.resources["test set"].distribution(case.measured.tests)
-        }
-    origins[found.resources["section"].kind] = {
-        name: found.resources["section"].distribution(name) for name in case.sections
-    }
+        origins["test set"] = {case.measured.tests: found["test set"].distribution(case.measured.tests)}
+    origins["section"] = {name: found["section"].distribution(name) for name in case.sections}
     return {kind: dict(sorted(names.items())) for kind, names in origins.items()}
 
 

@@ -14,15 +14,14 @@ from wearlaw.arrays import kernels
 from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, InputError, RangeWarning, did_you_mean, shown
-from wearlaw.models.contact_model import fault
+from wearlaw.errors import CompositionError, InputError, RangeWarning, caught_warnings, did_you_mean, shown
 from wearlaw.models.law import named_outcomes
+from wearlaw.models.model import fault
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction, unsolved
 from wearlaw.pipeline.ranges import Seen
 from wearlaw.pipeline.variables import long_name, outcome_units, unit_of
-from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.located import posed

@@ -13,7 +13,7 @@ import pint
 from wearlaw.arrays.array import Array
 from wearlaw.arrays.kernels import WORTHWHILE, accelerated
 from wearlaw.errors import OutputError, shown, with_problems
-from wearlaw.models.contact_model import Model
+from wearlaw.models.model import Model
 from wearlaw.plugins import loader
 from wearlaw.settings.configuration import parts
 from wearlaw.units.quantities import text_of
@@ -29,7 +29,7 @@ def provenance_of(job: Job, points: Points) -> Provenance:
     """Return versions, pipeline, conditions, outputs and blocks of a sweep; columns of numbers by their digest."""
     installed = loader.installed()
     provided = {
-        f"{part.kind} {part.name}": installed.of_kind(part.kind).distribution(part.name, type(part))
+        f"{part.kind} {part.name}": installed[part.kind].distribution(part.name, type(part))
         for part in parts(job.pipeline)
         if isinstance(part, Model)
     }

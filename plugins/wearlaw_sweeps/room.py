@@ -6,10 +6,10 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from errno import EDQUOT, ENOSPC
 from pathlib import Path
 
 from wearlaw.errors import InputError, OutputError, shown
-from wearlaw.settings.text_files import FULL
 
 GIB = 2.0**30
 
@@ -27,7 +27,9 @@ def writing_to(store: object) -> Iterator[None]:
     except OSError as error:
         if store is None or error.errno is None:  # no error of a file, but a timeout of a cluster
             raise
-        advice = "make room, and add resume=True to go on" if error.errno in FULL else "choose another folder"
+        advice = (
+            "make room, and add resume=True to go on" if error.errno in (ENOSPC, EDQUOT) else "choose another folder"
+        )
         raise OutputError(f"store: cannot write to {shown(store)}: {error.strerror}; {advice}") from None
 
 

@@ -21,6 +21,7 @@ from wearlaw.errors import (
     ConditionsError,
     InputError,
     ResumeWarning,
+    caught_warnings,
     shown,
 )
 from wearlaw.pipeline.composition import warn_of_unlike_materials
@@ -29,7 +30,6 @@ from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.pipeline.worn import POSITION
 from wearlaw.settings.arguments import expect_names
-from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.settings.configuration import parts
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.evaluation import Job, output_units, range_warnings
@@ -152,7 +152,7 @@ def sweep(
     summed = share is not None
     with (
         writing_to(store),
-        _points(predict, table, conditions, columns, keep, as_csv, store, summed, progress) as points,
+        operating_points(predict, table, conditions, columns, keep, as_csv, store, summed, progress) as points,
     ):
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
@@ -162,8 +162,6 @@ def sweep(
         else:
             job, notes = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
         points = dataclasses.replace(points, weight=job.weight(first))
-        if share is not None:
-            check_shares(points, share)
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
         target: Memory | Sum | Store
@@ -197,7 +195,7 @@ def kept(count: int, of: int, where: Path) -> str:
 
 
 @contextmanager
-def _points(
+def operating_points(
     predict: Pipeline[...],
     table: Any,
     conditions: Mapping[str, Any],
@@ -208,7 +206,7 @@ def _points(
     summed: bool,
     progress: bool,
 ) -> Iterator[Points]:
-    """Give the operating points of a sweep."""
+    """Give the operating points of a sweep; if they are to be summed, the kept column `SHARE` has their shares."""
     if table is None:
         for name, value in {"columns": columns, "keep": keep}.items():
             if value is not None:
@@ -221,6 +219,8 @@ def _points(
     with from_table(
         table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk, progress=progress
     ) as points:
+        if summed and keep is not None:
+            check_shares(points, keep[SHARE])
         yield points
 
 
@@ -251,9 +251,8 @@ def _checked_job(
 
 
 def checked_profile(
-    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool, elsewhere: bool,
-    kind: type[ProfileJob] = ProfileJob,
-) -> ProfileJob:  # fmt: skip
+    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool, elsewhere: bool
+) -> ProfileJob:
     """Return the job of the wear across a profile, after a prediction of it at the first operating point.
 
     Raises
@@ -267,7 +266,7 @@ def checked_profile(
         check_importable(pipeline)
     unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
     positions = VARIABLES[POSITION].expected.si(at, "at")
-    return kind.of(pipeline, first, body, positions, summed)
+    return ProfileJob.of(pipeline, first, body, positions, summed)
 
 
 def check_importable(pipeline: Pipeline[...]) -> None:

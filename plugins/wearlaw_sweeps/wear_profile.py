@@ -14,11 +14,10 @@ from pydantic import TypeAdapter
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, DataError, shown
+from wearlaw.errors import ConditionsError, DataError, caught_warnings, shown
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.worn import PATCH, POSITION
-from wearlaw.settings.caught_warnings import caught_warnings
 from wearlaw.units.quantities import Q, coefficient
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_sweeps.points import Block, Points
@@ -93,14 +92,19 @@ class ProfileJob(Job):
         return super().weight(problem) + 0.25 * math.prod(self.own_shape)
 
     def posed(self, conditions: Mapping[str, Any]) -> Problem:
-        """Return the problem of conditions; a state whose wear a sum would miss is an error."""
+        """Return the problem of conditions; a state that has no place in a sum over service is an error."""
         problem = super().posed(conditions)
-        if self.summed and problem.exists is not None and PATCH in problem.dims and not _any(problem).all():
-            raise ConditionsError(
-                "no normal forces balance this state, as where friction holds a flange; leave it out, and divide the"
-                " shares by the sum of those that stay"
-            )
-        return problem
+        if not self.summed:
+            return problem
+        if problem.exists is not None and PATCH in problem.dims and not _any(problem).all():
+            wrong = "no normal forces balance this state, as where friction holds a flange"
+        elif np.any(getattr(problem, "climbs", False)):
+            wrong = "the wheel climbs its rail, beyond the steepest place of its flange; its wear is none of service"
+        else:
+            return problem
+        raise ConditionsError(
+            f"{wrong}; correct the state, or leave it out and divide the shares by the sum of those that stay"
+        )
 
     def outputs(self, prediction: Prediction, part: Points) -> Outputs:
         """Return the depth and the sliding distance, (points, *sides, positions), or the sums of these and the mass."""

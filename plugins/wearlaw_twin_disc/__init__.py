@@ -187,8 +187,10 @@ class TwinDisc(wl.Rig):
             "max_pressure": wl.hertz.max_pressure(per_width, half_width),
             "rolling_speed": self._mean_speed(creepage),
         }
-        if creepage.ndim:
-            loaded = {name: np.broadcast_to(value, creepage.shape) for name, value in loaded.items()}
+        if shape := creepage.shape:
+            loaded = {
+                name: value if value.shape == shape else np.broadcast_to(value, shape) for name, value in loaded.items()
+            }
         return wl.Problem(
             geometry="line",
             friction_coefficient=arrays["friction_coefficient"],
@@ -221,7 +223,7 @@ class TwinDisc(wl.Rig):
         """Return P [N/m], as one number if it is the same at all points."""
         constants = self._constants
         name, load = next((name, arrays[name]) for name in self.choices[0] if name in arrays)
-        if not any(load.strides):
+        if load.ndim and not any(load.strides):
             load = load[(0,) * load.ndim]
         if name == "max_pressure":
             return wl.hertz.force_from_max_pressure(load, constants["relative_radius"], constants["effective_modulus"])

@@ -18,6 +18,7 @@ from wearlaw import Array
 from wearlaw_wheelset._curve import Curve, joined, through_points
 from wearlaw_wheelset._files import Kind, points_of, write_points
 from wearlaw_wheelset._formulas import FORMULAS
+from wearlaw_wheelset._measures import depth_between, flange, hollow
 from wearlaw_wheelset._points import check_orientation, check_points
 
 if TYPE_CHECKING:
@@ -353,6 +354,54 @@ class Profile(wl.Configuration):
         z = curve.z + CONVEX[self.kind] * np.cos(curve.angle) * depths
         new = through_points(y, z, 0.0, None, CONVEX[self.kind])
         return Profile(kind=self.kind, y=wl.Q(1e3 * new.y, "mm"), z=wl.Q(1e3 * new.z, "mm"), smoothing=smoothing)
+
+    def depth_to(self, worn: Profile, s: wl.Quantity) -> wl.Quantity:
+        """Return the depth between this profile and a worn one, such as a measured one, along this one's normals.
+
+        Parameters
+        ----------
+        worn : Profile
+            The worn profile, in the same position.
+        s : Quantity
+            Arc lengths of this profile's `curve` [m].
+
+        Returns
+        -------
+        Quantity
+            The depth at each of them [m], negative where the worn profile lies outside this one.
+        """
+        place = wl.Unit("mm", positive=False).si(s, "s")
+        return wl.Q(1e3 * depth_between(self.curve, worn.curve, place), "mm")
+
+    def measures(self, flange_back_position: wl.QuantityLike = "-70 mm") -> dict[str, wl.Quantity]:
+        """Return the measures of a wheel that say how far it is worn; a rail has none.
+
+        Parameters
+        ----------
+        flange_back_position : Quantity or str
+            Place of the back of the flange in the profile, y [m].
+
+        Returns
+        -------
+        dict of str to Quantity
+            The flange height Sh, from the tread datum to the top of the flange; the flange thickness Sd, from the back
+            to the flank, 10 mm above the datum (towards the flange's top); the flange gradient qR, parallel to the
+            axle, between the flank 10 mm above the datum and 2 mm below the top; and the hollow of the tread [m]. Those
+            of the flange are NaN without a flange, or if the profile does not reach the datum.
+
+        Notes
+        -----
+        The tread datum lies 70 mm from the back. The quantities are those of MiniProf's calculation "Wheel wear"; the
+        text of EN 15313 was not read. The definition of the hollow is wearlaw's: a place of the tread is hollow if
+        places further out have a larger radius. It is the largest rise of the radius on the way outwards, and zero for
+        a tread whose radius falls from the flange to the field side, as that of a new wheel does.
+        """
+        if self.kind == "rail":
+            return {}
+        y, z = self.curve.y, self.curve.z
+        back = float(wl.Unit("mm", positive=False).si(flange_back_position, "flange_back_position"))
+        names = ("flange_height", "flange_thickness", "flange_gradient", "hollow")
+        return {name: wl.Q(1e3 * one, "mm") for name, one in zip(names, (*flange(y, z, back), hollow(z)), strict=True)}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the profile as it lies, with z down, and return matplotlib's axes."""

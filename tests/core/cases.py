@@ -16,7 +16,7 @@ from click.testing import CliRunner, Result
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw.cli import main  # private: the program in this process
-from wearlaw.models.contact_model import Model  # private: the bound of a quadrature
+from wearlaw.models.model import Model  # private: the bound of a quadrature
 from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 from wearlaw.plugins.loader import Origin  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import Case, load_case  # private: a case without its files
@@ -124,7 +124,7 @@ def installer(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
     origin = Origin("testing", "wearlaw-testing", "9.8.7")
 
     def install(model: type[Model]) -> None:
-        providers: Any = found.of_kind(model.kind).providers
+        providers: Any = found[model.kind].providers
         monkeypatch.setitem(providers, model.name, [(model, origin)])
 
     return install

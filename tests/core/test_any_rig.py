@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 import warnings
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import pytest
@@ -238,15 +238,25 @@ def test_a_rig_without_a_condition_for_the_creepage_says_so() -> None:
         wl.creepage_for(ROLLER, traction_coefficient=0.1, mass="20 kg", creepage="1 %")
 
 
-@wl.as_wear_law(
-    inputs={"wear_index_density": "N/mm^2"},
-    returns="ug/m/mm^2",
-    breakpoints={},
-    parameters={"slope": "ug/m/N", "bend": "ug*mm^2/m/N^2"},
-    source="made up",
-)
-def bending(wear_index_density: Any, *, slope: float = 2.0, bend: float = 1.0) -> Any:
-    return wear_index_density * (slope + bend * wear_index_density)
+class Bending(wl.WearLaw):
+    """A law with a bend."""
+
+    name: ClassVar[str] = "bending"
+    source: ClassVar[str] = "made up"
+
+    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N", positive=False)] = Q(2.0, "ug/m/N")
+    """Slope."""
+    bend: Annotated[wl.Quantity, wl.Unit("ug*mm^2/m/N^2", positive=False)] = Q(1.0, "ug*mm^2/m/N^2")
+    """Bend."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return contact.wear_index_density * (p["slope"] + p["bend"] * contact.wear_index_density)
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {}
+
+
+bending = Bending()
 
 
 LAW = bending.model_copy(update={"slope": Q(5.0, "ug/m/N"), "bend": Q(3.0, "ug*mm^2/m/N^2")})

@@ -62,15 +62,6 @@ def test_help_says_how_to_begin_and_every_command_has_its_own(flag: str) -> None
         assert option in wearlaw("run", flag).stdout
 
 
-@pytest.mark.parametrize("command", ["fit", "compare"])
-def test_help_teaches_by_example(command: str) -> None:
-    printed = wearlaw(command, "--help").stdout
-    assert f"wearlaw {command} my-tests.csv --contact" in printed
-    assert "creepage [%]" in printed
-    for option in ("--friction", "--rig", "--free", "--overwrite", "-o, --output"):
-        assert option in printed
-
-
 # plugins
 
 
@@ -83,32 +74,38 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
     head, *rows = [line.split() for line in result.stdout.splitlines()]
     assert head == ["kind", "name", "distribution", "version"]
     ours = [row for row in rows if row[-2] == "wearlaw"]
-    assert ours == [
-        *(["rig", name, "wearlaw", wl.__version__] for name in ("twin_disc", "wheel_rail", "wheelset")),
-        *(["contact", "model", name, "wearlaw", wl.__version__] for name in sorted(FIRST_PARTY_MODELS)),
-        *(["stage", name, "wearlaw", wl.__version__] for name in ("patch_mean", "thermal", "third_body")),
-        *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("archard", "brr", "energy", "kth", "usfd")),
-        ["law", "wlrm", "wearlaw", wl.__version__],
-        ["reader", "contact_mat", "wearlaw", wl.__version__],
-        *(
-            ["material", name, "wearlaw", wl.__version__]
-            for name in ("R200", "R220", "R260", "R260Mn", "R320Cr", "R350HT", "R350LHT", "steel")
-        ),
-        ["material", "type", "SteelWithHardness", "wearlaw", wl.__version__],
-        *(
-            ["case", name, "wearlaw", wl.__version__]
-            for name in ("my_tests", "tassini2010", "two_discs", "wheel_life", "wheel_on_rail", "wheelset")
-        ),
-        *(
-            ["profile", name, "wearlaw", wl.__version__]
-            for name in ("cone20", "cone40", "rail_54e1", "rail_60e1", "rail_60e2", "s1002", "uic60")
-        ),
-        ["section", "life", "wearlaw", wl.__version__],
-        *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4", "tables")),
-        ["section", "wheelset", "wearlaw", wl.__version__],
-        ["test", "set", "lewis2004", "wearlaw", wl.__version__],
-        *(["command", name, "wearlaw", wl.__version__] for name in COMMANDS),
-    ]
+    assert sorted(ours) == sorted(
+        [
+            *(["rig", name, "wearlaw", wl.__version__] for name in ("twin_disc", "wheel_rail", "wheelset")),
+            *(["contact", "model", name, "wearlaw", wl.__version__] for name in sorted(FIRST_PARTY_MODELS)),
+            *(["stage", name, "wearlaw", wl.__version__] for name in ("patch_mean", "thermal", "third_body")),
+            *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("archard", "brr", "energy", "kth", "usfd")),
+            ["law", "wlrm", "wearlaw", wl.__version__],
+            ["reader", "contact_mat", "wearlaw", wl.__version__],
+            ["preset", "suros", "wearlaw", wl.__version__],
+            *(
+                ["material", name, "wearlaw", wl.__version__]
+                for name in ("R200", "R220", "R260", "R260Mn", "R320Cr", "R350HT", "R350LHT", "steel")
+            ),
+            ["material", "type", "SteelWithHardness", "wearlaw", wl.__version__],
+            *(["command", name, "wearlaw", wl.__version__] for name in COMMANDS),
+            *(
+                ["case", name, "wearlaw", wl.__version__]
+                for name in ("my_tests", "tassini2010", "two_discs", "wheel_life", "wheel_on_rail", "wheelset")
+            ),
+            *(
+                ["profile", name, "wearlaw", wl.__version__]
+                for name in ("cone20", "cone40", "rail_54e1", "rail_60e1", "rail_60e2", "s1002", "uic60")
+            ),
+            ["section", "life", "wearlaw", wl.__version__],
+            *(
+                ["section", f"tassini2010_{name}", "wearlaw", wl.__version__]
+                for name in ("claims", "table_4", "tables")
+            ),
+            ["section", "wheelset", "wearlaw", wl.__version__],
+            ["test", "set", "lewis2004", "wearlaw", wl.__version__],
+        ]
+    )
     assert result.stderr == ""
 
 
@@ -123,53 +120,11 @@ def test_a_plugin_that_ends_the_program_ends_no_command(install: Install, folder
     assert "usfd" in listed.stdout
     write(folder / "own.toml", table(contact_models=["global"], wear_laws=["usfd"], profiles={}))
     for arguments in (["show", "usfd"], ["schema"], ["case", "own.toml"]):
-        loader._search.cache_clear()
+        loader._FOUND.clear()
         with pytest.warns(wl.PluginWarning, match=r"left out: ending 1\.0 \(plugin 'ending'\): SystemExit: 0"):
             result = wearlaw(*arguments)
         assert result.exit_code == 0
         assert result.stdout
-
-
-UNDESCRIBED = """
-    from typing import ClassVar
-
-    import wearlaw as wl
-
-    class Mute(wl.WearLaw):
-        name: ClassVar[str] = "mute"
-        source: ClassVar[str] = "a test"
-
-        def rate(self, contact, p):
-            return 0.0 * contact.pressure
-
-        @classmethod
-        def __get_pydantic_json_schema__(cls, schema, handler):
-            raise {error}
-
-    @wl.hookimpl
-    def wearlaw_models():
-        return [Mute]
-
-    @wl.hookimpl
-    def wearlaw_named():
-        return {{"mute_set": Mute()}}
-"""
-
-
-@pytest.mark.parametrize(("error", "said"), [("SystemExit(0)", "SystemExit: 0"), ("KeyError(3)", "KeyError: 3")])
-def test_a_model_without_a_schema_is_left_out_of_it_with_its_plugin_named(
-    error: str, said: str, install: Install
-) -> None:
-    names_before, *tables_before = case_schema()["properties"]["wear_laws"]["items"]["anyOf"]
-    install("undescribed", UNDESCRIBED.format(error=error))
-    with pytest.warns(wl.PluginWarning) as caught:
-        result = wearlaw("schema")
-    assert result.exit_code == 0
-    reason = f"of undescribed 1.0 (plugin 'undescribed') is left out of the schema: {said}"
-    assert [str(one.message) for one in caught] == [f"wear law 'mute' {reason}", f"parameter set 'mute_set' {reason}"]
-    names, *tables = json.loads(result.stdout)["properties"]["wear_laws"]["items"]["anyOf"]
-    assert set(names["enum"]) == {*names_before["enum"], "mute"}  # its name alone is still right
-    assert tables == [*tables_before, {"const": "mute_set"}]
 
 
 def test_what_failed_to_load_is_named_once_with_its_cause(install: Install) -> None:
@@ -205,9 +160,3 @@ def test_a_misspelt_command_suggests_one() -> None:
     result = wearlaw("rnu")
     assert result.exit_code == 2
     assert "there is no command 'rnu'; did you mean 'run'? wearlaw --help lists the commands" in result.stderr
-
-
-@pytest.mark.parametrize("command", ["case", "run"])
-def test_help_names_every_shipped_case(command: str) -> None:
-    text = " ".join(wearlaw(command, "--help").stdout.split())
-    assert "two_discs, my_tests, wheel_on_rail, wheelset, wheel_life" in text

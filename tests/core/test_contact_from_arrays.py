@@ -34,11 +34,10 @@ def test_kth_on_given_arrays_is_archards_law_at_each_node() -> None:
     wear = wl.Contact.from_arrays(**FOUR_NODES) | wl.wear_law("kth", coefficient="mid")
     # ρ k p s / H with k = 5.5e-4, H = 2.625 GPa; 1 kg/m³ is 1000 µg/m/mm².
     expected = 7850 * 5.5e-4 * np.array([100, 800, 900, 300]) * np.array([0, 0, 0.004, 0.011]) / 2625 * 1000
-    np.testing.assert_allclose(wear.local_wear_rate.magnitude, expected, rtol=16 * EPS)
+    np.testing.assert_allclose(wear.local_value.magnitude, expected, rtol=16 * EPS)
     mean = expected @ [1, 1, 1, 0.5] / 3.5
-    assert wear.wear_rate.magnitude == pytest.approx(mean, rel=16 * EPS)
-    assert wear.mass_per_distance.to("ug/m").magnitude == pytest.approx(mean * 3.5, rel=16 * EPS)
-    assert repr(wear) == f"LocalWear with wear_rate {wear.wear_rate!r}"
+    assert wear.value.magnitude == pytest.approx(mean, rel=16 * EPS)
+    assert repr(wear) == f"LocalOutcome with wear_rate {wear.value!r}"
 
 
 def test_the_fields_of_a_model_given_as_arrays_wear_as_in_a_pipeline() -> None:
@@ -55,8 +54,8 @@ def test_the_fields_of_a_model_given_as_arrays_wear_as_in_a_pipeline() -> None:
     )
     wear = contact | wl.wear_law("usfd", fitted_for="exact")
     # Sums of a few hundred products.
-    np.testing.assert_allclose(wear.wear_rate.magnitude, prediction.wear_rate.magnitude, rtol=300 * EPS)
-    np.testing.assert_allclose(wear.wear_index.magnitude, prediction.wear_index.magnitude, rtol=300 * EPS)
+    np.testing.assert_allclose(wear.value.magnitude, prediction.wear_rate.magnitude, rtol=300 * EPS)
+    np.testing.assert_allclose(contact.wear_index, prediction.wear_index.m_as("N"), rtol=300 * EPS)
 
 
 def test_a_patch_with_two_axes_of_nodes_and_a_batch() -> None:
@@ -71,8 +70,8 @@ def test_a_patch_with_two_axes_of_nodes_and_a_batch() -> None:
     assert contact.patch_area.shape == (2,)
     np.testing.assert_allclose(contact.patch_area, 3e-6, rtol=16 * EPS)
     wear = contact | wl.wear_law("kth")
-    assert wear.wear_rate.magnitude.shape == (2,)
-    assert wear.local_wear_rate.magnitude.shape == shape
+    assert wear.value.magnitude.shape == (2,)
+    assert wear.local_value.magnitude.shape == shape
 
 
 def test_one_node_is_a_contact() -> None:
@@ -110,7 +109,7 @@ def test_a_law_of_the_patch_is_refused_on_nodes_and_taken_on_their_mean() -> Non
     wear = contact.patch_mean() | wl.wear_law("brr")
     # 6.165 µg/m per N of Tγ below 100 N: ρ π 0.25 mm³/km/N.
     expected = 7850 * np.pi * 0.25e-12 * 1e9 * float(contact.wear_index)
-    assert wear.mass_per_distance.to("ug/m").magnitude == pytest.approx(expected, rel=16 * EPS)
+    assert (wear.value * Q(contact.patch_area, "m^2")).m_as("ug/m") == pytest.approx(expected, rel=16 * EPS)
 
 
 def test_traction_of_both_signs_is_refused_and_its_magnitude_taken() -> None:
@@ -160,12 +159,16 @@ def test_parameters_of_another_scale_are_warned_of() -> None:
 
 
 def test_negative_wear_is_refused() -> None:
-    gain = wl.as_wear_law(inputs={"pressure": "MPa"}, returns="ug/m/mm^2", breakpoints={}, source="made up")(
-        lambda pressure: -pressure
-    )
+    class Gain(wl.WearLaw):
+        name = "gain"
+        source = "made up"
+
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+            return -contact.pressure
+
     contact = wl.Contact.from_arrays(**{**FOUR_NODES, "slip": "1 %"})
     with pytest.raises(wl.ModelError, match="gives a negative wear rate"):
-        contact | gain
+        contact | Gain()
 
 
 def test_only_a_contact_comes_before_a_law() -> None:

@@ -16,7 +16,7 @@ from tests.core.test_outcomes import Damage as BaseOfDamage
 from tests.core.test_outcomes import Heat
 from tests.plugins.kit.wrong_rigs import Weight
 from wearlaw.cli.show import describe  # private: the program, in this process
-from wearlaw.models.contact_model import Model  # private: the bound of a quadrature
+from wearlaw.models.model import Model  # private: the bound of a quadrature
 from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 from wearlaw.settings.docstrings import field_docstrings  # private: what `show`, schemas and signatures say of fields
 
@@ -128,7 +128,7 @@ EXPECTED: dict[str, list[str]] = {
 
 def test_there_is_an_expectation_for_every_model_of_the_package() -> None:
     ours = {
-        name for shelf in (loader.installed().contact_models, loader.installed().wear_laws)
+        name for shelf in (loader.installed()["contact model"], loader.installed()["wear law"])
         for name in shelf.items() if shelf.origin(name).distribution == "wearlaw"
     }  # fmt: skip
     assert ours == EXPECTED.keys()

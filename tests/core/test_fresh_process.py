@@ -9,19 +9,6 @@ from pathlib import Path
 
 import wearlaw as wl
 from tests.core.distributions import Install
-from tests.core.test_functions import two_slopes
-from tests.environments import ROOT
-
-
-def test_a_pickled_function_law_opens_in_a_fresh_process() -> None:
-    script = (
-        "import sys, pickle; law = pickle.load(sys.stdin.buffer);"
-        " print(law.name, law.breakpoints(law.numbers)['wear_index_density'][0])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], input=pickle.dumps(two_slopes), capture_output=True, check=True, cwd=ROOT
-    )
-    assert done.stdout.decode().split() == ["two_slopes", "4000000.0"]
 
 
 def test_a_pickled_pipeline_predicts_the_same_in_a_fresh_process() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -52,52 +51,6 @@ class Proportional(wl.WearLaw):
         return contact.wear_index_density
 
 
-class Methods:
-    """Methods that no law may have."""
-
-    def of_contact(self, contact: wl.Contact) -> Array:
-        return contact.slip
-
-    def of_keyword(self, contact: wl.Contact, *, p: wl.Numbers) -> Array:
-        return p["slope"] * contact.slip
-
-    def of_nothing(self) -> wl.BreakpointMap:
-        return {}
-
-
-@pytest.mark.parametrize(
-    ("name", "method", "message"),
-    [
-        (
-            "rate",
-            Methods.of_contact,
-            r"must take \(self, contact, p\): p holds the law's numbers in SI; it takes \(self, ",
-        ),
-        ("rate", Methods.of_keyword, r"it takes \(self, contact: .*, \*, p: "),
-        ("breakpoints", property(Methods.of_nothing), r"must take \(self, p\): .* it is a property, make it a method$"),
-        ("ramps", property(Methods.of_nothing), "it is a property, make it a method$"),
-        ("jumps", functools.cached_property(Methods.of_nothing), "it is a property, make it a method$"),
-        ("breakpoints", Methods.of_nothing, r"must take \(self, p\): .* it takes \(self\)"),
-    ],
-)
-def test_a_law_whose_methods_do_not_take_its_numbers_is_refused_where_it_is_defined(
-    name: str, method: Any, message: str
-) -> None:
-    with pytest.raises(TypeError, match=rf"^Law\.{name} .*{message}"):
-        type("Law", (wl.WearLaw,), {"__module__": __name__, "name": "law", name: method})
-
-
-def test_a_method_that_takes_more_than_the_numbers_is_taken() -> None:
-    class Law(Proportional):
-        def rate(self, contact: wl.Contact, p: wl.Numbers, *, warm: bool = False) -> Array:
-            return p.get("slope", 1.0) * contact.wear_index_density * (2.0 if warm else 1.0)
-
-        def ramps(self, p: wl.Numbers, *more: Any) -> tuple[tuple[float, float], ...]:
-            return ((0.0, 1.0), *more)
-
-    assert Law().ramps({}) == ((0.0, 1.0),)
-
-
 @pytest.mark.parametrize("base", [wl.ContactModel, wl.LineContactModel, wl.CreepForceModel, wl.WearLaw])
 def test_the_bases_are_abstract(base: type[Any]) -> None:
     with pytest.raises(TypeError, match="abstract"):
@@ -145,13 +98,6 @@ def test_what_a_model_or_law_does_not_declare_has_a_cautious_default() -> None:
     assert law.calibration is None
     assert law.band() is None
     assert law.monotone_in == ()
-
-
-@pytest.mark.parametrize("start", [Ramp(), Proportional(), wl.contact_model("exact"), wl.wear_law("usfd")], ids=repr)
-@pytest.mark.parametrize("end", [Proportional(), wl.patch_mean(), 3], ids=repr)
-def test_a_model_cannot_start_a_pipeline(start: Any, end: Any) -> None:
-    with pytest.raises(wl.CompositionError, match=f"'{start.name}' cannot start a pipeline; begin with a rig"):
-        start | end
 
 
 def test_models_of_equal_settings_are_equal() -> None:

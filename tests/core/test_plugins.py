@@ -23,34 +23,8 @@ from wearlaw.plugins import loader  # private: plugins of a test are found as if
 
 BROKEN = {
     "import_that_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named"),
-    "error_on_import": ("raise RuntimeError('no licence')", "RuntimeError: no licence"),
     "syntax_error": ("def", "SyntaxError"),
     "exit_on_import": ("raise SystemExit(0)", "SystemExit: 0"),
-    "exit_without_a_word": ("import sys\nsys.exit()", "SystemExit"),
-    "end_of_a_generator": ("raise GeneratorExit", "GeneratorExit"),
-    "error_beside_exception": ("class Own(BaseException): ...\nraise Own('mine')", "Own: mine"),
-    "memory_error": ("raise MemoryError", "MemoryError"),
-    "endless_recursion": ("def f(): f()\nf()", "RecursionError: maximum recursion depth exceeded"),
-    "error_without_a_message": (
-        "class Mute(Exception):\n    def __str__(self): 1 / 0\nraise Mute",
-        "Mute: (its message cannot be shown: ZeroDivisionError)",
-    ),
-    "error_whose_message_ends_the_program": (
-        "class Mute(Exception):\n    def __str__(self): raise SystemExit(0)\nraise Mute",
-        "Mute: (its message cannot be shown: SystemExit)",
-    ),
-    "exit_in_a_hook": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    raise SystemExit(0)",
-        "SystemExit: 0",
-    ),
-    "exit_in_a_generator": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    yield from ()\n    raise SystemExit(0)",
-        "SystemExit: 0",
-    ),
-    "exit_in_a_hook_of_named_things": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_named():\n    raise SystemExit(0)",
-        "SystemExit: 0",
-    ),
     "thing_that_cannot_be_shown": (
         "import wearlaw\nclass Mute:\n    def __repr__(self): raise SystemExit(0)\n"
         "@wearlaw.hookimpl\ndef wearlaw_resources():\n    return {'section': {'mute': Mute()}}",
@@ -68,14 +42,6 @@ BROKEN = {
         "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    raise KeyError('lost')",
         "KeyError: 'lost'",
     ),
-    "hook_without_list": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    return 3",
-        "TypeError: 'int' object is not iterable",
-    ),
-    "class_that_is_no_model": (
-        "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    return [dict]",
-        "TypeError: wearlaw_models: <class 'dict'> is no rig, contact model, stage, wear law, law, reader",
-    ),
     "instance_in_place_of_a_class": (
         "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    return ['exact']",
         "TypeError: wearlaw_models: 'exact' is no rig, contact model, stage, wear law, law, reader",
@@ -83,33 +49,21 @@ BROKEN = {
     "built_for_a_newer_interface": (
         "wearlaw_interface = 99",
         "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version 3;"
-        " upgrade wearlaw",
+        " upgrade the older of the two",
     ),
     "built_for_an_older_interface": (
         textwrap.dedent(LAW).format(name="outside") + "\nwearlaw_interface = 1",
         "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version 3;"
-        " upgrade the plugin",
-    ),
-    "law_of_an_older_interface": (
-        textwrap.dedent(LAW).format(name="outside").replace("contact, p)", "contact)"),
-        "TypeError: Outside.rate must take (self, contact, p): p holds the law's numbers in SI; it takes (self,",
-    ),
-    "interface_that_is_no_number": (
-        "wearlaw_interface = '1'",
-        "TypeError: wearlaw_interface must be a whole number, got '1'",
+        " upgrade the older of the two",
     ),
     "abstract_model": (
         "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    class Half(wearlaw.WearLaw):\n"
         "        name = 'half'\n    return [Half]",
         "TypeError: Half does not implement rate",
     ),
-    "name_that_is_no_identifier": (
-        textwrap.dedent(LAW).format(name="my law"),
-        "TypeError: the name of Outside must be an identifier, got 'my law'",
-    ),
     "model_without_name": (
         textwrap.dedent(LAW).format(name="outside").replace('name = "outside"', "pass"),
-        "TypeError: the name of Outside must be an identifier, got None",
+        "TypeError: the name of a wear law must be an identifier, got None",
     ),
 }
 
@@ -132,7 +86,7 @@ def test_an_outside_law_is_found_beside_the_others(install: Install) -> None:
     install("outside_plugin", LAW.format(name="outside"), version="3.2")
     assert wl.wear_law("outside").name == "outside"
     assert set(wl.wear_laws()) == FIRST_PARTY_LAWS | {"outside"}
-    assert str(loader.installed().wear_laws.origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
+    assert str(loader.installed()["wear law"].origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
 
 
 def test_a_command_of_a_plugin_is_imported_when_it_is_called_and_named_if_that_fails(install: Install) -> None:
@@ -158,11 +112,6 @@ def test_a_command_of_a_plugin_is_imported_when_it_is_called_and_named_if_that_f
     failed = CliRunner().invoke(main, ["gone"])
     assert failed.exit_code == 1
     assert "command 'gone' of own 1.0 (plugin 'own') cannot be loaded: ModuleNotFoundError" in failed.output
-
-
-def test_a_plugin_for_this_interface_is_loaded(install: Install) -> None:
-    install("current_plugin", LAW.format(name="current") + "\n    wearlaw_interface = 3\n")
-    assert "current" in wl.wear_laws()
 
 
 @pytest.mark.parametrize("case", BROKEN)
@@ -208,14 +157,6 @@ def test_ctrl_c_while_a_plugin_is_loading_ends_the_program(
         wl.wear_laws()
 
 
-def test_every_broken_plugin_is_warned_of(install: Install) -> None:
-    for number in range(3):
-        install(f"broken_{number}", f"raise RuntimeError({number})")
-    with pytest.warns(wl.PluginWarning) as caught:
-        wl.wear_laws()
-    assert [str(warning.message).split()[2] for warning in caught] == ["broken_0", "broken_1", "broken_2"]
-
-
 def test_what_a_plugin_gave_before_it_broke_stays(install: Install) -> None:
     install("half_broken", LAW.format(name="outside").replace("return [Outside]", "return [Outside, int]"))
     with pytest.warns(wl.PluginWarning, match="'int'"):
@@ -243,14 +184,6 @@ def test_one_module_of_two_distributions_is_an_error_that_names_both(install: In
         wl.wear_law("twin")
 
 
-def test_a_plugin_answers_for_itself_alone(install: Install) -> None:
-    install("one_plugin", LAW.format(name="one"))
-    install("other_plugin", LAW.format(name="other"))
-    found = loader.installed().wear_laws
-    assert [str(found.origin(name)).split()[0] for name in ("one", "other")] == ["one_plugin", "other_plugin"]
-    assert set(wl.wear_laws()) == FIRST_PARTY_LAWS | {"one", "other"}
-
-
 def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_return_nothing(install: Install) -> None:
     hooks = """
     @wl.hookimpl(optionalhook=True)
@@ -270,26 +203,6 @@ def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_return_nothing(ins
     assert "outside_steel" in wl.materials()
 
 
-def test_a_long_readme_does_not_disguise_a_distribution(install: Install, tmp_path: Path) -> None:
-    install("outside_plugin", LAW.format(name="outside"), version="3.2")
-    with (tmp_path / "outside_plugin-3.2.dist-info" / "METADATA").open("a") as file:
-        file.write("Summary: Name: another\n\nName: a-third\nVersion: 9\n")
-    assert str(loader.installed().wear_laws.origin("outside")).startswith("outside_plugin 3.2 ")
-
-
-def test_a_distribution_without_metadata_stands_in_nobodys_way(install: Install, tmp_path: Path) -> None:
-    install("outside_plugin", LAW.format(name="outside"))
-    (tmp_path / "outside_plugin-1.0.dist-info" / "METADATA").unlink()
-    assert str(loader.installed().wear_laws.origin("outside")).startswith("unnamed unknown ")
-
-
-def test_an_outside_model_cannot_take_a_first_party_name_silently(install: Install) -> None:
-    install("usurper", LAW.format(name="usfd"))
-    with pytest.raises(wl.UnknownModelError, match=r"by usurper 1\.0 .* and wearlaw "):
-        wl.wear_law("usfd")
-    assert wl.wear_law("brr").name == "brr"
-
-
 def test_plugins_are_loaded_in_the_order_of_their_distributions(install: Install) -> None:
     for name in ("zebra_plugin", "ant_plugin", "mole_plugin"):
         install(name, LAW.format(name=name))
@@ -304,7 +217,7 @@ def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
     install("doubled_plugin", LAW.format(name="doubled"), version="2.0")
     write_distribution(tmp_path / "later", "doubled_plugin", LAW.format(name="doubled"), version="1.0")
     monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path / "later")])
-    assert str(loader.installed().wear_laws.origin("doubled")).startswith("doubled_plugin 2.0 ")
+    assert str(loader.installed()["wear law"].origin("doubled")).startswith("doubled_plugin 2.0 ")
     assert wl.wear_law("doubled").name == "doubled"
 
 
@@ -314,9 +227,6 @@ def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
         ("exakt", "did you mean 'exact'?"),
         ("fastim", "did you mean 'fastsim'?"),
         ("Global", "did you mean 'global'?"),
-        ("liner", "did you mean 'linear'?"),
-        ("Polach", "did you mean 'polach'?"),
-        ("shen_hedrik_elkins", "did you mean 'shen_hedrick_elkins'?"),
     ],
 )
 def test_an_unknown_contact_model_gets_a_suggestion_and_the_list(name: str, hint: str) -> None:
@@ -328,13 +238,6 @@ def test_an_unknown_contact_model_gets_a_suggestion_and_the_list(name: str, hint
     )
 
 
-@pytest.mark.parametrize("name", ["zzzzz", ""])
-def test_a_name_near_to_none_gets_the_list_only(name: str) -> None:
-    with pytest.raises(wl.UnknownModelError) as error:
-        wl.wear_law(name)
-    assert str(error.value) == f"no wear law is called {name!r}. Installed: archard, brr, energy, kth, usfd"
-
-
 def test_an_unknown_option_is_named_with_the_fields_there_are() -> None:
     with pytest.raises(wl.ConfigurationError) as error:
         wl.contact_model("fastsim", bond="elliptic")
@@ -342,12 +245,6 @@ def test_an_unknown_option_is_named_with_the_fields_there_are() -> None:
         "fastsim: bond: unknown field; did you mean 'bound'? The fields are: bound, flexibility, march, strips, slip,"
         " interpolation"
     )
-
-
-def test_a_wrong_option_is_named_with_what_is_allowed() -> None:
-    with pytest.raises(wl.ConfigurationError) as error:
-        wl.contact_model("fastsim", bound="ellipse")
-    assert str(error.value) == "fastsim: bound: input should be 'parabolic' or 'elliptic', got 'ellipse'"
 
 
 def test_threads_that_need_plugins_at_once_all_find_them(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:

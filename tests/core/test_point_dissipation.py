@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import pytest
@@ -16,20 +16,27 @@ SLOPE = 5e-9
 CONDITIONS: Any = {"max_pressure": Q(1500, "MPa"), "friction_coefficient": 0.46}
 
 
-@wl.as_wear_law(
-    inputs={"wear_index_density": "N/mm^2"},
-    returns="ug/m/mm^2",
-    parameters={"slope": "ug/m/N"},
-    breakpoints={},
-    source="made up for the tests",
-)
-def energy_law(wear_index_density: Any, *, slope: float = 5.0) -> Any:
+class EnergyLaw(wl.WearLaw):
     """Wear in proportion to the energy dissipated."""
-    return slope * wear_index_density
+
+    name: ClassVar[str] = "energy_law"
+    source: ClassVar[str] = "made up for the tests"
+
+    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N", positive=False)] = Q(5.0, "ug/m/N")
+    """Slope."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return p["slope"] * contact.wear_index_density
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {}
+
+
+ENERGY_LAW = EnergyLaw()
 
 
 def solved(model: wl.ContactModel, creepage: Any) -> Any:
-    return (RIG | model | energy_law)(creepage=creepage, **CONDITIONS)
+    return (RIG | model | ENERGY_LAW)(creepage=creepage, **CONDITIONS)
 
 
 def si(quantity: Any) -> Any:
@@ -66,7 +73,7 @@ def test_the_error_is_infinite_if_no_node_dissipates_the_energy_and_zero_without
 
 
 def test_a_law_of_patch_means_sees_the_whole_energy() -> None:
-    found = (RIG | Brush() | wl.patch_mean() | energy_law)(creepage="0.1 %", **CONDITIONS)
+    found = (RIG | Brush() | wl.patch_mean() | ENERGY_LAW)(creepage="0.1 %", **CONDITIONS)
     assert si(found.wear_rate) == pytest.approx(SLOPE * si(found.wear_index / found.patch_area), rel=1e-12)
     assert si(found.wear_rate_error) < 1e-12 * si(found.wear_rate)
 

@@ -35,7 +35,7 @@ LIMITS = {"first_yield", "shakedown_limit", "outside_range"}
 """Properties with a file of their own, `test_marks.py`."""
 
 
-OTHERS = {"contact", "profile", "wear_rate_error"}
+OTHERS = {"contact", "contact_model", "profile", "scale", "wear_rate_error"}
 
 
 def public_properties() -> set[str]:

@@ -99,9 +99,6 @@ def test_an_unknown_scale_is_refused_where_it_is_written(base: type[Any], words:
     message = rf"Wrong.scale: is 'pach'; did you mean 'patch'\? It must be {words}"
     with pytest.raises(wl.ModelError, match=message):
         type("Wrong", (base,), {"scale": "pach", "__module__": __name__})
-    wrong: Any = type("Wrong", (base,), {"scale": property(lambda _: "pach"), "__module__": __name__})
-    with pytest.raises(wl.ModelError, match=message):
-        wrong()
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import pandas as pd
@@ -51,17 +51,25 @@ TESTS = wl.WearTests.from_arrays(
 """The made-up tests of the page on fitting."""
 
 
-@wl.as_wear_law(
-    inputs={"wear_index_density": "N/mm^2"},
-    returns="ug/m/mm^2",
-    breakpoints={"wear_index_density": [4.0]},
-    jumps=[4.0],
-    parameters={"mild": "ug/m/N", "severe": "ug/m/N"},
-    source="made up",
-)
-def two_slopes(wear_index_density: Any, *, mild: Any = 5.0, severe: Any = 15.0) -> Any:
+class TwoSlopes(wl.WearLaw):
     """A law of two slopes, with a jump between them."""
-    return np.where(wear_index_density < 4.0, mild, severe) * wear_index_density
+
+    name = "two_slopes"
+    source = "made up"
+
+    mild: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Q(5.0, "ug/m/N")
+    severe: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = Q(15.0, "ug/m/N")
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        """Return the wear rate [kg/m/m²]."""
+        w = contact.wear_index_density
+        return np.where(w < 4e6, p["mild"], p["severe"]) * w
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        """Return where the slope changes [N/m²]."""
+        return {"wear_index_density": (4e6,)}
+
+    jumps = breakpoints
 
 
 def applications() -> Iterator[tuple[str, Callable[[], Any]]]:
@@ -104,7 +112,7 @@ def applications() -> Iterator[tuple[str, Callable[[], Any]]]:
             )
         },
     )
-    yield "law of a function", lambda: seen((EXACT | two_slopes)(**POINT["twin_disc"]), contact=False)
+    yield "law of a function", lambda: seen((EXACT | TwoSlopes())(**POINT["twin_disc"]), contact=False)
     yield "two laws", lambda: seen((FASTSIM | LAWS["usfd"][0] | LAWS["wlrm"][0])(**POINT["wheel_rail"]), contact=False)
     yield "contact of arrays", _of_arrays
     yield "temperatures", _temperatures
@@ -168,8 +176,8 @@ def _of_arrays() -> dict[str, Any]:
         rolling_speed=Q(30, "m/s"),
     )
     wear, of_means = contact | wl.wear_law("kth"), contact.patch_mean() | wl.wear_law("brr")
-    return {"local": wear.local_wear_rate, "mean": wear.wear_rate, "mass": wear.mass_per_distance,
-        "of means": of_means.wear_rate}  # fmt: skip
+    mass = (wear.value * Q(contact.patch_area, "m^2")).to("ug/m")
+    return {"local": wear.local_value, "mean": wear.value, "mass": mass, "of means": of_means.value}
 
 
 def _temperatures() -> dict[str, Any]:

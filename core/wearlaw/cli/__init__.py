@@ -9,7 +9,7 @@ from typing import IO, Any
 
 import click
 
-from wearlaw.errors import WearlawError, described, did_you_mean, message_of, shown
+from wearlaw.errors import WearlawError, described, did_you_mean, shown
 from wearlaw.extras import MissingPackageError, load
 from wearlaw.hookspecs import Command
 from wearlaw.plugins import loader
@@ -24,7 +24,7 @@ OWN = (
 
 def commands() -> dict[str, Command]:
     """Return all commands by name, those of plugins among them; a name of wearlaw itself cannot be taken."""
-    from_plugins = loader.installed().commands.items()
+    from_plugins = loader.installed()["command"].items()
     return dict(sorted((from_plugins | {command.name: command for command in OWN}).items()))
 
 
@@ -45,7 +45,7 @@ class _Commands(click.Group):
         return list(commands())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        own = {command.name: command for command in OWN}
+        own = {command.name: command for command in OWN}  # which tell what failed to load in their own way
         asked = own.get(cmd_name) or commands().get(cmd_name)
         if asked is None:
             hint = did_you_mean(cmd_name, commands())
@@ -56,10 +56,11 @@ class _Commands(click.Group):
         try:
             command: click.Command = load(module, function, f"wearlaw {cmd_name}")
         except MissingPackageError as error:
-            raise click.ClickException(message_of(error)) from error
+            raise click.ClickException(str(error)) from error
         except Exception as error:
-            of = "" if cmd_name in own else f" of {loader.installed().commands.origin(cmd_name)}"
-            raise click.ClickException(f"command {shown(cmd_name)}{of} cannot be loaded: {described(error)}") from error
+            of = loader.installed()["command"].origin(cmd_name)
+            message = f"command {shown(cmd_name)} of {of} cannot be loaded: {described(error)}"
+            raise click.ClickException(message) from error
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
@@ -70,7 +71,7 @@ class _Commands(click.Group):
         try:
             return super().invoke(ctx)
         except WearlawError as error:
-            raise click.ClickException("\n".join([message_of(error), *getattr(error, "__notes__", [])])) from None
+            raise click.ClickException("\n".join([str(error), *getattr(error, "__notes__", [])])) from None
         except KeyboardInterrupt:
             raise Stopped("Stopped") from None
 

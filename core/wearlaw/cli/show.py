@@ -7,6 +7,7 @@ import json
 import textwrap
 import warnings
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any, TypeGuard
 
 import click
@@ -17,22 +18,19 @@ from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError, PluginWarning, UnknownModelError
 from wearlaw.extras import load
 from wearlaw.hookspecs import Command
-from wearlaw.models.contact_model import ContactModel, Model
+from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import WEAR, Law
+from wearlaw.models.model import Model
 from wearlaw.models.reader import Reader
-from wearlaw.models.stage import Stage
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import is_law_file, read_law
-from wearlaw.plugins.loader import unknown
+from wearlaw.plugins.loader import Preset
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import Q, from_si, text_of
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
-
-OTHERS = "model, material, case, test set or section"
-"""The things that can be shown, in the message for an unknown name."""
 
 
 @click.command("plugins")
@@ -75,25 +73,24 @@ def explain(name: str) -> str:
         law = read_law(name)
         return describe(type(law), f"{name}: a file of a law, for", law)
     found = loader.installed()
-    shelves = [shelf for shelf in found.shelves() if name in shelf.providers]
-    if not shelves:
-        known = dict.fromkeys(one for shelf in found.shelves() for one in shelf.items())
-        raise UnknownModelError(unknown(OTHERS, name, known, found.broken))
-    return "\n\n".join(_explained(shelf.kind, name, shelf.find(name, found.broken)) for shelf in shelves)
+    kinds = [kind for kind, shelf in found.shelves.items() if name in shelf.providers]
+    if not kinds:
+        known = dict.fromkeys(one for shelf in found.shelves.values() for one in shelf.items())
+        raise UnknownModelError(found.unknown("model, material, case, test set or section", name, known))
+    return "\n\n".join(_explained(kind, name, found.find(kind, name)) for kind in kinds)
 
 
 def _explained(kind: str, name: str, item: Any) -> str:
-    if kind == "parameter set":
-        origin = loader.installed().parameter_sets.origin(name)
-        return describe(type(item), f"{name}: a parameter set of {origin}, for", item)
     found = loader.installed()
+    head = f"{name}: a {kind} of {found[kind].origin(name)}"
+    if kind == "parameter set":
+        return describe(type(item), f"{head}, for", item)
+    if kind in loader.MODELS:
+        return describe(item)
     tell = _TELL.get(kind)
-    if kind in found.explanations:
+    if tell is None:
         module, _, function = found.explanations[kind].partition(":")
         tell = load(module, function, f"wearlaw show {name}")
-    if tell is None:
-        return describe(item)
-    head = f"{name}: a {kind} of {found.of_kind(kind).origin(name)}"
     return "\n".join([head, "", *tell(name, item)])
 
 
@@ -109,12 +106,18 @@ def _material_type(name: str, cls: type[Material]) -> Iterator[str]:
     yield from ("", f'In a case: material = {{type = "{name}", ...}} with these fields.')
 
 
+def _preset(name: str, preset: Preset) -> Iterator[str]:
+    yield inspect.getdoc(preset.make) or ""
+    yield from ("", f'In a case: rig = {{preset = "{name}"}}, beside what overrides its values.')
+
+
 def _command(name: str, command: Command) -> Iterator[str]:
     yield command.help
     yield from ("", f"wearlaw {name} --help lists its options.")
 
 
 _TELL: dict[str, Callable[[str, Any], Iterator[str]]] = {
+    "preset": _preset,
     "material": _material,
     "material type": _material_type,
     "command": _command,
@@ -127,18 +130,18 @@ def describe(model: type[Model], head: str | None = None, law: Law | None = None
 
     With a law, such as a parameter set, the fields and declarations are its own, and the head says what it is.
     """
-    default = law or _default(model)
-    headline = f"{model.name}: a {model.kind} of {loader.installed().of_kind(model.kind).origin(model.name)}"
+    default: Model | None = law
+    if law is None:
+        with suppress(InputError):  # some fields have no default
+            default = model()
+    headline = f"{model.name}: a {model.kind} of {loader.installed()[model.kind].origin(model.name)}"
     lines = [*([head] if head else []), headline, "", inspect.getdoc(model) or ""]
     lines += ["", *wrapped("source: ", model.source), "", "fields:", *fields_of(model, default)]
     if issubclass(model, Rig):
-        conditions = ["", "conditions:", *_conditions(model)]
-        declared = ["", "declares:", *(f"  {text}" for text in _not_kept(default))]
-        return "\n".join([*lines, *conditions, *_example(model), *(declared if len(declared) > 2 else [])])
-    if issubclass(model, Reader):
-        return "\n".join([*lines, "", f"reads files that end in {', '.join(model.suffixes)}"])
-    of_fields = () if default is None and issubclass(model, Stage) else _declared(default)
-    lines += ["", "declares:", *(f"  {text}" for text in (*_of_class(model), *of_fields))]
+        lines += ["", "conditions:", *_conditions(model), *_example(model)]
+    declared = list(_declared(model, default))
+    if declared:
+        lines += ["", "declares:", *(f"  {text}" for text in declared)]
     return "\n".join(lines)
 
 
@@ -203,14 +206,6 @@ def _keywords(values: Mapping[str, Any]) -> list[str]:
     return [f"{name}={json.dumps(value, ensure_ascii=False, default=text_of)}" for name, value in values.items()]
 
 
-def _default(model: type[Model]) -> Model | None:
-    """Return the model with its defaults, or None if it has required fields."""
-    try:
-        return model()
-    except InputError:
-        return None
-
-
 def _value(model: type[Configuration], default: Configuration | None, name: str) -> str:
     """Return the default of a field, or that it must be given."""
     field = model.model_fields[name]
@@ -234,9 +229,11 @@ def _choices(schema: Mapping[str, Any]) -> list[str]:
     return [repr(word) for option in options for word in option.get("enum", [])]
 
 
-def _of_class(model: type[Model]) -> Iterator[str]:
-    """Yield the declarations of a stage, and the outcome of a law unless it is wear."""
-    if issubclass(model, Stage):
+def _declared(model: type[Model], default: Model | None) -> Iterator[str]:
+    """Yield the declarations of a model: those of its class, and those of the model with its defaults."""
+    if issubclass(model, Reader):
+        yield f"reads files that end in {', '.join(model.suffixes)}"
+    elif issubclass(model, Stage):
         if model.alters_problem_only():
             yield "changes the problem before the contact model solves it, and leaves the solved contact as it is"
         else:
@@ -248,22 +245,15 @@ def _of_class(model: type[Model]) -> Iterator[str]:
         of = "mean over the area of the patch" if outcome.of == "area mean" else "one value for the whole patch"
         unit = symbol(Q(1.0, outcome.unit).units, "~P") or "-"
         yield f"predicts: {outcome.name} [{unit}], {of}{', may be negative' if outcome.signed else ''}"
-
-
-def _declared(default: Model | None) -> Iterator[str]:
-    if default is None:
-        yield "what depends on its fields"
-    elif isinstance(default, Law):
+    if isinstance(default, Law):
         yield from _of_law(default)
     elif isinstance(default, ContactModel):
         yield "scale: the means of the patch" if default.scale == "patch" else "scale: the patch resolved into cells"
         if default.uses_measured_traction:
             yield "takes a measured traction_coefficient"
         yield from accuracies(default)
-    yield from _not_kept(default)
-
-
-def _not_kept(default: Model | None) -> Iterator[str]:
+    elif default is None and issubclass(model, Law | ContactModel):
+        yield "what depends on its fields"
     if default is not None:
         yield from (f"does not keep {claim}: {reason}" for claim, reason in default.exemptions.items())
 

@@ -18,7 +18,7 @@ from wearlaw.arrays.array import Array, freeze
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, InputError, ModelError, did_you_mean, shown
-from wearlaw.units.quantities import Quantity, QuantityLike, from_si
+from wearlaw.units.quantities import QuantityLike
 from wearlaw.units.variables import expected
 
 NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density")
@@ -506,21 +506,6 @@ class Contact:
     def forces(self) -> CreepForces:
         """The forces and the moment transmitted by the contact."""
         return CreepForces(longitudinal=self.force_x, lateral=self.force_y, spin_moment=self.moment_z)
-
-    @property
-    def longitudinal_force(self) -> Quantity:
-        """Longitudinal force, Fx [N], with the sign of the creepage."""
-        return from_si(self.force_x, "N")
-
-    @property
-    def lateral_force(self) -> Quantity:
-        """Lateral force, Fy [N], with the sign of the creepage."""
-        return from_si(self.force_y, "N")
-
-    @property
-    def spin_moment(self) -> Quantity:
-        """Spin moment, Mz [N m], with the sign of the spin."""
-        return from_si(self.moment_z, "N*m")
 
     def over_strip(self, value: Array) -> Array:
         """Return ∫ value dx along each strip of an ellipse, of shape (batch, strips)."""

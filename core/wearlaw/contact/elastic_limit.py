@@ -157,6 +157,10 @@ def shakedown_limit(
     return limit
 
 
+LIMITS = (("forward", True), ("von_mises", False))
+"""The stresses that decide about shakedown and about first yield, and whether it is shakedown."""
+
+
 class Overload(NamedTuple):
     """An operating point beyond first yield; a warning should name the greater of two."""
 
@@ -203,24 +207,46 @@ def overload(
     worst : Overload, optional
         The furthest of other points.
     """
-    points = [max_pressure, traction_coefficient, friction_coefficient, *(() if axis_ratio is None else (axis_ratio,))]
-    one = max_pressure.size == 1
-    flat: Any = [array.item() for array in points] if one else [array.reshape(-1) for array in points]
-    highest, traction, friction = flat[:3] if one else (array.max() for array in flat[:3])
+    points = [max_pressure, traction_coefficient, friction_coefficient]
+    if axis_ratio is not None:
+        points.append(axis_ratio)
+    if max_pressure.size == 1:
+        point = [array.item() for array in points]  # functions of NumPy take ten times as long
+        for k, nu in bodies:
+            worst = _worse(worst, _overload_at(k, nu, *point))
+        return worst
+    flat = [array.reshape(-1) for array in points]
+    highest, traction, friction = (float(array.max()) for array in flat[:3])
     for k, nu in bodies:
         if highest * _most_stressed(nu, max(traction, friction)) <= k:
             continue
         for start in range(0, max_pressure.size, BLOCK):
-            part = flat if one else [array[start : start + BLOCK] for array in flat]
-            for measure, beyond in (("forward", True), ("von_mises", False)):
+            part = [array[start : start + BLOCK] for array in flat]
+            for measure, beyond in LIMITS:
                 known = worst is not None and worst.beyond_shakedown
                 least = worst.ratio if worst is not None and known == beyond else 1.0
                 if not known or beyond:  # beyond shakedown there is no need to check first yield
-                    point = part if one else _furthest(measure, k, nu, least, *part)
-                    load = point[0] * _peak(measure, nu, *point[1:]) / k if point else 0.0
-                    if load > least:
-                        worst = Overload(beyond, float(load), *point[:2])
+                    worst = _worse(worst, _overload_at(k, nu, *_furthest(measure, k, nu, least, *part)))
     return worst
+
+
+def _overload_at(k: float, nu: float, max_pressure: float, *point: float) -> Overload | None:
+    """Return the overload of a body at one operating point, or None if it stays elastic."""
+    traction, friction, *_ = point
+    if max_pressure * _most_stressed(nu, max(traction, friction)) <= k:
+        return None
+    for measure, beyond in LIMITS:
+        load = max_pressure * _peak(measure, nu, *point) / k
+        if load > 1.0:  # beyond shakedown there is no need to check first yield
+            return Overload(beyond, float(load), max_pressure, traction)
+    return None
+
+
+def _worse(one: Overload | None, other: Overload | None) -> Overload | None:
+    """Return the greater of two overloads."""
+    if one is None or other is None:
+        return other or one
+    return max(one, other)
 
 
 def _most_stressed(poisson_ratio: float, friction_coefficient: _Value) -> _Value:

@@ -1,157 +1,36 @@
-"""The base class of contact models, `ContactModel`, and of all models, `Model`.
+"""The base classes of contact models, `ContactModel`, and of the steps around one, `Stage`."""
 
-A model is its configuration: a frozen pydantic record. Its fields carry units, and its methods compute.
-"""
-
-import inspect
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
-from functools import cached_property
+import dataclasses
+from abc import abstractmethod
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast, final, get_args
 
 import numpy as np
-from pydantic import model_validator
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import Contact
+from wearlaw.contact.contact import Contact, LineFields
 from wearlaw.contact.problem import PATCHES, CreepForces, Geometry, Problem
-from wearlaw.errors import CompositionError, InputError, ModelError, WearlawError, described, did_you_mean
-from wearlaw.extras import load
-from wearlaw.settings.configuration import Configuration
+from wearlaw.contact.quadrature import Nodes, Zone, join
+from wearlaw.errors import CompositionError
+from wearlaw.models.model import Model, check_scale
 
 Scale: TypeAlias = Literal["patch", "cells"]
 """Whether a contact holds the means of the whole patch in one node, or resolves the patch into many nodes."""
 
-Claim: TypeAlias = str
-"""Name of an invariant that a model keeps unless it declares itself exempt; see `Model.exemptions`.
+FieldVariable: TypeAlias = Literal["pressure", "traction", "slip", "wear_index_density"]
+"""A variable of the nodes that depends on the fields alone."""
 
-It is the name of a check of the conformance kit, such as "each_node_wears_by_itself". For contact models, some claims
-have several checks, such as "energy_balance" or "spin".
-"""
+Solve: TypeAlias = Callable[[Problem], Contact]
+"""Solves a contact problem."""
+
+Forces: TypeAlias = Callable[[Problem], CreepForces]
+"""Solves a contact problem for its forces."""
 
 QUADRATURE = 5e-8
 """Accuracy of the quadrature of `LineContactModel`; its worst case is a slip zone just short of the whole patch."""
 
 ELLIPTIC = 5e-3
 """Default limit for the error of sums over an ellipse; a model can declare another."""
-
-OF_ARRAYS = (
-    "\nIn a fit or an uncertainty, its numbers are arrays of shape (points, 1), one value for each operating point."
-    " Write its formulas with NumPy functions that broadcast: np.where instead of if, np.exp instead of math.exp"
-)
-"""Hint for a law that fails with arrays instead of numbers."""
-
-OF_READ_ONLY = (
-    "\nThe arrays that a model is given are read-only, because other models read them too. Make a new array, as in"
-    " mpa = pressure / 1e6 instead of mpa = pressure; mpa /= 1e6, or begin with pressure.copy()"
-)
-"""Hint for a model that fails because it writes into an array that it was given."""
-
-
-class Model(Configuration, ABC):
-    """Base class of rigs, contact models and wear laws."""
-
-    kind: ClassVar[str]
-    """Word for a model of this kind in messages."""
-
-    name: ClassVar[str]
-    """Name of the model in the look-up."""
-
-    source: ClassVar[str]
-    """Literature source of the model."""
-
-    _provided_by: ClassVar[Callable[..., str]]
-    """Where a class of models comes from, in words; set by the look-up of plugins."""
-
-    def _origin(self) -> str:
-        """Return the class of this model in words, with the distribution or the module that it comes from."""
-        cls = type(self)
-        return f"class {cls.__name__}{cls._provided_by(cls)}"
-
-    @classmethod
-    def subject(cls) -> str:
-        """Return the name of this model in messages."""
-        return cls.name
-
-    def _repr_html_(self) -> str:
-        """Return the model for a notebook: its fields, with a drawing of a rig or the curve of a law."""
-        shown: str = load("wearlaw_output.notebook", "html", "a notebook")(self)
-        return shown
-
-    @property
-    def exemptions(self) -> Mapping[Claim, str]:
-        """The invariants that this model does not keep, each with the reason."""
-        return {}
-
-    if not TYPE_CHECKING:  # checkers reject this order by themselves
-
-        def __or__(self, other: object) -> object:
-            raise CompositionError(
-                f"'{self.name}' cannot start a pipeline; begin with a rig, as in"
-                ' wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd")'
-            )
-
-
-def fault(model: Model, what: str) -> ModelError:
-    """Return the error for a model that is at fault; it names the model, its class and its distribution.
-
-    Parameters
-    ----------
-    model : Model
-    what : str
-        What the model did, such as "returned rates of shape (3,)"; the message begins with kind and name of the model.
-    """
-    return ModelError(with_origin(model, f"{model.kind} '{model.name}' {what}"))
-
-
-def with_origin(model: Model, message: str) -> str:
-    """Return a message about a model with the class of the model and the distribution or module that it comes from."""
-    return f"{message}\nThe {model.kind} is {model._origin()}"
-
-
-class Blame:
-    """A context that turns an exception in a model's code into a `ModelError` that names the model.
-
-    Errors of wearlaw pass, because their messages are complete. An `InputError` gets a note that names the model, but
-    not one of a rig or a reader, which is about the conditions or a file. Ctrl-C and a lack of memory pass as well.
-
-    Parameters
-    ----------
-    model : Model
-        The model to name.
-    p : mapping of str to float or ndarray, optional
-        The numbers given to a wear law. If there are arrays among them, the message says how to compute with arrays.
-    """
-
-    __slots__ = ("_model", "_p")
-
-    def __init__(self, model: Model, p: Mapping[str, object] | None = None) -> None:
-        self._model, self._p = model, p
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
-        model = self._model
-        if isinstance(error, InputError) and model.kind not in ("rig", "reader") and not hasattr(error, "__notes__"):
-            error.add_note(f"raised in {model.kind} '{model.name}', {model._origin()}")
-        if error is None or isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
-            return
-        said = described(error)
-        hint = ""
-        if "read-only" in said or "readonly" in said:  # as NumPy and numba say it
-            hint = OF_READ_ONLY
-        elif any(isinstance(number, np.ndarray) for number in (self._p or {}).values()):
-            hint = OF_ARRAYS
-        raise fault(model, f"failed: {said}{hint}") from error
-
-
-def check_scale(model: Model | type[Model], scale: object, known: tuple[str, ...]) -> None:
-    """Raise a `ModelError` if a model declares an unknown scale; a property is checked for each instance."""
-    if not isinstance(scale, property | cached_property) and scale not in known:
-        cls = model if isinstance(model, type) else type(model)
-        words = " or ".join(repr(one) for one in known)
-        raise ModelError(f"{cls.__name__}.scale: is {scale!r}{did_you_mean(str(scale), known)} It must be {words}")
 
 
 class ContactModel(Model):
@@ -180,18 +59,13 @@ class ContactModel(Model):
         def __pydantic_init_subclass__(cls, **options: Any) -> None:
             """Raise an error for an unknown scale."""
             super().__pydantic_init_subclass__(**options)
-            check_scale(cls, inspect.getattr_static(cls, "scale"), get_args(Scale))
+            check_scale(cls, get_args(Scale))
 
         def __new__(cls, *_: object, **__: object) -> Self:
             """Raise an error for a class that solves neither geometry."""
             if not cls.geometries():
                 raise TypeError(f"{cls.__name__} is abstract: it implements neither solve_line nor solve_ellipse")
             return super().__new__(cls)
-
-    @model_validator(mode="after")
-    def _has_a_scale(self) -> Self:
-        check_scale(self, self.scale, get_args(Scale))
-        return self
 
     @final
     def solve(self, problem: Problem) -> Contact:
@@ -282,3 +156,152 @@ class CreepForceModel(ContactModel):
     def solve_ellipse(self, problem: Problem) -> Contact:
         """Return the patch means as a contact of one node, of shape (batch, 1, 1)."""
         return Contact.of_patch(problem, self.creep_forces(problem))
+
+
+class LineContactModel(ContactModel):
+    """Base class for contact models with closed-form fields and one slip zone, at the trailing edge.
+
+    The wear is integrated to rounding error. The methods are only called with creepage ≥ 0; `solve` mirrors the result
+    for negative creepage. Methods that return None by default are optional; they only save time.
+    """
+
+    @property
+    def square_roots_at(self) -> Literal["slip_zone", "patch"]:
+        """The interval with square-root behaviour of pressure, traction and slip at its ends.
+
+        "slip_zone" suits elastic half-spaces. "patch" suits models with smooth slip up to the start of the slip zone.
+        """
+        return "slip_zone"
+
+    @abstractmethod
+    def slip_length(self, problem: Problem) -> Array:
+        """Return the length of the slip zone, which ends at the trailing edge [m]; 0 if nothing slips."""
+
+    @abstractmethod
+    def fields(self, problem: Problem, nodes: Nodes) -> LineFields:
+        """Return the fields at `nodes`; their positions have the shape (batch, nodes) or broadcast to it.
+
+        The arrays of `problem` have a last axis of length one, and those of one operating point no axis, so that
+        formulas broadcast against positions.
+        """
+
+    @abstractmethod
+    def tangential_force_per_width(self, problem: Problem) -> Array:
+        """Return T [N/m], of the batch shape."""
+
+    def crossings(self, problem: Problem, variable: FieldVariable, value: Array) -> Array | None:  # noqa: ARG002
+        """Return the positions in the slip zone where a variable crosses a value, or None to let wearlaw search.
+
+        Parameters
+        ----------
+        problem : Problem
+            With a batch of any shape.
+        variable : str
+            "pressure" [Pa], "traction" [Pa], "slip" [-] or "wear_index_density" [N/m²].
+        value : ndarray, (batch)
+            In SI.
+
+        Returns
+        -------
+        ndarray, (batch, k), or None
+            Distances from the trailing edge [m]; NaN, or any value beyond the slip zone, if there is no crossing.
+        """
+        return None
+
+    def excess_dissipation(self, problem: Problem, threshold: float | Array) -> Array | None:  # noqa: ARG002
+        """Return ∫ max(q·s - threshold, 0) dx over the patch [N/m], of the batch shape, or None if not known.
+
+        `threshold` [N/m²] is positive, a single number or an array of the batch shape.
+        """
+        return None
+
+    def tangential_force(self, problem: Problem) -> Array:
+        """Return T [N] with the sign of the creepage."""
+        return self._mirrored_force(problem) * problem.track_width
+
+    def _mirrored_force(self, problem: Problem) -> Array:
+        return np.copysign(self.tangential_force_per_width(problem.forward()), problem.creepage)
+
+    def zones(self, problem: Problem) -> tuple[Zone, Zone]:
+        """Return the stick zone, measured from the leading edge, and the slip zone, measured from the trailing edge."""
+        over_patch, length = self.square_roots_at == "patch", self.slip_length(problem.forward())
+        stick = Zone.of(problem.half_width, 2.0 * problem.half_width - length, over_patch)
+        return stick, Zone.of(problem.half_width, length, over_patch)
+
+    def at(self, problem: Problem, nodes: Nodes) -> Contact:
+        """Return the contact on the given nodes, mirrored where the creepage is negative."""
+        forward = problem.forward()
+        fields = self.fields(forward[..., None] if forward.batch_shape else forward, nodes)
+        if not (problem.creepage > 0.0).all():
+            sign = np.sign(problem.creepage)[..., None]
+            fields = dataclasses.replace(fields, traction=sign * fields.traction, slip=sign * fields.slip)
+        force = self._mirrored_force(problem)
+        return Contact.from_line(problem, fields, x=nodes.x, length=nodes.length, force_per_width=force)
+
+    def solve_line(self, problem: Problem) -> Contact:
+        """Return the contact on quadrature nodes of the stick zone and the slip zone."""
+        stick, slip = self.zones(problem)
+        sticks, nodes = stick.length.any(), slip.nodes()
+        return self.at(problem, join(stick.nodes().reversed(), nodes) if sticks else nodes)
+
+
+class Stage(Model):
+    """A step around the contact model: it changes the problem before the model solves it, or the solved contact.
+
+    A stage overrides one of two methods. One that changes only the problem, such as friction that falls with
+    temperature, overrides `altered`; wear is then integrated as exactly as without the stage. Any other stage overrides
+    `solve`.
+    """
+
+    kind: ClassVar[str] = "stage"
+
+    gives_means: ClassVar[bool] = False
+    """Whether the contact after this stage is one node with the means of the whole patch."""
+
+    if not TYPE_CHECKING:
+
+        @classmethod
+        def __pydantic_init_subclass__(cls, **options: Any) -> None:
+            """Raise an error for a stage that changes nothing."""
+            super().__pydantic_init_subclass__(**options)
+            if cls.solve is Stage.solve and cls.altered is Stage.altered:
+                raise TypeError(f"{cls.__name__} changes nothing: it implements neither altered nor solve")
+
+    def altered(self, problem: Problem, forces: Forces) -> Problem:  # noqa: ARG002
+        """Return the problem that the contact model is to solve instead.
+
+        Parameters
+        ----------
+        problem : Problem
+            The problem made by the rig, or altered by a stage further out, with a batch of any shape.
+        forces : callable
+            Returns the forces for a problem of the same batch shape, with the contact model and the stages inside.
+
+        Returns
+        -------
+        Problem
+            Of the same geometry and batch shape, as from `Problem.replaced`.
+        """
+        return problem
+
+    def solve(self, problem: Problem, inner: Solve) -> Contact:
+        """Return the solved contact.
+
+        Parameters
+        ----------
+        problem : Problem
+            As for `altered`.
+        inner : callable
+            Solves a problem with the contact model and the stages inside. A fixed point calls it several times.
+
+        Returns
+        -------
+        Contact
+            Of the geometry and batch shape of `problem`.
+        """
+        return inner(self.altered(problem, lambda one: inner(one).forces))
+
+    @classmethod
+    def alters_problem_only(cls) -> bool:
+        """Return whether the stage leaves the solved contact as it is, because it does not override `solve`."""
+        return cls.solve is Stage.solve

@@ -1,6 +1,5 @@
 """The base class of laws of any outcome, `Law`, its `Outcome`, and the record of the fit of its parameters."""
 
-import inspect
 import math
 import warnings
 from abc import abstractmethod
@@ -32,10 +31,11 @@ from wearlaw.errors import (
     did_you_mean,
     shown,
 )
-from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, check_scale, fault, with_origin
+from wearlaw.models.contact_model import ContactModel, Scale
+from wearlaw.models.model import Blame, Model, check_scale, fault, with_origin
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
-from wearlaw.units.quantities import Quantity, Unit, from_si
+from wearlaw.units.quantities import WEAR_RATE, Quantity, Unit, from_si
 from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import UNITS, VARIABLES
 
@@ -54,9 +54,6 @@ SCALES = ("patch", "any")
 
 WEAR = "wear_rate"
 """Name of the outcome of wear laws."""
-
-TAKE_NUMBERS = {"rate": ("self", "contact", "p"), **dict.fromkeys(("breakpoints", "ramps", "jumps"), ("self", "p"))}
-"""The methods of a law that take its numbers, with their arguments."""
 
 
 class Calibration(Configuration):
@@ -147,7 +144,7 @@ class Outcome:
             raise InputError(
                 f"outcome: its name must be made of letters, digits and underscores, got {shown(self.name)}"
             )
-        if not isinstance(self.of, str) or self.of not in ("area mean", "patch"):
+        if self.of not in ("area mean", "patch"):
             raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shown(self.of)}")
         known = VARIABLES.get(self.name)
         if known is not None:
@@ -238,25 +235,18 @@ class Law(Model):
 
         @classmethod
         def __pydantic_init_subclass__(cls, **options: Any) -> None:
-            """Raise an error for a law without an outcome, or with methods that do not take its numbers."""
+            """Raise an error for a law without an outcome."""
             super().__pydantic_init_subclass__(**options)
             if not isinstance(getattr(cls, "outcome", None), Outcome):
                 raise TypeError(
                     f"{cls.__name__} has no outcome; add what it predicts, as in"
                     ' outcome = wl.Outcome("rcf_damage", unit="", of="patch"), or derive it from wl.WearLaw'
                 )
-            check_scale(cls, inspect.getattr_static(cls, "scale"), SCALES)
-            for name, arguments in TAKE_NUMBERS.items():
-                _check_arguments(cls, name, arguments)
+            check_scale(cls, SCALES)
             known = cls.__pydantic_fields__
             for name in Law.model_fields:
                 if known[name].default is None:
                     known[name] = known.pop(name)  # last where fields are shown
-
-    @model_validator(mode="after")
-    def _has_a_scale(self) -> Self:
-        check_scale(self, self.scale, SCALES)
-        return self
 
     def check_variables(self) -> None:
         """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` names no variable."""
@@ -368,9 +358,6 @@ class Law(Model):
         self._warn_of_calibration(contact, scale)
         rate = self.checked_rate(contact)
         self.check_not_negative(rate)
-        return self._local(contact, rate)
-
-    def _local(self, contact: Contact, rate: Array) -> LocalOutcome:
         return LocalOutcome(contact, rate, self.outcome)
 
     def check_not_negative(self, value: Array, error: Callable[[], Array] = lambda: np.zeros(())) -> None:
@@ -478,6 +465,24 @@ class Law(Model):
         return None
 
 
+class WearLaw(Law):
+    """A law of wear: from a solved contact to the wear rate at each of its nodes.
+
+    Its `rate` is the mass lost per metre rolled and contact area [kg/m/m²]. It is not negative, and it is zero where
+    nothing slips.
+    """
+
+    kind: ClassVar[str] = "wear law"
+    outcome: ClassVar[Outcome] = Outcome(WEAR, WEAR_RATE, of="area mean")
+    zero_in_stick: ClassVar[bool] = True
+
+    if TYPE_CHECKING:  # for checkers, these methods of `Law` return wear laws
+
+        def explicit(self) -> "WearLaw": ...  # noqa: D102
+
+        def band(self) -> "tuple[WearLaw, WearLaw, WearLaw] | None": ...  # noqa: D102
+
+
 def named_outcomes(laws: Sequence[Law]) -> dict[str, int]:
     """Return the index of each law by the name of its outcome in results, such as "wear_rate".
 
@@ -488,16 +493,3 @@ def named_outcomes(laws: Sequence[Law]) -> dict[str, int]:
         name if names.count(name) == 1 else f"{name}_{law.body}": index
         for index, (name, law) in enumerate(zip(names, laws, strict=True))
     }
-
-
-def _check_arguments(law: type[Law], name: str, arguments: tuple[str, ...]) -> None:
-    """Raise a `TypeError` if a method of a law does not take these arguments."""
-    method = inspect.getattr_static(law, name)
-    rule = f"{law.__name__}.{name} must take ({', '.join(arguments)}): p holds the law's numbers in SI"
-    if isinstance(method, property | cached_property):
-        raise TypeError(f"{rule}; it is a property, make it a method")
-    if inspect.isfunction(method):
-        try:
-            inspect.signature(method).bind(*arguments)
-        except TypeError:
-            raise TypeError(f"{rule}; it takes {inspect.signature(method)}") from None

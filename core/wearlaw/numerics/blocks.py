@@ -49,16 +49,18 @@ def by_block(
     points = problem.size
     if points == 0:
         raise ConditionsError("problem: holds no operating points; give at least one")
-    if points > block:
-        np.empty(KEPT, dtype=np.uint8)
+    if points <= block:
+        only = function(problem, slice(0, points))
+        if on_block is not None:
+            on_block(problem, only)
+        return only
+    np.empty(KEPT, dtype=np.uint8)
     whole: Any = None
     for part in blocks(points, block):
-        within = problem if points <= block else problem[part]
+        within = problem[part]
         found = function(within, part)
         if on_block is not None:
             on_block(within, found)
-        if points <= block:
-            return found
         if kept is not None:
             found = kept(found)
         if whole is None:

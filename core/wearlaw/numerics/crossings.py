@@ -13,8 +13,8 @@ from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes, Zone
 from wearlaw.errors import ModelError
-from wearlaw.models.contact_model import with_origin
-from wearlaw.models.line_contact_model import FieldVariable, LineContactModel
+from wearlaw.models.contact_model import FieldVariable, LineContactModel
+from wearlaw.models.model import with_origin
 
 SAMPLES = 32
 """Number of equal intervals of ψ that are searched for a crossing."""

@@ -26,12 +26,12 @@ from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.contact.quadrature import Zone, join, remainder
 from wearlaw.errors import CompositionError
-from wearlaw.models.contact_model import Blame, ContactModel
+from wearlaw.models.contact_model import ContactModel, LineContactModel
 from wearlaw.models.law import Law, Numbers
-from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.model import Blame
+from wearlaw.models.reader import Solved
 from wearlaw.numerics.blocks import OfBlock, OnBlock, ResultT, blocks, by_block, each
 from wearlaw.numerics.crossings import crossings
-from wearlaw.numerics.solved import Solved
 from wearlaw.numerics.solving import Solver, check_results, check_type
 from wearlaw.numerics.splits import split_rates
 from wearlaw.numerics.staged import Staged
@@ -234,10 +234,10 @@ def _without_force(totals: Totals) -> Totals:
     return totals._replace(longitudinal=None)
 
 
-def _ramps(law: Law, p: Numbers) -> tuple[tuple[Any, Any], ...] | None:
+def _ramps(law: Law, p: Numbers) -> Sequence[tuple[Any, Any]] | None:
     with Blame(law, p):
         ramps = law.ramps(p)
-        return None if ramps is None else tuple((threshold, slope) for threshold, slope in ramps)
+        return None if ramps is None else [(threshold, slope) for threshold, slope in ramps]
 
 
 def _contact_of(law: Law, contact: Contact, problem: Problem) -> Contact:
@@ -362,7 +362,7 @@ def contact_for(model: ContactModel, law: Law, problem: Problem) -> Contact:
 
 
 def closed_form(
-    model: LineContactModel, ramps: tuple[tuple[Any, Any], ...], problem: Problem, points: slice = ALL
+    model: LineContactModel, ramps: Sequence[tuple[Any, Any]], problem: Problem, points: slice = ALL
 ) -> Mean | None:
     """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form.
 
@@ -374,8 +374,8 @@ def closed_form(
     total: Array | float = 0.0
     for ramp in ramps:
         threshold, slope = _per_point(ramp[0], points), _per_point(ramp[1], points)
-        above = np.any(threshold > 0.0) if isinstance(threshold, np.ndarray) else threshold > 0.0
-        excess = model.excess_dissipation(forward, threshold) if above else force * forward.creepage
+        above = (threshold > 0.0).any() if isinstance(threshold, np.ndarray) else threshold > 0.0
+        excess = model.excess_dissipation(forward, threshold) if above else force * forward.longitudinal_creepage
         if excess is None:
             return None
         check_type(model, "excess_dissipation", excess, problem.batch_shape)

@@ -21,11 +21,11 @@ from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Problem, Strips
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import ModelError, shown
-from wearlaw.models.contact_model import QUADRATURE, Blame, ContactModel, Model, fault
+from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel
 from wearlaw.models.law import Law, Numbers
-from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.model import Blame, Model, fault
+from wearlaw.models.reader import Solved
 from wearlaw.numerics.blocks import OfBlock, OnBlock, ResultT, by_block, each
-from wearlaw.numerics.solved import Solved
 from wearlaw.numerics.totals import Across
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import VARIABLES
@@ -185,10 +185,14 @@ def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: 
 
 def check_results(model: ContactModel, problem: Problem, found: Any, name: str = "result") -> None:
     """Raise a `ModelError` unless each array among results holds finite float64 for each operating point."""
+    if type(found) is Across:  # made of checked rates
+        return
     if isinstance(found, tuple):
-        for field, one in zip(getattr(found, "_fields", (name,) * len(found)), found, strict=True):
-            if one is not None and type(one) is not Across:  # made of checked rates
-                check_results(model, problem, one, field)
+        one_point = problem.batch_shape == ()
+        for place, one in enumerate(found):
+            if one is None or (one_point and type(one) is np.float64 and math.isfinite(one)):
+                continue
+            check_results(model, problem, one, found._fields[place] if hasattr(found, "_fields") else name)
         return
     check_type(model, name, found, problem.batch_shape)
     low, high = extremes(found)
@@ -227,6 +231,8 @@ def _check_fields(model: ContactModel, contact: Contact, names: tuple[str, ...],
 
 def check_type(model: ContactModel, name: str, values: Any, shape: tuple[int, ...]) -> None:
     """Raise a `ModelError` unless a value is a float64 array of a shape, or a number if the shape has no axes."""
+    if type(values) is np.float64 and shape == ():
+        return
     if type(values) not in (np.ndarray, np.float64) or values.dtype != FLOAT64:
         raise fault(model, f"gave {_words(name)} of type {type_name(values)}; it must be a float64 array")
     if values.shape != shape:

@@ -9,8 +9,8 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import NODE_VARIABLES, TOTALS, Contact
 from wearlaw.contact.problem import Problem
-from wearlaw.models.contact_model import Blame
 from wearlaw.models.law import Law, Numbers
+from wearlaw.models.model import Blame
 from wearlaw.numerics.solving import VECTORS, Solver
 
 FIELDS = ("pressure", "traction", "slip", "traction_bound", "x", *VECTORS)

@@ -9,8 +9,8 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, ModelError, shown
-from wearlaw.models.contact_model import Blame, Claim, ContactModel, Scale, with_origin
-from wearlaw.models.stage import Forces, Solve, Stage
+from wearlaw.models.contact_model import ContactModel, Forces, Scale, Solve, Stage
+from wearlaw.models.model import Blame, Claim, with_origin
 from wearlaw.numerics.solving import Solver, check_problem
 
 

@@ -18,8 +18,10 @@ from wearlaw.errors import (
     shown,
     warn,
 )
-from wearlaw.models.contact_model import ContactModel, Model, Scale
+from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
+from wearlaw.models.model import Model
+from wearlaw.numerics.staged import without_stages
 from wearlaw.plugins import loader
 
 PEAKS = (
@@ -49,7 +51,7 @@ def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str 
     ----------
     laws : sequence of Law
     model : ContactModel
-        The contact model, for the message.
+        The contact model, with stages or without, for the message.
     outcome : str
         Name of the outcome, such as "wear_rate".
     body : str, optional
@@ -63,7 +65,8 @@ def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str 
     found = [index for index, law in enumerate(laws) if law.outcome.name == outcome]
     if not found:
         if outcome == WEAR:
-            add = f"the pipeline has no wear law; give one, as in rig | {model!r} | wl.wear_law('usfd')"
+            inner = without_stages(model)
+            add = f"the pipeline has no wear law; give one, as in rig | {inner!r} | wl.wear_law('usfd')"
             raise CompositionError(add)
         known = list(named_outcomes(laws))
         hint = did_you_mean(outcome, known)
@@ -215,8 +218,6 @@ def warn_of_unlike_materials(model: ContactModel, problem: Problem) -> None:
     if not model.assumes_like_materials or problem.traction_coefficient is not None:
         return
     beta = max((dundurs_beta(materials[0], one) for one in materials[1:]), key=abs)
-    if beta == 0.0:
-        return
     share = COUPLING * abs(beta) / float(np.nanmin(problem.friction_coefficient))
     if share > MOST_COUPLING:
         warn(

@@ -28,9 +28,9 @@ from wearlaw.errors import (
     shown,
     warn,
 )
-from wearlaw.models.contact_model import Blame, ContactModel, Model, Scale, fault
+from wearlaw.models.contact_model import ContactModel, Scale, Stage
 from wearlaw.models.law import WEAR, Law
-from wearlaw.models.stage import Stage
+from wearlaw.models.model import Blame, Model, fault
 from wearlaw.numerics.integrate import integrate_forces, prepared
 from wearlaw.numerics.solving import check_problem
 from wearlaw.numerics.staged import staged
@@ -54,6 +54,7 @@ from wearlaw.pipeline.solution import Solution
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, Configuration
+from wearlaw.units.registry import with_magnitude
 
 ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
 
@@ -343,7 +344,7 @@ def _read_only(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return read_only(value)
     if isinstance(value, pint.Quantity) and isinstance(value.magnitude, np.ndarray):
-        return type(value)(read_only(value.magnitude), value.units)
+        return with_magnitude(value, read_only(value.magnitude))
     return value
 
 

@@ -17,11 +17,10 @@ from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.contact.quadrature import uniform_cells
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
 from wearlaw.extras import load
-from wearlaw.models.contact_model import ContactModel, Scale
+from wearlaw.models.contact_model import ContactModel, LineContactModel, Scale
 from wearlaw.models.law import Law, named_outcomes
-from wearlaw.models.line_contact_model import LineContactModel
+from wearlaw.models.reader import Solved, flat
 from wearlaw.numerics import integrate
-from wearlaw.numerics.solved import Solved, flat
 from wearlaw.numerics.solving import Solver
 from wearlaw.numerics.staged import without_stages
 from wearlaw.numerics.totals import SlipTotals, Totals
@@ -67,20 +66,25 @@ class Prediction:
     ----------
     problem : Problem
         The contact problem that the contact model solved, as SI arrays.
-    contact_model : ContactModel
-        The theory of the tangential contact, without stages.
-    scale : {"patch", "cells"}
-        Whether the laws saw the means of the patch or its cells.
     laws : tuple of Law
         The laws; empty if only the contact was predicted.
     """
 
     def __init__(self, solution: Solution) -> None:
         self.problem = solution.problem
-        self.contact_model = without_stages(solution.model)
-        self.scale: Scale = solution.model.scale
         self.laws = solution.laws
         self._solution = solution
+
+    @property
+    def contact_model(self) -> ContactModel:
+        """The theory of the tangential contact, without stages."""
+        return without_stages(self._solution.model)
+
+    @property
+    def scale(self) -> Scale:
+        """Whether the laws saw the means of the patch or its cells, "patch" or "cells"."""
+        scale: Scale = self._solution.model.scale
+        return scale
 
     @classmethod
     def of(cls, contact: Contact, law: Law, /, *more: Law) -> Prediction:

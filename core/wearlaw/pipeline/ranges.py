@@ -11,7 +11,6 @@ from wearlaw.arrays.array import Array, extremes, steady
 from wearlaw.contact.elastic_limit import Overload, first_yield, overload, shakedown_limit
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, RangeWarning, warn
-from wearlaw.models.contact_model import Blame
 from wearlaw.models.law import Law
 from wearlaw.numerics.totals import Totals
 from wearlaw.units.quantities import from_si
@@ -58,10 +57,6 @@ class RangeWatch:
 
     def __init__(self, *laws: Law) -> None:
         self.laws = laws
-        self.ranges: dict[str, tuple[float, float]] = {}
-        for index, law in enumerate(laws):
-            with Blame(law):
-                self.ranges |= {f"{index} {name}": ends for name, ends in law.valid_range.items()}
         self.seen: dict[str, Seen] = {}
         self.points = 0
         self.overload: Overload | None = None
@@ -69,15 +64,17 @@ class RangeWatch:
     def see(self, part: Problem, totals: Totals) -> None:
         """Record a block of operating points."""
         self.points += part.size
-        for key, (low, high) in self.ranges.items():
-            self._see_values(key, totals.mean(part, key.partition(" ")[2]), low, high)
+        for index, law in enumerate(self.laws):
+            for name, ends in law.valid_range.items():
+                self._see_values(index, name, totals.mean(part, name), ends)
         if totals.sliding is not None:
-            self._see_values(SLIDING, totals.sliding, *SLIDING_RANGE)
+            self._see_values(None, SLIDING, totals.sliding, SLIDING_RANGE)
         self.overload = overload_of(part, totals.tangential_force(), self.overload)
 
-    def _see_values(self, key: str, values: Array, low: float, high: float) -> None:
-        lowest, highest = extremes(values)
+    def _see_values(self, law: int | None, name: str, values: Array, ends: tuple[float, float]) -> None:
+        (lowest, highest), (low, high) = extremes(values), ends
         if lowest < low or highest > high:
+            key = name if law is None else f"{law} {name}"
             self.see_outside(key, Seen(lowest, highest, int(((values < low) | (values > high)).sum())))
 
     def see_outside(self, key: str, more: Seen) -> None:
@@ -91,19 +88,11 @@ class RangeWatch:
         """Warn of points beyond first yield or out of range."""
         if self.overload is not None:
             self.overload.warn()
-        for key, ends in self.ranges.items():
-            if key in self.seen:
-                index, _, name = key.partition(" ")
-                law, calibration = self.laws[int(index)], self.laws[int(index)].calibration
-                low, high, far = (
-                    repr(from_si(value, UNITS[name])) for value in (*ends, self.seen[key].farthest(*ends))
-                )
-                source = f" ({calibration.source})" if calibration and name in calibration.range_in_si else ""
-                warn(
-                    f"{law.kind} '{law.name}' has a known range of mean {name.replace('_', ' ')} from {low} to"
-                    f" {high}{source}; {self._lie(key)} outside, as far as {far}",
-                    RangeWarning,
-                )
+        if not self.seen:
+            return
+        for index, law in enumerate(self.laws):
+            for name, ends in law.valid_range.items():
+                self._warn_of_range(law, f"{index} {name}", name, ends)
         if SLIDING in self.seen:
             laws = dict.fromkeys(f"{law.kind} '{law.name}'" for law in self.laws if law.follows_pressure_times_slip)
             warn(
@@ -114,6 +103,18 @@ class RangeWatch:
                 f" {self.seen[SLIDING].farthest(*SLIDING_RANGE):.3g} times Tγ/μ",
                 RangeWarning,
             )
+
+    def _warn_of_range(self, law: Law, key: str, name: str, ends: tuple[float, float]) -> None:
+        if key not in self.seen:
+            return
+        low, high, far = (repr(from_si(value, UNITS[name])) for value in (*ends, self.seen[key].farthest(*ends)))
+        calibration = law.calibration
+        source = f" ({calibration.source})" if calibration and name in calibration.range_in_si else ""
+        warn(
+            f"{law.kind} '{law.name}' has a known range of mean {name.replace('_', ' ')} from {low} to {high}{source};"
+            f" {self._lie(key)} outside, as far as {far}",
+            RangeWarning,
+        )
 
     def _lie(self, key: str) -> str:
         """Return how many points lie outside, as the beginning of a clause."""

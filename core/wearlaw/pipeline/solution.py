@@ -13,10 +13,9 @@ from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import WEAR, Law
+from wearlaw.models.reader import Solved
 from wearlaw.numerics import integrate
 from wearlaw.numerics.blocks import each
-from wearlaw.numerics.solved import Solved
-from wearlaw.numerics.staged import without_stages
 from wearlaw.numerics.totals import Across, SlipTotals, Totals
 from wearlaw.pipeline.composition import law_among, warn_of_body
 from wearlaw.pipeline.datasets import Conditions
@@ -56,7 +55,7 @@ class Solution:
         self.model = model
         self.laws = laws
         self.totals = totals
-        self.given = given or {}
+        self.given = given
         self.whole = whole
 
     def part(self, chosen: Selection) -> Solution:
@@ -76,7 +75,7 @@ class Solution:
             whole, chosen = self.whole
             return whole.conditions.chosen(chosen)
         shape = self.problem.batch_shape
-        return Conditions(self.given, shape[: len(shape) - len(self.problem.dims)])
+        return Conditions(self.given or {}, shape[: len(shape) - len(self.problem.dims)])
 
     @cached_property
     def forces(self) -> CreepForces:
@@ -136,7 +135,7 @@ class Solution:
 
     def law(self, outcome: str = WEAR, body: str | None = None) -> int:
         """Return the index of the law of an outcome, for a body if it is given."""
-        return law_among(self.laws, without_stages(self.model), outcome, body)
+        return law_among(self.laws, self.model, outcome, body)
 
     def value(self, index: int, body: str | None = None) -> Array:
         """Return the outcome of a law; one for every body is evaluated again for a body of another material."""

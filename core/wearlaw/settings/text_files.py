@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import tomllib
 from collections.abc import Iterator
@@ -11,15 +10,12 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
-from wearlaw.errors import InputError
+from wearlaw.errors import InputError, shown
 
 MIB = 2**20
 
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""Errors of a full disk: no room, a quota, or a limit on the size of a file."""
-
-UTF_16 = (b"\xff\xfe", b"\xfe\xff")
-"""The byte order marks of UTF-16, which `>` writes in Windows PowerShell 5."""
+LARGEST = MIB
+"""Size of the largest TOML file that is read [bytes]."""
 
 _READ: ContextVar[Path | None] = ContextVar("folder of the file that is being read", default=None)
 
@@ -49,23 +45,6 @@ def reason_of(error: Exception) -> str:
     return getattr(error, "strerror", None) or str(error)
 
 
-def read_start(path: str | os.PathLike[str], count: int) -> bytes:
-    """Return the first bytes of a file, all if it has no more than `count`.
-
-    Raises
-    ------
-    FileNotFoundError, InputError
-        As for `read_file`.
-    """
-    try:
-        with open(path, "rb") as file:
-            return file.read(count)
-    except FileNotFoundError:
-        raise
-    except (OSError, ValueError) as error:
-        raise InputError(reason_of(error)) from None
-
-
 def read_file(path: str | os.PathLike[str], most: int) -> bytes:
     """Return the content of a file of at most so many bytes.
 
@@ -83,51 +62,31 @@ def read_file(path: str | os.PathLike[str], most: int) -> bytes:
     InputError
         If it is larger or cannot be read; the message follows the name of the file.
     """
-    content = read_start(path, most + 1)
+    try:
+        with open(path, "rb") as file:
+            content = file.read(most + 1)
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError) as error:
+        raise InputError(reason_of(error)) from None
     if len(content) > most:
         raise InputError(f"it has more than {most / MIB:g} MiB, the most that is read; is it the right file?")
     return content
 
 
 def read_text(path: str | os.PathLike[str], most: int) -> str:
-    """Return the text of a file of at most so many bytes.
+    """Return the text of a file in UTF-8, or in UTF-16 with its mark, which `>` writes in Windows PowerShell 5.
 
     Raises
     ------
     FileNotFoundError, InputError
         As for `read_file`; also if it is not text.
     """
+    content = read_file(path, most)
     try:
-        return decoded(read_file(path, most))
+        return content.decode("utf-16" if content.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
     except UnicodeDecodeError:
         raise InputError("it is not text in UTF-8; save it in UTF-8") from None
-
-
-def decoded(content: bytes, otherwise: str = "utf-8-sig") -> str:
-    """Decode UTF-8, or UTF-16 with a byte order mark, and return the text without the mark.
-
-    Parameters
-    ----------
-    content : bytes
-        The content of a file.
-    otherwise : str
-        The encoding to try if the content is neither.
-
-    Raises
-    ------
-    UnicodeDecodeError
-        If the content is not text in any of these encodings.
-    """
-    if content.startswith(UTF_16):
-        return content.decode("utf-16")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode(otherwise)
-
-
-LARGEST = MIB
-"""Size of the largest TOML file that is read [bytes]."""
 
 
 def parse_toml(text: str) -> dict[str, Any]:
@@ -142,3 +101,21 @@ def parse_toml(text: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"is not valid TOML: {error}") from None
+
+
+def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Return the contents of a TOML file; errors name it by its subject.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or is not TOML.
+    """
+    try:
+        text = read_text(path, LARGEST)
+    except (FileNotFoundError, InputError) as error:
+        raise InputError(f"cannot read {subject} {shown(Path(path))}: {reason_of(error)}") from None
+    try:
+        return parse_toml(text)
+    except InputError as error:
+        raise InputError(f"{subject} {shown(Path(path))} {error}") from None

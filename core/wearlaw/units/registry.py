@@ -114,6 +114,11 @@ def quantity(magnitude: Any, unit: str) -> Any:
     return quantity_class(registry)(magnitude, parse_unit(registry, unit))
 
 
+def with_magnitude(quantity: Any, magnitude: Any) -> Any:
+    """Return another magnitude in the unit of a quantity."""
+    return quantity_class(quantity._REGISTRY).of(magnitude, quantity._units)
+
+
 def quantity_from_si(value: Any, unit: str) -> Any:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
     cls, container, factor = _shown_in(application_registry(), unit)

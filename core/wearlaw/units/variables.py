@@ -106,14 +106,20 @@ VARIABLES: Mapping[str, Variable] = {
         "not negative",
     ),
     # results
-    "tangential_force": Variable("N", "tangential force T", "Tangential force, the sum of the tractions", "T"),
+    "tangential_force": Variable("N", "tangential force T", "Tangential force", "T"),
     "longitudinal_force": Variable(
-        "N", "longitudinal force Fx", "Longitudinal force, with the sign of the creepage", "Fx", "any"
+        "N", "longitudinal force Fx", "Longitudinal force, with the sign of the longitudinal creepage", "Fx", "any"
     ),
-    "lateral_force": Variable("N", "lateral force Fy", "Lateral force, with the sign of the creepage", "Fy", "any"),
+    "lateral_force": Variable(
+        "N", "lateral force Fy", "Lateral force, with the sign of the lateral creepage and of the spin", "Fy", "any"
+    ),
     "spin_moment": Variable("N*m", "spin moment Mz", "Spin moment, with the sign of the spin", "Mz", "any"),
     "wear_index": Variable(
-        "N", "wear index Tγ", "Wear index, the energy dissipated per metre rolled", "Tγ", "not negative"
+        "N",
+        "wear index Tγ",
+        "Wear index, ξFx + ηFy + φMz: the energy dissipated per metre rolled",
+        "Tγ",
+        "not negative",
     ),
     "cell_wear_index": Variable(
         "N",
@@ -166,7 +172,7 @@ VARIABLES: Mapping[str, Variable] = {
         WEAR_RATE, "wear rate error", "Estimate of the error in `wear_rate`", "", "not negative"
     ),
     "mass_per_distance": Variable(
-        "ug/m", "mass lost per metre rolled", "Mass lost per metre rolled", "", "not negative"
+        "ug/m", "mass lost per metre rolled", "Mass that a body loses per metre rolled", "", "not negative"
     ),
     "wear_rate_uncertainty": Variable(
         WEAR_RATE, "wear rate uncertainty", "Standard uncertainty of a measured wear rate"

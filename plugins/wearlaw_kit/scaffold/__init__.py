@@ -84,10 +84,9 @@ def write_plugin(name: str, kind: Kind, parent: Path) -> Path:
 def _holders(name: str) -> Iterator[str]:
     """Yield what already has a name, where a look-up or an entry point would confuse the two."""
     installed = loader.installed()
-    models = (installed.wear_laws, installed.contact_models, installed.rigs, installed.stages, installed.laws)
-    for shelf in (*models, installed.parameter_sets):
-        if name in shelf.providers:
-            yield f"the {shelf.kind} of {shelf.origin(name)}"
+    for kind in ("wear law", "contact model", "rig", "stage", "law", "parameter set"):
+        if name in installed[kind].providers:
+            yield f"the {kind} of {installed[kind].origin(name)}"
     for origin in installed.plugins:
         if origin.entry_point == name:
             yield f"the plugin {origin}"

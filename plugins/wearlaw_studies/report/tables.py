@@ -19,9 +19,8 @@ import xarray
 from numpy.typing import NDArray
 
 from wearlaw.errors import InputError, WearlawWarning
-from wearlaw.models.contact_model import Blame, Model
-from wearlaw.models.labels import labelled
 from wearlaw.models.law import WEAR, Law
+from wearlaw.models.model import Blame, Model, labelled
 from wearlaw.pipeline.variables import MASS
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.docstrings import field_docstrings

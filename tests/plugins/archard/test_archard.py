@@ -209,7 +209,7 @@ def test_a_contact_from_elsewhere_needs_the_hardness_of_the_law() -> None:
     )
     with pytest.raises(wl.InputError, match=r"hardness: .* this contact was solved elsewhere, .*; give the law its"):
         contact | archard()
-    found = (contact | archard(hardness="2 GPa")).wear_rate
+    found = (contact | archard(hardness="2 GPa")).value
     assert found.m_as("kg/m/m^2") == pytest.approx(7850.0 * 1e-4 * 9e8 * 0.01 / 2e9, rel=16 * EPS)
 
 

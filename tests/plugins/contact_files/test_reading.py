@@ -154,8 +154,8 @@ def test_a_reader_that_returns_something_wrong_is_named(
 
 
 def test_a_reader_needs_endings_and_starts_no_pipeline() -> None:
-    for wrong in ("()", '".mat"', '(".MAT",)', '("mat",)'):
-        with pytest.raises(TypeError, match="suffixes must hold the endings of its files in lower case"):
+    for wrong in ("()", '".mat"'):
+        with pytest.raises(TypeError, match="suffixes must be a tuple"):
             exec(f"class Wrong(wl.Reader):\n    name = 'wrong'\n    suffixes = {wrong}", {"wl": wl})
     with pytest.raises(wl.CompositionError, match="reader 'contact_mat' cannot start a pipeline"):
         _ = wl.readers()["contact_mat"]() | wl.wear_law("usfd")  # type: ignore[operator]

@@ -23,8 +23,8 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 import wearlaw as wl
 from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, FLAGS, PATIENCE_S
-from wearlaw.pipeline.notes import Notes  # private: what the page shows as notes
 from wearlaw_explore._page import Page, fields, named  # private: the page without a browser
+from wearlaw_output.notes import Notes  # private: what the page shows as notes
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning")  # the page has them as notes
 
@@ -169,7 +169,9 @@ def test_a_law_in_a_file_stands_first_and_its_python_reads_it(
     conditions = subject.conditions({"creepage": "3 %"})
     found = subject.predict("global", [first], conditions, Notes())
     assert found[first].wear_rate.m_as("ug/m/mm^2") == pytest.approx(22.0)  # the severe plateau
-    exec(subject.python("global", [first], conditions), {})
+    code = subject.python("global", [first], conditions)
+    assert "wl.read_law('law.toml')" in code
+    exec(code, {})
     assert capsys.readouterr().out.strip() == repr(found[first])
 
 

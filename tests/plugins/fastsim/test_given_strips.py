@@ -121,6 +121,27 @@ def test_without_spin_each_strip_has_the_force_of_a_line(bound: Any, creepage: f
     np.testing.assert_allclose(contact.cell_wear_index, contact.wear_index, rtol=1e-6)
 
 
+def test_the_pressure_of_a_strip_is_half_an_ellipse_and_zero_a_rounding_beyond_its_edge() -> None:
+    problem = two_humps(1e-3)
+    assert problem.strips is not None
+    strips, share = problem.strips, np.array([-np.nextafter(1.0, 2.0), -0.6, 0.0, 0.8, np.nextafter(1.0, 2.0)])
+    x = share[:, None] * strips.half_length[:, None, :]
+    nothing, none = np.zeros_like(x), np.zeros(1)
+    contact = wl.Contact.from_strips(
+        problem,
+        wl.CreepForces(longitudinal=none, lateral=none, spin_moment=none),
+        x=x,
+        y=strips.y,
+        length=np.ones_like(x),
+        strip_width=strips.width,
+        traction=(nothing, nothing),
+        slip=(nothing, nothing),
+        traction_bound=nothing,
+    )
+    due = np.array([0.0, 0.8, 1.0, 0.6, 0.0])[:, None] * strips.max_pressure[:, None, :]
+    np.testing.assert_allclose(contact.pressure, due, rtol=8 * EPS, atol=0.0)
+
+
 class Humps(wl.Rig):
     """A worn wheel, whose pressure is known."""
 

@@ -112,7 +112,7 @@ def test_few_strips_are_near_many_but_less_so_for_a_law_that_jumps(
     assert rms(apart / (problem.friction_coefficient * problem.normal_force)) < forces
     off = {}
     for name in ("usfd", "kth"):
-        rates = [(contact | wl.wear_law(name)).wear_rate.magnitude for contact in (few, many)]
+        rates = [(contact | wl.wear_law(name)).value.magnitude for contact in (few, many)]
         off[name] = rates[0] / rates[1] - 1.0
     assert rms(off["usfd"]) < usfd
     assert rms(off["kth"]) < kth

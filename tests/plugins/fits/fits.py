@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import pytest
@@ -42,15 +42,25 @@ def in_microgram(quantity: Any) -> Any:
     return quantity.to("ug/m/mm^2").magnitude
 
 
-@wl.as_wear_law(
-    inputs={"wear_index_density": "N/mm^2"},
-    returns="ug/m/mm^2",
-    breakpoints={},
-    parameters={"offset": "ug/m/mm^2", "slope": "ug/m/N"},
-    source="made up",
-)
-def sloping(wear_index_density: Any, *, offset: float = 1.0, slope: float = 2.0) -> Any:
-    return offset + slope * wear_index_density
+class Sloping(wl.WearLaw):
+    """A straight line."""
+
+    name: ClassVar[str] = "sloping"
+    source: ClassVar[str] = "made up"
+
+    offset: Annotated[wl.Quantity, wl.Unit("ug/m/mm^2", positive=False)] = Q(1.0, "ug/m/mm^2")
+    """Rate without energy."""
+    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N", positive=False)] = Q(2.0, "ug/m/N")
+    """Slope."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return p["offset"] + p["slope"] * contact.wear_index_density
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {}
+
+
+sloping = Sloping()
 
 
 def refused(says: str, predict: Any, tests: wl.WearTests, free: Any, **settings: Any) -> None:

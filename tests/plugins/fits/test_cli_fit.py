@@ -47,7 +47,7 @@ def test_a_fit_is_printed_and_its_files_are_listed_as_they_are(folder: Path) -> 
 
 def test_the_files_of_a_fit_hold_what_it_found() -> None:
     assert wearlaw(*FIT, "--fixed", "tr_sc=94 N/mm^2", "--confidence", "0.8").exit_code == 0
-    law: Any = wl.read_wear_law("tests-fit/law.toml")
+    law: Any = wl.read_law("tests-fit/law.toml")
     table = pd.read_csv("tests-fit/parameters.csv").set_index("parameter")
     record = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))
     assert list(table.index) == ["m_m", "q_s"]
@@ -84,7 +84,7 @@ def test_friction_and_rig_can_be_given() -> None:
     record = json.loads(Path("tests-fit/fit.json").read_text(encoding="utf-8"))
     assert record["predict"]["rig"]["track_width"] == "8.0 mm"
     assert wearlaw(*FIT, "--friction", "0.46", "-o", "other").exit_code == 0
-    assert wl.read_wear_law("other/law.toml") != wl.read_wear_law("tests-fit/law.toml")
+    assert wl.read_law("other/law.toml") != wl.read_law("tests-fit/law.toml")
 
 
 def test_a_friction_coefficient_that_the_tests_hold_too_is_noted_and_not_used() -> None:
@@ -92,7 +92,7 @@ def test_a_friction_coefficient_that_the_tests_hold_too_is_noted_and_not_used() 
         "note: --friction 0.3 is not used, since the tests have a column" in wearlaw(*FIT, "--friction", "0.3").stderr
     )
     assert wearlaw(*FIT, "-o", "without").exit_code == 0
-    assert wl.read_wear_law("without/law.toml") == wl.read_wear_law("tests-fit/law.toml")
+    assert wl.read_law("without/law.toml") == wl.read_law("tests-fit/law.toml")
 
 
 def test_a_stage_and_a_law_of_another_outcome_are_fitted_from_the_command_line(install: Install) -> None:
@@ -124,7 +124,7 @@ def test_bounds_keep_a_fit_within_them() -> None:
     done = wearlaw(*free, "--bounds", "q_s=20 ug/m/mm^2:40 ug/m/mm^2")
     assert done.exit_code == 0, done.output
     assert "the best fit lies at a bound of q_s" in done.stderr
-    law: Any = wl.read_wear_law("tests-fit/law.toml")
+    law: Any = wl.read_law("tests-fit/law.toml")
     assert law.q_s.m_as("ug/m/mm^2") == pytest.approx(40.0, rel=1e-6)  # as near as a fit lies at a bound
     wide = wearlaw(*free, "--bounds", "q_s=20 ug/m/mm^2:80 ug/m/mm^2", "-o", "wide")
     assert "at a bound" not in wide.stderr

@@ -110,7 +110,7 @@ def test_a_law_that_was_written_reads_back_equal(exact_fit: wl.Fit, tmp_path: Pa
     path = tmp_path / "my-usfd.toml"
     path.write_text("an older file")
     exact_fit.to_toml(path)
-    assert wl.read_wear_law(path) == exact_fit.law
+    assert wl.read_law(path) == exact_fit.law
     assert [file.name for file in tmp_path.iterdir()] == ["my-usfd.toml"]
     provenance = tomllib.loads(path.read_text(encoding="utf-8"))["provenance"]
     assert provenance["wearlaw"] == wl.__version__

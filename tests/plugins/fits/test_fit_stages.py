@@ -104,7 +104,7 @@ def test_a_stage_and_a_law_are_fitted_together(tmp_path: Path) -> None:
     )
     # A law file holds the law; its record says with which stage.
     fit.to_toml(tmp_path / "law.toml")
-    law = wl.read_wear_law(tmp_path / "law.toml")
+    law = wl.read_law(tmp_path / "law.toml")
     assert law == fit.law
     reduction = fit.parameters["reduction"].magnitude
     record = tomllib.loads((tmp_path / "law.toml").read_text())["provenance"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import pytest
@@ -15,16 +15,25 @@ from tests.strategies import EPS
 from wearlaw import Q
 
 
-@wl.as_wear_law(
-    inputs={"wear_index_density": "N/mm^2"},
-    returns="ug/m/mm^2",
-    breakpoints={},
-    parameters={"first": "ug/m/N", "second": "ug/m/N"},
-    source="made up for the tests",
-)
-def linear(wear_index_density: Any, *, first: float = 4.0, second: float = 2.0) -> Any:
+class Linear(wl.WearLaw):
     """Wear in proportion to the sum of two slopes."""
-    return (first + second) * wear_index_density
+
+    name: ClassVar[str] = "linear"
+    source: ClassVar[str] = "made up for the tests"
+
+    first: Annotated[wl.Quantity, wl.Unit("ug/m/N", positive=False)] = Q(4.0, "ug/m/N")
+    """One slope."""
+    second: Annotated[wl.Quantity, wl.Unit("ug/m/N", positive=False)] = Q(2.0, "ug/m/N")
+    """The other slope."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return (p["first"] + p["second"]) * contact.wear_index_density
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {}
+
+
+linear = Linear()
 
 
 def kth_global(k: float) -> float:

@@ -6,7 +6,7 @@ import importlib
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import pytest
@@ -104,21 +104,31 @@ def test_a_check_on_each_shape_catches_a_mutant_of_each(shape: str) -> None:
     assert len(ON_EACH_SHAPE) > 20
 
 
-@wl.as_wear_law(
-    inputs={"wear_index_density": "N/mm^2"},
-    returns="ug/m/mm^2",
-    breakpoints={"wear_index_density": [4.0]},
-    jumps=[4.0],
-    parameters={"mild": "ug/m/N", "severe": "ug/m/N", "limit": "N/mm^2"},
-    source="made up for the tests",
-)
-def two_slopes(wear_index_density: Any, *, mild: float = 5.0, severe: float = 15.0, limit: float = 4.0) -> Any:
+class TwoSlopes(wl.WearLaw):
     """Two slopes with a jump between them."""
-    return np.where(wear_index_density < limit, mild, severe) * wear_index_density
+
+    name: ClassVar[str] = "two_slopes"
+    source: ClassVar[str] = "made up for the tests"
+
+    mild: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = wl.Q(5.0, "ug/m/N")
+    """Slope below the limit [kg/m/N]."""
+    severe: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = wl.Q(15.0, "ug/m/N")
+    """Slope above the limit [kg/m/N]."""
+    limit: Annotated[wl.Quantity, wl.Unit("N/mm^2")] = wl.Q(4.0, "N/mm^2")
+    """Wear-index density at the jump [N/m²]."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        w = contact.wear_index_density
+        return np.where(w < p["limit"], p["mild"], p["severe"]) * w
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {"wear_index_density": (p["limit"],)}
+
+    jumps = breakpoints
 
 
-@conformance(two_slopes)
-def test_a_law_from_one_function_passes(check: Check) -> None:
+@conformance(TwoSlopes())
+def test_a_law_with_a_jump_passes(check: Check) -> None:
     check()
 
 

@@ -87,9 +87,9 @@ def test_25_and_400_drawn_states_end_within_the_sampling_error() -> None:
         displacement = np.clip(random.normal(0.0, 1.5, count), -5.0, 5.0)
         return life(pd.DataFrame({"lateral_displacement [mm]": displacement, "share": 1.0 / count}), "1500 km")
 
-    few = [drawn(25).rows[-1] for _ in range(8)]
-    many = drawn(400).rows[-1]
-    for name in ("mass", "equivalent_conicity"):
+    few = [drawn(25).table.iloc[-1] for _ in range(8)]
+    many = drawn(400).table.iloc[-1]
+    for name in ("mass [kg]", "equivalent_conicity"):
         values = np.array([one[name] for one in few])
         spread = values.std(ddof=1)
         print(f"{name}: 25 states {values.mean():.5g} ± {spread:.2g}, 400 states {many[name]:.5g}")

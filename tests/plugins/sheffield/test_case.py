@@ -10,7 +10,7 @@ import pytest
 import wearlaw as wl
 import wearlaw_sheffield
 from tests.plugins.sheffield.paper import HEAT, SPEED, mean_speed
-from wearlaw.models.labels import labels  # private: how laws are labelled in figures and tables
+from wearlaw.models.model import labels  # private: how laws are labelled in figures and tables
 from wearlaw.plugins import loader  # private: what is installed, changed for a test
 from wearlaw_fits.read_tests import text_of_tests  # private: one part of a fit, without the whole
 from wearlaw_studies.case import Case, case_text, load_case  # private: a case without its files
@@ -18,7 +18,7 @@ from wearlaw_studies.study import run  # private: a case run without its files
 
 
 def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    cases = loader.installed().resources["case"].items()
+    cases = loader.installed()["case"].items()
     assert list(cases) == [
         "my_tests",
         "tassini2010",

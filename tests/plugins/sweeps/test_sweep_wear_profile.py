@@ -111,3 +111,9 @@ def test_a_row_without_a_balance_is_named(monkeypatch: pytest.MonkeyPatch) -> No
     table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 6.9], "yaw [mrad]": [0.0, 20.0], "share": 0.5})
     with pytest.raises(wl.DataError, match=r"row 1 .*lateral_displacement = 6.9 mm.*no normal forces balance"):
         wl.sweep(PREDICT, table, share="share", **GIVEN)
+
+
+def test_a_row_in_which_the_wheel_climbs_is_named() -> None:
+    table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 1.0, 7.0], "share": [0.5, 0.25, 0.25]})
+    with pytest.raises(wl.DataError, match=r"row 2 .*lateral_displacement = 7 mm.*climbs"):
+        wl.sweep(PREDICT, table, share="share", **GIVEN)

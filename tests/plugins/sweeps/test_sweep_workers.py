@@ -82,16 +82,19 @@ from wearlaw_sweeps import points
 points.BLOCK = 3
 wl.accelerate(False)
 
-@wl.as_wear_law(inputs={"slip": ""}, returns="ug/m/mm^2", source="a test")
-def mine(slip):
-    print("evaluated")
-    return abs(slip)
+class Mine(wl.WearLaw):
+    name = "mine"
+    source = "a test"
+
+    def rate(self, contact, p):
+        print("evaluated")
+        return abs(contact.slip)
 
 given = dict(creepage=wl.Q(np.linspace(1, 2, 9), "%"), normal_force="5 kN", friction_coefficient=0.3)
 predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
 print(wl.sweep(predict, **given, workers=2).wear_rate.size)
 try:
-    wl.sweep(wl.TwinDisc.suros() | wl.contact_model("global") | mine, **given, workers=2)
+    wl.sweep(wl.TwinDisc.suros() | wl.contact_model("global") | Mine(), **given, workers=2)
 except wl.InputError as error:
     print(error)
 """

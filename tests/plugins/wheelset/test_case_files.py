@@ -20,7 +20,7 @@ def profiles_of(name: str) -> dict[str, ws.Profile]:
     return {field: value for field, value in rig if isinstance(value, ws.Profile)}
 
 
-@pytest.mark.parametrize("name", [name for name in loader.installed().resources["case"].items() if profiles_of(name)])
+@pytest.mark.parametrize("name", [name for name in loader.installed()["case"].items() if profiles_of(name)])
 def test_a_shipped_case_runs_with_profiles_from_files(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -69,7 +69,7 @@ ellipse = wl.Problem.ellipse(
 )
 solved = wl.contact_model("fastsim", bound="elliptic").solve(ellipse)
 assert_type(solved, wl.Contact)
-assert_type(solved.longitudinal_force, wl.Quantity)
+assert_type(solved.force_x, wl.Array)
 
 
 class Roller(wl.Rig):
@@ -271,7 +271,7 @@ assert_type(predicted.outcome_error("flash_temperature"), wl.Quantity)
 assert_type(predicted.wear_rate_of("rail"), wl.Quantity)
 assert_type(predicted.laws, tuple[wl.Law, ...])
 assert_type(predicted.contact | Fatigue(threshold=Q(15, "N")), wl.LocalOutcome)
-assert_type(predicted.contact | wl.wear_law("usfd"), wl.LocalWear)
+assert_type(predicted.contact | wl.wear_law("usfd"), wl.LocalOutcome)
 assert_type((predicted.contact | Fatigue(threshold=Q(15, "N"))).value, wl.Quantity)
 
 

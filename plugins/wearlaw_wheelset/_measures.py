@@ -1,25 +1,22 @@
-"""Measures of a worn wheel: flange height, thickness and gradient, and the hollow of the tread."""
+"""Measures of a worn profile: flange height, thickness and gradient, the hollow of the tread, and the depth worn."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from wearlaw import Array
+from wearlaw_wheelset._curve import Curve
 
 BELOW_TOP, DATUM, ABOVE_TREAD = 2e-3, 70e-3, 10e-3
 """Where a flange is measured [m]: L1, L2 and L3 of "Wheel wear" in MiniProf's standard calculations, which state these
 defaults (Greenwood Engineering, greenwood.dk/miniprofstandardcalc.php)."""
 
-NAMES = ("flange_height", "flange_thickness", "flange_gradient", "hollow")
+NEWTON = 4
+"""Steps of Newton's method to where a normal meets a worn profile; the error squares in each."""
 
 
 def flange(y: Array, z: Array, back: float) -> tuple[float, float, float]:
     """Return the flange height Sh, the flange thickness Sd and the flange gradient qR of a wheel [m].
-
-    The tread datum is the point of the profile 70 mm from the back of the flange. Sh is the height of the flange's top
-    over the datum. Sd is the distance from the back to the flank, 10 mm above the datum (towards the flange's top). qR
-    is the distance, parallel to the axle, between the point of the flank 10 mm above the datum and the one 2 mm below
-    the top.
 
     Parameters
     ----------
@@ -32,10 +29,6 @@ def flange(y: Array, z: Array, back: float) -> tuple[float, float, float]:
     -------
     tuple of float
         NaN for a wheel without a flange or a profile that does not reach the datum.
-
-    Notes
-    -----
-    The quantities are those of MiniProf's calculation "Wheel wear"; the text of EN 15313 was not read.
     """
     tip = int(np.argmax(z))
     outer = slice(tip, None)
@@ -58,10 +51,18 @@ def _first_below(y: Array, z: Array, level: float) -> float:
 
 
 def hollow(z: Array) -> float:
-    """Return the depth of the hollow of a tread: the largest rise of the radius on the way outwards [m].
-
-    It is zero for a tread whose radius falls from the flange to the field side, as that of a new wheel does. The
-    definition is wearlaw's: a place of the tread is hollow if places further out have a larger radius.
-    """
+    """Return the largest rise of the radius of a wheel from the top of its flange outwards [m]."""
     tread = z[int(np.argmax(z)) :]
     return float((np.maximum.accumulate(tread[::-1])[::-1] - tread).max())
+
+
+def depth_between(new: Curve, worn: Curve, s: Array) -> Array:
+    """Return the depth between two curves along the normals of the new one, at its arc lengths [m]."""
+    y, z, angle, _ = new.at(s)
+    place = worn.s[0] + (s - new.s[0]) / np.ptp(new.s) * np.ptp(worn.s)
+    for _ in range(NEWTON):
+        there = worn.at(np.clip(place, worn.s[0], worn.s[-1]))
+        along = (there[0] - y) * np.cos(angle) + (there[1] - z) * np.sin(angle)
+        place = place - along / np.cos(there[2] - angle)
+    there = worn.at(np.clip(place, worn.s[0], worn.s[-1]))
+    return np.asarray(new.sign * ((there[1] - z) * np.cos(angle) - (there[0] - y) * np.sin(angle)))

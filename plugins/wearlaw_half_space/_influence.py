@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw import Array
 
 
 def influence(

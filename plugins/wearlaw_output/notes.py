@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from wearlaw.errors import WearlawWarning
+from wearlaw.errors import caught_warnings
 
 
 @dataclass
@@ -24,11 +23,7 @@ class Notes:
     @contextmanager
     def of(self, subject: str) -> Iterator[None]:
         """Turn wearlaw's warnings inside the context into notes about a subject."""
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", WearlawWarning)
+        with caught_warnings() as caught:
             yield
         for warning in caught:
-            if issubclass(warning.category, WearlawWarning):
-                self.add(f"{subject}: {warning.message}")
-            else:
-                warnings.warn_explicit(warning.message, warning.category, warning.filename, warning.lineno)
+            self.add(f"{subject}: {warning}")

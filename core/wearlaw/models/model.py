@@ -1,0 +1,182 @@
+"""The base class of all models, `Model`, the errors that name a model, and short names for models side by side.
+
+A model is its configuration: a frozen pydantic record. Its fields carry units, and its methods compute.
+"""
+
+import inspect
+from abc import ABC
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar
+
+import numpy as np
+
+from wearlaw.errors import CompositionError, InputError, ModelError, WearlawError, described, did_you_mean
+from wearlaw.extras import load
+from wearlaw.settings.configuration import Configuration
+from wearlaw.units.quantities import full_text
+
+Claim: TypeAlias = str
+"""Name of an invariant that a model keeps unless it declares itself exempt; see `Model.exemptions`.
+
+It is the name of a check of the conformance kit, such as "each_node_wears_by_itself". For contact models, some claims
+have several checks, such as "energy_balance" or "spin".
+"""
+
+OF_ARRAYS = (
+    "\nIn a fit or an uncertainty, its numbers are arrays of shape (points, 1), one value for each operating point."
+    " Write its formulas with NumPy functions that broadcast: np.where instead of if, np.exp instead of math.exp"
+)
+"""Hint for a law that fails with arrays instead of numbers."""
+
+OF_READ_ONLY = (
+    "\nThe arrays that a model is given are read-only, because other models read them too. Make a new array, as in"
+    " mpa = pressure / 1e6 instead of mpa = pressure; mpa /= 1e6, or begin with pressure.copy()"
+)
+"""Hint for a model that fails because it writes into an array that it was given."""
+
+
+class Model(Configuration, ABC):
+    """Base class of rigs, contact models and wear laws."""
+
+    kind: ClassVar[str]
+    """Word for a model of this kind in messages."""
+
+    name: ClassVar[str]
+    """Name of the model in the look-up."""
+
+    source: ClassVar[str]
+    """Literature source of the model."""
+
+    _provided_by: ClassVar[Callable[..., str]]
+    """Where a class of models comes from, in words; set by the look-up of plugins."""
+
+    def _origin(self) -> str:
+        """Return the class of this model in words, with the distribution or the module that it comes from."""
+        cls = type(self)
+        return f"class {cls.__name__}{cls._provided_by(cls)}"
+
+    @classmethod
+    def subject(cls) -> str:
+        """Return the name of this model in messages."""
+        return cls.name
+
+    def _repr_html_(self) -> str:
+        """Return the model for a notebook: its fields, with a drawing of a rig or the curve of a law."""
+        shown: str = load("wearlaw_output.notebook", "html", "a notebook")(self)
+        return shown
+
+    @property
+    def exemptions(self) -> Mapping[Claim, str]:
+        """The invariants that this model does not keep, each with the reason."""
+        return {}
+
+    if not TYPE_CHECKING:  # checkers reject this order by themselves
+
+        def __or__(self, other: object) -> object:
+            raise CompositionError(
+                f"{self.kind} '{self.name}' cannot start a pipeline; the order is rig | contact model | stages | laws,"
+                ' as in wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd")'
+            )
+
+
+def fault(model: Model, what: str) -> ModelError:
+    """Return the error for a model that is at fault; it names the model, its class and its distribution.
+
+    Parameters
+    ----------
+    model : Model
+    what : str
+        What the model did, such as "returned rates of shape (3,)"; the message begins with kind and name of the model.
+    """
+    return ModelError(with_origin(model, f"{model.kind} '{model.name}' {what}"))
+
+
+def with_origin(model: Model, message: str) -> str:
+    """Return a message about a model with the class of the model and the distribution or module that it comes from."""
+    return f"{message}\nThe {model.kind} is {model._origin()}"
+
+
+class Blame:
+    """A context that turns an exception in a model's code into a `ModelError` that names the model.
+
+    Errors of wearlaw pass, because their messages are complete. An `InputError` gets a note that names the model, but
+    not one of a rig or a reader, which is about the conditions or a file. Ctrl-C and a lack of memory pass as well.
+
+    Parameters
+    ----------
+    model : Model
+        The model to name.
+    p : mapping of str to float or ndarray, optional
+        The numbers given to a wear law. If there are arrays among them, the message says how to compute with arrays.
+    """
+
+    __slots__ = ("_model", "_p")
+
+    def __init__(self, model: Model, p: Mapping[str, object] | None = None) -> None:
+        self._model, self._p = model, p
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
+        model = self._model
+        if isinstance(error, InputError) and model.kind not in ("rig", "reader") and not hasattr(error, "__notes__"):
+            error.add_note(f"raised in {model.kind} '{model.name}', {model._origin()}")
+        if error is None or isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
+            return
+        said = described(error)
+        hint = ""
+        if "read-only" in said or "readonly" in said:  # as NumPy and numba say it
+            hint = OF_READ_ONLY
+        elif any(isinstance(number, np.ndarray) for number in (self._p or {}).values()):
+            hint = OF_ARRAYS
+        raise fault(model, f"failed: {said}{hint}") from error
+
+
+def check_scale(model: type[Model], known: tuple[str, ...]) -> None:
+    """Raise a `ModelError` if a class of models declares an unknown scale; it can also be a property."""
+    scale = inspect.getattr_static(model, "scale")
+    if isinstance(scale, str) and scale not in known:
+        words = " or ".join(repr(one) for one in known)
+        raise ModelError(f"{model.__name__}.scale: is {scale!r}{did_you_mean(scale, known)} It must be {words}")
+
+
+ModelT = TypeVar("ModelT", bound=Model)
+
+
+def labels(models: Sequence[Model]) -> list[str]:
+    """Return a short name for each model: its own name, and the options that tell it from models of the same name.
+
+    The name of a law for one body has that body, as in "usfd(body=rail)". A law with a label has its label.
+    """
+    found = []
+    for model in models:
+        label = getattr(model, "label", None)
+        if label is not None:
+            found.append(label)
+            continue
+        namesakes = [other for other in models if other.name == model.name and not getattr(other, "label", None)]
+        body = ["body"] if getattr(model, "body", None) is not None else []
+        fields = dict.fromkeys([*_telling_apart(namesakes), *body])
+        options = [f"{field}={full_text(getattr(model, field))}" for field in fields]
+        found.append(f"{model.name}({', '.join(options)})" if options else model.name)
+    for name in found:
+        if found.count(name) > 1:
+            raise InputError(f"the model {name} is listed twice; leave one out, or give it other options or a label")
+    return found
+
+
+def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
+    """Return models by their `labels`."""
+    return dict(zip(labels(models), models, strict=True))
+
+
+def _telling_apart(models: Sequence[Model]) -> list[str]:
+    """Return the fewest fields, in their order, that tell models of one name apart."""
+    fields: list[str] = []
+    kinds: set[tuple[str, ...]] = {()}
+    for field in type(models[0]).model_fields:
+        finer = {tuple(full_text(getattr(model, name)) for name in (*fields, field)) for model in models}
+        if len(finer) > len(kinds):
+            fields, kinds = [*fields, field], finer
+    return fields
