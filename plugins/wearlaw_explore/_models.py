@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from wearlaw.models.model import labelled
 
 import wearlaw as wl
+from wearlaw.models.model import labelled
 from wearlaw.pipeline.prediction import SHOWN
 from wearlaw.pipeline.several import composed
 from wearlaw.units.variables import name_of
