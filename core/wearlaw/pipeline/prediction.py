@@ -293,7 +293,7 @@ class Prediction:
         ----------
         name : str, optional
             Name of an outcome or another variable, such as "tangential_force"; for the fields of a single patch
-            "pressure", "traction" or "slip". Default: the first outcome.
+            "pressure", "traction", "slip" or an outcome. Default: the first outcome.
         x : str, optional
             Name of the condition or variable along the horizontal axis, such as "wear_index_density". Default: the
             longest axis.
