@@ -203,29 +203,38 @@ def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: On
 def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlock[Totals] | None) -> Totals:
     model = solver.model
     fields = model if isinstance(model, LineContactModel) and model.scale == "cells" else None
-    by_zones = [fields is not None and law.zero_in_stick and law.outcome.of == "area mean" for law, _ in laws]
-    ramps = [_ramps(law, p) if zones else None for (law, p), zones in zip(laws, by_zones, strict=True)]
+    ways: list[tuple[Law, Numbers, LineContactModel | None, Sequence[tuple[Any, Any]] | None]] = []
+    on_own_nodes, block = False, BLOCK
+    for law, p in laws:
+        by_zones = fields if law.zero_in_stick and law.outcome.of == "area mean" else None
+        ramps = None if by_zones is None else _ramps(law, p)
+        ways.append((law, p, by_zones, ramps))
+        on_own_nodes = on_own_nodes or by_zones is None
+        if ramps is None:
+            block = NODE_BLOCK
 
     def of_block(part: Problem, points: slice) -> Totals:
-        contact = None if all(by_zones) else solver.solve(part)
+        contact = solver.solve(part) if on_own_nodes else None
         means: list[Mean] = []
-        for (law, p), slopes, zones in zip(laws, ramps, by_zones, strict=True):
-            if contact is not None and not zones:
-                means.append(_on_own_nodes(solver, law, _at_points(p, points), part, contact))
-                continue
-            assert fields is not None
-            of = part.worn_on(law.body)
-            mean = None if slopes is None else closed_form(fields, slopes, of, points)
-            means.append(mean or _over_zones(solver, law, _at_points(p, points), of))
+        sliding = None
+        for law, p, by_zones, ramps in ways:
+            if by_zones is None:
+                assert contact is not None
+                mean = _on_own_nodes(solver, law, _at_points(p, points), part, contact)
+            else:
+                of = part.worn_on(law.body)
+                closed = None if ramps is None else closed_form(by_zones, ramps, of, points)
+                mean = closed or _over_zones(solver, law, _at_points(p, points), of)
+            means.append(mean)
+            sliding = mean.sliding if sliding is None else sliding
         return Totals(
             values=tuple([mean.value for mean in means]),
             errors=tuple([mean.error for mean in means]),
             longitudinal=means[-1].force,
             patch_area=None if contact is None or isinstance(model, LineContactModel) else contact.patch_area,
-            sliding=next((mean.sliding for mean in means if mean.sliding is not None), None),
+            sliding=sliding,
         )
 
-    block = NODE_BLOCK if any(one is None for one in ramps) else BLOCK
     return solver.by_block(problem, block, of_block, on_block, kept=None if fields is None else _without_force)
 
 
