@@ -55,7 +55,7 @@ TESTS = {
     "wearlaw_wlrm": "plugins/wlrm/test_wlrm.py",
     "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py"
     " plugins/wheel_rail/test_wheel_rail.py plugins/wheel_rail/test_result.py"
-    " core/test_unlike_materials.py core/test_several_patches.py",
+    " core/test_unlike_materials.py core/test_several_patches.py core/test_outcomes.py",
     "wearlaw.contact.hertz": "core/test_hertz.py core/test_unlike_materials.py",
     "wearlaw.contact.hertz_ellipse": "core/test_hertz_ellipse.py",
     "wearlaw.numerics.splits": "core/test_splits.py",

@@ -88,11 +88,10 @@ def life(
 def _tables(found: Life) -> dict[str, pd.DataFrame]:
     """Return the measures, the profiles at each step, and the last ones, by the names of their files."""
     profiles = found.profiles.drop_vars("body")
-    units = {
-        name: f"{name} [{one.attrs['units']}]" for name, one in profiles.variables.items() if one.attrs.get("units")
-    }
-    tables = {"life": found.table, "profiles": profiles.to_dataframe().reset_index().rename(columns=units)}
-    for side, profile in zip(found.sides, found.worn_profiles[-1], strict=True):
+    units = {name: one.attrs.get("units") for name, one in profiles.variables.items()}
+    heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit}
+    tables = {"life": found.table, "profiles": profiles.to_dataframe().reset_index().rename(columns=heads)}
+    for side, profile in zip(profiles["side"].values, found.worn_profiles[-1], strict=True):
         y, z = (value.magnitude for value in profile.points)
         tables["worn" if side == "mean" else f"worn_{side}"] = pd.DataFrame({"y [mm]": y, "z [mm]": z})
     return tables

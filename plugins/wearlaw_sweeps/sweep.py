@@ -152,7 +152,7 @@ def sweep(
     summed = share is not None
     with (
         writing_to(store),
-        _points(predict, table, conditions, columns, keep, as_csv, store, summed, progress) as points,
+        operating_points(predict, table, conditions, columns, keep, as_csv, store, summed, progress) as points,
     ):
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
@@ -162,8 +162,6 @@ def sweep(
         else:
             job, notes = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
         points = dataclasses.replace(points, weight=job.weight(first))
-        if share is not None:
-            check_shares(points, share)
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
         target: Memory | Sum | Store
@@ -197,7 +195,7 @@ def kept(count: int, of: int, where: Path) -> str:
 
 
 @contextmanager
-def _points(
+def operating_points(
     predict: Pipeline[...],
     table: Any,
     conditions: Mapping[str, Any],
@@ -208,7 +206,7 @@ def _points(
     summed: bool,
     progress: bool,
 ) -> Iterator[Points]:
-    """Give the operating points of a sweep."""
+    """Give the operating points of a sweep; if they are to be summed, the kept column `SHARE` has their shares."""
     if table is None:
         for name, value in {"columns": columns, "keep": keep}.items():
             if value is not None:
@@ -221,6 +219,8 @@ def _points(
     with from_table(
         table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk, progress=progress
     ) as points:
+        if summed and keep is not None:
+            check_shares(points, keep[SHARE])
         yield points
 
 

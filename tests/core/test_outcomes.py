@@ -253,7 +253,7 @@ def test_a_value_of_the_patch_is_that_of_the_body(model: str) -> None:
     [
         (
             (KTH, wl.wear_law("usfd")),
-            "kth and usfd both predict 'wear_rate'; keep one of them, or give each its own body",
+            "kth and usfd both predict 'wear_rate'; keep one of them, or give each its own body, .* body=\"disc_1\"",
         ),
         ((KTH, Volume(body="disc_2")), "kth and volume both predict 'wear_rate'; keep one of them"),
         ((Volume(body="disc_2"), Volume(body="disc_2", factor=2.0)), "both predict 'wear_rate' of 'disc_2'; keep one"),
@@ -273,6 +273,11 @@ def test_an_outcome_that_no_law_predicts_is_refused() -> None:
     result = predicted(RIG | GLOBAL | Damage(), **CONDITIONS)
     with pytest.raises(wl.CompositionError, match=r"'damage'.* did you mean 'rcf_damage'"):
         _ = result["damage"]
+    with pytest.raises(wl.CompositionError, match=r"predicts 'damage'.*Its laws predict: rcf_damage"):
+        result.outcome("damage")
+    of_one = predicted(silently(MIXED, EXACT, Volume(body="disc_2")), **CONDITIONS)
+    with pytest.raises(wl.CompositionError, match="no law predicts it for 'disc_1', only for disc_2"):
+        of_one.wear_rate_of("disc_1")
     with pytest.raises(wl.InputError, match="this rig has no 'wheel'"):
         result.outcome("rcf_damage", "wheel")
 

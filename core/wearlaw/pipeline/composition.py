@@ -218,8 +218,6 @@ def warn_of_unlike_materials(model: ContactModel, problem: Problem) -> None:
     if not model.assumes_like_materials or problem.traction_coefficient is not None:
         return
     beta = max((dundurs_beta(materials[0], one) for one in materials[1:]), key=abs)
-    if beta == 0.0:
-        return
     share = COUPLING * abs(beta) / float(np.nanmin(problem.friction_coefficient))
     if share > MOST_COUPLING:
         warn(

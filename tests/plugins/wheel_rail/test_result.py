@@ -267,6 +267,12 @@ def test_parameters_of_line_contact_warn_on_an_ellipse(fitted_for: str) -> None:
     assert caught[0].filename == __file__
 
 
+class ShownByItsProblems(wl.WheelRail):
+    """A rig that does not say beforehand what shape its patch has."""
+
+    patch_geometry: ClassVar[wl.Geometry | None] = None
+
+
 def test_parameters_of_an_ellipse_do_not_warn_there_but_on_a_line() -> None:
     own = wl.Calibration(
         contact_model="fastsim", scale="cells", geometry="ellipse", materials="made up", source="made up"
@@ -275,6 +281,7 @@ def test_parameters_of_an_ellipse_do_not_warn_there_but_on_a_line() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         RIG | FASTSIM | law
+        ShownByItsProblems(**dict(RIG)) | FASTSIM | law
     with pytest.warns(wl.CalibrationWarning, match="fitted for elliptic contacts, but are used with line contacts"):
         wl.TwinDisc.suros() | FASTSIM | law
 
