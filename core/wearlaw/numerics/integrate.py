@@ -145,6 +145,8 @@ def integrate_laws(
 ) -> Totals:
     """Return the outcomes of laws in a contact, block by block; a contact on nodes is solved once for all laws.
 
+    Without laws, they are the forces alone.
+
     Parameters
     ----------
     model : ContactModel
@@ -162,6 +164,11 @@ def integrate_laws(
         If the model or a law breaks its contract.
     """
     model, problem = prepared(model, problem)
+    if not laws:
+        forces = Totals.of_forces(integrate_forces(model, problem))
+        if on_block is not None:
+            on_block(problem, forces)
+        return forces
     numbered = list(zip(laws, map(_frozen, numbers) if numbers else [law.numbers for law in laws], strict=True))
     solver = Solver(model)
     over = _over_line if problem.geometry == "line" else _over_ellipse
