@@ -300,8 +300,8 @@ def _in_batch(problem: Problem) -> Problem:
     ValueError
         If they do not fit the batch.
     """
-    batch, labels = problem.batch_shape, tuple(map(len, problem.dims.values()))
-    if batch[len(batch) - len(labels) :] != labels:
+    batch, dims = problem.batch_shape, problem.dims
+    if dims and batch[len(batch) - len(dims) :] != tuple(map(len, dims.values())):
         raise ValueError(f"`dims` must label the last axes of the batch, of shape {batch}; got {problem.dims!r}")
     placed = {}
     for name, body in problem.bodies.items():
