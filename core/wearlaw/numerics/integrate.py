@@ -64,6 +64,9 @@ EPS = float(np.finfo(np.float64).eps)
 ALL = slice(None)
 """All operating points."""
 
+Ramps: TypeAlias = Sequence[tuple[Any, Any]]
+"""Thresholds and slopes of a law, as from `Law.ramps`."""
+
 Numbered: TypeAlias = Sequence[tuple[Law, Numbers]]
 """Laws with their numbers in SI."""
 
@@ -210,7 +213,7 @@ def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: On
 def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlock[Totals] | None) -> Totals:
     model = solver.model
     fields = model if isinstance(model, LineContactModel) and model.scale == "cells" else None
-    ways: list[tuple[Law, Numbers, LineContactModel | None, Sequence[tuple[Any, Any]] | None]] = []
+    ways: list[tuple[Law, Numbers, LineContactModel | None, Ramps | None]] = []
     on_own_nodes, block = False, BLOCK
     for law, p in laws:
         by_zones = fields if law.zero_in_stick and law.outcome.of == "area mean" else None
@@ -230,7 +233,8 @@ def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlo
                 mean = _on_own_nodes(solver, law, _at_points(p, points), part, contact)
             else:
                 of = part.worn_on(law.body)
-                closed = None if ramps is None else closed_form(by_zones, ramps, of, points)
+                own = ramps if ramps is None or p is law.numbers else _ramps_at(ramps, points)
+                closed = None if own is None else closed_form(by_zones, own, of)
                 mean = closed or _over_zones(solver, law, _at_points(p, points), of)
             means.append(mean)
             sliding = mean.sliding if sliding is None else sliding
@@ -250,10 +254,19 @@ def _without_force(totals: Totals) -> Totals:
     return totals._replace(longitudinal=None)
 
 
-def _ramps(law: Law, p: Numbers) -> Sequence[tuple[Any, Any]] | None:
+def _ramps(law: Law, p: Numbers) -> Ramps | None:
     with Blame(law, p):
         ramps = law.ramps(p)
         return None if ramps is None else [(threshold, slope) for threshold, slope in ramps]
+
+
+def _ramps_at(ramps: Ramps, points: slice) -> Ramps:
+    """Return the ramps of a law at some operating points, without the axis of the nodes."""
+
+    def at(number: Any) -> Any:
+        return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
+
+    return [(at(threshold), at(slope)) for threshold, slope in ramps]
 
 
 def _contact_of(law: Law, contact: Contact, problem: Problem) -> Contact:
@@ -377,24 +390,23 @@ def contact_for(model: ContactModel, law: Law, problem: Problem) -> Contact:
     return Solver(model).at(problem, join(stick.nodes().reversed(), nodes), totals=True)
 
 
-def closed_form(
-    model: LineContactModel, ramps: Sequence[tuple[Any, Any]], problem: Problem, points: slice = ALL
-) -> Mean | None:
+def closed_form(model: LineContactModel, ramps: Ramps, problem: Problem) -> Mean | None:
     """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form.
 
-    `points` is the slice of the problem in arrays of thresholds and slopes, (points, 1).
+    Thresholds and slopes are numbers, or arrays of one for each operating point.
     """
     forward = problem.forward()
     force = model.tangential_force_per_width(forward)
     check_type(model, "tangential_force_per_width", force, problem.batch_shape)
+    energy = force * forward.longitudinal_creepage
     total: Array | float = 0.0
-    for ramp in ramps:
-        threshold, slope = _per_point(ramp[0], points), _per_point(ramp[1], points)
-        above = (threshold > 0.0).any() if isinstance(threshold, np.ndarray) else threshold > 0.0
-        excess = model.excess_dissipation(forward, threshold) if above else force * forward.longitudinal_creepage
-        if excess is None:
-            return None
-        check_type(model, "excess_dissipation", excess, problem.batch_shape)
+    for threshold, slope in ramps:
+        excess: Array | None = energy
+        if (threshold > 0.0).any() if isinstance(threshold, np.ndarray) else threshold > 0.0:
+            excess = model.excess_dissipation(forward, threshold)
+            if excess is None:
+                return None
+            check_type(model, "excess_dissipation", excess, problem.batch_shape)
         total += 0.5 * slope * excess
     force = force * problem.track_width
     rate = total / problem.half_width
@@ -402,11 +414,6 @@ def closed_form(
         rate = np.maximum(rate, 0.0)
     signed = force if forward is problem else np.copysign(force, problem.creepage)
     return Mean(rate, None, signed)
-
-
-def _per_point(number: float | Array, points: slice) -> float | Array:
-    """Return a number, or an array of one number for each operating point, without the axis of the nodes."""
-    return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
 
 
 def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Array | None:
