@@ -142,14 +142,6 @@ def join(*zones: Nodes) -> Nodes:
     return Nodes(*(np.concatenate([getattr(zone, field) for zone in zones], axis=-1) for field in fields))
 
 
-def uniform_cells(half_width: Array, cells: int) -> Nodes:
-    """Return the centres and lengths of equal cells over the whole patch."""
-    width = half_width[..., None]
-    centres = (2.0 * np.arange(cells) + 1.0) / cells
-    length = np.broadcast_to(2.0 * width / cells, (*half_width.shape, cells))
-    return Nodes(width * centres, width * centres[::-1], length)
-
-
 def remainder(weighted: Array) -> Array:
     """Return an error estimate for an integral from its weighted samples, panel by panel.
 

@@ -165,13 +165,9 @@ class LineContactModel(ContactModel):
     for negative creepage. Methods that return None by default are optional; they only save time.
     """
 
-    @property
-    def square_roots_at(self) -> Literal["slip_zone", "patch"]:
-        """The interval with square-root behaviour of pressure, traction and slip at its ends.
-
-        "slip_zone" suits elastic half-spaces. "patch" suits models with smooth slip up to the start of the slip zone.
-        """
-        return "slip_zone"
+    square_roots_at: ClassVar[Literal["slip_zone", "patch"]] = "slip_zone"
+    """The interval with square-root behaviour of pressure, traction and slip at its ends. "slip_zone" suits elastic
+    half-spaces. "patch" suits models with smooth slip up to the start of the slip zone."""
 
     @abstractmethod
     def slip_length(self, problem: Problem) -> Array:

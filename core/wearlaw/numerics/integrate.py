@@ -30,12 +30,11 @@ from wearlaw.models.contact_model import ContactModel, LineContactModel
 from wearlaw.models.law import Law, Numbers
 from wearlaw.models.model import Blame
 from wearlaw.models.reader import Solved
-from wearlaw.numerics.blocks import OfBlock, OnBlock, ResultT, blocks, by_block, each
 from wearlaw.numerics.crossings import crossings
 from wearlaw.numerics.solving import Solver, check_results, check_type
 from wearlaw.numerics.splits import split_rates
 from wearlaw.numerics.staged import Staged
-from wearlaw.numerics.totals import Across, SlipTotals, Totals
+from wearlaw.numerics.totals import Across, OfBlock, OnBlock, ResultT, SlipTotals, Totals, blocks, by_block, each
 
 BLOCK = 16384
 """Operating points of a block in closed form: its arrays stay in the cache and in reused memory."""

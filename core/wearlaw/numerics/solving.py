@@ -26,8 +26,7 @@ from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactMo
 from wearlaw.models.law import Law, Numbers
 from wearlaw.models.model import Blame, Model, fault
 from wearlaw.models.reader import Solved
-from wearlaw.numerics.blocks import OfBlock, OnBlock, ResultT, by_block, each
-from wearlaw.numerics.totals import Across
+from wearlaw.numerics.totals import Across, OfBlock, OnBlock, ResultT, by_block, each
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import VARIABLES
 
