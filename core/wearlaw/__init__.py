@@ -242,7 +242,7 @@ if TYPE_CHECKING:
     from wearlaw.plugins.law_files import read_law
     from wearlaw_archard.coefficients import wear_coefficient
     from wearlaw_contact_files._reading import read_contact
-    from wearlaw_explore import explore
+    from wearlaw_explore._page import explore
     from wearlaw_fits.comparison import Comparison, compare
     from wearlaw_fits.distributions import lognormal, normal, published_range, uniform
     from wearlaw_fits.fit import fit
@@ -265,7 +265,7 @@ _LATE = {
     "wearlaw.plugins.law_files": ("read_law",),
     "wearlaw_archard.coefficients": ("wear_coefficient",),
     "wearlaw_contact_files._reading": ("read_contact",),
-    "wearlaw_explore": ("explore",),
+    "wearlaw_explore._page": ("explore",),
     "wearlaw_fits.comparison": ("Comparison", "compare"),
     "wearlaw_fits.fit": ("fit",),
     "wearlaw_fits.result": ("Fit",),
