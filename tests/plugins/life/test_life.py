@@ -229,11 +229,13 @@ def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
     assert dict(profiles.sizes) == {"distance": len(table), "side": 1, "place": 601}
     assert profiles["depth"].max() == pytest.approx(table["depth [mm]"].iloc[-1], rel=1e-3)
     assert profiles["depth"].attrs["units"] == "mm"
-    last = profiles.isel(distance=-1, side=0)
-    y, curve = last["y"].values, short.profile.curve
+    area = np.trapezoid(profiles["depth"].isel(distance=-1, side=0), profiles["place"])
+    assert last(short, "worn_area [mm^2]") == pytest.approx(area, rel=1e-2)
+    worn = profiles.isel(distance=-1, side=0)
+    y, curve = worn["y"].values, short.profile.curve
     tread, there = y > -34.0, curve.y > -35e-3
     z = np.interp(y[tread], 1e3 * curve.y[there], 1e3 * curve.z[there])
-    assert last["z"].values[tread] == pytest.approx(z, abs=3e-5)  # 0.025²/(2 R) mm between points, with R = 13 mm
+    assert worn["z"].values[tread] == pytest.approx(z, abs=3e-5)  # 0.025²/(2 R) mm between points, with R = 13 mm
     assert "1500 km" in repr(short)
     assert [panel.title for panel in short.figure().panels][1] == "wheel, wear along the normal"
     assert len(short.plot().axes) == len(short.figure().panels)
@@ -319,9 +321,12 @@ def test_interrupted_life_goes_on(tmp_path: Path, short: Life) -> None:
         wl.wear_out(pipeline(), line(), over="1500 km", store=path, **GIVEN)
     with pytest.raises(wl.OutputError, match="smoothing"):
         wl.wear_out(pipeline(), line(), over="1500 km", smoothing="2 mm", store=path, resume=True, **GIVEN)
+    first = path / "part_000000/zarr.json"
+    written = first.stat().st_mtime_ns
     with pytest.warns(wl.ResumeWarning, match="kept"):
         again = wl.wear_out(pipeline(), line(), over="1500 km", store=path, resume=True, **GIVEN)
     assert again.table.equals(short.table)
+    assert first.stat().st_mtime_ns == written  # it was not computed again
 
 
 def test_finished_steps_stay_when_a_step_fails(monkeypatch: pytest.MonkeyPatch) -> None:
