@@ -244,7 +244,7 @@ if TYPE_CHECKING:
     from wearlaw.plugins.law_files import read_law
     from wearlaw_archard.coefficients import wear_coefficient
     from wearlaw_contact_files._reading import read_contact
-    from wearlaw_explore import explore
+    from wearlaw_explore._page import explore
     from wearlaw_fits.comparison import Comparison, compare
     from wearlaw_fits.distributions import lognormal, normal, published_range, uniform
     from wearlaw_fits.fit import fit
@@ -267,7 +267,7 @@ _LATE = {
     "read_law": "wearlaw.plugins.law_files",
     "wear_coefficient": "wearlaw_archard.coefficients",
     "read_contact": "wearlaw_contact_files._reading",
-    "explore": "wearlaw_explore",
+    "explore": "wearlaw_explore._page",
     "Comparison": "wearlaw_fits.comparison",
     "compare": "wearlaw_fits.comparison",
     "fit": "wearlaw_fits.fit",

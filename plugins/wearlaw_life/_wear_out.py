@@ -128,7 +128,7 @@ def wear_out(
     at = positions(new, math.ceil(length / wl.Unit("mm").si(spacing, "spacing")) + 1)
     with ExitStack() as stack:
         points = stack.enter_context(
-            operating_points(predict, line, conditions, columns, {SHARE: share}, {}, store, True, progress)
+            operating_points(predict, line, conditions, columns, {SHARE: share}, {}, store, True)
         )
         steps = Steps(Line(predict, points, body, at, workers, client), body, new, **settings)
         now = steps.begin(predict)

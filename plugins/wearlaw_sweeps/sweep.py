@@ -152,7 +152,7 @@ def sweep(
     summed = share is not None
     with (
         writing_to(store),
-        operating_points(predict, table, conditions, columns, keep, as_csv, store, summed, progress) as points,
+        operating_points(predict, table, conditions, columns, keep, as_csv, store, summed) as points,
     ):
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
@@ -204,7 +204,6 @@ def operating_points(
     as_csv: Mapping[str, Any],
     store: str | os.PathLike[str] | None,
     summed: bool,
-    progress: bool,
 ) -> Iterator[Points]:
     """Give the operating points of a sweep; if they are to be summed, the kept column `SHARE` has their shares."""
     if table is None:
@@ -216,9 +215,7 @@ def operating_points(
     beside = Path(tempfile.gettempdir(), "sum") if summed and store is None else store  # a sum needs no memory
     on_disk = None if beside is None else Path(beside)
     check = predict.rig.check_names
-    with from_table(
-        table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk, progress=progress
-    ) as points:
+    with from_table(table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk) as points:
         if summed and keep is not None:
             check_shares(points, keep[SHARE])
         yield points

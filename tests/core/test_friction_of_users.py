@@ -38,10 +38,10 @@ class Friction:
 @pytest.mark.parametrize(
     ("coefficient", "says"),
     [
-        (lambda _: np.ones(7), r"returned an array of shape \(7,\) for creep speeds of shape \(3,\)"),
+        (lambda _: np.ones(7), r"is wrong at creep speeds from 0.009795 to .*broadcast"),
         (
             lambda speed: speed * np.nan,
-            r"is wrong at creep speeds of 0.009795 to .* got nan at index \[0\]",
+            r"is wrong at creep speeds from 0.009795 to .* got nan at index \[0\]",
         ),
         (lambda speed: -speed, r"must be a positive finite number, got -0.009"),
         (lambda speed: speed + np.inf, "must be a positive finite number, got inf"),

@@ -8,7 +8,7 @@ batch are the *nodes* of the patch. An ellipse has two of them, along a strip an
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, Self, TypeAlias, get_args
 
@@ -17,7 +17,7 @@ import numpy as np
 from wearlaw.arrays.array import Array, freeze
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, InputError, ModelError, did_you_mean, shown
+from wearlaw.errors import CompositionError, InputError
 from wearlaw.units.quantities import QuantityLike
 from wearlaw.units.variables import expected
 
@@ -41,16 +41,6 @@ LawVariable: TypeAlias = Literal[
 """A variable of a `Contact` in which a law can branch, jump or be monotone."""
 
 LAW_VARIABLES: tuple[str, ...] = get_args(LawVariable)
-
-
-def check_variables(subject: str, names: Iterable[str], known: Collection[str] = LAW_VARIABLES) -> None:
-    """Raise a `ModelError` for the first name that is not one of the known variables."""
-    for name in names:
-        if name not in known:
-            hint = did_you_mean(str(name), known)
-            raise ModelError(
-                f"{subject} names the variable {shown(name)}, which is unknown{hint} There are: {', '.join(known)}"
-            )
 
 
 def variable_at_nodes(contact: Contact, name: str) -> Array:

@@ -133,61 +133,44 @@ def _elementwise() -> Any:
 
 def _searched(variable: _Variable, value: Array) -> Array:
     """Return the crossings of a breakpoint (points, 1), as shares of Ψ (points, CROSSINGS); 1 for no crossing."""
-    found = np.ones((variable.samples.shape[0], CROSSINGS))
-    for point, column, low, high in (_sign_changes(variable, value), _hidden_humps(variable, value)):
-        if point.size:
-            root = _elementwise().find_root(
-                lambda share, who: variable.at(share, who) - value[who.astype(np.intp), 0],
-                (low, high),
-                args=(point.astype(np.float64),),
-            )
-            if not root.success.all():
-                message = (
-                    f"contact model '{variable.model.name}': its {variable.name} crosses a breakpoint, but the crossing"
-                    " cannot be found; it must be finite in the whole slip zone, and the same at each call"
-                )
-                raise ModelError(with_origin(variable.model, message))
-            found[point, column] = root.x
-    return found
-
-
-Brackets: TypeAlias = tuple[NDArray[np.intp], NDArray[np.intp], Array, Array]
-"""Operating points, columns of the result, and the shares of Ψ on both sides of a crossing; each of shape (m,)."""
-
-
-def _sign_changes(variable: _Variable, value: Array) -> Brackets:
-    above = variable.samples >= value
+    share, samples = np.broadcast_to(variable.share, variable.samples.shape), variable.samples
+    point, top = _hidden_humps(samples, value[:, 0])
+    if point.size:
+        peak = _elementwise().find_minimum(
+            lambda where, who: -variable.at(where, who),
+            tuple(variable.share[top + step] for step in (-1, 0, 1)),
+            args=(point.astype(np.float64),),
+        )
+        share, samples = share.copy(), samples.copy()
+        share[point, top], samples[point, top] = peak.x, -peak.f_x
+    above = samples >= value
     changes = above[:, 1:] != above[:, :-1]
     order = changes.cumsum(axis=-1)
     point, interval = np.nonzero(changes & (order <= CROSSINGS))
-    return point, order[point, interval] - 1, variable.share[interval], variable.share[interval + 1]
+    found = np.ones((samples.shape[0], CROSSINGS))
+    if point.size:
+        root = _elementwise().find_root(
+            lambda where, who: variable.at(where, who) - value[who.astype(np.intp), 0],
+            (share[point, interval], share[point, interval + 1]),
+            args=(point.astype(np.float64),),
+        )
+        if not root.success.all():
+            message = (
+                f"contact model '{variable.model.name}': its {variable.name} crosses a breakpoint, but the crossing"
+                " cannot be found; it must be finite in the whole slip zone, and the same at each call"
+            )
+            raise ModelError(with_origin(variable.model, message))
+        found[point, order[point, interval] - 1] = root.x
+    return found
 
 
-def _hidden_humps(variable: _Variable, value: Array) -> Brackets:
-    """Return the brackets of crossings on both sides of a maximum between two samples."""
-    share, samples = variable.share, variable.samples
-    top = samples.argmax(axis=-1).clip(1, share.size - 2)
+def _hidden_humps(samples: Array, level: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the operating points where a maximum between samples may reach the level, and the highest sample there."""
+    top = samples.argmax(axis=-1).clip(1, samples.shape[-1] - 2)
     points = np.arange(samples.shape[0])
     left, middle, right = (samples[points, top + step] for step in (-1, 0, 1))
     # Neighbouring intervals differ by a factor of at most four. The top of a smooth hump then lies above its highest
     # sample by less than four times the difference between that sample and its lower neighbour.
-    level = value[:, 0]
     may_reach = (middle < level) & (level < middle + 4.0 * (middle - np.minimum(left, right)))
     point = points[may_reach & (middle >= np.maximum(left, right))]
-    low, high = share[top[point] - 1], share[top[point] + 1]
-    if point.size:
-        peak = _elementwise().find_minimum(
-            lambda where, who: -variable.at(where, who),
-            (low, share[top[point]], high),
-            args=(point.astype(np.float64),),
-        )
-        reaches = -peak.f_x > level[point]
-        point, low, high, crest = point[reaches], low[reaches], high[reaches], peak.x[reaches]
-    else:
-        crest = low
-    return (
-        np.concatenate([point, point]),
-        np.repeat(np.arange(CROSSINGS), point.size),
-        np.concatenate([low, crest]),
-        np.concatenate([crest, high]),
-    )
+    return point, top[point]

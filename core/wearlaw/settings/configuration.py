@@ -18,7 +18,7 @@ from wearlaw.errors import (
     shown,
 )
 from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.units.quantities import full_text, plain_number
+from wearlaw.units.quantities import plain_number, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -37,7 +37,7 @@ class _Schema(GenerateJsonSchema):
     """JSON Schema in which a default that is a quantity is its text, as in a file."""
 
     def encode_default(self, dft: Any) -> Any:
-        return full_text(dft) if isinstance(dft, pint.Quantity) else super().encode_default(dft)
+        return text_of(dft) if isinstance(dft, pint.Quantity) else super().encode_default(dft)
 
 
 class Configuration(BaseModel):
@@ -116,23 +116,10 @@ class Configuration(BaseModel):
             try:
                 super().__setattr__(name, value)
             except ValidationError:
-                raise self._frozen(name) from None
-
-        def __delattr__(self, name: str) -> None:
-            try:
-                super().__delattr__(name)
-            except ValidationError:
-                raise self._frozen(name) from None
-
-    def _frozen(self, name: str) -> FrozenError:
-        fields = type(self).model_fields
-        if name not in fields:
-            hint = did_you_mean(name, fields)
-            return FrozenError(f"{self.subject()}: {name}: unknown field{hint} The fields are: {', '.join(fields)}")
-        return FrozenError(
-            f"{self.subject()}: {name}: cannot be changed, since it is frozen; make a changed copy with"
-            f" .model_copy(update={{{shown(name)}: ...}})"
-        )
+                raise FrozenError(
+                    f"{self.subject()}: {name}: cannot be changed, since it is frozen; make a changed copy with"
+                    f" .model_copy(update={{{shown(name)}: ...}})"
+                ) from None
 
     @classmethod
     def subject(cls) -> str:
@@ -154,8 +141,7 @@ class Configuration(BaseModel):
     def __repr__(self) -> str:
         text = f"{type(self).__name__}("
         for name, value in self.__repr_args__():
-            shown = full_text(value) if isinstance(value, pint.Quantity) else repr(value)
-            field = shown if name is None else f"{name}={shown}"
+            field = f"{name}={text_of(value) if isinstance(value, pint.Quantity) else repr(value)}"
             start = text.rfind("\n") + 1
             if len(text) - start + len(field.partition("\n")[0]) >= LINE and text[start:].strip():
                 text = text.rstrip() + "\n    "

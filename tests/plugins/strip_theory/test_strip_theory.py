@@ -118,6 +118,21 @@ def test_traction_is_along_the_slip_at_the_bound() -> None:
         assert q[strip.slip > 0.0] == pytest.approx(strip.bound[strip.slip > 0.0], rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    "strip",
+    [(-0.38, -0.3, 1.82, 1.38), (-0.07, -1.87, 4.7, 1.36), (-0.47, 0.66, -1.97, 0.89), (-0.04, 0.5, -1.73, 0.83)],
+)
+def test_forces_of_strips_that_stick_again_are_continuous(strip: tuple[float, ...]) -> None:
+    # A balance of loads needs that. Nodes come to stick and to slip on the way; the third strip begins to stick on it.
+    along, across, turning, k_y = strip
+    grown = np.linspace(0.9, 1.1, 401)
+    found = nodes(along * grown, across * grown, turning, 1.0, k_y, count=12)
+    assert (found.slip[12:] == 0.0).any()
+    force = np.stack([(found.length * q).sum(axis=0) for q in (found.q_x, found.q_y)])
+    steps = np.hypot(*np.diff(force, axis=-1))
+    assert steps.max() < 1.5 * np.median(steps)
+
+
 def test_the_fields_are_the_same_with_and_without_compiled_loops() -> None:
     grid = np.array(list(itertools.product(AXIS_RATIOS, (0.02, 0.3), (-0.2, 0.1), (-0.5, 0.0, 0.2)))).T
     found = []
