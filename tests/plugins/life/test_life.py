@@ -204,7 +204,7 @@ def test_a_cluster_gives_the_same_life(short: Life, monkeypatch: pytest.MonkeyPa
     distributed = pytest.importorskip("distributed")
     monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)  # private: small blocks
     with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as machines,
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as machines,
         distributed.Client(machines) as client,
     ):
         found = wl.wear_out(pipeline(), line(), over="500 km", client=client, **GIVEN)
