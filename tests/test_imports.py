@@ -27,7 +27,6 @@ DEFERRED = {
     ("wearlaw_sweeps.workers", "zarr"): "takes as long to load as all else",
     ("wearlaw.tables", "pandas"): "takes half as long to load as the rest of wearlaw",
     ("wearlaw_kit.kit", "pytest"): "is not needed to run the checks of the kit",
-    ("wearlaw_explore", "wearlaw_explore"): "needs Panel, which looking up a plugin must not load",
     ("wearlaw_fits.wear_tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
     ("wearlaw_life", "wearlaw_life"): "needs pandas and xarray, which looking up a plugin must not load",
     ("wearlaw_life", "wearlaw_life._section"): "is needed for a report alone",
