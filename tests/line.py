@@ -36,3 +36,11 @@ def crossings_meet(model: wl.LineContactModel, problem: wl.Problem) -> None:
         off = np.abs(a[:, None] - found - x[:, None]).min(axis=-1)
         assert (off <= 8 * 25 * EPS * a).all(), name
     assert model.crossings(problem, "traction", known.traction[:, 0]) is None
+
+
+def uniform_cells(half_width: Array, cells: int) -> wl.Nodes:
+    """Return the centres and lengths of equal cells over the whole patch."""
+    width = half_width[..., None]
+    centres = (2.0 * np.arange(cells) + 1.0) / cells
+    length = np.broadcast_to(2.0 * width / cells, (*half_width.shape, cells))
+    return wl.Nodes(width * centres, width * centres[::-1], length)

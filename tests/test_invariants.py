@@ -19,9 +19,9 @@ import pytest
 from hypothesis import given
 
 import wearlaw as wl
+from tests.line import uniform_cells
 from tests.strategies import EPS, FULL_SLIP, LINE_MODELS, MODELS, log_uniform, saturation_creepage, with_creepage
 from wearlaw import Q
-from wearlaw.contact.quadrature import uniform_cells  # private: other nodes than a model's own
 from wearlaw_kit import line_problems
 
 GRAZING = 5e-8

@@ -1,4 +1,4 @@
-"""Tables of numbers with units: CSV files and tables of pandas and xarray, with the line of each row for errors.
+"""Tables of numbers with units, from CSV files, pandas or xarray, with the line of each row for errors.
 
 >>> import wearlaw as wl
 >>> table = wl.read_table("run.csv", {"normal_force": "Fz [kN]", "creepage": "-slip [%]"})
@@ -12,20 +12,20 @@ import csv
 import io
 import itertools
 import os
+import re
 import sys
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
 
 import numpy as np
-import pint
 
 from wearlaw.arrays.array import Array
-from wearlaw.errors import DataError, UnitError, did_you_mean, shown
+from wearlaw.errors import PROBLEMS, DataError, UnitError, did_you_mean, shown
 from wearlaw.extras import needed_for
-from wearlaw.units.quantities import HEAD, Q, Quantity
+from wearlaw.units.quantities import Q, Quantity
 from wearlaw.units.registry import symbol
 
 if TYPE_CHECKING:
@@ -44,6 +44,11 @@ MISSING = ("", "-", "NA", "N/A", "n/a", "na", "nan", "NaN", "NAN", "null", "NULL
 
 LISTED = 20
 """Most columns that a message lists."""
+
+
+_WORDS = r"[^\[\]\s]*+(?:\s++[^\[\]\s]++)*+"
+HEAD = re.compile(rf"(?P<name>{_WORDS})\s*+(?:\[\s*+(?P<unit>{_WORDS})\s*+\])?")
+"""The head of a column, as in "creepage [%]": a name and an optional unit; the time is linear in the length."""
 
 
 class Column(NamedTuple):
@@ -70,29 +75,6 @@ class Column(NamedTuple):
     sign: float = 1.0
 
 
-class Head(NamedTuple):
-    """The head of a column as written, and its unit if the table has that elsewhere.
-
-    Without a choice of columns, those are read that are `data`: all but the coordinates of an xarray.Dataset.
-    """
-
-    text: str
-    unit: str | None = None
-    data: bool = True
-
-    @property
-    def name(self) -> str:
-        """The head without a unit in brackets."""
-        match = HEAD.fullmatch(self.text)
-        return match["name"] if match else self.text
-
-    @property
-    def units(self) -> list[str]:
-        """The units in the head and beside it."""
-        match = HEAD.fullmatch(self.text)
-        return [unit for unit in (match and match["unit"], self.unit) if unit]
-
-
 class Table:
     """Columns of a table, from `read_table`.
 
@@ -105,24 +87,21 @@ class Table:
         The table in messages, such as "table 'run.csv'".
     columns : dict of str to Column
         The columns in use, by name.
-    heads : list of Head
-        The heads of all columns.
     comments : list of str
         Lines above the header of a CSV file that begin with "#".
     header : int
         The line of the header of a CSV file, from 1.
     """
 
-    def __init__(self, label: str) -> None:
+    def __init__(self, label: str, heads: Iterable[str] = ()) -> None:
         self.label = label
-        self.heads: list[Head] = []
+        self.heads = [_column(head, place) for place, head in enumerate(heads)]
         self.columns: dict[str, Column] = {}
         self.comments: list[str] = []
         self.header = 0
         self.decimal = "."
         self.dim = ROW
         self.labels: dict[str, Any] = {}
-        self.size = 1
 
     def __getitem__(self, name: str) -> Quantity | Array:
         """Return a column.
@@ -138,7 +117,7 @@ class Table:
     def numbers(self, name: str) -> Array:
         """Return a column in its unit, without it; errors as for a column."""
         column = self._column(name)
-        (values,) = self._numbers([column], [self._whole[column.place]], 0, [name])
+        (values,) = self._numbers([column], self._whole, 0, [name])
         return values
 
     @cached_property
@@ -148,8 +127,8 @@ class Table:
 
     def texts(self, name: str) -> list[str]:
         """Return the cells of a column as text, "" for missing ones."""
-        whole = self._whole[self._column(name).place]
-        return ["" if missing else str(cell).strip() for cell, missing in zip(whole, whole.isna(), strict=True)]
+        texts = (str(cell).strip() for cell in self._whole[self._column(name).place])
+        return ["" if text in MISSING else text for text in texts]
 
     def where(self, row: int, name: str | None = None) -> str:
         """Return the place of a row, from 0, or of one of its cells in words, as in "line 7, column 'Fz [N]'"."""
@@ -163,36 +142,29 @@ class Table:
         DataError
             If there are no such columns, or units contradict each other; the message names all faults.
         """
-        chosen: list[tuple[str, str, int | None, float, str | None]]
-        if columns is None:
-            chosen = [(head.name, head.text, place, 1.0, None) for place, head in enumerate(self.heads) if head.data]
-        elif isinstance(columns, Mapping):
-            chosen = [(name, text, *self._find(text)) for name, text in columns.items()]
-        else:
+        if columns is not None and not isinstance(columns, Mapping):
             raise DataError(
                 f'{argument}: must map names to columns, such as {{"force": "Fz [N]"}}, got {shown(columns)}'
             )
         wrong: list[str] = []
         found: dict[str, Column] = {}
-        for name, text, place, sign, given in chosen:
-            if not name.isidentifier() and columns is not None:
-                wrong.append(f"{argument}: '{name}' is no name; use letters, digits and underscores")
-            elif place is None:
-                wrong.append(f"{name}: {given}")
-            elif name in found:
-                wrong.append(f"{name} is given twice, by '{found[name].head}' and '{text}'; keep one")
-            else:
-                head = self.heads[place]
-                try:
-                    found[name] = Column(name, head.text, place, _agreed(given, head.units), sign)
-                except UnitError as error:
-                    wrong.append(f"{name}: column '{head.text}': {error}")
+        for column in self.heads if columns is None else ():
+            if column.name in found:
+                wrong.append(f"{column.name} is given twice, by '{found[column.name].head}' and '{column.head}'")
+            found[column.name] = column
+        for name, text in (columns or {}).items():
+            try:
+                if not name.isidentifier():
+                    raise DataError(f"{argument}: '{name}' is no name; use letters, digits and underscores")
+                found[name] = self._find(name, text)
+            except (DataError, UnitError) as error:
+                wrong.append(str(error))
         if wrong:
             raise DataError(f"{self.label} is wrong in:", wrong)
         return found
 
-    def pieces(self, columns: Sequence[Column], gaps: Collection[str] = ()) -> Iterator[tuple[list[Array], int]]:
-        """Yield the values of columns piece by piece, with the part of `size` that was read for each.
+    def pieces(self, columns: Sequence[Column], gaps: Collection[str] = ()) -> Iterator[list[Array]]:
+        """Yield the values of columns piece by piece.
 
         Raises
         ------
@@ -200,22 +172,19 @@ class Table:
             If a cell holds text, or is missing in a column that is not named in `gaps`; the message names the lines.
         """
         first = 0
-        for raw, part in self._raw([column.place for column in columns]):
-            values = self._numbers(columns, [raw[column.place] for column in columns], first, gaps)
-            yield values, part
+        for frame in self._frames():
+            values = self._numbers(columns, frame, first, gaps)
+            yield values
             first += len(values[0])
 
-    def _raw(self, places: Sequence[int]) -> Iterator[tuple[Any, int]]:
-        """Yield some rows of columns by their places, and the part of `size` that was read for them."""
-        raise NotImplementedError
+    def _frames(self) -> Iterator[Any]:
+        """Yield some rows, with the places of columns as their names."""
+        yield self._whole
 
     @cached_property
     def _whole(self) -> Any:
-        """The columns in use, by their places."""
-        pd = _pandas()
-        places = [column.place for column in self.columns.values()]
-        parts = [raw for raw, _ in self._raw(places)]
-        return {place: pd.concat([pd.Series(part[place]) for part in parts], ignore_index=True) for place in places}
+        """All rows."""
+        raise NotImplementedError
 
     def _rows_in_words(self, rows: Collection[int]) -> dict[int, str]:
         return {row: f"row {row} (the first is row 0)" for row in rows}
@@ -225,37 +194,37 @@ class Table:
             raise DataError(f"{self.label}: there is no column '{name}'{did_you_mean(name, self.columns)}")
         return self.columns[name]
 
-    def _find(self, text: str) -> tuple[int | None, float, str | None]:
-        """Return the index, the sign and the stated unit of a column; or None, and what is wrong."""
+    def _find(self, name: str, text: str) -> Column:
+        """Return the column that a text names, with its sign and the unit that the text or the table states."""
         for sign, rest in ((1.0, text), (-1.0, text.removeprefix("-").strip())):
-            match = HEAD.fullmatch(rest)
-            name, unit = (match["name"], match["unit"]) if match else (rest, None)
-            for places in (
-                [place for place, head in enumerate(self.heads) if head.text == rest],
-                [place for place, head in enumerate(self.heads) if head.name == name],
+            given = _column(rest, 0)
+            for found in (
+                [one for one in self.heads if one.head == rest],
+                [one for one in self.heads if one.name == given.name],
             ):
-                if len(places) > 1:
-                    return None, sign, f"the column '{rest}' is there {len(places)} times; rename all but one"
-                if places:
-                    return places[0], sign, unit
-        known = [head.text for head in self.heads]
-        near = did_you_mean(text.removeprefix("-"), [*known, *(head.name for head in self.heads)]).rstrip(".")
+                if len(found) > 1:
+                    raise DataError(f"{name}: the column '{rest}' is there {len(found)} times; rename all but one")
+                if found:
+                    return found[0]._replace(name=name, unit=_agreed(name, given, found[0]), sign=sign)
+        known = [one.head for one in self.heads]
+        near = did_you_mean(text.removeprefix("-"), [*known, *(one.name for one in self.heads)]).rstrip(".")
         listed = ", ".join(f"'{one}'" for one in known[:LISTED]) + (", ..." if len(known) > LISTED else "")
-        return None, 1.0, f"there is no column '{text}'{near or ';'} The columns are {listed}"
+        raise DataError(f"{name}: there is no column '{text}'{near or ';'} The columns are {listed}")
 
-    def _numbers(self, columns: Sequence[Column], raw: Sequence[Any], first: int, gaps: Collection[str]) -> list[Array]:
-        """Return columns of pandas or numpy as floats, the first row of which has the number `first`."""
+    def _numbers(self, columns: Sequence[Column], frame: Any, first: int, gaps: Collection[str]) -> list[Array]:
+        """Return columns of a frame, the first row of which has the number `first`, as floats."""
         found, wrong = [], []
-        for column, cells in zip(columns, raw, strict=True):
+        for column in columns:
+            cells = frame[column.place]
             values, missing = _floats(cells, self.decimal)
             found.append(values if column.sign > 0 else -values)
             without = np.isnan(values) & ~(missing & (column.name in gaps))
             wrong += [
-                (int(row), column, "" if missing[row] else str(np.asarray(cells)[row]))
-                for row in np.flatnonzero(without)[: DataError.MOST]
+                (int(row), column, "" if missing[row] else str(cells.iloc[row]))
+                for row in np.flatnonzero(without)[:PROBLEMS]
             ]
         if wrong:
-            wrong = sorted(wrong, key=lambda one: one[0])[: DataError.MOST]
+            wrong = sorted(wrong, key=lambda one: one[0])[:PROBLEMS]
             places = self._rows_in_words({first + row for row, _, _ in wrong})
             raise DataError(
                 f"{self.label} is wrong in:",
@@ -274,10 +243,35 @@ class Table:
             return f'; for decimals with "{other}", give decimal="{other}"'
         return ""
 
-    def _failed(self, error: Exception) -> DataError:
-        reason = getattr(error, "strerror", None) or f"{type(error).__name__}: {error}"
-        others = "open other files with pandas or xarray, and give the table"
-        return DataError(f"{self.label} cannot be read as CSV in UTF-8: {reason}; {others}")
+
+def _column(head: str, place: int) -> Column:
+    """Return the column of a head; an unknown unit is kept as it is written."""
+    match = HEAD.fullmatch(head)
+    name, unit = (match["name"], match["unit"]) if match else (head, None)
+    with suppress(UnitError):
+        unit = unit and _known(unit)
+    return Column(name, head, place, unit)
+
+
+def _agreed(name: str, given: Column, column: Column) -> str | None:
+    """Return the unit that the user states for a column, or else that of the table, which must not be another one."""
+    if given.unit is None:
+        return column.unit
+    try:
+        unit = Q(1.0, given.unit)
+    except UnitError as error:
+        raise UnitError(f"{name}: column '{column.head}': {error}") from None
+    if column.unit is not None and given.unit != column.unit:
+        with suppress(UnitError):  # what the table states may be no unit
+            if Q(1.0, column.unit) != unit:
+                units = f"'{given.unit}' and '{column.unit}'"
+                raise DataError(f"{name}: column '{column.head}': has the units {units}; keep one of them")
+    return given.unit
+
+
+def _known(unit: str) -> str:
+    """Return a unit in the notation of pint, "" for "-" and "1"."""
+    return "" if unit.strip() in ("", "-", "1") else symbol(Q(1.0, unit).units, "~C")
 
 
 def read_table(
@@ -293,10 +287,9 @@ def read_table(
     Parameters
     ----------
     source : path, text file, pandas.DataFrame or xarray.Dataset
-        A CSV file, or a table of pandas or xarray, such as ``xarray.open_dataset("run.nc", decode_times=False)``, of
-        which one piece is read at a time. The unit of a column stands in its head, as in "Fz [kN]", in its
-        `attrs["units"]`, or in its type (pint). "[-]" is a ratio. If all cells of the first row of a CSV file are
-        numbers, it has no header, and the columns are "1", "2", ...
+        A CSV file, or a table of pandas or xarray, such as ``xarray.open_dataset("run.nc", decode_times=False)``. The
+        unit of a column stands in its head, as in "Fz [kN]", or in the `attrs["units"]` of xarray. "[-]" is a ratio. If
+        all cells of the first row of a CSV file are numbers, it has no header, and the columns are "1", "2", ...
     columns : mapping of str to str, optional
         The columns to use by the names that they get, as in {"force": "Fz [kN]", "creepage": "-slip"}. A minus changes
         the sign. State the unit in brackets if the table does not. Default: all, by their heads without units.
@@ -329,11 +322,37 @@ def open_table(source: Any, *, sep: str | None = None, decimal: str = ".", comme
     if hasattr(source, "read"):
         return CsvTable(f"table '{getattr(source, 'name', 'text')}'", source.read().encode(), sep, decimal, comment)
     pandas, xarray = sys.modules.get("pandas"), sys.modules.get("xarray")  # loaded already if the table is theirs
-    if pandas is not None and isinstance(source, pandas.DataFrame):
-        return FrameTable("table", source)
     if xarray is not None and isinstance(source, xarray.Dataset):
-        return XarrayTable("table", source)
+        return FrameTable(_frame(source))
+    if pandas is not None and isinstance(source, pandas.DataFrame):
+        return FrameTable(source)
     raise DataError(f"table: must be a path, a pandas.DataFrame or an xarray.Dataset, got {shown(source)}")
+
+
+class FrameTable(Table):
+    """A pandas.DataFrame."""
+
+    def __init__(self, frame: pandas.DataFrame) -> None:
+        super().__init__("table", map(str, frame.columns))
+        if frame.index.nlevels > 1:
+            raise DataError("table: its index has several levels; call reset_index() on it")
+        self.dim = ROW if frame.index.name is None else str(frame.index.name)
+        self.labels = {self.dim: (self.dim, frame.index.to_numpy())}
+        self._frame = frame.set_axis(range(frame.shape[1]), axis=1)
+
+    @property
+    def _whole(self) -> Any:
+        return self._frame
+
+
+def _frame(dataset: xarray.Dataset) -> pandas.DataFrame:
+    """Return a dataset as a table, with units in its heads."""
+    if len(dataset.sizes) != 1:
+        along = ", ".join(f"'{name}' along {' × '.join(map(str, one.dims))}" for name, one in dataset.items())
+        raise DataError(f"table: its columns must all lie along one dimension, got {along}; select some of them")
+    units = {name: one.attrs.get("units") for name, one in dataset.variables.items()}
+    frame = dataset.to_dataframe()
+    return frame.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit})
 
 
 class CsvTable(Table):
@@ -345,9 +364,7 @@ class CsvTable(Table):
             raise DataError(f'decimal: must be "." or ",", got {decimal!r}')
         self._source, self.decimal = source, decimal
         self._skip, header = 0, ""
-        with self._opened() as (file, raw):
-            self.size = raw.seek(0, os.SEEK_END)
-            raw.seek(0)
+        with self._opened() as file:
             while header := file.readline():
                 if "".join(header.split()).strip(",;") and not header.lstrip('" ').startswith(comment):
                     break
@@ -364,48 +381,49 @@ class CsvTable(Table):
         self.header = self._skip + 1
         self._skip += not bare
         self._comment = comment if bare else None
-        self.heads = [Head(str(place + 1) if bare else cell) for place, cell in enumerate(cells)]
+        self.heads = [_column(str(place + 1) if bare else cell, place) for place, cell in enumerate(cells)]
 
     def _cells(self, cells: Sequence[str]) -> list[str]:
         return " ".join(cells).split() if self.sep == " " else [cell.strip() for cell in cells]
 
     @contextmanager
-    def _opened(self) -> Iterator[tuple[TextIO, Any]]:
-        """Give the file as text, behind the lines to skip, and its bytes."""
+    def _opened(self) -> Iterator[TextIO]:
+        """Give the file as text, behind the lines to skip."""
         try:
-            with io.BytesIO(self._source) if isinstance(self._source, bytes) else self._source.open("rb", 2**20) as raw:
+            with io.BytesIO(self._source) if isinstance(self._source, bytes) else self._source.open("rb") as raw:
                 file = io.TextIOWrapper(raw, encoding="utf-8-sig", newline="")
                 for _ in range(self._skip):
                     file.readline()
-                yield file, raw
+                yield file
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise self._failed(error) from None
 
-    def _raw(self, places: Sequence[int], dtype: Any = None) -> Iterator[tuple[Any, int]]:  # noqa: ARG002
-        pd = _pandas()  # which is given no places: it would not see rows that are too long
-        before = 0
-        with self._opened() as (file, raw):
+    def _failed(self, error: Exception) -> DataError:
+        reason = getattr(error, "strerror", None) or f"{type(error).__name__}: {error}"
+        others = "open other files with pandas or xarray, and give the table"
+        return DataError(f"{self.label} cannot be read as CSV in UTF-8: {reason}; {others}")
+
+    def _frames(self) -> Iterator[Any]:
+        pd = _pandas()
+        width = len(self.heads)
+        with self._opened() as file:
             try:
                 with pd.read_csv(
                     file,
                     sep=r"\s+" if self.sep == " " else self.sep,
-                    header=None,
+                    header=None,  # and no names, or pandas would not see rows that are too long
                     decimal=self.decimal,
                     comment=self._comment,
                     keep_default_na=False,
                     na_values=list(MISSING),
                     skipinitialspace=True,
-                    chunksize=max(CELLS // len(self.heads), 1),
-                    dtype=dtype,
+                    chunksize=max(CELLS // width, 1),
                     low_memory=False,
                 ) as reader:
                     for frame in reader:
-                        beyond = frame.iloc[:, len(self.heads) :]
-                        if len(frame.columns) < len(self.heads) or (beyond.size and beyond.notna().any(axis=None)):
+                        if len(frame.columns) < width or frame.iloc[:, width:].notna().any(axis=None):
                             raise self._uneven()
-                        read = raw.tell()
-                        yield frame.dropna(how="all"), read - before
-                        before = read
+                        yield frame.dropna(how="all")
             except pd.errors.EmptyDataError:
                 return
             except pd.errors.ParserError as error:
@@ -413,23 +431,23 @@ class CsvTable(Table):
 
     @cached_property
     def _whole(self) -> Any:
-        pd = _pandas()
-        _ = self.lines  # checks the lengths of the rows
-        parts = [frame for frame, _ in self._raw([], str)]
-        return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=range(len(self.heads)))
+        width = len(self.heads)
+        rows = []
+        for _, cells in self._rows():
+            if len(cells) < width or any(cell not in MISSING for cell in cells[width:]):
+                raise self._uneven()
+            rows.append(cells[:width])
+        return _pandas().DataFrame(rows, columns=range(width), dtype=object)
 
     @cached_property
     def lines(self) -> NDArray[np.intp]:
         """The line of each row, from 1."""
-        wrong = self._uneven_rows()
-        if wrong:
-            raise DataError(f"{self.label} is wrong in:", wrong)
         return np.array([line for line, _ in self._rows()], dtype=np.intp)
 
     def _rows(self) -> Iterator[tuple[int, list[str]]]:
         """Yield the line and the cells of each row that is not empty."""
-        with self._opened() as (file, _):
-            reader = csv.reader(file, delimiter=self.sep, skipinitialspace=True)
+        with self._opened() as file:
+            reader = csv.reader(file, delimiter=self.sep, skipinitialspace=True, strict=True)
             line = self._skip + 1
             for found in reader:
                 cells = self._cells(found)
@@ -447,83 +465,15 @@ class CsvTable(Table):
         return {**super()._rows_in_words(rows), **found}
 
     def _uneven(self) -> DataError:
-        """Return the error for rows that pandas found to differ in length."""
-        wrong = self._uneven_rows() or ["rows end with different numbers of empty cells"]
-        return DataError(f"{self.label} is wrong in:", wrong)
-
-    def _uneven_rows(self) -> list[str]:
-        """Return the faults of rows of other lengths than the header."""
+        """Return the error for rows of other lengths than the header."""
         width = len(self.heads)
         comma = '; separate cells with decimal commas by ";", and give decimal=","' if self.sep == "," else ""
-        rows = (
+        wrong = (
             f"line {line}: has {len(cells)} cells, not {width}{comma if len(cells) > width else ''}"
             for line, cells in self._rows()
             if len(cells) < width or any(cell not in MISSING for cell in cells[width:])
         )
-        return list(itertools.islice(rows, DataError.MOST))
-
-
-class XarrayTable(Table):
-    """An xarray.Dataset, whose values may still be in its file; the columns are variables along one dimension."""
-
-    def __init__(self, label: str, dataset: Any) -> None:
-        super().__init__(label)
-        self._dataset = dataset
-        self._variables = list(dataset.variables.values())
-        for name, one in dataset.variables.items():
-            nothing = one.isel(dict.fromkeys(one.dims, slice(0))).data  # shows a unit of pint, and reads no values
-            self.heads.append(Head(str(name), _unit_of(nothing, one.attrs), name in dataset.data_vars))
-        self.labels = {str(dim): (dim, index.to_numpy()) for dim, index in dataset.indexes.items()}
-        if len(dataset.sizes) == 1:
-            self.dim, self.size = next((str(dim), size) for dim, size in dataset.sizes.items())
-
-    def _raw(self, places: Sequence[int]) -> Iterator[tuple[Any, int]]:
-        chosen = {place: self._variables[place] for place in places}
-        dims = {one.dims for one in chosen.values()} - {()}
-        if len(dims) != 1 or len(next(iter(dims))) != 1:
-            along = ", ".join(
-                f"'{self.heads[place].text}' along {' × '.join(map(str, one.dims)) or 'none'}"
-                for place, one in chosen.items()
-            )
-            raise DataError(f"{self.label}: its columns must all lie along one dimension, got {along}")
-        ((dim,),) = dims
-        self.dim, self.size = str(dim), self._dataset.sizes[dim]
-        step = max(CELLS // len(places), 1)
-        for start in range(0, self.size, step):
-            rows = slice(start, min(start + step, self.size))
-            yield {place: _part(one, rows) for place, one in chosen.items()}, rows.stop - start
-
-
-def _part(variable: Any, rows: slice) -> Any:
-    """Return some rows of a variable of xarray; one that has no dimension is the same in all."""
-    data = variable[rows].data if variable.dims else variable.data
-    values = np.asarray(getattr(data, "magnitude", data))
-    return values if values.ndim else np.full(rows.stop - rows.start, values)
-
-
-class FrameTable(Table):
-    """A pandas.DataFrame."""
-
-    def __init__(self, label: str, frame: Any) -> None:
-        super().__init__(label)
-        if frame.index.nlevels > 1:
-            raise DataError(f"{label}: its index has several levels; call reset_index() on it")
-        self.dim = str(frame.index.name or ROW)
-        self.labels = {self.dim: (self.dim, frame.index.to_numpy())}
-        self._frame, self.size = frame, len(frame)
-        for place, text in enumerate(frame.columns):
-            column = frame.iloc[:, place]
-            self.heads.append(Head(str(text), _unit_of(column.dtype, column.attrs)))
-
-    def _raw(self, places: Sequence[int]) -> Iterator[tuple[Any, int]]:
-        columns = {place: self._frame.iloc[:, place] for place in places}
-        yield (
-            {
-                place: np.asarray(one.pint.magnitude) if hasattr(one.dtype, "units") else one
-                for place, one in columns.items()
-            },
-            self.size,
-        )
+        return DataError(f"{self.label} is wrong in:", itertools.islice(wrong, PROBLEMS))
 
 
 def _pandas() -> Any:
@@ -531,32 +481,6 @@ def _pandas() -> Any:
         import pandas
 
     return pandas
-
-
-def _unit_of(typed: Any, attributes: Mapping[str, Any]) -> str | None:
-    """Return the unit of a column from its type or its attributes."""
-    units = getattr(typed, "units", None)
-    return symbol(units, "~C") if isinstance(units, pint.Unit) else attributes.get("units")
-
-
-def _agreed(given: str | None, written: Sequence[str]) -> str | None:
-    """Return the unit that the user and the table state; an unknown one of the table alone as it is written."""
-    stated = [_known(given)] if given is not None else []
-    for unit in written:
-        try:
-            stated.append(_known(unit))
-        except UnitError:
-            if not stated:
-                return unit
-    if any(Q(1.0, unit) != Q(1.0, stated[0]) for unit in stated[1:]):
-        units = " and ".join(f"'{unit}'" for unit in dict.fromkeys(stated))
-        raise UnitError(f"has the units {units}; keep one of them")
-    return stated[0] if stated else None
-
-
-def _known(unit: str) -> str:
-    """Return a unit in the notation of pint, "" for "-" and "1"."""
-    return "" if unit.strip() in ("", "-", "1") else symbol(Q(1.0, unit).units, "~C")
 
 
 def _is_number(text: str, decimal: str) -> bool:
@@ -568,18 +492,16 @@ def _is_number(text: str, decimal: str) -> bool:
 
 
 def _floats(cells: Any, decimal: str) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the numbers of a column, NaN where there is none, and which cells are missing."""
-    kind = cells.dtype.kind if isinstance(cells.dtype, np.dtype) else "O"
-    if kind in "iuf":
+    """Return the numbers of a column of pandas, NaN where there is none, and which cells are missing."""
+    if isinstance(cells.dtype, np.dtype) and cells.dtype.kind in "iuf":
         values = np.ascontiguousarray(cells, dtype=np.float64)
         return values, np.isnan(values)
     pd = _pandas()
-    series = pd.Series(np.asarray(cells, dtype=object))
-    missing = series.isna().to_numpy()
-    if kind in "bmM":  # truth values and times are no numbers
-        return np.full(len(series), np.nan), missing
-    texts = series.where(~missing, "nan").map(str).str.strip().str.replace("\u2212", "-")
-    missing = missing | texts.isin(MISSING).to_numpy()
+    missing = cells.isna()
+    if cells.dtype.kind in "bmM":  # truth values and times are no numbers
+        return np.full(len(cells), np.nan), missing.to_numpy()
+    texts = cells.where(~missing, "nan").map(str).str.strip().str.replace("\u2212", "-")
+    missing |= texts.isin(MISSING)
     if decimal == ",":
         texts = texts.str.replace(".", "?", regex=False).str.replace(",", ".")
-    return pd.to_numeric(texts, errors="coerce").to_numpy(dtype=np.float64), missing
+    return pd.to_numeric(texts, errors="coerce").to_numpy(dtype=np.float64), missing.to_numpy()

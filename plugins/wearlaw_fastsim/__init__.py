@@ -45,6 +45,8 @@ class Fastsim(wl.LineContactModel):
         " 3.2.2, and on an ellipse after the source of the program CONTACT (E. A. H. Vollebregt)"
     )
 
+    square_roots_at: ClassVar[Literal["slip_zone", "patch"]] = "patch"  # the fields are smooth where slip begins
+
     bound: Literal["parabolic", "elliptic"] = "parabolic"
     """Shape of p2 in the bound μ p2 of the traction, with the load of Hertz's pressure: a parabola, on a line
     3P/(4a) (1-(x/a)²), on an ellipse 2N/(πab) (1-(x/a)²-(y/b)²); or Hertz's own ellipse."""
@@ -86,11 +88,6 @@ class Fastsim(wl.LineContactModel):
         if self.elliptic_accuracy > 0.1:
             exempt["accuracy"] = f"{self.strips} strips give a first idea of an ellipse"
         return exempt
-
-    @property
-    def square_roots_at(self) -> Literal["patch"]:
-        """The whole patch: fields are smooth where slip begins."""
-        return "patch"
 
     def __repr_args__(self) -> Any:
         """Yield the settings to show; those for an ellipse only if they differ from the default."""

@@ -11,7 +11,7 @@ import scipy
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import InputError, UnitError, shown
-from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, full_text, parse, real_array
+from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, parse, real_array, text_of
 
 Value = Quantity | float
 """A quantity, or a plain number if it has no unit."""
@@ -117,4 +117,4 @@ def _value(value: QuantityLike | float, name: str) -> Value:
 
 
 def _shown(value: Value) -> str:
-    return full_text(value) if isinstance(value, pint.Quantity) else f"{value:g}"
+    return text_of(value) if isinstance(value, pint.Quantity) else f"{value:g}"

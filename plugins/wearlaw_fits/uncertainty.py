@@ -322,7 +322,10 @@ class Uncertainty:
 
     def _problem(self, sampled: Mapping[str, Any]) -> Problem:
         """Return the contact problems of all operating points and samples, samples along the last axis."""
-        known = {name: one.at_samples() for name, one in self.known.items()}
+        known = {
+            name: one.values[..., None] if one.unit is None else Q(one.values[..., None], one.unit)
+            for name, one in self.known.items()
+        }
         try:
             return self._predict.posed({**self._given, **known, **sampled})
         except InputError as error:

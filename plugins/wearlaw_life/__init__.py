@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,14 +13,13 @@ if TYPE_CHECKING:
 
 __all__ = ["Life", "wear_out"]
 
-_LATER = {"Life": "wearlaw_life._life", "wear_out": "wearlaw_life._wear_out"}
-"""Names loaded at their first use: they need pandas and xarray, which looking up a plugin must not load."""
-
 
 def __getattr__(name: str) -> object:
-    if name not in _LATER:
+    if name not in __all__:
         raise AttributeError(f"module 'wearlaw_life' has no attribute {name!r}")
-    return getattr(import_module(_LATER[name]), name)
+    from wearlaw_life import _wear_out  # needs pandas and xarray, which looking up a plugin must not load
+
+    return getattr(_wear_out, name)
 
 
 @wl.hookimpl

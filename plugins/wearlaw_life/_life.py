@@ -76,11 +76,6 @@ class Life:
         return self.worn_profiles[-1][-1]
 
     @property
-    def sides(self) -> tuple[str, ...]:
-        """The sides with profiles of their own: "left" and "right", or "mean"."""
-        return tuple(side.removeprefix("_") or "mean" for side in SIDES[len(self.worn_profiles[0])])
-
-    @property
     def profiles(self) -> xarray.Dataset:
         """Profiles over the distance: y, z and the depth along the normal of the first profile, at its places.
 
@@ -98,15 +93,15 @@ class Life:
             inwards = depth if first.kind == "rail" else -depth
             data[:, :, side, there] = [1e3 * y - inwards * np.sin(angle), 1e3 * z + inwards * np.cos(angle), depth]
         along, unit = name_and_unit(self.table.columns[0])
-        names = {"y": "y, outwards", "z": "z, down", "depth": "depth worn"}
+        dims, names = (along, "side", "place"), {"y": "y, outwards", "z": "z, down", "depth": "depth worn"}
         return xarray.Dataset(
             {
-                name: ((along, "side", "place"), values, {"units": "mm", "long_name": names[name]})
-                for name, values in zip(names, data, strict=True)
+                name: (dims, values, {"units": "mm", "long_name": text})
+                for (name, text), values in zip(names.items(), data, strict=True)
             },
             {
                 along: (along, self.table.iloc[:, 0].to_numpy(), {"units": unit}),
-                "side": list(self.sides),
+                "side": ["mean"] if len(firsts) == 1 else ["left", "right"],
                 "place": ("place", 1e3 * place, {"units": "mm", "long_name": "position along the first profile"}),
                 "body": self.body,
             },
@@ -114,39 +109,39 @@ class Life:
 
     def figure(self) -> wl.FigureData:
         """Return the data of `plot`."""
-        along, unit = name_and_unit(self.table.columns[0])
-        distances = self.table.iloc[:, 0].to_numpy()
+        column = self.table.columns[0]
+        (along, unit), distances = name_and_unit(column), self.table[column].to_numpy()
         last = len(distances) - 1
         chosen = np.unique(np.linspace(0, last, min(last + 1, MOST_CURVES)).round().astype(int))
-        every = self.profiles
-        deepest = float(every["depth"].max())
+        worn = self.profiles.isel({along: chosen})
+        deepest = float(worn["depth"].max())
         times = 10.0 ** np.floor(np.log10(SEEN / deepest)) if deepest > 0.0 else 1.0  # so that wear is seen
-        across, down, worn = (
-            wl.PlotAxis("y, outwards [mm]"),
-            wl.PlotAxis("z, down [mm]", inverted=True),
-            wl.PlotAxis("depth worn [mm]", inverted=True),
-        )
+        new = worn.isel({along: 0})
+        magnified = new + times * (worn - new)
         panels = []
-        for side in self.sides:
-            new, shapes, depths = every.sel(side=side).isel({along: 0}), [], []
-            for number, step in enumerate(chosen):
-                one, label = every.sel(side=side).isel({along: step}), f"{distances[step]:,.0f} {unit or along}"
-                y, z = (new[name].values + times * (one[name] - new[name]).values for name in "yz")
-                shapes.append(wl.Curve(label, y, z, colour=number))
-                depths.append(wl.Curve(label, one["y"].values, one["depth"].values, colour=number))
+        for side in worn["side"].values:
             title = self.body if side == "mean" else f"{side} {self.body}"
-            panels.append(wl.Panel(across, down, tuple(shapes), f"{title}, wear × {times:g}"))
-            panels.append(wl.Panel(across, worn, tuple(depths), f"{title}, wear along the normal"))
+            for shown, name, label, what in (
+                (magnified, "z", "z, down [mm]", f"wear × {times:g}"),
+                (worn, "depth", "depth worn [mm]", "wear along the normal"),
+            ):
+                across, down = shown["y"].sel(side=side).values, shown[name].sel(side=side).values
+                curves = tuple(
+                    wl.Curve(f"{distance:,.0f} {unit or along}", across[number], down[number], colour=number)
+                    for number, distance in enumerate(distances[chosen])
+                )
+                x, y = wl.PlotAxis("y, outwards [mm]"), wl.PlotAxis(label, inverted=True)
+                panels.append(wl.Panel(x, y, curves, f"{title}, {what}"))
         for beginning, label in CURVES.items():
-            there = self.table.filter(regex=f"^{beginning}").dropna(axis=1, how="all")
+            measures = self.table.filter(regex=f"^{beginning}").dropna(axis=1, how="all")
             if beginning == "flange":
-                there = there - there.iloc[0]
-            curves = [
-                wl.Curve(_words(str(column)), distances, values.to_numpy(), colour=number)
-                for number, (column, values) in enumerate(there.items())
-            ]
+                measures = measures - measures.iloc[0]
+            curves = tuple(
+                wl.Curve(_words(str(name)), distances, values.to_numpy(), colour=number)
+                for number, (name, values) in enumerate(measures.items())
+            )
             if curves:
-                panels.append(wl.Panel(wl.PlotAxis(self.table.columns[0]), wl.PlotAxis(label), tuple(curves)))
+                panels.append(wl.Panel(wl.PlotAxis(column), wl.PlotAxis(label), curves))
         caption = f"The {self.body} after {last} steps. It follows from the given line and wear law alone."
         return wl.FigureData("life", f"Life of a {self.body}", tuple(panels), caption)
 

@@ -43,6 +43,7 @@ class Line:
             first = posed(points.part([slice(0, 1)]), predict.rig.checked_problem)
         elsewhere = workers > 1 or client is not None
         self.job = checked_profile(predict, first, body, wl.Q(1e3 * at, "mm"), True, elsewhere)
+        self.sides = len(self.job.dims.get("side", "-"))
         self.points = dataclasses.replace(points, weight=self.job.weight(first))
         self._workers, self._client, self._quiet = workers, client, False
         self._kept: Parts | None = None
@@ -57,11 +58,6 @@ class Line:
             text = f"the finished steps in {wl.shown(store)} are kept; the life goes on from there"
             warnings.warn(text, wl.ResumeWarning, stacklevel=3)
         return self._kept
-
-    @property
-    def sides(self) -> int:
-        """Number of sides of the rig."""
-        return len(self.job.dims.get("side", "-"))
 
     def wear(self, step: int, predict: wl.Pipeline[...], at: Array) -> Wear:
         """Return the wear of both sides at arc lengths of the profiles at the beginning of a step [m].
@@ -79,9 +75,8 @@ class Line:
             if not self._quiet:
                 warnings.warn(warning, stacklevel=4)
         self._quiet = True
-        depth, mass = (wl.Q(total.totals[name], self.job.units[name]) for name in ("depth", "mass"))
-        turns = "/" in self.job.units["depth"]
-        found = Wear(np.atleast_2d(depth.m_as("m/m" if turns else "m")), np.atleast_1d(mass.m_as("kg/m")))
+        depth, mass = (wl.Q(total.totals[name], self.job.units[name]).to_base_units() for name in Wear._fields)
+        found = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude))
         if self._kept is not None:
             self._kept.add(step, found._asdict(), {})
         return found

@@ -36,21 +36,14 @@ def even(profile: Profile) -> Profile:
 
 
 def smoothed(depth: Array, at: Array, length: float) -> Array:
-    """Return depths smoothed by a Gaussian kernel; their sum stays.
+    """Return depths at even positions [m], smoothed by a Gaussian kernel of a standard deviation [m]; their sum stays.
 
-    Parameters
-    ----------
-    depth : ndarray, (..., positions)
-        Depths at even positions, in any unit.
-    at : ndarray, (positions,)
-        The positions [m].
-    length : float
-        Standard deviation of the kernel [m]; it reaches four times as far, and mirrors at the ends of the profile.
+    The kernel reaches four times as far, and mirrors at the ends of the profile.
     """
     if not length:
         return depth
-    kernel: Array = scipy.ndimage.gaussian_filter1d(depth, length / (at[1] - at[0]), mode="reflect")
-    return kernel
+    found: Array = scipy.ndimage.gaussian_filter1d(depth, length / (at[1] - at[0]), mode="reflect")
+    return found
 
 
 def removed(profile: Profile, at: Array, depth: Array) -> Profile:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -11,8 +11,8 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_life._life import SIDES
-from wearlaw_life._limits import Limits
+from wearlaw.units.registry import unit_in_si
+from wearlaw_life._life import SIDES, name_and_unit
 from wearlaw_life._line import Line, Wear
 from wearlaw_life._removal import conserving, positions, smoothed, swept
 
@@ -39,8 +39,55 @@ AIM = 0.95
 TRIES = 8
 """Most distances that a step tries to hold the conicity and the limits."""
 
+NEAR = 1e-9
+"""Share of the way to a limit at which it counts as reached."""
+
 CONICITY = "equivalent_conicity"
 """Its column."""
+
+
+class Limits:
+    """Limits that end a life: those of measures, and the distance.
+
+    Parameters
+    ----------
+    until : mapping
+        As in `wear_out`; a measure that each side has for itself ends the life with the first side.
+    over : float
+        The distance, in the unit of its column.
+    start : mapping of str to float
+        Measures at the start by their columns, the distance first.
+    """
+
+    def __init__(self, until: Mapping[str, wl.QuantityLike | float], over: float, start: Mapping[str, float]) -> None:
+        along, *columns = start
+        there = {name_and_unit(column)[0]: column for column in columns if math.isfinite(start[column])}
+        self._start = start
+        self.ends: dict[str, tuple[str, float]] = {}
+        """The column and the limit of each measure, and of the distance as "over"."""
+        for name, limit in until.items():
+            found = [name] if name in there else [f"{name}{side}" for side in SIDES[2] if f"{name}{side}" in there]
+            if not found:
+                raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
+            unit, what = name_and_unit(there[found[0]])[1], f"until: {name}"
+            value = wl.Unit(unit).si(limit, what) / unit_in_si(unit) if unit else wl.coefficient(limit, what)
+            self.ends |= {one: (there[one], float(value)) for one in found}
+        self.ends["over"] = along, over
+
+    def _ways(self, row: Mapping[str, float]) -> Array:
+        """Return the share of the way from the start to each limit."""
+        start = self._start
+        return np.array([(row[one] - start[one]) / (end - start[one]) for one, end in self.ends.values()])
+
+    def reached(self, row: Mapping[str, float]) -> str:
+        """Return the measure that is at its limit, or "over"; "" if the life goes on."""
+        return next((name for name, way in zip(self.ends, self._ways(row), strict=True) if way >= 1.0 - NEAR), "")
+
+    def share(self, before: Mapping[str, float], after: Mapping[str, float]) -> float:
+        """Return the share of a step at which the first measure reaches its limit, one if none does."""
+        old, new = self._ways(before), self._ways(after)
+        passed = new > 1.0
+        return float(((1.0 - old[passed]) / (new - old)[passed]).min(initial=1.0))
 
 
 class State(NamedTuple):
@@ -77,14 +124,9 @@ class Steps:
     conicity_step: float
 
     @property
-    def along(self) -> str:
-        """Column of the distance, or of the passages."""
-        return "passages" if self.body == "rail" else "distance [km]"
-
-    @property
-    def unit(self) -> float:
-        """What one metre or passage is in that column."""
-        return 1.0 if self.body == "rail" else 1e-3
+    def along(self) -> tuple[str, float]:
+        """The column of the distance or of the passages, and what one metre or passage is there."""
+        return ("passages", 1.0) if self.body == "rail" else ("distance [km]", 1e-3)
 
     def begin(self, predict: wl.Pipeline[...]) -> State:
         """Return the state at the start."""
@@ -98,16 +140,17 @@ class Steps:
         deepest = float(wear.depth.max())
         if not deepest > 0.0:
             raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
-        left = (limits.ends[self.along] - now.row[self.along]) / self.unit
-        distance = min(self._distance(now, wear), left)
-        for _ in range(TRIES):
-            after = self._after(now, at, wear, distance)
+        along, unit = self.along
+        distance = min(self._distance(now, wear), (limits.ends["over"][1] - now.row[along]) / unit)
+        after = self._after(now, at, wear, distance)
+        for _ in range(TRIES - 1):
             if after.change > self.conicity_step and distance * deepest > SHORTEST * self.depth_step:
                 distance *= max(AIM * self.conicity_step / after.change, 0.25)
             elif (share := limits.share(now.row, after.row)) < 1.0 - 1e-6:
                 distance *= share
             else:
                 break
+            after = self._after(now, at, wear, distance)
         return after
 
     def _distance(self, now: State, wear: Wear) -> float:
@@ -128,17 +171,13 @@ class Steps:
         middle = _of_middle(now, wear, distance)
         body = now.predict.rig.bodies[self.body]
         density, radius = wl.scalar_si(body.material.density, "kg/m^3"), float(np.asarray(body.rolling_radius))
-        worn = [
-            conserving(profile, at, distance * depth, distance * float(mass) / density, radius)
-            for profile, depth, mass in zip(now.profiles, middle.depth, self._of_profiles(middle.mass), strict=True)
-        ]
-        after = self._state(
-            now.predict,
-            tuple(profile for profile, _ in worn),
-            now.row[self.along] + distance * self.unit,
-            now.mass + distance * middle.mass,
-            [factor for _, factor in worn],
-        )
+        volumes = distance * self._of_profiles(middle.mass) / density
+        removals = zip(now.profiles, distance * middle.depth, volumes, strict=True)
+        worn = [conserving(profile, at, depth, float(volume), radius) for profile, depth, volume in removals]
+        profiles, factors = zip(*worn, strict=True)
+        along, unit = self.along
+        mass = now.mass + distance * middle.mass
+        after = self._state(now.predict, profiles, now.row[along] + unit * distance, mass, factors)
         change = abs(after.row[CONICITY] - now.row[CONICITY])
         return after._replace(number=now.number + 1, step=distance, wear=wear, change=change)
 
@@ -158,7 +197,7 @@ class Steps:
         sides = SIDES[len(profiles)]
         fields = {self.body: profiles[-1]} | ({f"left_{self.body}": profiles[0]} if len(profiles) == 2 else {})
         rig: Any = predict.rig.model_copy(update=fields)
-        row = {self.along: done}
+        row = {self.along[0]: done}
         if len(profiles) == 1:
             row["mass [kg]"] = float(mass.mean())
         if mass.size == 2:

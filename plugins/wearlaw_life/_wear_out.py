@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 import os
-import tempfile
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -16,13 +14,12 @@ import pandas as pd
 import wearlaw as wl
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw_life._life import Life
-from wearlaw_life._limits import Limits
 from wearlaw_life._line import Line
 from wearlaw_life._removal import even, positions
-from wearlaw_life._steps import Steps
+from wearlaw_life._steps import Limits, Steps
 from wearlaw_sweeps.progress import Bar
-from wearlaw_sweeps.tables import from_table
-from wearlaw_sweeps.wear_profile import SHARE, check_shares
+from wearlaw_sweeps.sweep import operating_points
+from wearlaw_sweeps.wear_profile import SHARE
 
 if TYPE_CHECKING:
     from wearlaw_wheelset import Profile
@@ -129,15 +126,10 @@ def wear_out(
     new = tuple(even(one) for one in _profiles(predict.rig, body, sides))
     length = max(np.ptp(one.curve.s) for one in new)
     at = positions(new, math.ceil(length / wl.Unit("mm").si(spacing, "spacing")) + 1)
-    beside = Path(tempfile.gettempdir(), "line") if store is None else Path(store)
     with ExitStack() as stack:
         points = stack.enter_context(
-            from_table(
-                line, conditions, columns=columns, keep={SHARE: share}, check=predict.rig.check_names, on_disk=beside,
-                progress=progress,
-            )
-        )  # fmt: skip
-        check_shares(points, share)
+            operating_points(predict, line, conditions, columns, {SHARE: share}, {}, store, True)
+        )
         steps = Steps(Line(predict, points, body, at, workers, client), body, new, **settings)
         now = steps.begin(predict)
         rows, profiles = [now.row], [now.profiles]
@@ -146,7 +138,8 @@ def wear_out(
             settings |= {"sides": sides, "limits": limits.ends}
             stack.enter_context(closing(steps.line.keep(store, settings, resume)))
         bar = stack.enter_context(Bar(round(float(distance)), progress))
-        bar.stage(steps.along)
+        along, _ = limits.ends["over"]
+        bar.stage(along)
 
         def life(ended: str = "") -> Life:
             return Life(now.predict, body, ended, tuple(profiles), pd.DataFrame(rows))
@@ -154,10 +147,9 @@ def wear_out(
         try:
             while not (ended := limits.reached(now.row)):
                 now = steps.step(now, limits)
+                bar(round(now.row[along]) - round(rows[-1][along]))
                 rows.append(now.row)
                 profiles.append(now.profiles)
-                before, after = (round(row[steps.along]) for row in rows[-2:])
-                bar(after - before)
         except (wl.WearlawError, KeyboardInterrupt) as error:
             if now.number:
                 error.life = life()  # type: ignore[union-attr]

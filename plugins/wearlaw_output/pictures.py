@@ -18,11 +18,10 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.datasets import Conditions, dataset, labelled
+from wearlaw.pipeline.datasets import Conditions, data_of, dataset, labelled
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.selection import in_words
 from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
-from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, label, name_of, readable
 
 if TYPE_CHECKING:
@@ -51,6 +50,9 @@ ALONG = ("pressure", "traction", "traction_bound")
 
 FIELDS = ("traction", "pressure", "slip")
 """Fields of a patch that is not a line; the first is shown if none is named."""
+
+SIDE = 9
+"""Corners along each side of a cell."""
 
 
 def draw(prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
@@ -187,7 +189,7 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
             ' such as wl.contact_model("fastsim")'
         )
     line = prediction.problem.geometry == "line"
-    fields = prediction.profile if line else _map_of_patch(prediction)
+    fields = fields_of(prediction)
     every = [str(one) for one in fields.data_vars]
     if name is not None and name not in every:
         raise InputError(
@@ -197,7 +199,9 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
     if not line:
         variable = name or FIELDS[0]
         axes: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
-        drawn_cells = axes.add_collection(PolyCollection([*cells(prediction)], array=fields[variable].values.ravel()))
+        look: dict[str, Any] = {"edgecolors": "face", "linewidths": 0.3}  # no seams between cells
+        drawn_cells = PolyCollection([*cells(prediction)], array=fields[variable].values.ravel(), **look)
+        axes.add_collection(drawn_cells)
         axes.figure.colorbar(drawn_cells, ax=axes, label=_label(fields[variable]))
         axes.autoscale_view()
         axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
@@ -211,31 +215,50 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
     return drawn
 
 
-def _map_of_patch(prediction: Prediction) -> xarray.Dataset:
-    """Return the fields of a patch over its strips and their nodes."""
+def fields_of(prediction: Prediction) -> xarray.Dataset:
+    """Return the fields of a single patch and the local outcomes: along a line, otherwise over the nodes of its strips.
+
+    The contact model must resolve the patch.
+    """
+    if prediction.problem.geometry == "line":
+        return prediction.profile
     contact = prediction.contact
-    (*_, strips, nodes) = contact.pressure.shape
-
-    def values_of(field: str) -> tuple[tuple[str, str], Any, dict[str, str]]:
-        values = np.broadcast_to(getattr(contact, field), contact.pressure.shape).reshape(strips, nodes)
-        return ("strip", "node"), in_unit(values, UNITS[field]), {"units": UNITS[field], "long_name": name_of(field)}
-
-    none = prediction.problem.replaced(dims={})
-    return labelled(none, {name: values_of(name) for name in ("x", "y")}, {name: values_of(name) for name in FIELDS})
+    columns = {name: (getattr(contact, name), UNITS[name]) for name in ("x", "y", *FIELDS)}
+    for name, index in named_outcomes(prediction.laws).items():
+        law = prediction.laws[index]
+        if law.outcome.of == "area mean":
+            columns[name] = law.checked_rate(contact), law.outcome.unit
+    shape = contact.pressure.shape
+    shaped = {name: (np.broadcast_to(one, shape).reshape(shape[-2:]), unit) for name, (one, unit) in columns.items()}
+    data = data_of(("node", "strip"), shaped)
+    return labelled(prediction.problem.replaced(dims={}), {name: data.pop(name) for name in ("x", "y")}, data)
 
 
 def cells(prediction: Prediction) -> Array:
-    """Return the corners of the cells of a patch [mm], of shape (cells, 4, 2), which fill it up to its edge."""
-    contact = prediction.contact
+    """Return the outlines of the cells of a patch [mm], of shape (cells, corners, 2), which fill it up to its edge.
+
+    Their sides are bent like the edge: that of an ellipse, or else a smooth one through the ends of the strips.
+    """
+    contact, problem = prediction.contact, prediction.problem
     shape = contact.pressure.shape[-2:]
     width = contact.strip_width.reshape(shape[1])
-    left, right = _ends(contact.x.reshape(shape), contact.area.reshape(shape) / width)
-    low, high = (
-        np.broadcast_to(one, shape)
-        for one in _ends(np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0], width)
-    )
-    corners = [np.stack(corner, axis=-1) for corner in ((left, low), (right, low), (right, high), (left, high))]
-    return 1e3 * np.stack(corners, axis=-2).reshape(-1, 4, 2)
+    length = contact.area.reshape(shape) / width
+    left, right = _ends(contact.x.reshape(shape), length)
+    low, high = _ends(np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0], width)
+    bend = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, SIDE))[:, None]
+    y = low + (high - low) * bend
+    half_length = 0.5 * length.sum(axis=0)
+    if problem.geometry == "ellipse":
+        edge = problem.a * np.sqrt(np.maximum(1.0 - (y / problem.b) ** 2, 0.0))
+    else:
+        order = np.argsort(low)
+        places = np.concatenate([[low.min()], 0.5 * (low + high)[order], [high.max()]])
+        edge = np.sqrt(np.interp(y, places, np.concatenate([[0.0], half_length[order] ** 2, [0.0]])))
+    stretch = edge / np.maximum(half_length, np.finfo(float).tiny)
+    y, stretch = y[:, None], stretch[:, None]  # (places along a side, nodes, strips)
+    sides = [np.stack(np.broadcast_arrays(end * stretch, y), axis=-1) for end in (left, right)]
+    outlines = np.concatenate([sides[0], sides[1][::-1]])
+    return 1e3 * np.moveaxis(outlines, 0, -2).reshape(-1, len(outlines), 2)
 
 
 def _ends(middle: Array, size: Array) -> tuple[Array, Array]:

@@ -190,33 +190,52 @@ def _half_angle(x: Array, y: Array) -> Array:
 def _again(rows: Array, table: Array) -> Array:
     """Return the tractions and slips of strips that stick again, (3, nodes, strips), node after node.
 
-    The first node of a zone that sticks is the one where s would be negative.
+    A step is divided where s falls below zero, and where a strip that sticks meets its bound, both by linear
+    interpolation. So tractions are continuous functions of the creepages, without which loads would not balance.
     """
     along, across, turning, k_x, k_y, v, n_x, n_y = rows
     k, p = loops.shape(k_x, k_y, turning, n_x, n_y)
     found = np.empty((3, len(table), v.size))
-    q_x, q_y, sticks, rate = n_x, n_y, np.zeros(v.shape, bool), np.zeros(v.shape)
+    q, sticks, rate = np.stack([n_x, n_y]), np.zeros(v.shape, bool), np.zeros(v.shape)
     full = size = np.sqrt(loops.energy(k, p, v, 2.0 * v, 2.0 * np.arcsin(np.sqrt(v)), 0.0, 0.5 * np.pi))
     bound = np.sqrt(2.0 * v * (2.0 - 2.0 * v))
+    w_y = across - turning * (1.0 - 2.0 * v)
+    s = np.maximum(along * n_x + w_y * n_y - loops.taken_up(k, p, v, 2.0 * v, 1.0), 0.0)
     for at, (cosine, sine, _, arc, step, way) in enumerate(table):
-        grown = 0.5 * v * way * bound / full
-        behind = v * (1.0 + cosine)
-        w_y, dx, bound = across - turning * (1.0 - behind), v * way, np.sqrt(behind * (2.0 - behind))
+        behind, dx = v * (1.0 + cosine), v * way
+        w_y = across - turning * (1.0 - behind)
         twice = loops.energy(k, p, v, behind, 2.0 * np.arcsin(np.sqrt(0.5 * behind)), sine, arc)
         before, rate = rate, loops.rate(along, w_y, v, behind, sine, twice)
-        kappa, full = 0.5 * step * (before + rate), np.sqrt(twice)
-        grown = grown + 0.5 * dx * bound / full
-        free_x, free_y = size * q_x + grown * along, size * q_y + grown * (w_y + 0.5 * turning * dx)
-        length = np.sqrt(free_x * free_x + free_y * free_y) + TINY
-        free_x, free_y = free_x / length, free_y / length
-        more, less, other = loops.turn(along, w_y + turning * (loops.lag(kappa) * dx), np.exp(-kappa))
-        x, y = _half_angle(q_x, q_y)
-        x, y = loops.direction(more * x + other * y, less * y + other * x)
-        x, y = np.where(sticks, free_x, x), np.where(sticks, free_y, y)
-        s = along * x + w_y * y - loops.taken_up(k, p, v, behind, cosine)
-        sticks = np.where(sticks, length < full, s < 0.0)
-        q_x, q_y = np.where(sticks, free_x, x), np.where(sticks, free_y, y)
-        size = np.where(sticks, np.minimum(length, full), full)
-        q = BELOW * bound * size / full
-        found[:, at] = q * q_x, q * q_y, np.where(sticks, 0.0, np.maximum(s, 0.0))
+        grows, bound, last, full = bound / full, np.sqrt(behind * (2.0 - behind)), full, np.sqrt(twice)
+        grows = 0.5 * dx * (grows + bound / full)  # ∫ dx/λ over the step
+        # Strips that stick, until they meet their bound after a share of the step, if they do.
+        free = size * q + grows * np.stack([along, w_y + 0.5 * turning * dx])
+        under, over = last - size, np.hypot(*free) - full
+        leaves = sticks & (over >= 0.0)
+        stuck = np.where(leaves, under / np.where(leaves, under + over + TINY, 1.0), 0.0)
+        # Strips that slip, over the rest.
+        x, y = _half_angle(*_direction(size * q + stuck * (free - size * q)))
+        kappa = 0.5 * step * (before + rate) * (1.0 - stuck)
+        lagging = w_y + turning * (loops.lag(kappa) * (1.0 - stuck) * dx)
+        more, less, other = loops.turn(along, lagging, np.exp(-kappa))
+        turned = np.stack(loops.direction(more * x + other * y, less * y + other * x))
+        slip = along * turned[0] + w_y * turned[1] - loops.taken_up(k, p, v, behind, cosine)
+        # Those of them whose slip falls to zero after a share of the step, and which stick from there on.
+        enters = ~sticks & (slip < 0.0)
+        slid = np.where(enters, s / np.where(enters, s - slip, 1.0), 0.0)
+        held = (last + slid * (full - last)) * _direction(q + slid * (turned - q))
+        held += (1.0 - slid) * grows * np.stack([along, w_y + 0.5 * turning * (1.0 - slid) * dx])
+        free, sticks = np.where(enters, held, free), enters | (sticks & ~leaves)
+        q, size = np.where(sticks, _direction(free), turned), np.where(sticks, np.minimum(np.hypot(*free), full), full)
+        s = np.where(sticks, 0.0, np.maximum(slip, 0.0))
+        # A node stands for half a step on each side, and these slip over more or less of it.
+        found[:2, at], found[2, at] = BELOW * bound * size / full * q, np.where(leaves, 1.5 - stuck, 1.0) * s
+        if at:
+            found[2, at - 1] *= np.where(enters, 0.5 + 0.5 * slid, 1.0)
     return found
+
+
+def _direction(vectors: Array) -> Array:
+    """Return unit vectors, (2, strips)."""
+    unit: Array = vectors / (np.hypot(*vectors) + TINY)
+    return unit

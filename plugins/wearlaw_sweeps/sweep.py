@@ -25,11 +25,11 @@ from wearlaw.errors import (
     shown,
 )
 from wearlaw.pipeline.composition import warn_of_unlike_materials
+from wearlaw.pipeline.datasets import names_in
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.pipeline.worn import POSITION
-from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.configuration import parts
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.evaluation import Job, output_units, range_warnings
@@ -152,7 +152,7 @@ def sweep(
     summed = share is not None
     with (
         writing_to(store),
-        _points(predict, table, conditions, columns, keep, as_csv, store, summed, progress) as points,
+        operating_points(predict, table, conditions, columns, keep, as_csv, store, summed) as points,
     ):
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
@@ -162,8 +162,6 @@ def sweep(
         else:
             job, notes = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
         points = dataclasses.replace(points, weight=job.weight(first))
-        if share is not None:
-            check_shares(points, share)
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
         target: Memory | Sum | Store
@@ -197,7 +195,7 @@ def kept(count: int, of: int, where: Path) -> str:
 
 
 @contextmanager
-def _points(
+def operating_points(
     predict: Pipeline[...],
     table: Any,
     conditions: Mapping[str, Any],
@@ -206,9 +204,8 @@ def _points(
     as_csv: Mapping[str, Any],
     store: str | os.PathLike[str] | None,
     summed: bool,
-    progress: bool,
 ) -> Iterator[Points]:
-    """Give the operating points of a sweep."""
+    """Give the operating points of a sweep; if they are to be summed, the kept column `SHARE` has their shares."""
     if table is None:
         for name, value in {"columns": columns, "keep": keep}.items():
             if value is not None:
@@ -218,9 +215,9 @@ def _points(
     beside = Path(tempfile.gettempdir(), "sum") if summed and store is None else store  # a sum needs no memory
     on_disk = None if beside is None else Path(beside)
     check = predict.rig.check_names
-    with from_table(
-        table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk, progress=progress
-    ) as points:
+    with from_table(table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk) as points:
+        if summed and keep is not None:
+            check_shares(points, keep[SHARE])
         yield points
 
 
@@ -234,7 +231,7 @@ def _checked_job(
     InputError
         If an output is impossible, or other processes could not import a model.
     """
-    names = [] if outputs is None else expect_names(outputs, "outputs", "wear_rate")
+    names = [] if outputs is None else names_in(outputs, "outputs")
     if elsewhere:
         check_importable(pipeline)
     one = first.flatten()[:1]

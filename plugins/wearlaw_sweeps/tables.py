@@ -18,7 +18,6 @@ from wearlaw.units.quantities import Q
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.located import advice
 from wearlaw_sweeps.points import OnDisk, Points, Varying, split
-from wearlaw_sweeps.progress import Bar
 
 Columns = Mapping[str, str]
 """The columns of a table by the names that they get, as in {"normal_force": "-Fz [N]"}."""
@@ -35,7 +34,6 @@ def from_table(
     decimal: str = ".",
     check: Callable[[Mapping[str, Any]], None] = lambda _: None,
     on_disk: Path | None = None,
-    progress: bool = False,
 ) -> Iterator[Points]:
     """Give the operating points in the rows of a table, with further conditions that all rows share.
 
@@ -52,8 +50,6 @@ def from_table(
     on_disk : Path, optional
         A path in whose folder the numbers of a file are kept while the context lasts. By default they are kept in
         memory.
-    progress : bool
-        Whether to show how much of a file is read.
 
     Raises
     ------
@@ -81,7 +77,7 @@ def from_table(
     origin = f" of {Path(source).name}" if file else ""
     every = [*kept.values(), *given.values()]
     with ExitStack() as stack:
-        collected = _read(table, every, kept, _files(on_disk, len(every), stack) if file else None, progress and file)
+        collected = _read(table, every, kept, _files(on_disk, len(every), stack) if file else None)
         found = {
             one.name: Varying(table.dim, values, one.unit, file * f"{'-' * (one.sign < 0)}{one.head}{origin}")
             for one, values in zip(every, collected, strict=True)
@@ -132,21 +128,18 @@ def _files(beside: Path | None, count: int, stack: ExitStack) -> list[IO[bytes]]
 
 
 def _read(
-    table: Table, columns: Sequence[Column], gaps: Mapping[str, Column], into: list[IO[bytes]] | None, progress: bool
+    table: Table, columns: Sequence[Column], gaps: Mapping[str, Column], into: list[IO[bytes]] | None
 ) -> list[Array]:
     """Return the numbers of columns."""
     pieces: list[list[Array]] = []
     rows = 0
-    with Bar(max(table.size, 1), progress) as bar:
-        bar.stage(f"reading {table.label}")
-        for values, part in table.pieces(columns, gaps):
-            rows += values[0].size
-            if into is None:
-                pieces.append(values)
-            else:
-                for file, numbers in zip(into, values, strict=True):
-                    file.write(np.ascontiguousarray(numbers).data)
-            bar(part)
+    for values in table.pieces(columns, gaps):
+        rows += values[0].size
+        if into is None:
+            pieces.append(values)
+        else:
+            for file, numbers in zip(into, values, strict=True):
+                file.write(np.ascontiguousarray(numbers).data)
     if rows == 0:
         raise DataError(f"{table.label}: has no rows")
     if into is None:

@@ -184,11 +184,13 @@ def pressed(gap: Array, dx: float, dy: float, modulus: float, approach: float, s
         moved: Array = scipy.fft.irfft2(product, s=shape)[:nx, :ny]
         return moved
 
-    if start is None:
-        pressure = np.sqrt(np.maximum(0.5 * approach - gap, 0.0))
-        pressure *= (approach - gap.min()) / displaced(pressure).max()
-    else:
-        pressure = start
+    def overlap() -> Array:
+        """Return a first pressure, with the displacement of the bodies where they overlap most."""
+        least = gap.min()  # far from zero where the deepest point is not that of first touching
+        root = np.sqrt(np.maximum(0.5 * (approach + (least if least > 0.5 * approach else 0.0)) - gap, 0.0))
+        return np.asarray(root * ((approach - least) / displaced(root).max()))
+
+    pressure = overlap() if start is None else start
     rest, small = displaced(pressure) + gap - approach, ACCURACY * approach
     step, before = np.zeros_like(gap), np.inf
     for _ in range(ITERATIONS):
@@ -203,6 +205,8 @@ def pressed(gap: Array, dx: float, dy: float, modulus: float, approach: float, s
         again = (trial <= 0.0) & (rest < -small)
         if again.any() or (trial < 0.0).any():
             pressure = np.maximum(np.where(again, pressure - length * rest, trial), 0.0)
+            if not pressure.any():  # the guess was far too high
+                pressure = overlap()
             rest = displaced(pressure) + gap - approach
             before = np.inf if again.any() else norm
         else:

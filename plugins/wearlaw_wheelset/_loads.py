@@ -332,7 +332,13 @@ class Balance:
         first = balance.found.part(balance.found.number == 0)
         radius = placed(section, first.position, first.arc).radius.reshape(-1, 2).mean(axis=-1)
         balance.rotation = task.speed / radius if task.rotation is None else task.rotation
-        return balance.solved(None)
+        balance = balance.solved(None)
+        if task.free:
+            before = balance.sampled.copy()
+            ahead = np.clip(-balance._lower() / balance._levers(), -WIDEST_ROLL, WIDEST_ROLL)
+            balance._turn(np.arange(count), balance.roll + ahead, SMALL)
+            balance._newton(None, balance.sampled != before, False)
+        return balance
 
     def _guessed(self) -> tuple[Array, Array]:
         """Return guesses of the penetration of each wheel [m] and of the rolls [rad], by Hertz where bodies touch."""
@@ -480,10 +486,7 @@ class Balance:
         found = replace(self, touching=touching, shapes=dict(self.shapes), starts=dict(self.starts), **copies)
         found.found = self.found.part(np.arange(self.found.point.size))
         rolls = self.task.free and forces is not None
-        if rolls:
-            ahead = np.clip(-found._lower() / found._levers(), -WIDEST_ROLL, WIDEST_ROLL)
-            found._turn(np.arange(every.size), found.roll + ahead, SMALL)
-        found._newton(forces, every, rolls)
+        found._newton(forces, every, rolls, known=forces is not None)
         left = found.imbalance > (ROUGH if forces is None else STALLED)
         if rolls:
             if left.any() and bounds:
@@ -504,9 +507,15 @@ class Balance:
         return found
 
     def _newton(
-        self, forces: Callable[[wl.Problem], wl.CreepForces] | None, chosen: NDArray[np.bool_], rolls: bool
+        self,
+        forces: Callable[[wl.Problem], wl.CreepForces] | None,
+        chosen: NDArray[np.bool_],
+        rolls: bool,
+        known: bool = False,
     ) -> None:
         """Balance the loads of some positions by Newton's method, in place; their rolls stay unless `rolls`.
+
+        If `known`, the present shapes of patches are taken for the first step.
 
         Broyden's method corrects the estimated rates, in Schubert's form, which keeps those that are zero. The speed
         of rotation and the roll count with the torque and the level that they change. Where the wheels are nearly
@@ -517,7 +526,7 @@ class Balance:
         step, before = np.zeros((2, count, 4))
         least, halved = np.full(count, np.inf), np.zeros(count)
         for iteration in range(STEPS):
-            state = self._state(forces, open_)
+            state = self._state(forces, open_, known and iteration == 0)
             if not rolls:
                 state.miss[:, 3] = 0.0
             self._note(state, open_)
@@ -647,12 +656,14 @@ class Balance:
                 break
         return self._state(forces, open_)
 
-    def _state(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
-        """Return the loads of some positions as they are."""
+    def _state(
+        self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_], known: bool = False
+    ) -> _State:
+        """Return the loads of some positions as they are; `known` if the shapes of all patches are as well."""
         rows = np.flatnonzero(open_[self.found.point])
-        part = self.found.part(rows)
+        part = self.found if rows.size == self.found.point.size else self.found.part(rows)
         normal = {"hertz": self._ellipses, "kpec": self._strips, "half_space": self._half_spaces}
-        shapes = normal[self.pressure](part)
+        shapes = self.shapes if known else normal[self.pressure](part)
         if rows.size == self.found.point.size:
             self.shapes = shapes
         else:

@@ -50,10 +50,9 @@ class Place(NamedTuple):
 def placed(section: Section, position: Position, arc: Array) -> Place:
     """Return the points of contact at arc lengths of the wheel [m], at the mean of the slopes of wheel and rail."""
     at = gaps(section, position, arc)
-    radius, _ = section.at("wheel_radius", arc, position.side)
     rail_arc, _ = section.at("rail_position", at.y, position.side)
     angle = np.arctan(at.rail_slope - 0.5 * at.rise)
-    return Place(at.x, at.y - position.displacement, at.z, angle, radius, rail_arc)
+    return Place(at.x, at.y - position.displacement, at.z, angle, at.radius, rail_arc)
 
 
 def curvature_along(section: Section, position: Position, place: Place, arc: Array) -> Array:

@@ -448,7 +448,8 @@ class Wheelset(wl.Rig):
         self._check_yaw(flat["yaw"])
         task = self._task(flat, (tread, tread if on_flange is None else on_flange))
         balance = self._balance(task, flat.get("roll"))
-        balance.check_torque()
+        if task.torque.any():
+            balance.check_torque()
         return self._whole(balance, shape, flat.get("rolled_distance"))
 
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:

@@ -77,20 +77,29 @@ LOOPS = 1000
 
 
 class Table(NamedTuple):
-    """Values and slopes of a function at even abscissae, for interpolation of third order.
+    """A function at even abscissae, with the cubics between them that have its values and slopes.
 
     Attributes
     ----------
     start, step : float
         The first abscissa and the spacing [m].
-    value, slope : ndarray
-        The function and its derivative.
+    cubics : ndarray, (4, abscissae - 1)
+        Coefficients of the share of a step, of growing power.
+    value : ndarray
+        The function.
     """
 
     start: float
     step: float
+    cubics: Array
     value: Array
-    slope: Array
+
+    @classmethod
+    def of(cls, start: float, step: float, value: Array, slope: Array) -> Table:
+        """Return the table of a function with these values and derivatives."""
+        rise, first, second = np.diff(value), step * slope[:-1], step * slope[1:]
+        cubics = np.stack([value[:-1], first, 3.0 * rise - 2.0 * first - second, first + second - 2.0 * rise])
+        return cls(start, step, cubics, value)
 
     @property
     def end(self) -> float:
@@ -98,11 +107,10 @@ class Table(NamedTuple):
         return self.start + self.step * (self.value.size - 1)
 
     def at(self, x: Array) -> tuple[Array, Array]:
-        """Return the value and the slope at x, from the cubic through the values and slopes on either side."""
+        """Return the value and the slope at x; beyond the abscissae, of the outermost cubic."""
         share = (x - self.start) / self.step
         index = np.minimum(np.maximum(share.astype(np.intp), 0), self.value.size - 2)
-        ends = self.value[index], self.value[index + 1], self.slope[index], self.slope[index + 1]
-        return cubic(share - index, self.step, *ends)
+        return cubic(share - index, self.step, self.cubics.take(index, axis=1))
 
     def near(self, x: Array) -> tuple[Array, Array]:
         """Return the value and the slope at x; the value is infinite beyond the abscissae."""
@@ -223,8 +231,8 @@ def section(
     kept = slice(tip, end)
     step = (wheel.s[-1] - wheel.s[0]) / (wheel.s.size - 1)
     cos, sin = np.cos(wheel.angle[kept]), np.sin(wheel.angle[kept])
-    across = Table(wheel.s[tip], step, wheel.y[kept] + wheel_offset, cos)
-    radius = Table(wheel.s[tip], step, wheel.z[kept] + nominal_radius, sin)
+    across = Table.of(wheel.s[tip], step, wheel.y[kept] + wheel_offset, cos)
+    radius = Table.of(wheel.s[tip], step, wheel.z[kept] + nominal_radius, sin)
 
     def leaned(s: Any) -> tuple[Any, Any]:
         y, z, _, _ = rail.at(s)
@@ -254,7 +262,7 @@ def section(
     at = y[first] + FINE * np.arange(count + 1)
     height = scipy.interpolate.CubicHermiteSpline(y[kept], z[kept], np.tan(angle[kept]))
     place = scipy.interpolate.CubicHermiteSpline(y[kept], rail.s[kept], 1.0 / np.cos(angle[kept]))
-    rail_z, position = (Table(at[0], FINE, of(at), of(at, 1)) for of in (height, place))
+    rail_z, position = (Table.of(at[0], FINE, of(at), of(at, 1)) for of in (height, place))
     return Section(across, radius, rail_z, position, wheel, rail)
 
 
@@ -296,6 +304,8 @@ class Gaps(NamedTuple):
         Place on the locus [m].
     rail_slope : ndarray
         Slope of the rail below it, dz/dy [-].
+    radius : ndarray
+        Radius of the wheel there [m].
     """
 
     gap: Array
@@ -304,6 +314,7 @@ class Gaps(NamedTuple):
     y: Array
     z: Array
     rail_slope: Array
+    radius: Array
 
 
 def gaps(section: Section, position: Position, arc: Array) -> Gaps:
@@ -325,7 +336,7 @@ def _gaps(
     turn = np.sin(roll), np.cos(roll), np.sin(yaw), np.cos(yaw)
     place_x, place_y, down, steep = locus(y, radius, slope, displacement, turn)
     rail, rail_slope = rail_at(place_y)
-    return Gaps(rail - down, rail_slope - steep, place_x, place_y, down, rail_slope)
+    return Gaps(rail - down, rail_slope - steep, place_x, place_y, down, rail_slope, radius)
 
 
 class Touching(NamedTuple):
@@ -471,7 +482,7 @@ def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | N
     roll_found = np.zeros(displacement.size) if roll is None else roll.copy()
     arc, above, saddle = (np.empty(shape) for _ in range(3))
     least = np.empty(shape[:2])
-    tables = ((*one.coarse, *one.wheel_y, *one.wheel_radius, *one.rail_z) for one in section.sides)
+    tables = ((*one.coarse, *one.wheel_y[:3], *one.wheel_radius[:3], *one.rail_z[:3]) for one in section.sides)
     compiled_search(
         np.ascontiguousarray(displacement), np.ascontiguousarray(yaw), roll is not None, *zip(*tables, strict=True),
         roll_found, arc, above, saddle, least,

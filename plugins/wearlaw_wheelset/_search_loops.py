@@ -39,9 +39,9 @@ ROUNDING = 1e-12
 
 VECTOR = "float64[::1]"
 ROWS = "float64[:, ::1]"
-TABLE = f"float64, float64, {VECTOR}, {VECTOR}"
+TABLE = f"float64, float64, {ROWS}"
 BOTH = f"UniTuple({VECTOR}, 2)"
-TABLES = f"UniTuple(float64, 2), UniTuple(float64, 2), {BOTH}, {BOTH}"
+TABLES = f"UniTuple(float64, 2), UniTuple(float64, 2), UniTuple({ROWS}, 2)"
 
 
 def locus(y: Any, radius: Any, slope: Any, displacement: Any, turn: tuple[Any, Any, Any, Any]) -> tuple[Any, ...]:
@@ -92,12 +92,10 @@ def roll_step(excess: Any, lever: Any) -> Any:
     return np.minimum(np.maximum(excess / np.maximum(np.abs(lever), LEAST_LEVER), -MOST_ROLL), MOST_ROLL)
 
 
-def cubic(t: Any, step: float, left: Any, right: Any, d_left: Any, d_right: Any) -> tuple[Any, Any]:
-    """Return the value and the slope at t from 0 to 1 of the cubic with these values and slopes at both ends."""
-    rise = right - left
-    first, second = step * d_left, step * d_right
-    square, cube = 3.0 * rise - 2.0 * first - second, first + second - 2.0 * rise
-    return left + t * (first + t * (square + t * cube)), (first + t * (2.0 * square + 3.0 * t * cube)) / step
+def cubic(t: Any, step: float, coefficients: Any) -> tuple[Any, Any]:
+    """Return the value and the slope at t from 0 to 1 of a cubic in a cell of a table."""
+    value, first, square, cube = coefficients
+    return value + t * (first + t * (square + t * cube)), (first + t * (2.0 * square + 3.0 * t * cube)) / step
 
 
 def normal_gap(rise: Any, slope: Any, own_slope: Any) -> tuple[Any, Any]:
@@ -133,26 +131,20 @@ def lagrange(x: Any, places: Any) -> tuple[Any, Any, Any, Any]:
     )
 
 
-def at(x: float, start: float, step: float, value: Array, slope: Array) -> tuple[float, float]:
+def at(x: float, start: float, step: float, cubics: Array) -> tuple[float, float]:
     """Return the value and the slope of a table at x; beyond its ends those of the outermost cubic."""
     share = (x - start) / step
-    index = min(max(int(share), 0), value.size - 2)
-    found: tuple[float, float] = cubic(
-        share - index, step, value[index], value[index + 1], slope[index], slope[index + 1]
-    )
+    index = min(max(int(share), 0), cubics.shape[1] - 1)
+    of_cell = cubics[0, index], cubics[1, index], cubics[2, index], cubics[3, index]
+    found: tuple[float, float] = cubic(share - index, step, of_cell)
     return found
 
 
-def near(x: float, start: float, step: float, value: Array, slope: Array) -> tuple[float, float]:
+def near(x: float, start: float, step: float, cubics: Array) -> tuple[float, float]:
     """Return the value and the slope of a table at x; the value is infinite beyond its ends."""
-    share = (x - start) / step
-    if not 0.0 <= share < value.size - 1:
+    if not start <= x < start + step * cubics.shape[1]:
         return np.inf, 0.0
-    index = int(share)
-    found: tuple[float, float] = cubic(
-        share - index, step, value[index], value[index + 1], slope[index], slope[index + 1]
-    )
-    return found
+    return at(x, start, step, cubics)
 
 
 def touch(
@@ -165,16 +157,13 @@ def touch(
     slope: Array,
     y_start: float,
     y_step: float,
-    y_value: Array,
-    y_slope: Array,
+    y_cubics: Array,
     r_start: float,
     r_step: float,
-    r_value: Array,
-    r_slope: Array,
+    r_cubics: Array,
     z_start: float,
     z_step: float,
-    z_value: Array,
-    z_slope: Array,
+    z_cubics: Array,
     gap: Array,
     rise: Array,
     height: Array,
@@ -198,10 +187,15 @@ def touch(
         end = begin + WINDOW
     for patch in range(PATCHES):
         place[patch], height[patch], cell[patch] = np.nan, np.inf, -1
+    moved, z_end = abs(turn[0]) + abs(turn[2]), z_start + z_step * z_cubics.shape[1]
     for k in range(begin, end, every):
-        _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
-        rail, rail_slope = near(across, z_start, z_step, z_value, z_slope)
-        gap[k], rise[k] = rail - down, rail_slope - steep
+        away = moved * (radius[k] + y[k])  # farther than roll and yaw move the point across the rail
+        if y[k] + shift < z_start - away or y[k] + shift > z_end + away:
+            gap[k], rise[k] = np.inf, 0.0
+        else:
+            _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
+            rail, rail_slope = near(across, z_start, z_step, z_cubics)
+            gap[k], rise[k] = rail - down, rail_slope - steep
         if k == begin:
             continue
         last = k - every
@@ -232,10 +226,10 @@ def touch(
             if iteration > 1:
                 share = at_right / (at_right - at_left) if at_right != at_left else 0.0
                 root = right - share * (right - left)
-            there, d_there = at(root, y_start, y_step, y_value, y_slope)
-            size, d_size = at(root, r_start, r_step, r_value, r_slope)
+            there, d_there = at(root, y_start, y_step, y_cubics)
+            size, d_size = at(root, r_start, r_step, r_cubics)
             _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
-            rail, rail_slope = at(across, z_start, z_step, z_value, z_slope)
+            rail, rail_slope = at(across, z_start, z_step, z_cubics)
             value = rail_slope - steep
             if iteration == 0:
                 at_left = value
@@ -259,10 +253,10 @@ def touch(
                 place[patch], place[patch + 1] = place[patch + 1], place[patch]
                 cell[patch], cell[patch + 1] = cell[patch + 1], cell[patch]
     if cell[0] >= 0:
-        there, d_there = at(place[0], y_start, y_step, y_value, y_slope)
-        size, d_size = at(place[0], r_start, r_step, r_value, r_slope)
+        there, d_there = at(place[0], y_start, y_step, y_cubics)
+        size, d_size = at(place[0], r_start, r_step, r_cubics)
         _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
-        _, rail_slope = at(across, z_start, z_step, z_value, z_slope)
+        _, rail_slope = at(across, z_start, z_step, z_cubics)
         lever = across + rail_slope * down
     for patch in range(PATCHES):
         found[patch] = place[patch]
@@ -288,16 +282,13 @@ def compiled_search(
     slope_of: tuple[Array, Array],
     y_start_of: tuple[float, float],
     y_step_of: tuple[float, float],
-    y_value_of: tuple[Array, Array],
-    y_slope_of: tuple[Array, Array],
+    y_cubics_of: tuple[Array, Array],
     r_start_of: tuple[float, float],
     r_step_of: tuple[float, float],
-    r_value_of: tuple[Array, Array],
-    r_slope_of: tuple[Array, Array],
+    r_cubics_of: tuple[Array, Array],
     z_start_of: tuple[float, float],
     z_step_of: tuple[float, float],
-    z_value_of: tuple[Array, Array],
-    z_slope_of: tuple[Array, Array],
+    z_cubics_of: tuple[Array, Array],
     roll: Array,
     found: Array,
     above: Array,
@@ -319,17 +310,17 @@ def compiled_search(
             least[point, 0], left = touch(
                 -shift, (-sin_roll, cos_roll, -sin_yaw, cos_yaw), every,
                 arc_of[0], y_of[0], radius_of[0], slope_of[0],
-                y_start_of[0], y_step_of[0], y_value_of[0], y_slope_of[0],
-                r_start_of[0], r_step_of[0], r_value_of[0], r_slope_of[0],
-                z_start_of[0], z_step_of[0], z_value_of[0], z_slope_of[0],
+                y_start_of[0], y_step_of[0], y_cubics_of[0],
+                r_start_of[0], r_step_of[0], r_cubics_of[0],
+                z_start_of[0], z_step_of[0], z_cubics_of[0],
                 gap, rise, height, cell, place, found[point, 0], above[point, 0], saddle[point, 0],
             )  # fmt: skip
             least[point, 1], right = touch(
                 shift, (sin_roll, cos_roll, sin_yaw, cos_yaw), every,
                 arc_of[1], y_of[1], radius_of[1], slope_of[1],
-                y_start_of[1], y_step_of[1], y_value_of[1], y_slope_of[1],
-                r_start_of[1], r_step_of[1], r_value_of[1], r_slope_of[1],
-                z_start_of[1], z_step_of[1], z_value_of[1], z_slope_of[1],
+                y_start_of[1], y_step_of[1], y_cubics_of[1],
+                r_start_of[1], r_step_of[1], r_cubics_of[1],
+                z_start_of[1], z_step_of[1], z_cubics_of[1],
                 gap, rise, height, cell, place, found[point, 1], above[point, 1], saddle[point, 1],
             )  # fmt: skip
             excess = least[point, 1] - least[point, 0]
@@ -351,16 +342,13 @@ def compiled_samples(
     spacings: Array,
     y_start: float,
     y_step: float,
-    y_value: Array,
-    y_slope: Array,
+    y_cubics: Array,
     r_start: float,
     r_step: float,
-    r_value: Array,
-    r_slope: Array,
+    r_cubics: Array,
     z_start: float,
     z_step: float,
-    z_value: Array,
-    z_slope: Array,
+    z_cubics: Array,
     samples: Array,
     arcs: Array,
 ) -> None:
@@ -370,7 +358,7 @@ def compiled_samples(
     """
     count = samples.shape[1]
     height, tangent = np.empty(count), np.empty(count)
-    end, rail_end = y_start + y_step * (y_value.size - 1), z_start + z_step * (z_value.size - 1)
+    end, rail_end = y_start + y_step * y_cubics.shape[1], z_start + z_step * z_cubics.shape[1]
     for point in range(arc.size):
         turn = math.sin(roll[point]), math.cos(roll[point]), math.sin(yaw[point]), math.cos(yaw[point])
         spacing = spacings[point]
@@ -379,10 +367,10 @@ def compiled_samples(
         for step in range(count + 1):
             k = step - 1 if step else count // 2  # the contact point first
             place = arc[point] + spacing * (k - count // 2)
-            there, d_there = at(place, y_start, y_step, y_value, y_slope)
-            size, d_size = at(place, r_start, r_step, r_value, r_slope)
+            there, d_there = at(place, y_start, y_step, y_cubics)
+            size, d_size = at(place, r_start, r_step, r_cubics)
             _, across, down, _ = locus(there, size, d_size / d_there, displacement[point], turn)
-            rail, slope = at(across, z_start, z_step, z_value, z_slope)
+            rail, slope = at(across, z_start, z_step, z_cubics)
             if not step:
                 own, own_slope, own_across, own_down = rail - down, slope, across, down
                 continue

@@ -104,20 +104,12 @@ def test_equal_lengths_in_other_units_are_equal_and_hash_alike() -> None:
 
 
 def test_a_configuration_is_frozen_and_says_how_to_change_a_copy() -> None:
-    law, rig = wl.wear_law("usfd"), wl.TwinDisc.suros()
+    law = wl.wear_law("usfd")
     before = law.model_copy()
     said = r"^usfd: q_s: cannot be changed, since it is frozen; .* with \.model_copy\(update={'q_s': \.\.\.}\)$"
     with pytest.raises(wl.FrozenError, match=said):
         law.q_s = "56 ug/m/mm^2"  # type: ignore[attr-defined]
-    with pytest.raises(wl.FrozenError, match=said):
-        del law.q_s  # type: ignore[attr-defined]
     assert law == before
-    with pytest.raises(wl.FrozenError, match=r"^TwinDisc: rolling_speed: cannot be changed"):
-        rig.rolling_speed = Q(2, "m/s")
-    with pytest.raises(wl.FrozenError, match=r"^TwinDisc: weight: unknown field. The fields are: disc_1, disc_2"):
-        rig.weight = "1 kN"  # type: ignore[attr-defined]
-    with pytest.raises(wl.FrozenError, match=r"unknown field; did you mean 'q_s'\?"):
-        law.qs = "56 ug/m/mm^2"  # type: ignore[attr-defined]
 
 
 def test_a_model_may_keep_what_it_computed_in_a_private_attribute() -> None:

@@ -38,10 +38,10 @@ class Friction:
 @pytest.mark.parametrize(
     ("coefficient", "says"),
     [
-        (lambda _: np.ones(7), r"returned an array of shape \(7,\) for creep speeds of shape \(3,\)"),
+        (lambda _: np.ones(7), r"is wrong at creep speeds from 0.009795 to .*broadcast"),
         (
             lambda speed: speed * np.nan,
-            r"is wrong at creep speeds of 0.009795 to .* got nan at index \[0\]",
+            r"is wrong at creep speeds from 0.009795 to .* got nan at index \[0\]",
         ),
         (lambda speed: -speed, r"must be a positive finite number, got -0.009"),
         (lambda speed: speed + np.inf, "must be a positive finite number, got inf"),
@@ -76,20 +76,6 @@ def test_friction_that_no_contact_comes_near_is_not_blamed_on_a_model(coefficien
 def test_the_greatest_friction_gives_finite_numbers(model: str) -> None:
     found = (wl.TwinDisc.suros() | wl.contact_model(model))(**{**CONDITIONS, "friction_coefficient": 1e12})
     assert np.isfinite(found.tangential_force.magnitude)
-
-
-@pytest.mark.parametrize("radius", ["-5e-324 mm", "5e-324 mm", "1e-310 mm", "0 mm"])
-@pytest.mark.parametrize("field", ["rail_head_radius", "wheel_profile_radius"])
-def test_a_radius_next_to_zero_is_refused(field: str, radius: str) -> None:
-    with pytest.raises(wl.ConfigurationError, match="a radius must not be zero or next to it; a flat body has"):
-        wl.WheelRail(**{**WHEEL, field: radius})
-
-
-@pytest.mark.parametrize("disc", ["wheel", 3.0, {"diameter": "47 mm"}])
-@pytest.mark.parametrize("name", ["disc_1", "disc_2"])
-def test_a_wrong_disc_of_suros_is_named(name: str, disc: Any) -> None:
-    with pytest.raises(wl.ConfigurationError, match=rf"^TwinDisc: {name}"):
-        wl.TwinDisc.suros(**{name: disc})
 
 
 def test_a_distance_for_each_point_must_fit_the_points() -> None:

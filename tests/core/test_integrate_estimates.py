@@ -12,9 +12,9 @@ import pytest
 import wearlaw as wl
 from tests import reference
 from tests.core.integrals import MEANS, REFERENCE, Points, integrate_wear
+from tests.line import uniform_cells
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array
-from wearlaw.contact.quadrature import uniform_cells  # private: rules of quadrature, which no result shows alone
 from wearlaw.numerics.integrate import integrate_forces  # private: integrals at the size of blocks
 from wearlaw.numerics.staged import staged  # private: a stage around a model without a pipeline
 
@@ -109,7 +109,7 @@ def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(
 def test_a_law_that_wears_where_the_bodies_stick_is_refused(name: str) -> None:
     points = Points(seed=7, size=5)
     points.creepage = 0.5 * points.saturation
-    with pytest.raises(wl.ModelError, match="wear law 'sticking' gives wear where the bodies stick"):
+    with pytest.raises(wl.ModelError, match="wear law 'sticking' gives values where the bodies stick"):
         integrate_wear(LINE_MODELS[name], Sticking(), points.problem)
 
 
@@ -213,9 +213,9 @@ class Broken(Smooth):
 @pytest.mark.parametrize(
     ("fault", "message"),
     [
-        ("shape", r"wear law 'broken' returned rates of shape \(5,\) for nodes of shape \(5, \d+\)"),
-        ("nan", r"wear law 'broken' returned a rate that is not finite"),
-        ("infinite", r"wear law 'broken' returned a rate that is not finite"),
+        ("shape", r"wear law 'broken' returned values of shape \(5,\); it must return one a node, of shape \(5, \d+\)"),
+        ("nan", r"wear law 'broken' returned a value that is not finite"),
+        ("infinite", r"wear law 'broken' returned a value that is not finite"),
     ],
 )
 def test_a_law_that_breaks_its_contract_is_named(fault: str, message: str) -> None:

@@ -259,7 +259,6 @@ def test_a_contact_without_a_problem_says_so_where_a_law_asks_for_its_body() -> 
     [
         ('"Bare": Bare', '"bare": Bare', "a class of materials goes by its own name: write 'Bare' in place of 'bare'"),
         ('"Bare": Bare', '"Bare": int', "material 'Bare' must be a Material or a class derived from it, got <class 'i"),
-        ("grain: wl.Length", "type: wl.Length", "Bare.type: names the class in files; call the field something else"),
     ],
 )
 def test_a_wrong_class_of_materials_is_left_out_with_the_reason(

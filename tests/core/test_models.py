@@ -155,10 +155,10 @@ def test_a_calibration_says_what_it_was_fitted_for() -> None:
 
 
 WRONG_RATES: dict[str, Callable[[wl.Contact], Array]] = {
-    r"returned rates of shape \(\d+,\) for nodes": lambda contact: np.atleast_1d(contact.density),
-    "returned a rate that is not finite": lambda contact: contact.pressure * np.nan,
+    r"returned values of shape \(\d+,\); it must return one a node": lambda contact: np.atleast_1d(contact.density),
+    "returned a value that is not finite": lambda contact: contact.pressure * np.nan,
     "gives a negative wear rate, -": lambda contact: -contact.wear_index_density,
-    "gives wear where the bodies stick": lambda contact: contact.pressure,
+    "gives values where the bodies stick": lambda contact: contact.pressure,
 }
 
 

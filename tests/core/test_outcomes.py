@@ -332,7 +332,10 @@ class Unsigned(Wrong):
 @pytest.mark.parametrize(
     ("law", "said"),
     [
-        (Wrong(fault="nodes"), r"law 'wrong' returned values of shape \(3, \d+\) for patches of shape \(3,\)"),
+        (
+            Wrong(fault="nodes"),
+            r"law 'wrong' returned values of shape \(3, \d+\); it must return one a patch, of shape \(3,\)",
+        ),
         (Wrong(fault="nan"), "law 'wrong' returned a value that is not finite"),
         (Unsigned(fault="negative"), "law 'unsigned' gives a negative rcf damage, -"),
     ],

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tests.strategies import EPS
 from wearlaw import Array, Nodes
-from wearlaw.contact.quadrature import ORDER, Zone, join, remainder, uniform_cells  # private: no result shows them
+from wearlaw.contact.quadrature import ORDER, Zone, join, remainder  # private: no result shows them
 
 HALF_WIDTH, LENGTH = np.array(1.1), np.array(1.4)
 
@@ -125,16 +125,6 @@ def test_joined_zones_are_both_there() -> None:
     nodes = join(*parts)
     assert nodes.length.sum() == pytest.approx(2.2, rel=16 * EPS)
     assert (nodes.x == np.concatenate([parts[0].x, parts[1].x])).all()
-
-
-@pytest.mark.parametrize("cells", [1, 2, 7, 200])
-def test_uniform_cells_cover_the_patch(cells: int) -> None:
-    nodes = uniform_cells(np.array([0.5, 2.0]), cells)
-    assert nodes.x.shape == nodes.length.shape == (2, cells)
-    assert nodes.length.sum(axis=-1) == pytest.approx([1.0, 4.0], rel=16 * EPS)
-    assert nodes.x == pytest.approx(-nodes.x[:, ::-1], abs=4 * EPS)
-    edges = np.concatenate([nodes.x - 0.5 * nodes.length, nodes.x[:, -1:] + 0.5 * nodes.length[:, -1:]], axis=-1)
-    assert edges == pytest.approx(np.array([[0.5], [2.0]]) * np.linspace(-1.0, 1.0, cells + 1), abs=8 * EPS)
 
 
 @pytest.mark.validates(

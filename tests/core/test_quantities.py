@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.core.units import TO_SI
 from wearlaw import Q
-from wearlaw.units.quantities import from_si, full_text, text_of  # private: texts and floats at the rim
+from wearlaw.units.quantities import from_si, text_of  # private: texts and floats at the rim
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 
@@ -46,7 +46,7 @@ def test_repr_shows_four_significant_digits(value: Any, unit: str, text: str) ->
     ],
 )
 def test_what_is_shown_to_a_reader_has_all_digits(value: Any, text: str) -> None:
-    assert full_text(value) == text
+    assert text_of(value) == text
 
 
 def test_magnitude_keeps_all_digits() -> None:
@@ -135,14 +135,6 @@ def test_a_result_is_a_quantity_like_any_other(value: Any) -> None:
     assert np.all((2 * made).to("kg/m/m^2").m == 2.0 * np.asarray(value))
     assert np.all(pickle.loads(pickle.dumps(made)) == made)
     assert made.check("[mass]/[length]**3")
-
-
-@pytest.mark.parametrize(
-    "unit", ["m**9**9**9", "m^9^9", "m**(9**9)", "m**999999999", "(9**9)**(9**9)", "10**1000 m", "((m**9)**9)**9 "]
-)
-def test_powers_that_no_unit_has_are_refused_and_not_computed(unit: str) -> None:
-    with pytest.raises(wl.UnitError, match="not a"):
-        Q(1.0, unit)
 
 
 @pytest.mark.parametrize("unit", ["N/mm^2", "ug/m/mm**2", "m**0.3333", "(m/s)**2", "1/s", "µg·m⁻¹", "m^-1*s^-2", "mm²"])

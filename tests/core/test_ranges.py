@@ -142,7 +142,7 @@ def test_every_variable_of_an_ellipse_is_watched_by_its_patch_mean(name: str) ->
 
 
 def test_a_range_of_what_has_no_patch_mean_is_refused() -> None:
-    with pytest.raises(wl.ModelError, match=r"`valid_range`.*'x'"):
+    with pytest.raises(wl.ModelError, match=r"'x' in `valid_range`"):
         messages(Stated(variable="x"), 0.05)
 
 

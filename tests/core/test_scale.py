@@ -123,7 +123,7 @@ def test_an_unknown_variable_is_refused_and_not_ignored(declared: str, name: str
     with pytest.raises(wl.ModelError) as error:
         RIG | wl.contact_model("exact") | Wrong()
     assert str(error.value).startswith(
-        f"wear law 'declares': `{declared}` names the variable '{name}', which is unknown{hint}"
+        f"wear law 'declares' names the variable '{name}' in `{declared}`, which is unknown{hint}"
     )
 
 
@@ -134,7 +134,7 @@ def test_an_unknown_variable_in_monotone_in_is_refused_too() -> None:
         monotone_in: ClassVar[Any] = ("wear_indx",)
 
     with pytest.raises(
-        wl.ModelError, match=r"`monotone_in` names the variable 'wear_indx'.* did you mean 'wear_index'"
+        wl.ModelError, match=r"names the variable 'wear_indx' in `monotone_in`.* did you mean 'wear_index'"
     ):
         RIG | wl.contact_model("exact") | Wrong()
 

@@ -339,12 +339,12 @@ class Told(wl.WearLaw):
 
 
 RATES: dict[str, tuple[Change, str]] = {
-    "complex": (text, "returned rates of type complex128; it must return a float64 array"),
-    "a quantity": (lambda rate: Q(rate, "ug/m/mm^2"), "returned rates of type ReadableQuantity"),
-    "single precision": (lambda rate: rate.astype(np.float32), "returned rates of type float32"),
-    "whole numbers": (lambda rate: (rate > 0.0).astype(np.int64), "returned rates of type int64"),
-    "nothing": (lambda _: None, "returned rates of type NoneType"),
-    "a list": (lambda rate: rate.tolist(), "returned rates of type list"),
+    "complex": (text, "returned values of type complex128; it must return a float64 array"),
+    "a quantity": (lambda rate: Q(rate, "ug/m/mm^2"), "returned values of type ReadableQuantity"),
+    "single precision": (lambda rate: rate.astype(np.float32), "returned values of type float32"),
+    "whole numbers": (lambda rate: (rate > 0.0).astype(np.int64), "returned values of type int64"),
+    "nothing": (lambda _: None, "returned values of type NoneType"),
+    "a list": (lambda rate: rate.tolist(), "returned values of type list"),
     "an error": (lambda _: 1 / 0, "failed: ZeroDivisionError: division by zero"),
     "an exit": (lambda _: exit(0), "failed: SystemExit: 0"),
 }

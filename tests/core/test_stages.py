@@ -205,8 +205,11 @@ class WrongContact(Wrong):
 @pytest.mark.parametrize(
     ("stage", "said"),
     [
-        (Wrong(fault="nothing"), "`altered` of stage 'wrong' returned None, not a wearlaw.Problem"),
-        (Wrong(fault="shape"), r"`altered` of stage 'wrong' returned a problem .* shape \(1,\) for one .* \(2,\)"),
+        (Wrong(fault="nothing"), "stage 'wrong' returned NoneType from `altered`"),
+        (
+            Wrong(fault="shape"),
+            r"stage 'wrong' returned \('line', \(1,\)\) from `altered`; it must return .* \('line', \(2,\)\)",
+        ),
         (Wrong(fault="raises"), "stage 'wrong' failed: ZeroDivisionError"),
         (Wrong(fault="friction"), "stage 'wrong' posed a problem with a friction coefficient of nan"),
         (WrongContact(fault="nothing"), "stage 'wrong_contact' returned None, not a wearlaw.Contact"),

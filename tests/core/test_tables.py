@@ -61,16 +61,6 @@ def test_a_file_gives_what_was_written(kind: str, tmp_path: Path, monkeypatch: p
     assert (table["creepage"] == Q(-SLIP, "")).all()
 
 
-def test_a_dataset_is_read_from_its_file_piece_by_piece(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw.tables.CELLS", 30)  # private: tables in small pieces
-    dataset().to_netcdf(tmp_path / "run.nc")
-    with xr.open_dataset(tmp_path / "run.nc", decode_times=False) as run:
-        found = wl.read_table(run, COLUMNS)
-        assert (found["force"] == Q(FORCE, "kN")).all()
-        assert (found["creepage"] == Q(-SLIP, "")).all()
-        assert not run["Fz"].variable._in_memory
-
-
 @pytest.mark.parametrize("table", [frame(), dataset()], ids=["pandas", "xarray"])
 def test_a_table_in_memory_is_read_likewise(table: Any) -> None:
     found = wl.read_table(table, COLUMNS)
@@ -78,15 +68,13 @@ def test_a_table_in_memory_is_read_likewise(table: Any) -> None:
     assert (found["creepage"] == Q(-SLIP, "")).all()
 
 
-def test_units_come_from_heads_attributes_types_or_the_user() -> None:
-    pytest.importorskip("pint_pandas")
-    table = pd.DataFrame({"a [N]": [1.0], "b": [2.0], "c": pd.Series([3.0], dtype="pint[kN]"), "d": [4.0], "n": [5]})
-    table["b"].attrs["units"] = "kN"
-    found = wl.read_table(table, {"a": "a", "b": "b", "c": "c", "d": "d [MN]", "n": "n"})
-    units = {name: column.unit for name, column in found.columns.items()}
-    assert units == {"a": "N", "b": units["b"], "c": "kN", "d": "MN", "n": None}
+def test_units_come_from_heads_attributes_or_the_user() -> None:
+    along: Any = {"b": ("row", [2.0], {"units": "kN"}), "d": ("row", [4.0]), "n": ("row", [5])}
+    found = wl.read_table(xr.Dataset(along), {"b": "b", "d": "d [MN]", "n": "n"})
+    assert {name: column.unit for name, column in found.columns.items()} == {"b": "kN", "d": "MN", "n": None}
     assert found["d"] == Q([4.0], "MN")
     assert isinstance(found["n"], np.ndarray)
+    assert wl.read_table(pd.DataFrame({"a [N]": [1.0]}))["a"] == Q([1.0], "N")
 
 
 @given(
@@ -176,8 +164,6 @@ def test_what_is_no_table_is_refused(tmp_path: Path) -> None:
 
 
 def test_variables_lie_along_one_dimension() -> None:
-    across = dataset().assign(other=("car", [1.0, 2.0]), both=(("time", "car"), np.ones((50, 2))), one=3.0)
-    assert wl.read_table(across, {"f": "Fz", "n": "one"}).numbers("n").tolist() == [3.0] * 50
-    for name in ("other", "both"):
-        with pytest.raises(wl.DataError, match=f"'{name}' along"):
-            wl.read_table(across, {"f": "Fz", "o": name})["o"]
+    assert wl.read_table(dataset().assign(one=3.0), {"n": "one"}).numbers("n").tolist() == [3.0] * 50
+    with pytest.raises(wl.DataError, match="'other' along car"):
+        wl.read_table(dataset().assign(other=("car", [1.0, 2.0])))

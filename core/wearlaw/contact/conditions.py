@@ -29,10 +29,8 @@ from pydantic import Field
 
 from wearlaw.arrays.array import Array, extremes, read_only
 from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described
-from wearlaw.settings.configuration import Configuration
-from wearlaw.settings.docstrings import item_docstrings
+from wearlaw.settings.configuration import Configuration, item_docstrings
 from wearlaw.units.quantities import (
-    Q,
     Quantity,
     QuantityLike,
     Unit,
@@ -138,31 +136,19 @@ def _of_table(table: Any) -> Mapping[str, Condition]:
 
 def friction_at(law: FrictionLaw, name: str, creep_speed: Array) -> Array:
     """Return μ [-] of a friction law in the shape of the creep speed, checked, since the law may come from anyone."""
-    subject, shape = f"{name}: friction law {type(law).__name__}", creep_speed.shape
+    subject = f"{name}: friction law {type(law).__name__}"
     try:
         given = law.coefficient(creep_speed)
-    except (WearlawError, KeyboardInterrupt, MemoryError):
+    except (WearlawError, MemoryError):
         raise
     except Exception as error:
         raise ModelError(f"{subject} failed: {described(error)}") from error
     try:
         found = coefficient(given, "its result")
-    except UnitError as error:
-        raise ModelError(f"{subject} is wrong at creep speeds of {_spread(creep_speed)}: {error}") from None
-    if found.shape == shape:
-        return found
-    try:
-        return np.broadcast_to(found, shape)
-    except ValueError:
-        raise ModelError(
-            f"{subject} returned an array of shape {found.shape} for creep speeds of shape {shape}; return one"
-            " coefficient for each of them"
-        ) from None
-
-
-def _spread(creep_speed: Array) -> str:
-    low, high = extremes(creep_speed)
-    return f"{low:.4g} m/s" if low == high else f"{low:.4g} to {high:.4g} m/s"
+        return found if found.shape == creep_speed.shape else np.broadcast_to(found, creep_speed.shape)
+    except (UnitError, ValueError) as error:
+        low, high = extremes(creep_speed)
+        raise ModelError(f"{subject} is wrong at creep speeds from {low:.4g} to {high:.4g} m/s: {error}") from None
 
 
 def is_friction_law(friction: object) -> TypeGuard[FrictionLaw]:
@@ -207,11 +193,6 @@ class Known:
             return cls(real_array(quantity), None)
         except UnitError:
             return None
-
-    def at_samples(self) -> Any:
-        """Return the condition as an argument for a rig, with a last axis for the samples."""
-        values = np.asarray(self.values)[..., None]
-        return values if self.unit is None else Q(values, self.unit)
 
 
 class FallingFriction(Configuration):

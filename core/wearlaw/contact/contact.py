@@ -8,7 +8,7 @@ batch are the *nodes* of the patch. An ellipse has two of them, along a strip an
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, Self, TypeAlias, get_args
 
@@ -16,8 +16,9 @@ import numpy as np
 
 from wearlaw.arrays.array import Array, freeze
 from wearlaw.contact import hertz_ellipse
+from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, InputError, ModelError, did_you_mean, shown
+from wearlaw.errors import CompositionError, InputError
 from wearlaw.units.quantities import QuantityLike
 from wearlaw.units.variables import expected
 
@@ -43,16 +44,6 @@ LawVariable: TypeAlias = Literal[
 LAW_VARIABLES: tuple[str, ...] = get_args(LawVariable)
 
 
-def check_variables(subject: str, names: Iterable[str], known: Collection[str] = LAW_VARIABLES) -> None:
-    """Raise a `ModelError` for the first name that is not one of the known variables."""
-    for name in names:
-        if name not in known:
-            hint = did_you_mean(str(name), known)
-            raise ModelError(
-                f"{subject} names the variable {shown(name)}, which is unknown{hint} There are: {', '.join(known)}"
-            )
-
-
 def variable_at_nodes(contact: Contact, name: str) -> Array:
     """Return a variable of a contact by its name, of the shape of the nodes; a total is the same at all nodes."""
     value: Array = getattr(contact, name)
@@ -61,18 +52,6 @@ def variable_at_nodes(contact: Contact, name: str) -> Array:
 
 ONE_SIGN = 1e-9
 """Share of traction of the other sign that counts as rounding; it changes the mean slip by no more."""
-
-
-def _broadcast(arrays: dict[str, Array], batch_axes: int) -> dict[str, Any]:
-    """Return the arrays of nodes in one shape, which has the batch axes and at least one more."""
-    shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-    try:
-        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
-    except ValueError:
-        raise InputError(f"the shapes of the arrays do not broadcast: {shapes}") from None
-    if len(shape) <= batch_axes or 0 in shape:
-        raise InputError(f"there must be at least one node after the {batch_axes} axes of rolling_speed; got {shapes}")
-    return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -337,8 +316,12 @@ class Contact:
         given = {"pressure": pressure, "traction": traction, "slip": slip, "area": area}
         units = expected(*given, "rolling_speed", "density")
         speed = units["rolling_speed"].si(rolling_speed, "rolling_speed")
-        nodes = _broadcast({name: units[name].si(value, name) for name, value in given.items()}, speed.ndim)
+        nodes = broadcast({name: units[name].si(value, name) for name, value in given.items()})
         p, q, s, a = nodes.values()
+        if p.ndim <= speed.ndim:
+            raise InputError(
+                f"pressure: must have axes of nodes after the {speed.ndim} of rolling_speed, got {p.shape}"
+            )
         axes = tuple(range(speed.ndim, p.ndim))
         if (p < 0).any():
             raise InputError("pressure: must not be negative; a pressure that presses the bodies together is positive")

@@ -38,25 +38,6 @@ def curvature(radius_1: Array, radius_2: Array) -> Array:
     return 0.5 * (1.0 / radius_1 + 1.0 / radius_2)
 
 
-def axis_ratio(curvature_x: Array, curvature_y: Array) -> Array:
-    """Return a/b [-], which depends on the ratio of the curvatures alone.
-
-    Parameters
-    ----------
-    curvature_x, curvature_y : ndarray
-        A and B of the gap A x² + B y² [1/m], both positive.
-
-    Notes
-    -----
-    Solves B/A = R_D(0, a², b²) / R_D(0, b², a²) by Newton's method in the logarithms. Their slope d ln(B/A) / d ln(a/b)
-    rises from 3/2 for a circle towards 2 for a line, so the iteration converges from anywhere. The result is right to
-    rounding for axis ratios from 1e-50 to 1e50; far beyond them the integrals underflow.
-    """
-    elongation = _elongation(curvature_x, curvature_y)
-    ratio: Array = np.where(curvature_y >= curvature_x, elongation, 1.0 / elongation)
-    return ratio
-
-
 def semi_axes(
     normal_force: Array, curvature_x: Array, curvature_y: Array, effective_modulus: Array | float
 ) -> tuple[Array, Array]:
@@ -105,7 +86,12 @@ def pressure(x: Array, y: Array, a: Array, b: Array, max_pressure: Array) -> Arr
 
 
 def _elongation(curvature_x: Array, curvature_y: Array) -> Array:
-    """Return the ratio of the major to the minor axis."""
+    """Return the ratio of the major to the minor axis, which depends on the ratio of the curvatures alone.
+
+    Newton's method in the logarithms solves B/A = R_D(0, a², b²) / R_D(0, b², a²). Their slope d ln(B/A) / d ln(a/b)
+    rises from 3/2 for a circle towards 2 for a line, so the iteration converges from anywhere. The result is right to
+    rounding for axis ratios from 1e-50 to 1e50; far beyond them the integrals underflow.
+    """
     target = np.log(np.maximum(curvature_x, curvature_y) / np.minimum(curvature_x, curvature_y))
     # B. J. Hamrock and D. Brewe (1983) fit 1.0339 (B/A)^0.636. (B/A)^(2/π) is within 4 % up to ratios of 100.
     logarithm = target * (2.0 / np.pi)

@@ -54,13 +54,6 @@ class Material(Configuration):
     else:
 
         @classmethod
-        def __pydantic_init_subclass__(cls, **options: Any) -> None:
-            """Raise an error for a field that would take the place of the class's name in files."""
-            super().__pydantic_init_subclass__(**options)
-            if TYPE in cls.model_fields:
-                raise TypeError(f"{cls.__name__}.{TYPE}: names the class in files; call the field something else")
-
-        @classmethod
         def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
             """Return the schema of the class; it reads and writes materials of derived classes as what they are."""
             schema = handler(source)

@@ -15,7 +15,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, freeze
+from wearlaw.arrays.array import Array
 
 ORDER = 24
 """Number of nodes of a panel."""
@@ -36,10 +36,6 @@ class Nodes:
     from_leading: Array
     from_trailing: Array
     length: Array
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze(self, self.__slots__)
 
     @classmethod
     def at(cls, x: Array, half_width: Array) -> Self:
@@ -144,14 +140,6 @@ def join(*zones: Nodes) -> Nodes:
     """Return the nodes of several zones as one set."""
     fields = ("from_leading", "from_trailing", "length")
     return Nodes(*(np.concatenate([getattr(zone, field) for zone in zones], axis=-1) for field in fields))
-
-
-def uniform_cells(half_width: Array, cells: int) -> Nodes:
-    """Return the centres and lengths of equal cells over the whole patch."""
-    width = half_width[..., None]
-    centres = (2.0 * np.arange(cells) + 1.0) / cells
-    length = np.broadcast_to(2.0 * width / cells, (*half_width.shape, cells))
-    return Nodes(width * centres, width * centres[::-1], length)
 
 
 def remainder(weighted: Array) -> Array:

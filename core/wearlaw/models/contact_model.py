@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast,
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, freeze
 from wearlaw.contact.contact import Contact, LineFields
 from wearlaw.contact.problem import PATCHES, CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import Nodes, Zone, join
@@ -165,13 +165,9 @@ class LineContactModel(ContactModel):
     for negative creepage. Methods that return None by default are optional; they only save time.
     """
 
-    @property
-    def square_roots_at(self) -> Literal["slip_zone", "patch"]:
-        """The interval with square-root behaviour of pressure, traction and slip at its ends.
-
-        "slip_zone" suits elastic half-spaces. "patch" suits models with smooth slip up to the start of the slip zone.
-        """
-        return "slip_zone"
+    square_roots_at: ClassVar[Literal["slip_zone", "patch"]] = "slip_zone"
+    """The interval with square-root behaviour of pressure, traction and slip at its ends. "slip_zone" suits elastic
+    half-spaces. "patch" suits models with smooth slip up to the start of the slip zone."""
 
     @abstractmethod
     def slip_length(self, problem: Problem) -> Array:
@@ -230,6 +226,7 @@ class LineContactModel(ContactModel):
 
     def at(self, problem: Problem, nodes: Nodes) -> Contact:
         """Return the contact on the given nodes, mirrored where the creepage is negative."""
+        freeze(nodes, nodes.__slots__)
         forward = problem.forward()
         fields = self.fields(forward[..., None] if forward.batch_shape else forward, nodes)
         if not (problem.creepage > 0.0).all():

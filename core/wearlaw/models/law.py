@@ -3,13 +3,13 @@
 import math
 import warnings
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.contact import (
@@ -17,7 +17,6 @@ from wearlaw.contact.contact import (
     PATCH_VARIABLES,
     Contact,
     LawVariable,
-    check_variables,
     variable_at_nodes,
 )
 from wearlaw.contact.material import Material
@@ -26,13 +25,12 @@ from wearlaw.errors import (
     CalibrationWarning,
     CompositionError,
     InputError,
-    ModelError,
     UnitError,
     did_you_mean,
     shown,
 )
 from wearlaw.models.contact_model import ContactModel, Scale
-from wearlaw.models.model import Blame, Model, check_scale, fault, with_origin
+from wearlaw.models.model import Blame, Model, check_scale, fault
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.parameters import numbers_in_si
 from wearlaw.units.quantities import WEAR_RATE, Quantity, Unit, from_si
@@ -75,6 +73,8 @@ class Calibration(Configuration):
     stated_range: tuple[tuple[str, str, str], ...] = ()
     """Range of the tests: patch means of `Contact` variables with lowest and highest value, such as
     ("wear_index_density", "0 N/mm^2", "108.4 N/mm^2")."""
+    tests: tuple[str, ...] = Field(default=(), repr=False)
+    """Digests of the tests of a fit, by which `wl.compare` knows them again; see `WearTests.digests`."""
     source: str
     """Literature on the parameters and on their range."""
 
@@ -251,27 +251,26 @@ class Law(Model):
     def check_variables(self) -> None:
         """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` names no variable."""
         with Blame(self):
+            points = {"breakpoints": self.breakpoints(self.numbers) or {}, "jumps": self.jumps(self.numbers)}
             known = (*LAW_VARIABLES, *self.own_variables)
             declared = {
-                "breakpoints": (self.breakpoints(self.numbers) or {}, known),
-                "jumps": (self.jumps(self.numbers), known),
+                **{name: (variables, known) for name, variables in points.items()},
                 "monotone_in": (self.monotone_in, LAW_VARIABLES),
                 "valid_range": (self.valid_range, PATCH_VARIABLES),
             }
-        for name, (variables, allowed) in declared.items():
-            if name in ("breakpoints", "jumps"):
-                self._check_points(name, variables)
-            try:
-                check_variables(f"{self.kind} '{self.name}': `{name}`", variables, allowed)
-            except ModelError as error:
-                raise ModelError(with_origin(self, str(error))) from None
-
-    def _check_points(self, name: str, points: object) -> None:
-        """Raise a `ModelError` unless the values of each variable are a sequence, as in {"pressure": (2.1e9,)}."""
-        by_variable = points if isinstance(points, Mapping) else {"": points}
-        for values in by_variable.values():
-            if not isinstance(values, tuple | list | np.ndarray):
-                raise fault(self, f'gives {shown(points)} as `{name}`; it must be like {{"pressure": (2.1e9,)}}')
+            for name, by_variable in points.items():
+                if not all(isinstance(values, tuple | list | np.ndarray) for values in by_variable.values()):
+                    raise fault(
+                        self, f'gives {shown(by_variable)} as `{name}`; it must be like {{"pressure": (2.1e9,)}}'
+                    )
+            for name, (variables, allowed) in declared.items():
+                for variable in variables:
+                    if variable not in allowed:
+                        raise fault(
+                            self,
+                            f"names the variable {shown(variable)} in `{name}`, which is unknown"
+                            f"{did_you_mean(variable, allowed)} There are: {', '.join(allowed)}",
+                        )
 
     def __repr_args__(self) -> Any:
         inherited = Law.model_fields
@@ -310,35 +309,20 @@ class Law(Model):
         with Blame(self, p):
             rate = self.rate(contact, p)
         if type(rate) not in (np.ndarray, np.float64) or rate.dtype != np.float64:
-            raise fault(self, f"returned {self._values} of type {type_name(rate)}; it must return a float64 array")
+            raise fault(self, f"returned values of type {type_name(rate)}; it must return a float64 array")
         of_patch = self.outcome.of == "patch"
         shape = contact.rolling_speed.shape if of_patch else contact.pressure.shape
         if rate.shape != shape:
-            raise fault(
-                self,
-                f"returned {self._values} of shape {rate.shape} for"
-                f" {'patches' if of_patch else 'nodes'} of shape {shape}; it must return one"
-                f" {'value a patch' if of_patch else f'{self._values[:-1]} a node'}",
-            )
+            each = "patch" if of_patch else "node"
+            raise fault(self, f"returned values of shape {rate.shape}; it must return one a {each}, of shape {shape}")
         low, high = extremes(rate) if rate.size else (0.0, 0.0)
         if not (math.isfinite(low) and math.isfinite(high)):
             raise fault(
-                self,
-                f"returned a {self._values[:-1]} that is not finite; are its numbers, the"
-                " loads and the materials right?",
+                self, "returned a value that is not finite; are its numbers, the loads and the materials right?"
             )
         if self.zero_in_stick and not of_patch and rate[contact.slip == 0.0].any():
-            raise fault(
-                self,
-                f"gives {'wear' if self.outcome.name == WEAR else self.outcome.name} where"
-                f" the bodies stick; the {self._values[:-1]} must be zero if the slip is zero",
-            )
+            raise fault(self, "gives values where the bodies stick; they must be zero where the slip is zero")
         return rate
-
-    @property
-    def _values(self) -> str:
-        """Word for the values of `rate` in messages."""
-        return "rates" if self.outcome.name == WEAR else "values"
 
     def __ror__(self, contact: Contact) -> LocalOutcome:
         """Return the outcome in a contact solved elsewhere, as in ``Contact.from_arrays(...) | law``.
@@ -440,25 +424,6 @@ class Law(Model):
     def explicit(self) -> "Law":
         """Return the same law with numbers instead of names of published values."""
         return self
-
-    @cached_property
-    def fitted_to(self) -> tuple[str, ...]:
-        """Digests of the tests of a fit (`WearTests.digests`), by which `wl.compare` knows them again.
-
-        This is no field: a copy with other numbers has none, and laws with equal numbers are equal.
-        """
-        return ()
-
-    def with_tests(self, digests: Iterable[str]) -> Self:
-        """Return the same law, fitted to the tests with these digests."""
-        law = self.model_copy()
-        vars(law)["fitted_to"] = tuple(digests)  # as `cached_property` keeps its value
-        return law
-
-    def changed(self, **fields: Any) -> Self:
-        """Return the law with some fields changed; under another label it still knows the tests of its fit."""
-        law = self.model_copy(update=fields)
-        return law.with_tests(self.fitted_to) if fields.keys() <= {"label"} else law
 
     def band(self) -> "tuple[Law, Law, Law] | None":
         """Return the laws at the low end, middle and high end of published parameter ranges, or None without ranges."""

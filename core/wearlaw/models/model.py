@@ -13,7 +13,7 @@ import numpy as np
 from wearlaw.errors import CompositionError, InputError, ModelError, WearlawError, described, did_you_mean
 from wearlaw.extras import load
 from wearlaw.settings.configuration import Configuration
-from wearlaw.units.quantities import full_text
+from wearlaw.units.quantities import text_of
 
 Claim: TypeAlias = str
 """Name of an invariant that a model keeps unless it declares itself exempt; see `Model.exemptions`.
@@ -86,7 +86,7 @@ def fault(model: Model, what: str) -> ModelError:
     ----------
     model : Model
     what : str
-        What the model did, such as "returned rates of shape (3,)"; the message begins with kind and name of the model.
+        What the model did, such as "returned values of shape (3,)"; the message begins with kind and name of the model.
     """
     return ModelError(with_origin(model, f"{model.kind} '{model.name}' {what}"))
 
@@ -119,10 +119,12 @@ class Blame:
         return None
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
+        if error is None:
+            return
         model = self._model
         if isinstance(error, InputError) and model.kind not in ("rig", "reader") and not hasattr(error, "__notes__"):
             error.add_note(f"raised in {model.kind} '{model.name}', {model._origin()}")
-        if error is None or isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
+        if isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
             return
         said = described(error)
         hint = ""
@@ -158,7 +160,7 @@ def labels(models: Sequence[Model]) -> list[str]:
         namesakes = [other for other in models if other.name == model.name and not getattr(other, "label", None)]
         body = ["body"] if getattr(model, "body", None) is not None else []
         fields = dict.fromkeys([*_telling_apart(namesakes), *body])
-        options = [f"{field}={full_text(getattr(model, field))}" for field in fields]
+        options = [f"{field}={text_of(getattr(model, field))}" for field in fields]
         found.append(f"{model.name}({', '.join(options)})" if options else model.name)
     for name in found:
         if found.count(name) > 1:
@@ -176,7 +178,7 @@ def _telling_apart(models: Sequence[Model]) -> list[str]:
     fields: list[str] = []
     kinds: set[tuple[str, ...]] = {()}
     for field in type(models[0]).model_fields:
-        finer = {tuple(full_text(getattr(model, name)) for name in (*fields, field)) for model in models}
+        finer = {tuple(text_of(getattr(model, name)) for name in (*fields, field)) for model in models}
         if len(finer) > len(kinds):
             fields, kinds = [*fields, field], finer
     return fields

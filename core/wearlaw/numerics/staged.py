@@ -8,9 +8,9 @@ from functools import reduce
 from wearlaw.arrays.array import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, ModelError, shown
+from wearlaw.errors import CompositionError
 from wearlaw.models.contact_model import ContactModel, Forces, Scale, Solve, Stage
-from wearlaw.models.model import Blame, Claim, with_origin
+from wearlaw.models.model import Blame, Claim, fault
 from wearlaw.numerics.solving import Solver, check_problem
 
 
@@ -67,20 +67,13 @@ class Staged(ContactModel):
         there = problem.existing()
         with Blame(self.stage):
             found = self.stage.altered(there, forces)
-        if not isinstance(found, Problem):
-            raise self._altered_wrongly(f"{shown(found)}, not a wearlaw.Problem")
-        if (found.geometry, found.batch_shape) != (there.geometry, there.batch_shape):
-            raise self._altered_wrongly(
-                f"a problem of geometry '{found.geometry}' and shape {found.batch_shape} for one of geometry"
-                f" '{there.geometry}' and shape {there.batch_shape}"
-            )
+        returned = (found.geometry, found.batch_shape) if isinstance(found, Problem) else type(found).__name__
+        if returned != (due := (there.geometry, there.batch_shape)):
+            raise fault(self.stage, f"returned {returned} from `altered`; it must return a wearlaw.Problem of {due}")
         check_problem(self, found)
         if there is problem:
             return found
         return found.mapped(problem.unflatten, problem.unflatten).replaced(dims=problem.dims, exists=problem.exists)
-
-    def _altered_wrongly(self, what: str) -> ModelError:
-        return ModelError(with_origin(self, f"`altered` of stage '{self.name}' returned {what}"))
 
     def refined(self) -> ContactModel | None:
         """Return the stage around the refined model, or None if the model cannot be refined."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from html import escape
 from typing import TYPE_CHECKING, Any, overload
@@ -14,7 +14,7 @@ import pint
 from wearlaw.arrays.array import same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
-from wearlaw.contact.quadrature import uniform_cells
+from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
 from wearlaw.extras import load
 from wearlaw.models.contact_model import ContactModel, LineContactModel, Scale
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 PROFILE_CELLS = 200
-"""Cells of a profile along the patch."""
+"""Points of a profile along the patch, in the middles of equal cells."""
 
 FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
 
@@ -293,7 +293,7 @@ class Prediction:
         ----------
         name : str, optional
             Name of an outcome or another variable, such as "tangential_force"; for the fields of a single patch
-            "pressure", "traction" or "slip". Default: the first outcome.
+            "pressure", "traction", "slip" or an outcome. Default: the first outcome.
         x : str, optional
             Name of the condition or variable along the horizontal axis, such as "wear_index_density". Default: the
             longest axis.
@@ -492,14 +492,16 @@ class Prediction:
         return along_patch(self.problem, columns)
 
     def _cells(self) -> Contact:
-        """Return the contact of the existing patches, on uniform cells if the model can give them."""
+        """Return the contact of the existing patches, at equal distances if the model can give them."""
         model, problem = self._solution.model, self.problem
         problem.needs("line", "profile")
         if problem.size == 0:
             raise InputError("profile: none of these patches exists; select others")
         if self.scale == "cells" and isinstance(model, LineContactModel):
             there = problem.existing()
-            return Solver(model).at(there, uniform_cells(there.half_width, PROFILE_CELLS), totals=False)
+            share = (2.0 * np.arange(PROFILE_CELLS) + 1.0) / PROFILE_CELLS - 1.0
+            nodes = Nodes.at(share * there.half_width[..., None], there.half_width)
+            return Solver(model).at(there, nodes, totals=False)
         return self.contact if problem.exists is None else self.contact[problem.exists]
 
     def wear_profile(self, body: str, strips: int | None = None, at: QuantityLike | None = None) -> xarray.Dataset:
@@ -648,20 +650,13 @@ def solved(
     laws: tuple[Law, ...],
     problem: Problem,
     watch: RangeWatch,
-    on_block: Callable[[int], None] | None = None,
     given: Mapping[str, Any] | None = None,
 ) -> Prediction:
     """Return the prediction of laws in the contacts of a model, without warnings; `watch` sees the operating points.
 
-    `on_block` is called after each block with the number of its operating points. `given` are the conditions.
+    `given` are the conditions.
     """
-
-    def see(part: Problem, totals: Totals) -> None:
-        watch.see(part, totals)
-        if on_block is not None:
-            on_block(part.size)
-
-    totals = integrate.integrate_laws(model, laws, problem, see)
+    totals = integrate.integrate_laws(model, laws, problem, watch.see)
     solution = Solution(problem, model, laws, totals, given)
     for index, law in enumerate(laws):
         if law.outcome.of == "patch":

@@ -15,8 +15,7 @@ from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.reader import Solved
 from wearlaw.numerics import integrate
-from wearlaw.numerics.blocks import each
-from wearlaw.numerics.totals import Across, SlipTotals, Totals
+from wearlaw.numerics.totals import Across, SlipTotals, Totals, each
 from wearlaw.pipeline.composition import law_among, warn_of_body
 from wearlaw.pipeline.datasets import Conditions
 from wearlaw.pipeline.ranges import elastic_limits

@@ -10,8 +10,8 @@ import numpy as np
 from wearlaw.arrays.array import Array, steady
 from wearlaw.contact.problem import Body, Problem
 from wearlaw.errors import CompositionError, InputError, shown
-from wearlaw.numerics.blocks import blocks
 from wearlaw.numerics.profiles import onto_positions
+from wearlaw.numerics.totals import blocks
 from wearlaw.pipeline.datasets import Columns, data_of, labelled
 from wearlaw.pipeline.selection import axis_names
 from wearlaw.pipeline.solution import Solution

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import textwrap
+from functools import cache
+from itertools import pairwise
 from threading import RLock
 from types import NoneType
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, get_args, get_origin
@@ -17,8 +22,7 @@ from wearlaw.errors import (
     did_you_mean,
     shown,
 )
-from wearlaw.settings.docstrings import field_docstrings
-from wearlaw.units.quantities import full_text, plain_number
+from wearlaw.units.quantities import plain_number, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -37,7 +41,7 @@ class _Schema(GenerateJsonSchema):
     """JSON Schema in which a default that is a quantity is its text, as in a file."""
 
     def encode_default(self, dft: Any) -> Any:
-        return full_text(dft) if isinstance(dft, pint.Quantity) else super().encode_default(dft)
+        return text_of(dft) if isinstance(dft, pint.Quantity) else super().encode_default(dft)
 
 
 class Configuration(BaseModel):
@@ -116,23 +120,10 @@ class Configuration(BaseModel):
             try:
                 super().__setattr__(name, value)
             except ValidationError:
-                raise self._frozen(name) from None
-
-        def __delattr__(self, name: str) -> None:
-            try:
-                super().__delattr__(name)
-            except ValidationError:
-                raise self._frozen(name) from None
-
-    def _frozen(self, name: str) -> FrozenError:
-        fields = type(self).model_fields
-        if name not in fields:
-            hint = did_you_mean(name, fields)
-            return FrozenError(f"{self.subject()}: {name}: unknown field{hint} The fields are: {', '.join(fields)}")
-        return FrozenError(
-            f"{self.subject()}: {name}: cannot be changed, since it is frozen; make a changed copy with"
-            f" .model_copy(update={{{shown(name)}: ...}})"
-        )
+                raise FrozenError(
+                    f"{self.subject()}: {name}: cannot be changed, since it is frozen; make a changed copy with"
+                    f" .model_copy(update={{{shown(name)}: ...}})"
+                ) from None
 
     @classmethod
     def subject(cls) -> str:
@@ -154,8 +145,7 @@ class Configuration(BaseModel):
     def __repr__(self) -> str:
         text = f"{type(self).__name__}("
         for name, value in self.__repr_args__():
-            shown = full_text(value) if isinstance(value, pint.Quantity) else repr(value)
-            field = shown if name is None else f"{name}={shown}"
+            field = f"{name}={text_of(value) if isinstance(value, pint.Quantity) else repr(value)}"
             start = text.rfind("\n") + 1
             if len(text) - start + len(field.partition("\n")[0]) >= LINE and text[start:].strip():
                 text = text.rstrip() + "\n    "
@@ -183,6 +173,36 @@ class _Signature:
         if instance is None and owner.model_rebuild(raise_errors=False) is not False:
             return owner.__signature__
         raise AttributeError("__signature__")
+
+
+def field_docstrings(model: type[BaseModel]) -> dict[str, str]:
+    """Return the docstring of each field: its `description`, or else the string literal below it, or else "".
+
+    Pydantic can read these literals too, but it does so as it makes a class, which then takes three times as long. An
+    inherited field has the docstring of its last annotation. There are no string literals if the source is not in a
+    file, as in a notebook.
+    """
+    found = {name: text for base in reversed(model.__mro__) for name, text in item_docstrings(base).items()}
+    return {name: field.description or found.get(name, "") for name, field in model.model_fields.items()}
+
+
+@cache
+def item_docstrings(cls: type) -> dict[str, str]:
+    """Return the string literal below each name annotated in the body of a class, or ""; {} without the source."""
+    if not vars(cls).get("__annotations__"):
+        return {}
+    try:
+        (statement,) = ast.parse(textwrap.dedent(inspect.getsource(cls))).body
+    except (OSError, TypeError, SyntaxError):
+        return {}
+    found = {}
+    for annotated, below in pairwise([*getattr(statement, "body", ()), ast.Pass()]):
+        match annotated, below:
+            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                found[name] = inspect.cleandoc(text)
+            case ast.AnnAssign(target=ast.Name(id=name)), _:
+                found[name] = ""
+    return found
 
 
 def parts(value: object) -> Iterator[Configuration]:

@@ -18,16 +18,9 @@ import pint
 from pydantic_core import core_schema
 
 from wearlaw.arrays.array import extremes
-from wearlaw.errors import LONGEST, UnitError, shown
-from wearlaw.units.registry import (
-    application_registry,
-    divided,
-    quantity,
-    quantity_from_si,
-    si_factor,
-    symbol,
-    unit_in_si,
-)
+from wearlaw.errors import UnitError, shown
+from wearlaw.units.registry import application_registry, divided, quantity, si_factor, symbol, unit_in_si
+from wearlaw.units.registry import from_si as from_si
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -63,8 +56,6 @@ def Q(value: ArrayLike, unit: str) -> Quantity:
     UnitError
         If the unit is not known, or the value is not a real number.
     """
-    if not isinstance(unit, str):
-        raise UnitError(f"unit: must be a text, such as 'kN'; got {shown(unit)}")
     magnitude: Any = value
     if type(value) not in (int, float):
         array = real_array(value)
@@ -91,7 +82,7 @@ def parse(value: QuantityLike) -> Quantity:
             return Q([first.magnitude, *(one.m_as(first.units) for one in others)], str(first.units))
         except pint.DimensionalityError as error:
             raise UnitError(f"{shown(value)}: {error}") from None
-    match = _QUANTITY_TEXT.fullmatch(value) if isinstance(value, str) and len(value) <= LONGEST else None
+    match = _QUANTITY_TEXT.fullmatch(value) if isinstance(value, str) else None
     if match is None or not match["unit"]:
         raise UnitError(f"{shown(value)} is not a number with a unit")
     return Q(float(match["number"]), match["unit"])
@@ -104,13 +95,8 @@ def with_units(value: object) -> TypeGuard[Sequence[Quantity | str]]:
     )
 
 
-def text_of(quantity: Quantity) -> str:
-    """Return the text of a scalar quantity; `parse` reads it back exactly."""
-    return f"{float(quantity.magnitude)!r} {symbol(quantity.units, '~P') or 'dimensionless'}"
-
-
-def full_text(value: object) -> str:
-    """Return the text of a value for a reader; scalar quantities have all their digits."""
+def text_of(value: object) -> str:
+    """Return the text of a scalar quantity, which `parse` reads back exactly; of any other value, its `str`."""
     if not isinstance(value, pint.Quantity):
         return str(value)
     return f"{float(value.magnitude)!r} {symbol(value.units, '~P') or 'dimensionless'}"
@@ -119,10 +105,6 @@ def full_text(value: object) -> str:
 _QUANTITY_TEXT = re.compile(
     r"\s*(?P<number>[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan))\s*(?P<unit>(?:(?:(?<=\s)1(?=\s*/)|[^\d\s+.-]).*)?)"
 )
-
-_WORDS = r"[^\[\]\s]*+(?:\s++[^\[\]\s]++)*+"
-HEAD = re.compile(rf"(?P<name>{_WORDS})\s*+(?:\[\s*+(?P<unit>{_WORDS})\s*+\])?")
-"""The head of a column, as in "creepage [%]": a name and an optional unit; the time is linear in the length."""
 
 
 @dataclass(frozen=True)
@@ -223,9 +205,9 @@ class Unit:
 
     @staticmethod
     def _as_quantity(value: object) -> Quantity:
-        if isinstance(value, str) or with_units(value):
-            return parse(value)
         if not isinstance(value, pint.Quantity):
+            if isinstance(value, str) or with_units(value):
+                return parse(value)
             raise UnitError(f"got {_describe(value)}, which has no unit")
         quantity: Quantity = value
         if quantity._REGISTRY is not application_registry():
@@ -366,24 +348,13 @@ _RATIO, _AS_RATIO = Unit("", positive=False), "as a plain number or in percent, 
 
 def scalar_si(quantity: Quantity, unit: str) -> float:
     """Return the SI value of a scalar quantity that is already checked."""
-    try:
-        return quantity.magnitude * si_factor(quantity, unit)  # type: ignore[no-any-return]
-    except (AttributeError, TypeError):
-        raise UnitError(
-            f'give a quantity and its unit, as in scalar_si(Q(1, "mm"), "m"); got {shown(quantity)} and {shown(unit)}'
-        ) from None
+    return quantity.magnitude * si_factor(quantity, unit)  # type: ignore[no-any-return]
 
 
 def in_unit(value: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
     """Return SI floats as floats in `unit`."""
     factor = unit_in_si(unit)
     return value if factor == 1.0 else divided(value, factor)
-
-
-def from_si(value: NDArray[np.float64] | float, unit: str) -> Quantity:
-    """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
-    result: Quantity = quantity_from_si(value, unit)
-    return result
 
 
 Length = Annotated[Quantity, Unit("mm")]

@@ -10,7 +10,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, sleep
 from typing import Any
 
 import numpy as np
@@ -23,9 +23,8 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 import wearlaw as wl
 from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, FLAGS, PATIENCE_S
-from wearlaw_explore._answer import Answer, together  # private: the page without a browser
-from wearlaw_explore._command import named  # private: as above
-from wearlaw_explore._figures import nodes  # private: as above
+from wearlaw_explore._page import Page, fields, named  # private: the page without a browser
+from wearlaw_output.notes import Notes  # private: what the page shows as notes
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning")  # the page has them as notes
 
@@ -89,54 +88,75 @@ def wait(page: webdriver.Chrome, until: Any) -> None:
     WebDriverWait(page, PATIENCE_S, poll_frequency=0.05).until(lambda _: until())
 
 
-def answer(model: str, *laws: str, rig: str = "wheel_rail", **conditions: Any) -> Answer:
+def predicted(model: str, *laws: str, rig: str = "wheel_rail", **given: Any) -> tuple[dict[str, wl.Prediction], Notes]:
+    notes = Notes()
     subject = named(rig)
-    given = together(subject.rig.example, conditions)
-    return Answer(subject, f'wl.contact_model("{model}")', [f'wl.wear_law("{law}")' for law in laws], given)
+    return subject.predict(model, laws, subject.conditions(given), notes), notes
 
 
 @pytest.mark.parametrize("model", ["fastsim", "strip_theory"])
-def test_cells_tile_the_patch_and_carry_its_wear(model: str) -> None:
-    prediction = answer(model, "usfd").predictions['wl.wear_law("usfd")']
-    cells = nodes(prediction)
-    areas = (cells["right"] - cells["left"]) * (cells["top"] - cells["bottom"])
-    area = prediction.patch_area.to("mm^2").magnitude
-    np.testing.assert_allclose(areas.sum(), area, rtol=1e-9)
-    np.testing.assert_allclose((areas * cells["wear"]).sum(), prediction.wear_rate.magnitude * area, rtol=1e-9)
-    a, b = prediction.problem.a * 1e3, prediction.problem.b * 1e3
-    assert np.abs(cells["left"]).max() <= a
-    np.testing.assert_allclose(cells["top"].max(), b, rtol=0.01)  # strips are a quadrature of it
+def test_cells_carry_the_wear_of_their_patch(model: str) -> None:
+    found, _ = predicted(model, "usfd")
+    shown = fields(found.values())
+    outlines, wear = shown["wear_rate"]
+    x, y = np.moveaxis(outlines, -1, 0)
+    areas = 0.5 * np.abs((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1))
+    assert (areas * wear).sum() / areas.sum() == pytest.approx(found["usfd"].wear_rate.magnitude, rel=0.01)
+    assert shown["pressure"][1].max() == pytest.approx(found["usfd"].max_pressure.m_as("MPa"), rel=0.02)
 
 
 def test_an_ellipse_answers_within_a_fifth_of_a_second() -> None:
-    subject = named("wheel_rail")
-    slider = subject.slider("longitudinal_creepage", subject.rig.example)
-    assert slider is not None
+    page = Page(named("wheel_rail"), {})
+    page.laws.value = ["usfd", "kth"]
 
-    def seconds() -> float:
+    def seconds(value: float) -> float:
         started = perf_counter()
-        one = answer("fastsim", "usfd", "kth")
-        assert len(one.curve(slider)) == 2
-        nodes(one.predictions['wl.wear_law("usfd")'])
+        page.sliders["normal_force"].value = value  # everything but the browser
         return perf_counter() - started
 
-    assert min(seconds() for _ in range(3)) < 0.2
+    assert min(seconds(value) for value in (81.0, 82.0, 83.0)) < 0.2
+    assert "normal_force='83 kN'" in page.python.object
+    assert set(page.curves) == {"usfd", "kth"}
 
 
-def test_a_slow_contact_has_no_curve_on_a_wheelset_either() -> None:
-    one = answer("fastsim", "usfd", rig="wheelset")
-    slider = one.subject.slider("lateral_displacement", one.conditions)
-    assert slider is not None
-    one.seconds = 0.1
-    assert len(one.curve(slider)) == 1
-    one.seconds = 8.0  # as elements on half-spaces take, and as many times for a curve as it has points
-    assert one.curve(slider) == {}
+def test_a_slow_contact_has_no_curve_and_waits_for_the_release_of_a_slider(monkeypatch: pytest.MonkeyPatch) -> None:
+    subject = named("wheel_rail")
+    predict = subject.predict
+
+    def late(*arguments: Any) -> dict[str, wl.Prediction]:
+        sleep(0.4)  # elements on half-spaces take longer
+        return predict(*arguments)
+
+    monkeypatch.setattr(subject, "predict", late)
+    page = Page(subject, {})
+    assert page.curves == {}
+    page.sliders["normal_force"].value = 81.0
+    assert "normal_force='80 kN'" in page.python.object
+    page._update()
+    assert "normal_force='81 kN'" in page.python.object
 
 
-def test_the_python_on_the_page_gives_its_numbers(capsys: pytest.CaptureFixture[str]) -> None:
-    one = answer("global", "brr", rig="twin_disc", creepage="2 %")
-    exec(one.subject.python(one.model, one.laws, one.conditions), {})
-    assert capsys.readouterr().out.strip() == repr(one.predictions['wl.wear_law("brr")'])
+def test_a_wheelset_shows_its_profiles_their_contacts_and_the_wear_across() -> None:
+    page = Page(named("wheelset"), {})
+    assert [*page.patch.options] == ["right 1", "left 1"]  # that of most wear first
+    touching = page.profiles.both.marks.data_source.data
+    assert len(touching["x"]) == 2
+    assert touching["y"][0] - touching["y"][1] == pytest.approx(15.0, abs=1.0)
+    across = page.profiles.wear.lines["usfd"].data_source.data
+    assert across["x"][np.argmax(across["y"])] == pytest.approx(touching["x"][0], abs=2.0)
+
+
+@pytest.mark.parametrize(
+    ("model", "law", "rig", "given"),
+    [("global", "brr", "twin_disc", {"creepage": "2 %"}), ("fastsim", "brr", "wheel_rail", {})],
+)
+def test_the_python_on_the_page_gives_its_numbers(
+    model: str, law: str, rig: str, given: dict[str, str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    found, _ = predicted(model, law, rig=rig, **given)
+    subject = named(rig)
+    exec(subject.python(model, [law], subject.conditions(given)), {})
+    assert capsys.readouterr().out.strip() == repr(found[law])
 
 
 def test_a_law_in_a_file_stands_first_and_its_python_reads_it(
@@ -145,26 +165,34 @@ def test_a_law_in_a_file_stands_first_and_its_python_reads_it(
     monkeypatch.chdir(tmp_path)
     Path("law.toml").write_text('[wear_law]\nmodel = "usfd"\nq_s = "22 ug/m/mm^2"\n', encoding="utf-8")
     subject = named("twin_disc", ["law.toml"])
-    code = 'wl.read_law("law.toml")'
-    assert next(iter(subject.laws)) == code
-    one = Answer(subject, 'wl.contact_model("global")', [code], together(subject.rig.example, {"creepage": "3 %"}))
-    assert one.predictions[code].wear_rate.m_as("ug/m/mm^2") == pytest.approx(22.0)  # the severe plateau
-    exec(subject.python(one.model, one.laws, one.conditions), {})
-    assert capsys.readouterr().out.strip() == repr(one.predictions[code])
+    first, *_ = subject.laws
+    conditions = subject.conditions({"creepage": "3 %"})
+    found = subject.predict("global", [first], conditions, Notes())
+    assert found[first].wear_rate.m_as("ug/m/mm^2") == pytest.approx(22.0)  # the severe plateau
+    code = subject.python("global", [first], conditions)
+    assert "wl.read_law('law.toml')" in code
+    exec(code, {})
+    assert capsys.readouterr().out.strip() == repr(found[first])
+
+
+def test_a_case_brings_its_models_laws_and_stages() -> None:
+    subject = named("tassini2010")
+    assert {"exact", "global"} <= {*subject.models}
+    assert "case = wl.load_case('tassini2010')" in subject.python("exact", ["usfd"], subject.conditions({}))
 
 
 def test_errors_are_notes_and_a_load_replaces_the_other() -> None:
-    wrong = answer("global", "brr", rig="twin_disc", normal_force="7 m")
-    assert not wrong.predictions
-    assert "normal_force" in wrong.notes.texts[0]
-    assert "max_pressure" not in wrong.conditions
+    found, notes = predicted("global", "brr", rig="twin_disc", normal_force="7 m")
+    assert not found
+    assert "normal_force" in notes.texts[0]
+    assert "max_pressure" not in named("twin_disc").conditions({"normal_force": "7 m"})
 
 
 def opened(browser: webdriver.Chrome, address: str, width: int) -> webdriver.Chrome:
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 640}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     browser.get(address)
-    wait(browser, lambda: "wear rate, usfd" in text(browser) and deep(browser, "canvas"))
+    wait(browser, lambda: "wear rate by usfd" in text(browser) and deep(browser, "canvas"))
     return browser
 
 
@@ -174,7 +202,7 @@ def test_a_notebook_gets_a_page_that_renders() -> None:
     with pn.config.set(console_output="disable"):  # which needs IPython
         bundle, _ = page._repr_mimebundle_()
     assert "<script" in bundle["text/html"]
-    assert "creepage=&#x27;3 %&#x27;" in str([pane.object for pane in page.select(pn.pane.HTML)])
+    assert "creepage='3 %'" in "".join(pane.object for pane in page.select(pn.pane.HTML))
 
 
 @needs_browser

@@ -10,10 +10,9 @@ from hypothesis import given
 from scipy import integrate
 
 import wearlaw as wl
-from tests.line import crossings_meet, fields_at, slip_zone
+from tests.line import crossings_meet, fields_at, slip_zone, uniform_cells
 from tests.strategies import EPS, saturation_creepage
 from wearlaw import Array, Q
-from wearlaw.contact.quadrature import uniform_cells  # private: the nodes of a zone, against their theory
 from wearlaw_kit import line_problems
 
 Bound = Literal["parabolic", "elliptic"]

@@ -53,9 +53,7 @@ class Brush(wl.LineContactModel):
     name: ClassVar[str] = "brush"
     source: ClassVar[str] = "made up for the tests"
 
-    @property
-    def square_roots_at(self) -> Any:
-        return "patch"
+    square_roots_at = "patch"
 
     @property
     def exemptions(self) -> Any:

@@ -204,7 +204,7 @@ def test_a_row_that_only_its_block_shows_to_be_wrong_is_named(
 def test_rows_of_tables_in_memory_are_counted() -> None:
     ds = dataset()
     ds.Fz[7], ds.slip[9] = np.nan, -2.0
-    with pytest.raises(wl.DataError, match=r"row 7 \(the first is row 0\), column 'Fz': is missing"):
+    with pytest.raises(wl.DataError, match=r"row 7 \(the first is row 0\), column 'Fz \[N\]': is missing"):
         swept(ds)
     ds.Fz[7] = 5e3
     with pytest.raises(wl.DataError, match=r"row 9 \(the first is row 0\): creepage: must not exceed"):
