@@ -522,10 +522,10 @@ class _Task:
 
         A law without digests counts as fitted to all tests if its calibration names their source.
         """
-        if law.fitted_to:
-            known = set(law.fitted_to)
-            return sum(digest in known for digest in self.tests.digests(self.outcome, law.outcome.unit))
         calibration, source = law.calibration, self.tests.source
+        if calibration is not None and calibration.tests:
+            known = set(calibration.tests)
+            return sum(digest in known for digest in self.tests.digests(self.outcome, law.outcome.unit))
         return len(self.tests) if calibration is not None and source and source in calibration.source else 0
 
     def _information(self, name: str, fit: Fit) -> Information | None:

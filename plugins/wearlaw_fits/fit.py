@@ -360,7 +360,7 @@ def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observatio
 
 
 def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:
-    """Return the pipeline with the fitted numbers; laws record their tests, and those with free numbers the fit."""
+    """Return the pipeline with the fitted numbers; laws with free numbers record the fit."""
     given = task.predict
     at_places = {place: float(values[name][0]) for name, place in task.free.places.items()}
     for one in observations:
@@ -376,11 +376,8 @@ def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Seq
         raise FitError(f"the best fit has parameters that the model does not accept; try bounds: {error}") from None
     predict = given.model_copy(update={"stages": stages})
     for one in observations:
-        if one.law is not None:
-            law = laws[one.law]
-            if one.law in task.free.freed_laws:
-                law = law.model_copy(update={"fitted_for": _calibration(task, predict, one)})
-            laws[one.law] = law.with_tests(one.tests.digests(one.observable, one.unit))
+        if one.law is not None and one.law in task.free.freed_laws:
+            laws[one.law] = laws[one.law].model_copy(update={"fitted_for": _calibration(task, predict, one)})
     return predict.with_law(*laws) if laws else predict
 
 
@@ -403,6 +400,7 @@ def _calibration(task: _Task, predict: Pipeline[...], one: Observations) -> Cali
         materials=_materials(predict.rig),
         bodies=tuple(body.material for body in problem.bodies.values()),
         stated_range=tuple((name, *_ends(name, values)) for name, values in means.items()),
+        tests=one.tests.digests(one.observable, one.unit),
         source=f"fitted to {one.measured.size} tests{of}{with_stages}",
     )
 

@@ -125,9 +125,9 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     if job.dims or problem.dims:
         _check_axes(job, problem, part)
         on_block = on_block and _in_points(on_block, part.size, problem.size)
-    watch = job.pipeline.range_watch()
+    watch = job.pipeline.range_watch(on_block)
     if problem.size:
-        prediction = job.pipeline.watched(problem, watch, on_block)
+        prediction = job.pipeline.watched(problem, watch)
         outputs = job.outputs(prediction, part)
     else:  # the bodies touch nowhere
         outputs = {name: np.full((part.size, *job.own_shape), np.nan) for name in job.units}

@@ -15,7 +15,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, freeze
+from wearlaw.arrays.array import Array
 
 ORDER = 24
 """Number of nodes of a panel."""
@@ -36,10 +36,6 @@ class Nodes:
     from_leading: Array
     from_trailing: Array
     length: Array
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze(self, self.__slots__)
 
     @classmethod
     def at(cls, x: Array, half_width: Array) -> Self:

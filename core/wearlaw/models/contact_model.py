@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast,
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays.array import Array, freeze
 from wearlaw.contact.contact import Contact, LineFields
 from wearlaw.contact.problem import PATCHES, CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import Nodes, Zone, join
@@ -226,6 +226,7 @@ class LineContactModel(ContactModel):
 
     def at(self, problem: Problem, nodes: Nodes) -> Contact:
         """Return the contact on the given nodes, mirrored where the creepage is negative."""
+        freeze(nodes, nodes.__slots__)
         forward = problem.forward()
         fields = self.fields(forward[..., None] if forward.batch_shape else forward, nodes)
         if not (problem.creepage > 0.0).all():

@@ -119,10 +119,12 @@ class Blame:
         return None
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
+        if error is None:
+            return
         model = self._model
         if isinstance(error, InputError) and model.kind not in ("rig", "reader") and not hasattr(error, "__notes__"):
             error.add_note(f"raised in {model.kind} '{model.name}', {model._origin()}")
-        if error is None or isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
+        if isinstance(error, WearlawError | KeyboardInterrupt | MemoryError):
             return
         said = described(error)
         hint = ""

@@ -63,6 +63,9 @@ EPS = float(np.finfo(np.float64).eps)
 ALL = slice(None)
 """All operating points."""
 
+Ramps: TypeAlias = Sequence[tuple[Any, Any]]
+"""Thresholds and slopes of a law, as from `Law.ramps`."""
+
 Numbered: TypeAlias = Sequence[tuple[Law, Numbers]]
 """Laws with their numbers in SI."""
 
@@ -144,6 +147,8 @@ def integrate_laws(
 ) -> Totals:
     """Return the outcomes of laws in a contact, block by block; a contact on nodes is solved once for all laws.
 
+    Without laws, they are the forces alone.
+
     Parameters
     ----------
     model : ContactModel
@@ -161,6 +166,11 @@ def integrate_laws(
         If the model or a law breaks its contract.
     """
     model, problem = prepared(model, problem)
+    if not laws:
+        forces = Totals.of_forces(integrate_forces(model, problem))
+        if on_block is not None:
+            on_block(problem, forces)
+        return forces
     numbered = list(zip(laws, map(_frozen, numbers) if numbers else [law.numbers for law in laws], strict=True))
     solver = Solver(model)
     over = _over_line if problem.geometry == "line" else _over_ellipse
@@ -202,29 +212,39 @@ def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: On
 def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlock[Totals] | None) -> Totals:
     model = solver.model
     fields = model if isinstance(model, LineContactModel) and model.scale == "cells" else None
-    by_zones = [fields is not None and law.zero_in_stick and law.outcome.of == "area mean" for law, _ in laws]
-    ramps = [_ramps(law, p) if zones else None for (law, p), zones in zip(laws, by_zones, strict=True)]
+    ways: list[tuple[Law, Numbers, LineContactModel | None, Ramps | None]] = []
+    on_own_nodes, block = False, BLOCK
+    for law, p in laws:
+        by_zones = fields if law.zero_in_stick and law.outcome.of == "area mean" else None
+        ramps = None if by_zones is None else _ramps(law, p)
+        ways.append((law, p, by_zones, ramps))
+        on_own_nodes = on_own_nodes or by_zones is None
+        if ramps is None:
+            block = NODE_BLOCK
 
     def of_block(part: Problem, points: slice) -> Totals:
-        contact = None if all(by_zones) else solver.solve(part)
+        contact = solver.solve(part) if on_own_nodes else None
         means: list[Mean] = []
-        for (law, p), slopes, zones in zip(laws, ramps, by_zones, strict=True):
-            if contact is not None and not zones:
-                means.append(_on_own_nodes(solver, law, _at_points(p, points), part, contact))
-                continue
-            assert fields is not None
-            of = part.worn_on(law.body)
-            mean = None if slopes is None else closed_form(fields, slopes, of, points)
-            means.append(mean or _over_zones(solver, law, _at_points(p, points), of))
+        sliding = None
+        for law, p, by_zones, ramps in ways:
+            if by_zones is None:
+                assert contact is not None
+                mean = _on_own_nodes(solver, law, _at_points(p, points), part, contact)
+            else:
+                of = part.worn_on(law.body)
+                own = ramps if ramps is None or p is law.numbers else _ramps_at(ramps, points)
+                closed = None if own is None else closed_form(by_zones, own, of)
+                mean = closed or _over_zones(solver, law, _at_points(p, points), of)
+            means.append(mean)
+            sliding = mean.sliding if sliding is None else sliding
         return Totals(
             values=tuple([mean.value for mean in means]),
             errors=tuple([mean.error for mean in means]),
             longitudinal=means[-1].force,
             patch_area=None if contact is None or isinstance(model, LineContactModel) else contact.patch_area,
-            sliding=next((mean.sliding for mean in means if mean.sliding is not None), None),
+            sliding=sliding,
         )
 
-    block = NODE_BLOCK if any(one is None for one in ramps) else BLOCK
     return solver.by_block(problem, block, of_block, on_block, kept=None if fields is None else _without_force)
 
 
@@ -233,10 +253,19 @@ def _without_force(totals: Totals) -> Totals:
     return totals._replace(longitudinal=None)
 
 
-def _ramps(law: Law, p: Numbers) -> Sequence[tuple[Any, Any]] | None:
+def _ramps(law: Law, p: Numbers) -> Ramps | None:
     with Blame(law, p):
         ramps = law.ramps(p)
         return None if ramps is None else [(threshold, slope) for threshold, slope in ramps]
+
+
+def _ramps_at(ramps: Ramps, points: slice) -> Ramps:
+    """Return the ramps of a law at some operating points, without the axis of the nodes."""
+
+    def at(number: Any) -> Any:
+        return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
+
+    return [(at(threshold), at(slope)) for threshold, slope in ramps]
 
 
 def _contact_of(law: Law, contact: Contact, problem: Problem) -> Contact:
@@ -360,24 +389,23 @@ def contact_for(model: ContactModel, law: Law, problem: Problem) -> Contact:
     return Solver(model).at(problem, join(stick.nodes().reversed(), nodes), totals=True)
 
 
-def closed_form(
-    model: LineContactModel, ramps: Sequence[tuple[Any, Any]], problem: Problem, points: slice = ALL
-) -> Mean | None:
+def closed_form(model: LineContactModel, ramps: Ramps, problem: Problem) -> Mean | None:
     """Return the mean of Σ slope · max(q·s - threshold, 0), or None if the model has no closed form.
 
-    `points` is the slice of the problem in arrays of thresholds and slopes, (points, 1).
+    Thresholds and slopes are numbers, or arrays of one for each operating point.
     """
     forward = problem.forward()
     force = model.tangential_force_per_width(forward)
     check_type(model, "tangential_force_per_width", force, problem.batch_shape)
+    energy = force * forward.longitudinal_creepage
     total: Array | float = 0.0
-    for ramp in ramps:
-        threshold, slope = _per_point(ramp[0], points), _per_point(ramp[1], points)
-        above = (threshold > 0.0).any() if isinstance(threshold, np.ndarray) else threshold > 0.0
-        excess = model.excess_dissipation(forward, threshold) if above else force * forward.longitudinal_creepage
-        if excess is None:
-            return None
-        check_type(model, "excess_dissipation", excess, problem.batch_shape)
+    for threshold, slope in ramps:
+        excess: Array | None = energy
+        if (threshold > 0.0).any() if isinstance(threshold, np.ndarray) else threshold > 0.0:
+            excess = model.excess_dissipation(forward, threshold)
+            if excess is None:
+                return None
+            check_type(model, "excess_dissipation", excess, problem.batch_shape)
         total += 0.5 * slope * excess
     force = force * problem.track_width
     rate = total / problem.half_width
@@ -385,11 +413,6 @@ def closed_form(
         rate = np.maximum(rate, 0.0)
     signed = force if forward is problem else np.copysign(force, problem.creepage)
     return Mean(rate, None, signed)
-
-
-def _per_point(number: float | Array, points: slice) -> float | Array:
-    """Return a number, or an array of one number for each operating point, without the axis of the nodes."""
-    return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
 
 
 def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Array | None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,8 @@ ABOVE_ZERO = (
 
 POSED = {name: 0.0 if name in ABOVE_ZERO else -math.inf for name in ARRAYS if name != "exists"}
 """The numbers of a problem, each with the bound that it must be above."""
+
+_posed = attrgetter(*POSED)
 
 LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
 """The totals that a line contact does not derive from others."""
@@ -162,8 +165,7 @@ class Solver:
 
 def check_problem(maker: Model, problem: Problem) -> None:
     """Raise a `ModelError` that names a rig or a stage if its problem has numbers that no contact has."""
-    for name, least in POSED.items():
-        values = getattr(problem, name)
+    for (name, least), values in zip(POSED.items(), _posed(problem), strict=True):
         if values is None or (type(values) is np.float64 and least < values < math.inf):
             continue
         _check_posed(maker, problem, name, values, least)

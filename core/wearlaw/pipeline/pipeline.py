@@ -34,7 +34,6 @@ from wearlaw.models.model import Blame, Model, fault
 from wearlaw.numerics.integrate import integrate_forces, prepared
 from wearlaw.numerics.solving import check_problem
 from wearlaw.numerics.staged import staged
-from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import (
     check_geometry,
     check_laws,
@@ -48,9 +47,8 @@ from wearlaw.pipeline.composition import (
     warn_of_unlike_materials,
 )
 from wearlaw.pipeline.prediction import Prediction, solved
-from wearlaw.pipeline.ranges import RangeWatch, overload_of
+from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.pipeline.several import LAW, Pipelines
-from wearlaw.pipeline.solution import Solution
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, Configuration
@@ -302,8 +300,8 @@ def _in_batch(problem: Problem) -> Problem:
     ValueError
         If they do not fit the batch.
     """
-    batch, labels = problem.batch_shape, tuple(map(len, problem.dims.values()))
-    if batch[len(batch) - len(labels) :] != labels:
+    batch, dims = problem.batch_shape, problem.dims
+    if dims and batch[len(batch) - len(dims) :] != tuple(map(len, dims.values())):
         raise ValueError(f"`dims` must label the last axes of the batch, of shape {batch}; got {problem.dims!r}")
     placed = {}
     for name, body in problem.bodies.items():
@@ -437,7 +435,7 @@ class Pipeline(Configuration, Generic[P]):
         if positional:
             first = next(iter(self.rig.conditions()), "creepage")
             raise ConditionsError(f"{shown(positional[0])}: is given without a name; write {first}=..., for example")
-        return self._predicted(self.posed(conditions), given=conditions)
+        return self._predicted(self.posed(conditions), self.range_watch(), conditions)
 
     def posed(self, conditions: Mapping[str, Any], of_one_patch: str = "") -> Problem:
         """Return the rig's problem for these conditions, with loads that balance the forces.
@@ -483,19 +481,13 @@ class Pipeline(Configuration, Generic[P]):
                 f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
                 f" the geometry '{self.rig.patch_geometry}'; make it with the `problem` method of the rig"
             )
-        return self._predicted(problem, on_block)
+        return self._predicted(problem, self.range_watch(on_block))
 
-    def _predicted(
-        self,
-        problem: Problem,
-        on_block: Callable[[int], None] | None = None,
-        given: Mapping[str, Any] | None = None,
-    ) -> Prediction:
+    def _predicted(self, problem: Problem, watch: RangeWatch, given: Mapping[str, Any] | None = None) -> Prediction:
         if problem.exists is not None and not problem.exists.any():
             raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
         self.warn_of_problem(problem)
-        watch = self.range_watch()
-        found = self.watched(problem, watch, on_block, given)
+        found = self.watched(problem, watch, given)
         warn_of_unlike_materials(self.contact_model, problem)
         watch.warn()
         return found
@@ -524,32 +516,18 @@ class Pipeline(Configuration, Generic[P]):
             if not rig.bodies:
                 warn_of_materials(problem.bodies, law)
 
-    def range_watch(self) -> RangeWatch:
+    def range_watch(self, on_block: Callable[[int], None] | None = None) -> RangeWatch:
         """Return a watch that sees whether operating points stay elastic and within the ranges of the laws."""
-        return RangeWatch(*self.laws)
+        return RangeWatch(*self.laws, on_block=on_block)
 
-    def watched(
-        self,
-        problem: Problem,
-        watch: RangeWatch,
-        on_block: Callable[[int], None] | None = None,
-        given: Mapping[str, Any] | None = None,
-    ) -> Prediction:
+    def watched(self, problem: Problem, watch: RangeWatch, given: Mapping[str, Any] | None = None) -> Prediction:
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         if problem.geometry == "line":
             check_traction(self.contact_model, problem)
         if problem.dims:
             watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
-        if self.laws:
-            return solved(model, self.laws, problem, watch, on_block, given)
-        forces = integrate_forces(model, problem)
-        watch.points += problem.size
-        with steadily():
-            watch.overload = overload_of(problem, forces.tangential, watch.overload)
-        if on_block is not None:
-            on_block(problem.size)
-        return Prediction(Solution(problem, model, (), Totals.of_forces(forces), given))
+        return solved(model, self.laws, problem, watch, given)
 
 
 def expect_pipeline(predict: object) -> None:

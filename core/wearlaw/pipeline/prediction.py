@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from html import escape
 from typing import TYPE_CHECKING, Any, overload
@@ -650,20 +650,13 @@ def solved(
     laws: tuple[Law, ...],
     problem: Problem,
     watch: RangeWatch,
-    on_block: Callable[[int], None] | None = None,
     given: Mapping[str, Any] | None = None,
 ) -> Prediction:
     """Return the prediction of laws in the contacts of a model, without warnings; `watch` sees the operating points.
 
-    `on_block` is called after each block with the number of its operating points. `given` are the conditions.
+    `given` are the conditions.
     """
-
-    def see(part: Problem, totals: Totals) -> None:
-        watch.see(part, totals)
-        if on_block is not None:
-            on_block(part.size)
-
-    totals = integrate.integrate_laws(model, laws, problem, see)
+    totals = integrate.integrate_laws(model, laws, problem, watch.see)
     solution = Solution(problem, model, laws, totals, given)
     for index, law in enumerate(laws):
         if law.outcome.of == "patch":

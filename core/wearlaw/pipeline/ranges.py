@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -51,12 +52,15 @@ class RangeWatch:
         The operating point furthest beyond first yield.
     counted : str
         Word for the points in the warnings: each patch is one if a rig makes several.
+    on_block : callable, optional
+        Called after each block with the number of its operating points.
     """
 
     counted = "operating points"
 
-    def __init__(self, *laws: Law) -> None:
+    def __init__(self, *laws: Law, on_block: Callable[[int], None] | None = None) -> None:
         self.laws = laws
+        self.on_block = on_block
         self.seen: dict[str, Seen] = {}
         self.points = 0
         self.overload: Overload | None = None
@@ -70,6 +74,8 @@ class RangeWatch:
         if totals.sliding is not None:
             self._see_values(None, SLIDING, totals.sliding, SLIDING_RANGE)
         self.overload = overload_of(part, totals.tangential_force(), self.overload)
+        if self.on_block is not None:
+            self.on_block(part.size)
 
     def _see_values(self, law: int | None, name: str, values: Array, ends: tuple[float, float]) -> None:
         (lowest, highest), (low, high) = extremes(values), ends
@@ -138,14 +144,9 @@ def overload_of(problem: Problem, tangential_force: Array, worst: Overload | Non
         return worst
     if problem.exists is not None:
         tangential_force, problem = tangential_force[problem.exists], problem.existing()
-    return overload(
-        strengths,
-        problem.max_pressure,
-        tangential_force / problem.normal_force,
-        problem.friction_coefficient,
-        None if problem.geometry == "line" else problem.a / problem.b,
-        worst,
-    )
+    traction, friction = tangential_force / problem.normal_force, problem.friction_coefficient
+    axis_ratio = None if problem.geometry == "line" else problem.a / problem.b
+    return overload(strengths, problem.max_pressure, traction, friction, axis_ratio, worst)
 
 
 @steady

@@ -50,7 +50,7 @@ def _maker(look_up: Callable[..., Model]) -> BeforeValidator:
         if not isinstance(name, str):
             raise InputError('a model needs its name, as in {model = "exact"}')
         if is_law_file(name):
-            return read_law(beside(name)).changed(**options)
+            return read_law(beside(name)).model_copy(update=options)
         return look_up(name, **options)
 
     return BeforeValidator(make)

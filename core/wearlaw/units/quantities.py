@@ -205,9 +205,9 @@ class Unit:
 
     @staticmethod
     def _as_quantity(value: object) -> Quantity:
-        if isinstance(value, str) or with_units(value):
-            return parse(value)
         if not isinstance(value, pint.Quantity):
+            if isinstance(value, str) or with_units(value):
+                return parse(value)
             raise UnitError(f"got {_describe(value)}, which has no unit")
         quantity: Quantity = value
         if quantity._REGISTRY is not application_registry():
