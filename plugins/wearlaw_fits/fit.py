@@ -22,7 +22,6 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.ranges import overload_of
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import specification
-from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import known_name
 from wearlaw.units.quantities import Quantity, QuantityLike, coefficient, in_unit
 from wearlaw.units.variables import UNITS
@@ -42,7 +41,7 @@ from wearlaw_fits.least_squares import Bounds, Solutions, refine, search
 from wearlaw_fits.named_numbers import changed_parts, staged_models
 from wearlaw_fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
 from wearlaw_fits.result import Fit
-from wearlaw_fits.wear_tests import WearTests
+from wearlaw_fits.wear_tests import WearTests, expect_tests
 
 NEAR = 10.0
 """Starting points lie within this factor of the first value, up and down."""
@@ -135,7 +134,7 @@ def fit(
     -----
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
-    expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
+    expect_tests(tests)
     if scatter not in ("relative", "absolute"):
         raise FitError(f'scatter: must be "relative" or "absolute", got {shown(scatter)}')
     for name, count in {"starts": starts, "bootstrap": bootstrap, "seed": seed}.items():
@@ -360,7 +359,7 @@ def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observatio
 
 
 def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:
-    """Return the pipeline with the fitted numbers; laws record their tests, and those with free numbers the fit."""
+    """Return the pipeline with the fitted numbers; laws with free numbers record the fit."""
     given = task.predict
     at_places = {place: float(values[name][0]) for name, place in task.free.places.items()}
     for one in observations:
@@ -376,11 +375,8 @@ def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Seq
         raise FitError(f"the best fit has parameters that the model does not accept; try bounds: {error}") from None
     predict = given.model_copy(update={"stages": stages})
     for one in observations:
-        if one.law is not None:
-            law = laws[one.law]
-            if one.law in task.free.freed_laws:
-                law = law.model_copy(update={"fitted_for": _calibration(task, predict, one)})
-            laws[one.law] = law.with_tests(one.tests.digests(one.observable, one.unit))
+        if one.law is not None and one.law in task.free.freed_laws:
+            laws[one.law] = laws[one.law].model_copy(update={"fitted_for": _calibration(task, predict, one)})
     return predict.with_law(*laws) if laws else predict
 
 
@@ -403,6 +399,7 @@ def _calibration(task: _Task, predict: Pipeline[...], one: Observations) -> Cali
         materials=_materials(predict.rig),
         bodies=tuple(body.material for body in problem.bodies.values()),
         stated_range=tuple((name, *_ends(name, values)) for name, values in means.items()),
+        tests=one.tests.digests(one.observable, one.unit),
         source=f"fitted to {one.measured.size} tests{of}{with_stages}",
     )
 

@@ -20,7 +20,6 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError, OutputError, shown
 from wearlaw.models.law import Law
 from wearlaw.plugins.fields import specification
-from wearlaw.plugins.law_files import DIGESTS
 from wearlaw.settings.text_files import reason_of
 from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor, symbol
@@ -197,9 +196,7 @@ class Fit:
         if self.law is None:
             raise FitError("a fit without a wear law has no law to write; its parameters are in fit.parameters")
         target, law = Path(path), self.law
-        tests = {DIGESTS: list(law.fitted_to)} if law.fitted_to else {}
-        provenance = {**self.provenance, **tests}
-        text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": provenance})
+        text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": self.provenance})
         temporary = target.with_name(f".{uuid4().hex}")  # short, since the name may be as long as names can be
         try:
             try:

@@ -75,7 +75,7 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
     wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
     """  # noqa: D301
     source, given = _installed(name), values("--option", options)
-    model = _made(source, given) if isinstance(source, type) else source.changed(**given)
+    model = _made(source, given) if isinstance(source, type) else source.model_copy(update=given)
     reasons = fields("--expect-failure", expected, "CHECK=REASON")
     found = list(checks(model))
     validate_expected("--expect-failure", model, found, reasons)

@@ -107,7 +107,7 @@ def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
     name, *settings = re.split(r":(?![\\/])", text)  # not within "C:/law.toml"
     given = {**values(text, tuple(settings)), **(fixed or {})}
     if is_law_file(name):
-        return read_law(name).changed(**given)
+        return read_law(name).model_copy(update=given)
     try:
         return loader.law(name, **given)
     except ConfigurationError as error:

@@ -78,20 +78,6 @@ def test_the_greatest_friction_gives_finite_numbers(model: str) -> None:
     assert np.isfinite(found.tangential_force.magnitude)
 
 
-@pytest.mark.parametrize("radius", ["-5e-324 mm", "5e-324 mm", "1e-310 mm", "0 mm"])
-@pytest.mark.parametrize("field", ["rail_head_radius", "wheel_profile_radius"])
-def test_a_radius_next_to_zero_is_refused(field: str, radius: str) -> None:
-    with pytest.raises(wl.ConfigurationError, match="a radius must not be zero or next to it; a flat body has"):
-        wl.WheelRail(**{**WHEEL, field: radius})
-
-
-@pytest.mark.parametrize("disc", ["wheel", 3.0, {"diameter": "47 mm"}])
-@pytest.mark.parametrize("name", ["disc_1", "disc_2"])
-def test_a_wrong_disc_of_suros_is_named(name: str, disc: Any) -> None:
-    with pytest.raises(wl.ConfigurationError, match=rf"^TwinDisc: {name}"):
-        wl.TwinDisc.suros(**{name: disc})
-
-
 def test_a_distance_for_each_point_must_fit_the_points() -> None:
     says = r"^over: an array of shape \(2,\) does not broadcast to the operating points, of shape \(3,\)"
     with pytest.raises(wl.InputError, match=says):

@@ -97,19 +97,6 @@ def test_the_reciprocals_are_parabolas_of_poissons_ratio(ratio: float, nu: float
     assert values(ratio, nu) == pytest.approx(expected, rel=8 * ROUNDING)
 
 
-def test_the_interpolation_in_poissons_ratio_follows_the_limits() -> None:
-    # The table gives no ν between its three; the limits do, and show how such functions of ν are best interpolated.
-    for limit in (short, long):
-        nodes = [limit(0.1, nu) for nu in POISSON_RATIOS]
-        for nu in np.linspace(0.0, 0.5, 41):
-            exact = [float(value) for value in limit(0.1, float(nu))]
-            for i in range(3):
-                parabola = through_three_points(nu, [1.0 / float(node[i]) for node in nodes])
-                assert 1.0 / parabola == pytest.approx(exact[i], rel=2e-4)
-            scaled = [(1.0 - x) * float(node[3]) for x, node in zip(POISSON_RATIOS, nodes, strict=True)]
-            assert through_three_points(nu, scaled) / (1.0 - nu) == pytest.approx(exact[3], rel=1.3e-2)
-
-
 @pytest.mark.validates(
     "elliptic-contact",
     "Flexibilities of FASTSIM at a/b = 1 and 1/2, ν = 0.28",

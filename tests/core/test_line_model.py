@@ -11,11 +11,9 @@ import pytest
 from hypothesis import given
 
 import wearlaw as wl
-from tests.core.cases import Linear
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
 from wearlaw.contact.quadrature import ORDER  # private: rules of quadrature, which no result shows alone
-from wearlaw.pipeline import prediction as result  # private: its limits
 from wearlaw_kit import line_problems
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
@@ -247,23 +245,3 @@ def test_where_slip_or_pressure_crosses_a_value_is_where_a_search_finds_it(name:
 
 
 # --- Cells are a matter of output ------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "law", [wl.wear_law("usfd"), wl.wear_law("kth"), Linear(slope=Q(1, "um"))], ids=lambda law: law.name
-)
-@every_model
-def test_a_finer_plot_does_not_change_the_wear(name: str, law: wl.WearLaw, monkeypatch: pytest.MonkeyPatch) -> None:
-    predict = RIG | LINE_MODELS[name] | law
-    conditions: Any = {
-        "max_pressure": "2.5 GPa", "creepage": Q(np.geomspace(1e-5, 0.5, 9), ""), "friction_coefficient": 0.46,
-    }  # fmt: skip
-    outputs = ("wear_rate", "wear_rate_error", "tangential_force", "stick_ratio", "mean_slip", "averaged_wear_index")
-    before = predict(**conditions)
-    due = {output: getattr(before, output).m.tobytes() for output in outputs}
-    for cells in (10, 1000):
-        monkeypatch.setattr(result, "PROFILE_CELLS", cells)
-        found = predict(**conditions)
-        assert found.profile.sizes["cell"] == cells
-        assert found.contact.x.shape[0] == 9
-        assert {output: getattr(found, output).m.tobytes() for output in outputs} == due

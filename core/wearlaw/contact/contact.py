@@ -16,6 +16,7 @@ import numpy as np
 
 from wearlaw.arrays.array import Array, freeze
 from wearlaw.contact import hertz_ellipse
+from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import CompositionError, InputError
 from wearlaw.units.quantities import QuantityLike
@@ -51,18 +52,6 @@ def variable_at_nodes(contact: Contact, name: str) -> Array:
 
 ONE_SIGN = 1e-9
 """Share of traction of the other sign that counts as rounding; it changes the mean slip by no more."""
-
-
-def _broadcast(arrays: dict[str, Array], batch_axes: int) -> dict[str, Any]:
-    """Return the arrays of nodes in one shape, which has the batch axes and at least one more."""
-    shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-    try:
-        shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
-    except ValueError:
-        raise InputError(f"the shapes of the arrays do not broadcast: {shapes}") from None
-    if len(shape) <= batch_axes or 0 in shape:
-        raise InputError(f"there must be at least one node after the {batch_axes} axes of rolling_speed; got {shapes}")
-    return {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -327,8 +316,12 @@ class Contact:
         given = {"pressure": pressure, "traction": traction, "slip": slip, "area": area}
         units = expected(*given, "rolling_speed", "density")
         speed = units["rolling_speed"].si(rolling_speed, "rolling_speed")
-        nodes = _broadcast({name: units[name].si(value, name) for name, value in given.items()}, speed.ndim)
+        nodes = broadcast({name: units[name].si(value, name) for name, value in given.items()})
         p, q, s, a = nodes.values()
+        if p.ndim <= speed.ndim:
+            raise InputError(
+                f"pressure: must have axes of nodes after the {speed.ndim} of rolling_speed, got {p.shape}"
+            )
         axes = tuple(range(speed.ndim, p.ndim))
         if (p < 0).any():
             raise InputError("pressure: must not be negative; a pressure that presses the bodies together is positive")

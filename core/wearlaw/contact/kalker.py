@@ -50,26 +50,17 @@ _TABLE = np.array(
 _EDGE = 0.1
 """The smallest ratio of the semi-axes in the table."""
 
-_SHORT_POWERS = 0.0, 0.0, 0.0, 1.0
-_LONG_POWERS = 1.0, 1.0, 1.5, 0.0
+_BARE: Array = np.moveaxis(_TABLE.reshape(19, 4, 3), 0, -1).copy()
+"""The table, of shape (coefficient, Poisson's ratio, row)."""
+
+_PLACES = np.arange(1, 20) * _EDGE
+"""a/b of each row, beyond the circle 2 - b/a."""
+
+_POWERS = np.where(_PLACES < 1.05, [[0.0], [0.0], [0.0], [1.0]], [[1.0], [1.0], [1.5], [0.0]])
 """Powers of g = min(a/b, b/a): C11, C22, C23, C33 times g to these powers change least from row to row."""
 
-
-def _scaled_table() -> Array:
-    """Return the table times those powers of g, of shape (coefficient, Poisson's ratio, row)."""
-    place = np.arange(1, 20) * _EDGE  # a/b, beyond the circle 2 - b/a
-    powers = np.where(place[:, None] < 1.05, _SHORT_POWERS, _LONG_POWERS)
-    factors = np.minimum(place, 2.0 - place)[:, None] ** powers
-    return _rows_last(_TABLE.reshape(19, 4, 3) * factors[..., None])
-
-
-def _rows_last(rows: Array) -> Array:
-    """Return a table of shape (row, coefficient, Poisson's ratio) in the shape (coefficient, Poisson's ratio, row)."""
-    moved: Array = np.moveaxis(rows, 0, -1).copy()
-    return moved
-
-
-_BARE, _SCALED = _rows_last(_TABLE.reshape(19, 4, 3)), _scaled_table()
+_SCALED: Array = _BARE * (np.minimum(_PLACES, 2.0 - _PLACES) ** _POWERS)[:, None, :]
+"""The table times those powers of g."""
 
 Interpolation = Literal["scaled", "contact"]
 """Method of interpolating coefficients: after division by their growth, or as in the program CONTACT."""
@@ -151,7 +142,10 @@ def coefficients(
     _refuse("axis_ratio: must be positive and finite", ratio, (ratio > 0.0) & (ratio < np.inf))
     _refuse("poisson_ratio: must be from 0 to 1/2", nu, (nu >= 0.0) & (nu <= 0.5))
     inside = np.minimum(np.maximum(ratio, _EDGE), 1.0 / _EDGE)
-    values = _from_table(inside, nu) if interpolation == "scaled" else _as_contact(inside, nu)
+    if interpolation == "scaled":
+        values = _from_table(inside, nu)
+    else:
+        values = list(_of_reciprocals(_between_rows(_BARE, inside), nu))
     if (inside != ratio).any():
         values = [np.array(value) for value in values]
         fades = interpolation == "scaled"
@@ -195,11 +189,6 @@ def _from_table(ratio: Array, nu: Array) -> list[Array]:
     c33 = (at_0 * scaled[3, 0] + 0.75 * at_1 * scaled[3, 1] + 0.5 * at_2 * scaled[3, 2]) / (1.0 - nu)
     growth = np.where(long, ratio, 1.0)
     return [c11 * growth, c22 * growth, c23 * growth * np.sqrt(growth), c33 * np.where(long, 1.0, 1.0 / ratio)]
-
-
-def _as_contact(ratio: Array, nu: Array) -> list[Array]:
-    """Return C11, C22, C23 and C33 for axis ratios within the table, interpolated as in the program CONTACT."""
-    return list(_of_reciprocals(_between_rows(_BARE, ratio), nu))
 
 
 def _between_rows(table: Array, ratio: Array) -> Array:

@@ -3,13 +3,13 @@
 import math
 import warnings
 from abc import abstractmethod
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from wearlaw.arrays.array import Array, extremes, type_name
 from wearlaw.contact.contact import (
@@ -73,6 +73,8 @@ class Calibration(Configuration):
     stated_range: tuple[tuple[str, str, str], ...] = ()
     """Range of the tests: patch means of `Contact` variables with lowest and highest value, such as
     ("wear_index_density", "0 N/mm^2", "108.4 N/mm^2")."""
+    tests: tuple[str, ...] = Field(default=(), repr=False)
+    """Digests of the tests of a fit, by which `wl.compare` knows them again; see `WearTests.digests`."""
     source: str
     """Literature on the parameters and on their range."""
 
@@ -422,25 +424,6 @@ class Law(Model):
     def explicit(self) -> "Law":
         """Return the same law with numbers instead of names of published values."""
         return self
-
-    @cached_property
-    def fitted_to(self) -> tuple[str, ...]:
-        """Digests of the tests of a fit (`WearTests.digests`), by which `wl.compare` knows them again.
-
-        This is no field: a copy with other numbers has none, and laws with equal numbers are equal.
-        """
-        return ()
-
-    def with_tests(self, digests: Iterable[str]) -> Self:
-        """Return the same law, fitted to the tests with these digests."""
-        law = self.model_copy()
-        vars(law)["fitted_to"] = tuple(digests)  # as `cached_property` keeps its value
-        return law
-
-    def changed(self, **fields: Any) -> Self:
-        """Return the law with some fields changed; under another label it still knows the tests of its fit."""
-        law = self.model_copy(update=fields)
-        return law.with_tests(self.fitted_to) if fields.keys() <= {"label"} else law
 
     def band(self) -> "tuple[Law, Law, Law] | None":
         """Return the laws at the low end, middle and high end of published parameter ranges, or None without ranges."""

@@ -41,6 +41,13 @@ The part of the zone beyond the outermost samples is 2.5e-13.
 """
 
 
+_EQUAL = np.linspace(END_GAP, 1.0 - END_GAP, SAMPLES + 1)
+_NEAR_END = (_EQUAL[1] - _EQUAL[0]) * 0.25 ** np.arange(1, END_SAMPLES + 1)
+
+SHARES: Array = np.sort(np.concatenate([_EQUAL, _EQUAL[0] + _NEAR_END, _EQUAL[-1] - _NEAR_END]))
+"""The samples, as shares of the range of ψ."""
+
+
 def crossings(
     model: LineContactModel,
     problem: Problem,
@@ -75,7 +82,11 @@ def crossings(
         searched = None
         for value in values:
             level: Any = np.full(shape, value[:, 0] if np.ndim(value) else value) if shape else np.float64(value)
-            found = _in_closed_form(model, problem, name, level) if name in NODE_VARIABLES else None
+            found = None
+            if name in NODE_VARIABLES:
+                per_speed = name in PER_SPEED
+                field = cast(FieldVariable, PER_SPEED.get(name, name))
+                found = model.crossings(problem, field, level / problem.rolling_speed if per_speed else level)
             if found is not None:
                 distances.append(found)
                 continue
@@ -86,22 +97,14 @@ def crossings(
     return np.sort(np.concatenate(columns, axis=-1) if len(columns) > 1 else columns[0], axis=-1)
 
 
-def _in_closed_form(model: LineContactModel, problem: Problem, name: str, level: Array) -> Array | None:
-    """Return the distances from the trailing edge at which a variable crosses a level (batch), or None."""
-    if name in PER_SPEED:
-        name, level = PER_SPEED[name], level / problem.rolling_speed
-    return model.crossings(problem, cast(FieldVariable, name), level)
-
-
 class _Variable:
     """The magnitude of one variable of the contact as a function of ψ/Ψ, sampled over the slip zone."""
 
     def __init__(self, model: LineContactModel, problem: Problem, zone: Zone, name: str, variable: VariableOf) -> None:
         self.model, self.name, self.variable = model, name, variable
         self.problem, self.zone = problem.flatten(), zone.flatten()
-        self.share = _sample_shares()
         points = np.arange(problem.creepage.size)
-        self.samples = self._values(np.broadcast_to(self.share, (points.size, self.share.size)), points)
+        self.samples = self._values(np.broadcast_to(SHARES, (points.size, SHARES.size)), points)
 
     def at(self, share: Array, point: Array) -> Array:
         """Return the variable at one share of Ψ for each of the operating points `point`, both of shape (m,)."""
@@ -118,12 +121,6 @@ class _Variable:
         return value
 
 
-def _sample_shares() -> Array:
-    equal = np.linspace(END_GAP, 1.0 - END_GAP, SAMPLES + 1)
-    near_end = (equal[1] - equal[0]) * 0.25 ** np.arange(1, END_SAMPLES + 1)
-    return np.sort(np.concatenate([equal, equal[0] + near_end, equal[-1] - near_end]))
-
-
 def _elementwise() -> Any:
     """Return scipy's search for roots and minima of many functions at once; loading it takes long."""
     from scipy.optimize import elementwise
@@ -133,12 +130,12 @@ def _elementwise() -> Any:
 
 def _searched(variable: _Variable, value: Array) -> Array:
     """Return the crossings of a breakpoint (points, 1), as shares of Ψ (points, CROSSINGS); 1 for no crossing."""
-    share, samples = np.broadcast_to(variable.share, variable.samples.shape), variable.samples
+    share, samples = np.broadcast_to(SHARES, variable.samples.shape), variable.samples
     point, top = _hidden_humps(samples, value[:, 0])
     if point.size:
         peak = _elementwise().find_minimum(
             lambda where, who: -variable.at(where, who),
-            tuple(variable.share[top + step] for step in (-1, 0, 1)),
+            tuple(SHARES[top + step] for step in (-1, 0, 1)),
             args=(point.astype(np.float64),),
         )
         share, samples = share.copy(), samples.copy()

@@ -50,7 +50,6 @@ from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.pipeline.several import LAW, Pipelines
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
-from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, Configuration
 from wearlaw.units.registry import with_magnitude
 
@@ -532,4 +531,5 @@ class Pipeline(Configuration, Generic[P]):
 
 def expect_pipeline(predict: object) -> None:
     """Raise an `InputError` unless the argument `predict` of an application is a pipeline."""
-    expect(Pipeline, predict, "predict", "a pipeline, as in rig | contact model | wear law")
+    if not isinstance(predict, Pipeline):
+        raise InputError(f"predict: must be a pipeline, as in rig | contact model | wear law; got {shown(predict)}")

@@ -16,8 +16,7 @@ from wearlaw.models.model import Model
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw.plugins.loader import Preset
-from wearlaw.settings.configuration import Configuration, known_name
-from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.settings.configuration import Configuration, field_docstrings, known_name
 from wearlaw.settings.text_files import beside
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ def _maker(look_up: Callable[..., Model]) -> BeforeValidator:
         if not isinstance(name, str):
             raise InputError('a model needs its name, as in {model = "exact"}')
         if is_law_file(name):
-            return read_law(beside(name)).changed(**options)
+            return read_law(beside(name)).model_copy(update=options)
         return look_up(name, **options)
 
     return BeforeValidator(make)

@@ -10,9 +10,6 @@ from wearlaw.models.law import Law
 from wearlaw.plugins import loader
 from wearlaw.settings.text_files import read_toml
 
-DIGESTS = "digests_of_tests"
-"""The entry of the provenance with the digests of the tests of a fit."""
-
 
 def is_law_file(name: str) -> bool:
     """Return whether the name of a law is the path of a file of a law, such as "fit/law.toml"."""
@@ -39,8 +36,6 @@ def read_law(path: str | os.PathLike[str]) -> Law:
             f'law {shown(Path(path))} needs a table [wear_law] with the name of the law, as in model = "usfd"'
         )
     try:
-        law = loader.law(fields.pop("model"), **fields)
+        return loader.law(fields.pop("model"), **fields)
     except ConfigurationError as error:
         raise InputError(with_problems(f"law {shown(Path(path))} is wrong in:", error.problems)) from None
-    digests = contents.get("provenance", {}).get(DIGESTS)
-    return law if digests is None else law.with_tests(digests)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from pathlib import Path
 from typing import Any
 
@@ -41,9 +40,6 @@ def test_a_law_knows_the_tests_that_it_was_fitted_to_also_from_a_file(law: str, 
     read = wl.read_law(tmp_path / "law.toml")
     assert read == fit.law
     assert fit.law is not None
-    assert read.fitted_to == fit.law.fitted_to == pickle.loads(pickle.dumps(read)).fitted_to
-    assert read.with_tests([]) == read, "laws with equal numbers are equal"
-    assert read.model_copy().fitted_to == ()
     other = GLOBAL | wl.wear_law("brr")
     comparison = wl.compare({"fit": fit, "read": EXACT | read, "other": other}, tests)
     assert seen(comparison) == {"fit": 8, "read": 8, "other": 0}
@@ -75,7 +71,7 @@ def test_some_of_the_tests_of_a_fit_are_known_again_under_other_labels_and_units
 
 def test_a_law_without_digests_is_known_by_the_source_that_it_names() -> None:
     fit: Any = wl.fit(EXACT | usfd(), scattered(source="our lab, 2020"), ["q_s"], bootstrap=0)
-    law = fit.law.with_tests([])
+    law = fit.law.model_copy(update={"fitted_for": fit.law.fitted_for.model_copy(update={"tests": ()})})
     assert seen(wl.compare({"a": EXACT | law}, scattered(source="our lab, 2020"))) == {"a": 8}
     assert seen(wl.compare({"a": EXACT | law}, scattered(source="another lab"))) == {"a": 0}
 

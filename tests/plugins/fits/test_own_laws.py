@@ -49,7 +49,7 @@ def test_a_case_takes_a_law_file_beside_it_and_its_results_need_the_file_no_more
     found = pd.read_csv("out/results.csv").set_index("wear_law")["wear_rate [ug/m/mm^2]"]
     assert list(found.index) == ["our tests", "half", "usfd"]
     given: Any = POINT
-    for name, one in (("our tests", law), ("half", law.changed(q_s=law.q_s / 2))):
+    for name, one in (("our tests", law), ("half", law.model_copy(update={"q_s": law.q_s / 2}))):
         assert found[name] == pytest.approx((EXACT | one)(**given).wear_rate.m_as("ug/m/mm^2"), rel=1e-12)
     Path("cases/fit/law.toml").unlink()
     assert wearlaw("run", "out/case.toml", "-o", "again").exit_code == 0

@@ -89,6 +89,7 @@ WRONG_RIGS: list[tuple[dict[str, Any], str]] = [
     ({"wheel_profile_radius": Q(-300, "mm")}, "sum to 0 1/m across the rail"),
     ({"wheel_profile_radius": Q(-250, "mm")}, "a hollow must have a larger radius than the body inside it"),
     ({"rail_head_radius": Q(0, "mm")}, "a radius must not be zero"),
+    ({"wheel_profile_radius": "1e-310 mm"}, "a radius must not be zero or next to it"),
     ({"rail_head_radius": 300}, "rail_head_radius: got the bare number 300, which has no unit"),
     ({"rolling_speed": Q(0, "m/s")}, "rolling_speed: must be greater than zero"),
 ]
