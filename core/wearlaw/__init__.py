@@ -80,7 +80,6 @@ from wearlaw.plugins.loader import (
 )
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.text_files import beside, read_file
-from wearlaw.tables import Table, read_table
 from wearlaw.units.quantities import (
     Density,
     Length,
@@ -259,6 +258,7 @@ if TYPE_CHECKING:
     from wearlaw_studies.study import Study, run
     from wearlaw_sweeps.inverse import creepage_for
     from wearlaw_sweeps.sweep import sweep
+    from wearlaw_tables import Table, read_table
     from wearlaw_twin_disc import Disc, TwinDisc
     from wearlaw_wheel_rail import WheelRail
 
@@ -293,6 +293,8 @@ _LATE = {
     "Study": "wearlaw_studies.study",
     "run": "wearlaw_studies.study",
     "sweep": "wearlaw_sweeps.sweep",
+    "Table": "wearlaw_tables",
+    "read_table": "wearlaw_tables",
     "Disc": "wearlaw_twin_disc",
     "TwinDisc": "wearlaw_twin_disc",
     "WheelRail": "wearlaw_wheel_rail",
