@@ -33,7 +33,6 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.plugins import loader
-from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, known_name, parts
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
@@ -133,7 +132,8 @@ def run(
     resume : bool
         Whether to go on with the stores there.
     """
-    expect(Case, case, "case", "a wearlaw.Case, as from wl.load_case")
+    if not isinstance(case, Case):
+        raise InputError(f"case: must be a wearlaw.Case, as from wl.load_case; got {shown(case)}")
     notes, of_profiles = Notes(), Notes()
     evaluator = Evaluator(on_block, workers, store, resume)
     pairs = pairs_of(case, notes)
@@ -173,7 +173,7 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
     subject = f"section '{name}' of {found['section'].origin(name)}"
     try:
         with notes.of(f"section '{name}'"):
-            section = make(_copied(study))
+            section = make(study)
         if not isinstance(section, Section):
             raise TypeError(f"it must be a Section, got {shown(section)}")
     except WearlawError as error:
@@ -185,15 +185,6 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
     except BaseException as error:
         raise ModelError(f"{subject} failed with {described(error)}") from error
     return section
-
-
-def _copied(study: Study) -> Study:
-    """Return a study with tables of its own, which a section may change."""
-    sweeps, profiles = (
-        {name: dataset.copy(deep=True) for name, dataset in datasets.items()}
-        for datasets in (study.sweeps, study.profiles)
-    )
-    return replace(study, sweeps=sweeps, profiles=profiles)
 
 
 def evaluations(case: Case) -> int:
