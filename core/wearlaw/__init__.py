@@ -60,7 +60,7 @@ from wearlaw.models.model import Claim
 from wearlaw.models.reader import Reader
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.plugins.fields import ContactModelField, LawField, MaterialField, StageField, WearLawField
+from wearlaw.plugins.fields import ContactModelField, MaterialField, WearLawField
 from wearlaw.plugins.loader import (
     contact_model,
     contact_models,
@@ -137,7 +137,6 @@ __all__ = [
     "Geometry",
     "InputError",
     "Law",
-    "LawField",
     "LawVariable",
     "Length",
     "LineContactModel",
@@ -170,7 +169,6 @@ __all__ = [
     "Solve",
     "Speed",
     "Stage",
-    "StageField",
     "Stress",
     "Strips",
     "Study",
@@ -263,47 +261,35 @@ if TYPE_CHECKING:
     from wearlaw_wheel_rail import WheelRail
 
 _LATE = {
-    "creepage_for": "wearlaw_sweeps.inverse",
-    "read_law": "wearlaw.plugins.law_files",
-    "wear_coefficient": "wearlaw_archard.coefficients",
-    "read_contact": "wearlaw_contact_files._reading",
-    "explore": "wearlaw_explore._page",
-    "Comparison": "wearlaw_fits.comparison",
-    "compare": "wearlaw_fits.comparison",
-    "fit": "wearlaw_fits.fit",
-    "Fit": "wearlaw_fits.result",
-    "lognormal": "wearlaw_fits.distributions",
-    "normal": "wearlaw_fits.distributions",
-    "published_range": "wearlaw_fits.distributions",
-    "uniform": "wearlaw_fits.distributions",
-    "Uncertainty": "wearlaw_fits.uncertainty",
-    "uncertainty": "wearlaw_fits.uncertainty",
-    "read_tests": "wearlaw_fits.read_tests",
-    "WearTests": "wearlaw_fits.wear_tests",
-    "wear_out": "wearlaw_life",
-    "Curve": "wearlaw_output.curves",
-    "FigureData": "wearlaw_output.curves",
-    "Panel": "wearlaw_output.curves",
-    "PlotAxis": "wearlaw_output.curves",
-    "Case": "wearlaw_studies.case",
-    "load_case": "wearlaw_studies.case",
-    "CheckedClaim": "wearlaw_studies.sections",
-    "Section": "wearlaw_studies.sections",
-    "Verdict": "wearlaw_studies.sections",
-    "Study": "wearlaw_studies.study",
-    "run": "wearlaw_studies.study",
-    "sweep": "wearlaw_sweeps.sweep",
-    "Disc": "wearlaw_twin_disc",
-    "TwinDisc": "wearlaw_twin_disc",
-    "WheelRail": "wearlaw_wheel_rail",
+    "wearlaw_sweeps.inverse": ("creepage_for",),
+    "wearlaw.plugins.law_files": ("read_law",),
+    "wearlaw_archard.coefficients": ("wear_coefficient",),
+    "wearlaw_contact_files._reading": ("read_contact",),
+    "wearlaw_explore._page": ("explore",),
+    "wearlaw_fits.comparison": ("Comparison", "compare"),
+    "wearlaw_fits.fit": ("fit",),
+    "wearlaw_fits.result": ("Fit",),
+    "wearlaw_fits.distributions": ("lognormal", "normal", "published_range", "uniform"),
+    "wearlaw_fits.uncertainty": ("Uncertainty", "uncertainty"),
+    "wearlaw_fits.read_tests": ("read_tests",),
+    "wearlaw_fits.wear_tests": ("WearTests",),
+    "wearlaw_life": ("wear_out",),
+    "wearlaw_output.curves": ("Curve", "FigureData", "Panel", "PlotAxis"),
+    "wearlaw_studies.case": ("Case", "load_case"),
+    "wearlaw_studies.sections": ("CheckedClaim", "Section", "Verdict"),
+    "wearlaw_studies.study": ("Study", "run"),
+    "wearlaw_sweeps.sweep": ("sweep",),
+    "wearlaw_twin_disc": ("Disc", "TwinDisc"),
+    "wearlaw_wheel_rail": ("WheelRail",),
 }
-"""Public names that come from plugins, or that few scripts need: their modules are imported at their first use."""
+"""Public names that come from plugins, or that few scripts need, by the module that is imported at their first use."""
 
 
 def __getattr__(name: str) -> object:
-    if name not in _LATE:
-        raise AttributeError(f"module 'wearlaw' has no attribute {name!r}")
-    return _load(_LATE[name], name, f"wearlaw.{name}")
+    for module, names in _LATE.items():
+        if name in names:
+            return _load(module, name, f"wearlaw.{name}")
+    raise AttributeError(f"module 'wearlaw' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:

@@ -6,8 +6,8 @@ names marked `@wearlaw.hookimpl`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, overload
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pluggy
 
@@ -49,24 +49,8 @@ class ResourceKind(NamedTuple):
     `wearlaw show`. It is imported when a user asks."""
 
 
-if TYPE_CHECKING:
-    Provided = (
-        Iterable[type[Model]]
-        | Mapping[str, WearLaw | Material | type[Material]]
-        | Mapping[str, Mapping[str, Any]]
-        | Iterable[Command]
-    )
-    Implementation = TypeVar("Implementation", bound=Callable[[], Provided | None])
-    Function = TypeVar("Function", bound=Callable[..., Any])
-
-    @overload
-    def hookimpl(function: Implementation, /) -> Implementation: ...
-    @overload
-    def hookimpl(*, specname: str = ..., optionalhook: bool = ...) -> Callable[[Function], Function]: ...
-    def hookimpl(*function: Any, **options: Any) -> Any:
-        """Mark a function of a plugin as the hook of its name; checkers see if no hook returns what it does."""
-else:
-    hookimpl = pluggy.HookimplMarker(PROJECT)
+hookimpl = pluggy.HookimplMarker(PROJECT)
+"""Marks a function of a plugin as the hook of its name."""
 
 
 @hookspec

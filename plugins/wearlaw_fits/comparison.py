@@ -25,7 +25,6 @@ from wearlaw.errors import (
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.models.model import Model, labels
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.settings.arguments import expect
 from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
 from wearlaw.units.variables import label, name_of
 from wearlaw_fits.agreement import Agreement, Information, agreement
@@ -34,7 +33,7 @@ from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import repeats
 from wearlaw_fits.observations import test_names
 from wearlaw_fits.result import Fit
-from wearlaw_fits.wear_tests import WearTests
+from wearlaw_fits.wear_tests import WearTests, expect_tests
 from wearlaw_output.curves import BLACK, Curve, FigureData
 from wearlaw_output.notes import Notes
 from wearlaw_output.parity import parity_panels
@@ -279,8 +278,11 @@ def compare(
     tests, and if fits assume different kinds of scatter. A note names the laws that were fitted to these tests, and
     `in_sample` counts the tests; cross-validation ranks fits by tests that they have not seen.
     """
-    expect(Mapping | Sequence, predictors, "predictors", "a list of pipelines and fits, or a table of these by name")
-    expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
+    if not isinstance(predictors, Mapping | Sequence):
+        raise InputError(
+            f"predictors: must be a list of pipelines and fits, or a table of these; got {shown(predictors)}"
+        )
+    expect_tests(tests)
     given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
     if not given:
         raise InputError("give at least one predictor, such as rig | contact_model | law")

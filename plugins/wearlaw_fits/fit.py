@@ -22,7 +22,6 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.ranges import overload_of
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import specification
-from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import known_name
 from wearlaw.units.quantities import Quantity, QuantityLike, coefficient, in_unit
 from wearlaw.units.variables import UNITS
@@ -42,7 +41,7 @@ from wearlaw_fits.least_squares import Bounds, Solutions, refine, search
 from wearlaw_fits.named_numbers import changed_parts, staged_models
 from wearlaw_fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
 from wearlaw_fits.result import Fit
-from wearlaw_fits.wear_tests import WearTests
+from wearlaw_fits.wear_tests import WearTests, expect_tests
 
 NEAR = 10.0
 """Starting points lie within this factor of the first value, up and down."""
@@ -135,7 +134,7 @@ def fit(
     -----
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
-    expect(WearTests, tests, "tests", "wearlaw.WearTests, as from wl.read_tests")
+    expect_tests(tests)
     if scatter not in ("relative", "absolute"):
         raise FitError(f'scatter: must be "relative" or "absolute", got {shown(scatter)}')
     for name, count in {"starts": starts, "bootstrap": bootstrap, "seed": seed}.items():

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from wearlaw.arrays.array import Array
 from wearlaw.errors import FitError, InputError, UnitError, did_you_mean, shown
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.settings.parameters import allowed_range, number_in_si, number_like, numbers
+from wearlaw.settings.parameters import number_in_si, number_like, numbers
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
 from wearlaw.units.registry import symbol
+from wearlaw_fits.allowed_range import allowed_range
 from wearlaw_fits.least_squares import Bounds
 from wearlaw_fits.named_numbers import NamedNumbers, Place, part_at
 

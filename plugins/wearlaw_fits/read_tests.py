@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import wearlaw as wl
 from wearlaw.errors import DataError, InputError, UnitError, did_you_mean, shown
+from wearlaw.pipeline.datasets import names_in
 from wearlaw.plugins import loader
-from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.text_files import read_text
 from wearlaw.tables import Column, Table
 from wearlaw_fits.wear_tests import COLUMNS, Values, WearTests, head
@@ -54,7 +54,7 @@ def read_tests(
     UnknownModelError
         If several plugins ship tests of that name.
     """
-    outcomes = expect_names(outcomes, "outcomes", "rcf_damage", least=0)
+    outcomes = names_in(outcomes, "outcomes")
     if isinstance(source, str | os.PathLike):
         return parse_tests(text_of_tests(source), str(source), outcomes, sep, decimal)
     return _checked(wl.read_table(source, sep=sep, decimal=decimal), "a table", outcomes)

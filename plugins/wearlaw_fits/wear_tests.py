@@ -16,7 +16,7 @@ import pint
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import LOADS
-from wearlaw.errors import ConditionsError, DataError, UnitError, did_you_mean, shown
+from wearlaw.errors import ConditionsError, DataError, InputError, UnitError, did_you_mean, shown
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, parse, real_array
 from wearlaw.units.registry import si_factor, symbol
 from wearlaw.units.variables import VARIABLES
@@ -497,3 +497,9 @@ def _same_length(columns: Mapping[str, Values]) -> dict[str, Values]:
         copied = np.array(np.broadcast_to(plain(values), shape))
         found[name] = Q(copied, str(values.units)) if isinstance(values, pint.Quantity) else copied
     return found
+
+
+def expect_tests(tests: object) -> None:
+    """Raise an `InputError` unless the argument `tests` of a function is a set of tests."""
+    if not isinstance(tests, WearTests):
+        raise InputError(f"tests: must be wearlaw.WearTests, as from wl.read_tests; got {shown(tests)}")

@@ -26,15 +26,10 @@ LIFE = "life.json"
 @click.argument("case")
 @click.argument("line", type=click.Path(path_type=Path))
 @click.option("--over", required=True, metavar="DISTANCE", help='Distance, as in "100000 km"; passages for a rail.')
-@click.option("--share", default="share", show_default=True, help="Column of LINE with the shares of the distance.")
-@click.option("--set", "conditions", metavar="CONDITION=VALUE", multiple=True, help="Condition of all states.")
 @click.option("--until", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
-@click.option("--body", default="wheel", show_default=True, help="The body that wears: wheel or rail.")
-@click.option("--sides", type=click.Choice(["mean", "each"]), default="mean", show_default=True,
-              help="Whether both sides wear by their mean, or each for itself.")  # fmt: skip
+@click.option("--set", "settings", metavar="NAME=VALUE", multiple=True,
+              help="Condition of all states, or argument of wl.wear_out, such as sides=each.")  # fmt: skip
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
-@click.option("--depth-step", default="0.05 mm", show_default=True, help="Largest depth of a step.")
-@click.option("--smoothing", default="3 mm", show_default=True, help="Standard deviation of the smoothing.")
 @click.option("--resume", is_flag=True, help="Go on from the finished steps of an interrupted life, in FOLDER.partial.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: LINE-life].")
 @click.option("--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay.")
@@ -43,19 +38,20 @@ def life(
     case: str,
     line: Path,
     over: str,
-    conditions: tuple[str, ...],
     until: tuple[str, ...],
+    settings: tuple[str, ...],
+    workers: int,
+    resume: bool,
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
-    **options: Any,
 ) -> None:
     """Wear a profile over a distance: CASE is a case file with a rig, LINE a table of states with their shares.
 
     \b
     wearlaw life wheel_life line.csv --over "20000 km"
-    wearlaw life my-case.toml line.csv --over "100000 km" --until flange_thickness="25 mm" -o life/
+    wearlaw life my-case.toml line.csv --over "100000 km" --until flange_thickness="25 mm" --set sides=each
 
     The first contact model and the first wear law of the case predict. The folder then holds life.csv, the measures
     at every step; profiles.csv; a figure; the worn profile, worn.csv (or that of each side, worn_left.csv and
@@ -64,7 +60,7 @@ def life(
     folder = output if output is not None else folder_for(str(line), "life")
     partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
     loaded, notes = load_case(case), Notes()
-    options |= values("--set", conditions)
+    given: dict[str, Any] = values("--set", settings)
     with results_folder(folder, overwrite, LIFE) as fresh:
         with notes.of("life"):
             predict: wl.Pipeline[...] = loaded.rig | loaded.contact_models[0]
@@ -72,8 +68,8 @@ def life(
                 predict = predict | stage
             predict = predict | loaded.wear_laws[0]
             found = wl.wear_out(
-                predict, line, over=value(over), until=values("--until", until), store=partial, progress=True,
-                **options,
+                predict, line, over=value(over), until=values("--until", until), workers=workers, store=partial,
+                resume=resume, progress=True, **given,
             )  # fmt: skip
         laws = [repr(law) for law in found.pipeline.laws]
         record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": notes.texts}

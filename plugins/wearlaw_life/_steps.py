@@ -142,14 +142,15 @@ class Steps:
             raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
         along, unit = self.along
         distance = min(self._distance(now, wear), (limits.ends["over"][1] - now.row[along]) / unit)
-        for _ in range(TRIES):
-            after = self._after(now, at, wear, distance)
+        after = self._after(now, at, wear, distance)
+        for _ in range(TRIES - 1):
             if after.change > self.conicity_step and distance * deepest > SHORTEST * self.depth_step:
                 distance *= max(AIM * self.conicity_step / after.change, 0.25)
             elif (share := limits.share(now.row, after.row)) < 1.0 - 1e-6:
                 distance *= share
             else:
                 break
+            after = self._after(now, at, wear, distance)
         return after
 
     def _distance(self, now: State, wear: Wear) -> float:

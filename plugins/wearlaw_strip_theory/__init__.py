@@ -11,6 +11,7 @@ from pydantic import Field
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_strip_theory import _strips
+from wearlaw_strip_theory._interaction import full_slips
 
 STICK_NODES, SLIP_NODES = (0.5, 4), (1.2, 8)
 """Nodes along a strip over the number of strips, and the fewest: in stick, and from the first slip on."""
@@ -22,8 +23,9 @@ class StripTheory(wl.ContactModel):
     The model cuts the patch into strips along the rolling direction, which do not feel each other. A strip sticks from
     its leading edge with the traction of Carter's theory, extended to lateral creepage and spin, in a plane whose
     stiffnesses meet Kalker's C11 and C22. Behind that it slips: the traction is μp along the slip, and turns with it as
-    in FASTSIM, by a flexibility that dissipates the energy fed into the strip. The theory of elliptic contact in the
-    documentation has the formulas.
+    in FASTSIM, by a flexibility that dissipates the energy fed into the strip. On given strips the stiffness follows
+    from what all of them displace on half-spaces in full slip. The theory of elliptic contact in the documentation has
+    the formulas.
 
     Notes
     -----
@@ -105,14 +107,18 @@ class StripTheory(wl.ContactModel):
         """Return the nodes of strips, (nodes, strips, points), in SI units."""
         c = wl.kalker.coefficients(flat.a / flat.b, flat.poisson_ratio, self.interpolation)
         greatest, half_length = flat.friction_coefficient * layout.max_pressure, layout.half_length
+        if flat.strips is None:
+            k_x, k_y = (greatest * (0.5 * np.pi**2 / (flat.shear_modulus * one)) for one in (c.c11, c.c22))
+        else:
+            k_x, k_y = full_slips(flat, layout, greatest, c.c11, c.c22)
         stick, slip = (max(round(share * self.strips), least) for share, least in (STICK_NODES, SLIP_NODES))
         nodes = _strips.solve(
             _strips.Strips(
                 along=flat.longitudinal_creepage - flat.spin * layout.y,
                 across=flat.lateral_creepage,
                 turning=flat.spin * half_length,
-                k_x=greatest * (0.5 * np.pi**2 / (flat.shear_modulus * c.c11)),
-                k_y=greatest * (0.5 * np.pi**2 / (flat.shear_modulus * c.c22)),
+                k_x=k_x,
+                k_y=k_y,
             ),
             stick,
             slip,

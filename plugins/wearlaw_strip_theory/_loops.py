@@ -19,6 +19,9 @@ BELOW = 1.0 - 8.0 * float(np.finfo(np.float64).eps)
 TINY = 1e-100
 """Keeps divisors from zero."""
 
+KNOTS = 2048
+"""Steps of the tables of `apart`, between which they are linear."""
+
 Number = TypeVar("Number", float, Array)
 
 
@@ -90,6 +93,14 @@ def direction(x: Number, y: Number) -> tuple[Number, Number]:
     return (x - y) * (x + y) * over, 2.0 * x * y * over
 
 
+def apart(distance: Number, half_length: Number, table: Array) -> tuple[Number, Number]:
+    """Return G_K and G_E at a distance from a strip."""
+    place: Any = np.abs(distance) * (KNOTS / root(half_length * half_length + distance * distance))
+    at = np.int32(np.minimum(place, KNOTS - 1))
+    share, first, second = place - at, table[0], table[1]
+    return first[at] + share * (first[at + 1] - first[at]), second[at] + share * (second[at + 1] - second[at])
+
+
 ROWS, NODES = "float64[:, ::1]", "float64[:, :, ::1]"
 
 
@@ -155,3 +166,16 @@ def slip_loop(strips: Array, table: Array, half: Array, decay: Array, lagging: A
             to_slip[i] = along[i] * q_x + w_y * q_y - taken_up(k, p, v[i], behind, cosine)
         for i in range(v.size):
             to_x[i], to_length[i] = 1.0 - v[i] * (1.0 + cosine), v[i] * length
+
+
+@wl.compiled_loop(f"void({', '.join([ROWS] * 4)}, {NODES})")
+def others_loop(y: Array, half_length: Array, weight: Array, table: Array, found: Array) -> None:
+    """Add to the sums of each strip those over the others."""
+    for at in range(y.shape[0]):
+        first, second = found[0, at], found[1, at]
+        for other in range(y.shape[0]):
+            if other != at:
+                for i in range(y.shape[1]):
+                    k, e = apart(y[other, i] - y[at, i], half_length[other, i], table)
+                    first[i] += weight[other, i] * k
+                    second[i] += weight[other, i] * e

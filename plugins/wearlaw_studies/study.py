@@ -33,7 +33,6 @@ from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
 from wearlaw.plugins import loader
-from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, known_name, parts
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
@@ -133,7 +132,8 @@ def run(
     resume : bool
         Whether to go on with the stores there.
     """
-    expect(Case, case, "case", "a wearlaw.Case, as from wl.load_case")
+    if not isinstance(case, Case):
+        raise InputError(f"case: must be a wearlaw.Case, as from wl.load_case; got {shown(case)}")
     notes, of_profiles = Notes(), Notes()
     evaluator = Evaluator(on_block, workers, store, resume)
     pairs = pairs_of(case, notes)

@@ -25,11 +25,11 @@ from wearlaw.errors import (
     shown,
 )
 from wearlaw.pipeline.composition import warn_of_unlike_materials
+from wearlaw.pipeline.datasets import names_in
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.pipeline.worn import POSITION
-from wearlaw.settings.arguments import expect_names
 from wearlaw.settings.configuration import parts
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.evaluation import Job, output_units, range_warnings
@@ -231,7 +231,7 @@ def _checked_job(
     InputError
         If an output is impossible, or other processes could not import a model.
     """
-    names = [] if outputs is None else expect_names(outputs, "outputs", "wear_rate")
+    names = [] if outputs is None else names_in(outputs, "outputs")
     if elsewhere:
         check_importable(pipeline)
     one = first.flatten()[:1]

@@ -186,8 +186,9 @@ def pressed(gap: Array, dx: float, dy: float, modulus: float, approach: float, s
 
     def overlap() -> Array:
         """Return a first pressure, with the displacement of the bodies where they overlap most."""
-        root = np.sqrt(np.maximum(0.5 * approach - gap, 0.0))
-        return np.asarray(root * ((approach - gap.min()) / displaced(root).max()))
+        least = gap.min()  # far from zero where the deepest point is not that of first touching
+        root = np.sqrt(np.maximum(0.5 * (approach + (least if least > 0.5 * approach else 0.0)) - gap, 0.0))
+        return np.asarray(root * ((approach - least) / displaced(root).max()))
 
     pressure = overlap() if start is None else start
     rest, small = displaced(pressure) + gap - approach, ACCURACY * approach

@@ -18,7 +18,9 @@ from tests.plugins.kit.wrong_rigs import Weight
 from wearlaw.cli.show import describe  # private: the program, in this process
 from wearlaw.models.model import Model  # private: the bound of a quadrature
 from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
-from wearlaw.settings.docstrings import field_docstrings  # private: what `show`, schemas and signatures say of fields
+from wearlaw.settings.configuration import (
+    field_docstrings,
+)  # private: what `show`, schemas and signatures say of fields
 
 MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}
 

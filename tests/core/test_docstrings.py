@@ -7,7 +7,9 @@ from typing import Any
 from pydantic import Field
 
 import wearlaw as wl
-from wearlaw.settings.docstrings import field_docstrings  # private: what `show`, schemas and signatures say of fields
+from wearlaw.settings.configuration import (
+    field_docstrings,
+)  # private: what `show`, schemas and signatures say of fields
 
 
 class Described(wl.Configuration):

@@ -47,7 +47,7 @@ def test_several_laws_give_what_each_gives_alone(model: wl.ContactModel) -> None
     power = together.wear_index_density.m_as("N/m^2") * together.problem.rolling_speed
     assert together["heat_flux"].m_as("W/m^2") == pytest.approx(power, rel=1e-12)
     pressure = (together.normal_force / together.patch_area).m_as("MPa")
-    error = together.outcome_error("mean_pressure").magnitude
+    error = together["mean_pressure_error"].magnitude
     assert (np.abs(together["mean_pressure"].magnitude - pressure) <= error).all()
 
 

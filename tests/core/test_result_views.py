@@ -97,9 +97,8 @@ def test_laws_of_friction_and_conditions_that_are_not_numbers_stand_in_the_attri
 
 
 def test_names_that_are_no_list_are_refused() -> None:
-    for wrong in ("wear_rate", [], [1]):
-        with pytest.raises(wl.InputError, match="names: must be a list of names, such as"):
-            GLOBAL(**POINT).to_dataset(wrong)
+    with pytest.raises(wl.InputError, match="names: must be a list of names, such as"):
+        GLOBAL(**POINT).to_dataset("wear_rate")
     with pytest.raises(wl.CompositionError, match="wearrate"):
         GLOBAL(**POINT).to_dataset(["wearrate"])
 

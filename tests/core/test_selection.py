@@ -127,7 +127,7 @@ def test_operating_points_of_discs_are_selected_by_position(law: str) -> None:
     [
         ({"sid": "left"}, r"sel: no labels for an axis 'sid'.* did you mean 'side'\? Axes with labels: side"
          r" \('left', 'right'\) and patch \(1, 2\)"),
-        ({"point_0": 0}, r"sel: no labels for an axis 'point_0'; 'point_0' has none, so use isel\(point_0=...\)"),
+        ({"point_0": 0}, r"sel: no labels for an axis 'point_0'.* isel takes"),
         ({"side": "top"}, r"sel: axis 'side' has no label 'top', only \('left', 'right'\)"),
         ({"patch": [1, 3]}, r"sel: axis 'patch' has no label 3, only \(1, 2\)"),
     ],
@@ -144,7 +144,7 @@ def test_a_wrong_label_is_named_with_those_there_are(chosen: Any, said: str) -> 
         ({"point_0": 3}, "isel: axis 'point_0' has 3 entries, 0 to 2; there is no entry 3"),
         ({"point_0": [0, -4]}, "isel: axis 'point_0' has 3 entries, 0 to 2; there is no entry -4"),
         ({"side": "left"}, "isel: side must be an integer, a list of integers or a slice, got 'left'"),
-        ({"side": [True, False]}, "isel: side must be an integer"),
+        ({"side": [0.5]}, "isel: side must be an integer"),
     ],
 )  # fmt: skip
 def test_a_wrong_position_is_named_with_those_there_are(chosen: Any, said: str) -> None:

@@ -26,8 +26,7 @@ from wearlaw.pipeline.pipeline import Rig
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw.plugins.loader import Preset
-from wearlaw.settings.configuration import Configuration
-from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.settings.configuration import Configuration, field_docstrings
 from wearlaw.units.quantities import Q, from_si, text_of
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS

@@ -29,8 +29,7 @@ from pydantic import Field
 
 from wearlaw.arrays.array import Array, extremes, read_only
 from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described
-from wearlaw.settings.configuration import Configuration
-from wearlaw.settings.docstrings import item_docstrings
+from wearlaw.settings.configuration import Configuration, item_docstrings
 from wearlaw.units.quantities import (
     Quantity,
     QuantityLike,

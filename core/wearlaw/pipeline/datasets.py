@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -10,10 +10,10 @@ import numpy as np
 from wearlaw.arrays.array import Array
 from wearlaw.contact.conditions import Known
 from wearlaw.contact.problem import Problem
+from wearlaw.errors import InputError, shown
 from wearlaw.extras import needed_for
 from wearlaw.pipeline.selection import Selection, axis_names
 from wearlaw.pipeline.variables import Predicted, default_variables, long_name, unit_of
-from wearlaw.settings.arguments import expect_names
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import name_of
 
@@ -96,6 +96,13 @@ class Conditions:
         return found
 
 
+def names_in(names: Iterable[str], argument: str) -> list[str]:
+    """Return an argument that is a list of names, each once, or raise an `InputError` for a single name."""
+    if isinstance(names, str):
+        raise InputError(f"{argument}: must be a list of names, such as [{shown(names)}], got {shown(names)}")
+    return list(dict.fromkeys(names))
+
+
 def _fits(shape: tuple[int, ...], whole: tuple[int, ...]) -> bool:
     """Return whether an array broadcasts to a shape without changing it."""
     try:
@@ -106,12 +113,10 @@ def _fits(shape: tuple[int, ...], whole: tuple[int, ...]) -> bool:
 
 def dataset(prediction: Predicted, conditions: Conditions, names: Sequence[str] | None) -> xarray.Dataset:
     """Return a prediction as a dataset with its conditions as coordinates; see `Prediction.to_dataset`."""
-    if names is not None:
-        names = expect_names(names, "names", "wear_rate")
     problem = prediction.problem
     every = axis_names(problem)
     count = len(every) - len(problem.dims)
-    chosen = default_variables(prediction, conditions.numbers) if names is None else list(dict.fromkeys(names))
+    chosen = default_variables(prediction, conditions.numbers) if names is None else names_in(names, "names")
     dims = [*conditions.axes(every[:count], {*problem.dims, *chosen}), *every[count:]]
     coordinates = {
         name: _coordinate(name, one, dims[:count])

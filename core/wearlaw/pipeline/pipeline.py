@@ -37,10 +37,10 @@ from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.composition import (
     check_geometry,
     check_laws,
-    check_one_patch,
     check_scale,
     check_traction,
     law_among,
+    several_patches,
     warn_of_calibration,
     warn_of_materials,
     warn_of_parameters,
@@ -50,7 +50,6 @@ from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.pipeline.several import LAW, Pipelines
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
-from wearlaw.settings.arguments import expect
 from wearlaw.settings.configuration import LINE, Configuration
 from wearlaw.units.registry import with_magnitude
 
@@ -453,8 +452,8 @@ class Pipeline(Configuration, Generic[P]):
             If the application needs one patch and the rig makes several.
         """
         rig, problem = self.rig, self.rig.checked_problem(conditions)
-        if of_one_patch:
-            check_one_patch(problem, rig, of_one_patch)
+        if of_one_patch and (several := several_patches(problem, rig)):
+            raise CompositionError(f"{of_one_patch}: {several}")
         if type(rig).balanced is Rig.balanced:
             return problem
         with Blame(rig), steadily():
@@ -532,4 +531,5 @@ class Pipeline(Configuration, Generic[P]):
 
 def expect_pipeline(predict: object) -> None:
     """Raise an `InputError` unless the argument `predict` of an application is a pipeline."""
-    expect(Pipeline, predict, "predict", "a pipeline, as in rig | contact model | wear law")
+    if not isinstance(predict, Pipeline):
+        raise InputError(f"predict: must be a pipeline, as in rig | contact model | wear law; got {shown(predict)}")

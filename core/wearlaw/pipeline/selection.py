@@ -60,13 +60,17 @@ class Selection:
         found: dict[str, Position] = {}
         for name, given in labels.items():
             if name not in problem.dims:
-                numbered = f"; {shown(name)} has none, so use isel({name}=...)" if name in axis_names(problem) else ""
-                known = " and ".join(f"{dim} {_listed(own)}" for dim, own in problem.dims.items()) or "none"
-                hint = did_you_mean(name, problem.dims) if not numbered else "."
-                raise InputError(f"sel: no labels for an axis {shown(name)}{numbered}{hint} Axes with labels: {known}")
+                known = " and ".join(f"{dim} {own}" for dim, own in problem.dims.items()) or "none"
+                raise InputError(
+                    f"sel: no labels for an axis {shown(name)}{did_you_mean(name, problem.dims)} Axes with labels:"
+                    f" {known}; isel takes positions along any axis"
+                )
+            own = problem.dims[name]
             several = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str)
-            places = [_place(name, one, problem.dims[name]) for one in (given if several else [given])]
-            found[name] = places if several else places[0]
+            for label in given if several else [given]:
+                if label not in own:
+                    raise InputError(f"sel: axis {shown(name)} has no label {shown(label)}, only {own}")
+            found[name] = [own.index(label) for label in given] if several else own.index(given)
         return cls(tuple(found.get(name, slice(None)) for name in axis_names(problem)))
 
     @classmethod
@@ -78,13 +82,12 @@ class Selection:
         InputError
             If there is no such axis or position.
         """
-        names = axis_names(problem)
-        sizes = dict(zip(names, problem.batch_shape, strict=True))
+        sizes = dict(zip(axis_names(problem), problem.batch_shape, strict=True))
         for name in positions:
             if name not in sizes:
                 known = ", ".join(f"{dim} ({size})" for dim, size in sizes.items()) or "none at one operating point"
-                raise InputError(f"isel: no axis {shown(name)}{did_you_mean(name, names)} Axes (with sizes): {known}")
-        return cls(tuple(_position(name, positions.get(name, slice(None)), sizes[name]) for name in names))
+                raise InputError(f"isel: no axis {shown(name)}{did_you_mean(name, sizes)} Axes (with sizes): {known}")
+        return cls(tuple(_position(name, positions.get(name, slice(None)), size) for name, size in sizes.items()))
 
     @classmethod
     def by_index(cls, problem: Problem, index: Any) -> Selection:
@@ -99,22 +102,14 @@ class Selection:
         positions = index if isinstance(index, tuple) else (index,)
         if len(positions) > len(names):
             known = ", ".join(names) or "none: this is one operating point"
-            raise InputError(f"{_listed(positions)}: are more positions than there are axes. Axes: {known}")
-        given = {
-            name: np.flatnonzero(one) if _is_mask(one, size) else one
-            for name, size, one in zip(names, problem.batch_shape, positions, strict=False)
-        }
-        return cls.by_position(problem, given)
+            raise InputError(f"{shown(positions)}: are more positions than there are axes. Axes: {known}")
+        return cls.by_position(problem, dict(zip(names, positions, strict=False)))
 
     def of_conditions(self, values: Array) -> Array:
         """Return the chosen entries of a condition, with an axis for each of the conditions, of full length or 1."""
-        chosen = Selection(
-            tuple(
-                position if size > 1 else 0 if isinstance(position, int) else slice(None)
-                for position, size in zip(self.positions, values.shape, strict=False)
-            )
-        )
-        return chosen.of(values)
+        sizes_and_positions = zip(values.shape, self.positions, strict=False)
+        kept = (one if size > 1 else 0 if isinstance(one, int) else slice(None) for size, one in sizes_and_positions)
+        return Selection(tuple(kept)).of(values)
 
     def of(self, array: Array) -> Array:
         """Return the chosen entries of an array whose first axes are those of the batch."""
@@ -148,23 +143,13 @@ class Selection:
         return contact[chosen[chosen >= 0]]
 
 
-def _is_mask(given: object, size: int) -> bool:
-    return isinstance(given, np.ndarray) and given.dtype.kind == "b" and given.shape == (size,)
-
-
-def _place(name: str, label: object, labels: Sequence[Label]) -> int:
-    """Return the place of a label among those of an axis."""
-    for place, known in enumerate(labels):
-        if known == label:
-            return place
-    raise InputError(f"sel: axis {shown(name)} has no label {shown(label)}, only {_listed(labels)}")
-
-
-def _position(name: str, given: object, size: int) -> Position:
-    """Return a position along an axis, without negative numbers."""
+def _position(name: str, given: Any, size: int) -> Position:
+    """Return a position along an axis, without negative numbers; a mask has the entries where it is true."""
     if isinstance(given, slice):
         return given
     numbers = np.asarray(given)
+    if numbers.dtype == np.bool_ and numbers.shape == (size,):
+        numbers = np.flatnonzero(numbers)
     if numbers.ndim > 1 or (numbers.size and numbers.dtype.kind not in "iu"):
         raise InputError(f"isel: {name} must be an integer, a list of integers or a slice, got {shown(given)}")
     wrong = numbers[(numbers < -size) | (numbers >= size)]
@@ -174,7 +159,3 @@ def _position(name: str, given: object, size: int) -> Position:
         )
     found: list[int] = (numbers % size).reshape(-1).tolist()
     return found if numbers.ndim else found[0]
-
-
-def _listed(labels: Sequence[object]) -> str:
-    return f"({', '.join(map(repr, labels))})"

@@ -16,8 +16,7 @@ from wearlaw.models.model import Model
 from wearlaw.plugins import loader
 from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw.plugins.loader import Preset
-from wearlaw.settings.configuration import Configuration, known_name
-from wearlaw.settings.docstrings import field_docstrings
+from wearlaw.settings.configuration import Configuration, field_docstrings, known_name
 from wearlaw.settings.text_files import beside
 
 if TYPE_CHECKING:

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import textwrap
+from functools import cache
+from itertools import pairwise
 from threading import RLock
 from types import NoneType
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, get_args, get_origin
@@ -17,7 +22,6 @@ from wearlaw.errors import (
     did_you_mean,
     shown,
 )
-from wearlaw.settings.docstrings import field_docstrings
 from wearlaw.units.quantities import plain_number, text_of
 
 if TYPE_CHECKING:
@@ -169,6 +173,36 @@ class _Signature:
         if instance is None and owner.model_rebuild(raise_errors=False) is not False:
             return owner.__signature__
         raise AttributeError("__signature__")
+
+
+def field_docstrings(model: type[BaseModel]) -> dict[str, str]:
+    """Return the docstring of each field: its `description`, or else the string literal below it, or else "".
+
+    Pydantic can read these literals too, but it does so as it makes a class, which then takes three times as long. An
+    inherited field has the docstring of its last annotation. There are no string literals if the source is not in a
+    file, as in a notebook.
+    """
+    found = {name: text for base in reversed(model.__mro__) for name, text in item_docstrings(base).items()}
+    return {name: field.description or found.get(name, "") for name, field in model.model_fields.items()}
+
+
+@cache
+def item_docstrings(cls: type) -> dict[str, str]:
+    """Return the string literal below each name annotated in the body of a class, or ""; {} without the source."""
+    if not vars(cls).get("__annotations__"):
+        return {}
+    try:
+        (statement,) = ast.parse(textwrap.dedent(inspect.getsource(cls))).body
+    except (OSError, TypeError, SyntaxError):
+        return {}
+    found = {}
+    for annotated, below in pairwise([*getattr(statement, "body", ()), ast.Pass()]):
+        match annotated, below:
+            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                found[name] = inspect.cleandoc(text)
+            case ast.AnnAssign(target=ast.Name(id=name)), _:
+                found[name] = ""
+    return found
 
 
 def parts(value: object) -> Iterator[Configuration]:

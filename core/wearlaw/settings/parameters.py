@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any, TypeVar, get_args
+from collections.abc import Mapping
+from typing import Any, TypeVar
 
-import numpy as np
 import pint
-from pydantic.fields import FieldInfo
 
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.settings.configuration import Configuration
-from wearlaw.units.quantities import Quantity, Unit, from_si
-from wearlaw.units.registry import si_factor, unit_in_si
+from wearlaw.units.quantities import Quantity, from_si
+from wearlaw.units.registry import si_factor
 
 ConfigurationT = TypeVar("ConfigurationT", bound=Configuration)
 
@@ -44,35 +42,6 @@ def numbers_in_si(record: Configuration) -> dict[str, float]:
 def number_like(number: Quantity | float, si: Any) -> Any:
     """Return SI floats in the unit of one of `numbers`."""
     return from_si(si, str(number.units)) if isinstance(number, pint.Quantity) else si
-
-
-def allowed_range(record: Configuration, name: str) -> tuple[float, float, bool]:
-    """Return the least and the greatest value in SI that one of `numbers` may have, and whether it must be positive.
-
-    These are the bounds in the annotation of the field, infinite where it has none.
-    """
-    outer, _, inner = name.partition(".")
-    if inner:
-        return allowed_range(getattr(record, outer), inner)
-    low, high, positive = -np.inf, np.inf, False
-    field = type(record).model_fields[outer]
-    for rule in (*field.metadata, *_rules_within(field.annotation)):
-        if isinstance(rule, Unit):
-            limit = rule.limit * unit_in_si(rule.unit) if rule.limit < np.inf else np.inf
-            low, high, positive = max(low, -limit), min(high, limit), positive or rule.positive
-            continue
-        above = getattr(rule, "gt", None)
-        positive = positive or (above is not None and above >= 0.0)
-        low = max([low, *(float(end) for end in (above, getattr(rule, "ge", None)) if end is not None)])
-        high = min([high, *(float(getattr(rule, end)) for end in ("lt", "le") if getattr(rule, end, None) is not None)])
-    return (max(low, 0.0) if positive else low), high, positive
-
-
-def _rules_within(annotation: Any) -> Iterator[Any]:
-    """Yield the rules of the types in a union, such as those of `Annotated[float, Field(ge=1)] | None`."""
-    for one in get_args(annotation):
-        for rule in getattr(one, "__metadata__", ()):
-            yield from rule.metadata if isinstance(rule, FieldInfo) else (rule,)
 
 
 def changed(record: ConfigurationT, values: Mapping[str, Quantity | float]) -> ConfigurationT:

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("small_blocks")
 @pytest.fixture(scope="module")
 def client() -> Iterator[Any]:
     with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as machines,
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as machines,
         distributed.Client(machines) as connected,
     ):
         yield connected

@@ -64,6 +64,9 @@ def test_a_ball_with_a_hump_is_carried_by_both_areas() -> None:
     for guess in (np.roll(pressure, 5, axis=1), 100.0 * pressure, 1e-6 * pressure):
         again = pressed(gap, step, step, MODULUS, depth, guess)
         assert again == pytest.approx(pressure, rel=0.0, abs=1e-6 * pressure.max())
+    # Bodies that touch later.
+    later = pressed(gap + 2.0 * depth, step, step, MODULUS, 3.0 * depth)
+    assert later == pytest.approx(pressure, rel=0.0, abs=1e-6 * pressure.max())
     # All of a guess that is far too high vanishes in the first step.
     little = pressed(gap, step, step, MODULUS, 0.02 * depth)
     again = pressed(gap, step, step, MODULUS, 0.02 * depth, pressure)
