@@ -103,12 +103,6 @@ def test_names_that_are_no_list_are_refused() -> None:
         GLOBAL(**POINT).to_dataset(["wearrate"])
 
 
-def test_a_named_condition_is_a_variable() -> None:
-    ds = GLOBAL(**ON_LINE).to_dataset(["normal_force"])
-    assert ds.normal_force.dims == ("point_0",)
-    np.testing.assert_array_equal(ds["normal_force"], LOADS.magnitude)
-
-
 def test_a_dataset_without_a_law_and_of_a_problem() -> None:
     contact = EXACT.without_law()
     ds = contact(**ON_LINE).to_dataset()
@@ -161,13 +155,6 @@ def test_a_dataset_is_the_one_of_a_sweep() -> None:
         assert found[name].attrs == one.attrs
     of_patches = axles.PREDICT(**GIVEN).to_dataset()
     xr.testing.assert_allclose(of_patches, wl.sweep(axles.PREDICT, **GIVEN), rtol=64 * EPS)
-
-
-def test_a_table_can_be_swept_again() -> None:
-    found = EXACT(**GRID)
-    conditions = [head for head in found.to_dataframe() if head.partition(" ")[0] in GRID]
-    again = wl.sweep(EXACT, found.to_dataframe()[conditions])
-    np.testing.assert_array_equal(again.wear_rate, found.wear_rate.magnitude.reshape(-1))
 
 
 def test_square_brackets_choose_points_by_position() -> None:
@@ -266,13 +253,6 @@ def test_one_axis_is_a_curve_with_its_conditions_above() -> None:
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("creepage [%]", "tangential force T [N]")
     assert axes.get_title(loc="left") == "normal force 6000 N, friction coefficient 0.4"
     assert legend(axes) == []
-
-
-def test_a_picture_goes_into_given_axes_or_a_new_figure() -> None:
-    _, given = plt.subplots()
-    assert EXACT(**ON_LINE).plot(ax=given) is given
-    first, second = (EXACT(**ON_LINE).plot() for _ in range(2))
-    assert first.figure is not second.figure
 
 
 def test_two_axes_are_curves_over_the_longer_one_or_a_map() -> None:
