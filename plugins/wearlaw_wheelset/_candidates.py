@@ -149,10 +149,7 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
     if wl.accelerated(max(rows.size, among) * SAMPLES):
         samples, arcs = np.empty((2, rows.size, SAMPLES))
         position = (np.ascontiguousarray(array[rows]) for array in found.position[:3])
-        compiled_samples(
-            *position, found.arc[rows], spacing, *section.wheel_y[:3], *section.wheel_radius[:3], *section.rail_z[:3],
-            samples, arcs,
-        )  # fmt: skip
+        compiled_samples(*position, found.arc[rows], spacing, section.tables, samples, arcs)
         found.samples[rows], found.arcs[rows] = samples, arcs
         return
     middle = SAMPLES // 2
