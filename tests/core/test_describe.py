@@ -11,8 +11,8 @@ from pydantic import Field
 
 import wearlaw as wl
 from tests.core import cases
-from tests.core.test_outcomes import Damage as BaseOfDamage
-from tests.core.test_outcomes import Heat
+from tests.core.outcome_laws import Damage as BaseOfDamage
+from tests.core.outcome_laws import Heat
 from tests.plugins.kit.wrong_rigs import Weight
 from wearlaw.cli.show import describe  # private: the program, in this process
 from wearlaw.models.model import Model  # private: the bound of a quadrature
