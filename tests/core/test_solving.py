@@ -295,7 +295,7 @@ def test_closed_forms_of_another_shape_are_refused(fault: str) -> None:
 def test_closed_forms_that_are_no_number_are_refused() -> None:
     predict = RIG | FarFromItsForce(fault="no number") | Ramps()
     for creepage in (Q([2.0, 4.0], "%"), Q(2.0, "%")):
-        with pytest.raises(wl.ModelError, match="^contact model 'five_times' gave a .* that is not finite"):
+        with pytest.raises(wl.ModelError, match=r"^contact model 'five_times' gave a .* that is not finite"):
             predict(**{**ON_DISCS, "creepage": creepage})
 
 
