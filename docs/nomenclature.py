@@ -21,7 +21,7 @@ from wearlaw_wheelset._rig import WheelsetProblem
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")
 CLASSES = (wl.Problem, wl.Contact, wl.Prediction, wl.CreepForces, wl.Body, WheelsetProblem)
-OF_ANY_UNIT = ("outcome", "outcome_error", "value", "local_value")
+OF_ANY_UNIT = ("outcome", "value", "local_value")
 """Quantities of a law, whose unit is that of its outcome."""
 
 SEVERE = {"mass_per_energy": "5 ug/J", "severe_mass_per_energy": "15 ug/J"}

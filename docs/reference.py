@@ -30,7 +30,7 @@ TITLES = {
     "wearlaw_studies": "Studies",
     "wearlaw_contact_files": "Contacts from files",
     "wearlaw_output": "Data of figures",
-    "tables": "Tables",
+    "wearlaw_tables": "Tables",
     "wearlaw_wheelset": "Wheelsets",
     "wearlaw_life": "The life of a wheel",
     "wearlaw_explore": "Explore",

@@ -25,7 +25,7 @@ DEFERRED = {
     ("wearlaw_sweeps.wear_profile", "wearlaw_sweeps.folder"): "zarr takes as long to load as all else",
     ("wearlaw_sweeps.workers", "loky"): "is for several processes alone",
     ("wearlaw_sweeps.workers", "zarr"): "takes as long to load as all else",
-    ("wearlaw.tables", "pandas"): "takes half as long to load as the rest of wearlaw",
+    ("wearlaw_tables", "pandas"): "takes half as long to load as the rest of wearlaw",
     ("wearlaw_kit.kit", "pytest"): "is not needed to run the checks of the kit",
     ("wearlaw_fits.wear_tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
     ("wearlaw_life", "wearlaw_life"): "needs pandas and xarray, which looking up a plugin must not load",

@@ -80,7 +80,6 @@ from wearlaw.plugins.loader import (
 )
 from wearlaw.settings.configuration import Configuration
 from wearlaw.settings.text_files import beside, read_file
-from wearlaw.tables import Table, read_table
 from wearlaw.units.quantities import (
     Density,
     Length,
@@ -257,6 +256,7 @@ if TYPE_CHECKING:
     from wearlaw_studies.study import Study, run
     from wearlaw_sweeps.inverse import creepage_for
     from wearlaw_sweeps.sweep import sweep
+    from wearlaw_tables import Table, read_table
     from wearlaw_twin_disc import Disc, TwinDisc
     from wearlaw_wheel_rail import WheelRail
 
@@ -279,6 +279,7 @@ _LATE = {
     "wearlaw_studies.sections": ("CheckedClaim", "Section", "Verdict"),
     "wearlaw_studies.study": ("Study", "run"),
     "wearlaw_sweeps.sweep": ("sweep",),
+    "wearlaw_tables": ("Table", "read_table"),
     "wearlaw_twin_disc": ("Disc", "TwinDisc"),
     "wearlaw_wheel_rail": ("WheelRail",),
 }

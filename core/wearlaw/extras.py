@@ -10,6 +10,7 @@ from typing import Any
 from wearlaw.errors import WearlawError
 
 EXTRA_OF = {
+    "wearlaw_tables": "sweeps",
     "wearlaw_sweeps": "sweeps",
     "wearlaw_fits": "fits",
     "wearlaw_output": "fits",

@@ -14,8 +14,8 @@ from wearlaw.errors import DataError, InputError, UnitError, did_you_mean, shown
 from wearlaw.pipeline.datasets import names_in
 from wearlaw.plugins import loader
 from wearlaw.settings.text_files import read_text
-from wearlaw.tables import Column, Table
 from wearlaw_fits.wear_tests import COLUMNS, Values, WearTests, head
+from wearlaw_tables import Column, Table
 
 if TYPE_CHECKING:
     import pandas as pd

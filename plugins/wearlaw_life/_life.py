@@ -117,7 +117,7 @@ class Life:
         deepest = float(worn["depth"].max())
         times = 10.0 ** np.floor(np.log10(SEEN / deepest)) if deepest > 0.0 else 1.0  # so that wear is seen
         new = worn.isel({along: 0})
-        magnified = new + times * (worn - new)
+        magnified = worn + (times - 1.0) * (worn - new)
         panels = []
         for side in worn["side"].values:
             title = self.body if side == "mean" else f"{side} {self.body}"
@@ -131,7 +131,7 @@ class Life:
                     for number, distance in enumerate(distances[chosen])
                 )
                 x, y = wl.PlotAxis("y, outwards [mm]"), wl.PlotAxis(label, inverted=True)
-                panels.append(wl.Panel(x, y, curves, f"{title}, {what}"))
+                panels.append(wl.Panel(x, y, curves, f"{title}, {what}", equal=name == "z"))
         for beginning, label in CURVES.items():
             measures = self.table.filter(regex=f"^{beginning}").dropna(axis=1, how="all")
             if beginning == "flange":

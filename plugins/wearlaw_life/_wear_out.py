@@ -24,8 +24,8 @@ from wearlaw_sweeps.wear_profile import SHARE
 if TYPE_CHECKING:
     from wearlaw_wheelset import Profile
 
-DEEPEST = 0.1
-"""Largest depth of a step [mm]: contacts move with the wear."""
+DEEPEST = 1e-4
+"""Largest depth of a step [m]: contacts move with the wear."""
 
 
 def wear_out(
@@ -115,17 +115,20 @@ def wear_out(
         If `store` holds anything but the same life.
     """
     expect_pipeline(predict)
-    if not conicity_step > 0.0:
-        raise wl.InputError(f"conicity_step: must be positive, or math.inf for no limit; got {conicity_step:g}")
-    distance = wl.coefficient(over, "over, in passages") if body == "rail" else 1e-3 * wl.Unit("km").si(over, "over")
+    length = wl.Unit("mm")
     settings: dict[str, Any] = {
-        "depth_step": float(wl.Unit("mm", limit=DEEPEST).si(depth_step, "depth_step")),
+        "depth_step": float(length.si(depth_step, "depth_step")),
         "smoothing": float(wl.Unit("mm", positive=False, negative=False).si(smoothing, "smoothing")),
         "conicity_step": float(conicity_step),
     }
+    if settings["depth_step"] > DEEPEST:
+        raise wl.InputError(f"depth_step: must be at most {1e3 * DEEPEST:g} mm, since contacts move as a profile wears")
+    if not conicity_step > 0.0:
+        raise wl.InputError(f"conicity_step: must be positive, or math.inf for no limit; got {conicity_step:g}")
+    distance = _distance(over, body)
     new = tuple(even(one) for one in _profiles(predict.rig, body, sides))
-    length = max(np.ptp(one.curve.s) for one in new)
-    at = positions(new, math.ceil(length / wl.Unit("mm").si(spacing, "spacing")) + 1)
+    longest = max(np.ptp(one.curve.s) for one in new)
+    at = positions(new, math.ceil(longest / length.si(spacing, "spacing")) + 1)
     with ExitStack() as stack:
         points = stack.enter_context(
             operating_points(predict, line, conditions, columns, {SHARE: share}, {}, store, True)
@@ -133,12 +136,12 @@ def wear_out(
         steps = Steps(Line(predict, points, body, at, workers, client), body, new, **settings)
         now = steps.begin(predict)
         rows, profiles = [now.row], [now.profiles]
-        limits = Limits(until or {}, float(distance), now.row)
+        limits = Limits(until or {}, distance, now.row)
         if store is not None:
             settings |= {"sides": sides, "limits": limits.ends}
             stack.enter_context(closing(steps.line.keep(store, settings, resume)))
-        bar = stack.enter_context(Bar(round(float(distance)), progress))
         along, _ = limits.ends["over"]
+        bar = stack.enter_context(Bar(round(distance), progress))
         bar.stage(along)
 
         def life(ended: str = "") -> Life:
@@ -156,6 +159,15 @@ def wear_out(
                 error.add_note(f"{now.number} steps are finished: the error's attribute `life` has them")
             raise
         return life(ended)
+
+
+def _distance(over: Any, body: str) -> float:
+    """Return the distance [km], or the number of passages of a rail."""
+    if body != "rail":
+        return 1e-3 * float(wl.Unit("km").si(over, "over"))
+    if isinstance(over, str | wl.Quantity) or not over > 0.0:
+        raise wl.InputError(f"over: a rail wears by passages; give their number, such as 1e6; got {wl.shown(over)}")
+    return float(over)
 
 
 def _profiles(rig: Any, body: str, sides: str) -> tuple[Profile, ...]:

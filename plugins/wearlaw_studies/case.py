@@ -64,9 +64,6 @@ CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 """Names of the files that a run writes: its case, and its measured tests if they came from a file."""
 
 
-LONGEST_NAME = 100
-"""Most bytes of the name of a sweep, profile or figure; file systems allow 255 for it with what files add to it."""
-
 LISTED = "must be a list of names, or of tables with a name and options"
 """Error about a list of models."""
 
@@ -149,9 +146,6 @@ def _section(name: str) -> str:
 
 LISTS = ("stages", "laws", "wear_laws")
 """The lists of models that may be empty; a case that is written down leaves empty ones out."""
-
-RESERVED = ("pair", "contact_model", "sweep", "law", "wear_law")
-"""Names of other columns of results, which no outcome and no axis of a rig may have."""
 
 
 class Case(Configuration):
@@ -238,8 +232,8 @@ class Case(Configuration):
     @classmethod
     def _have_names_of_files(cls, given: dict[str, Any]) -> dict[str, Any]:
         """Check the names, which are part of the names of files."""
-        fault = "must be made of letters, digits and underscores, at most 100 bytes of them"
-        wrong = [name for name in given if not name.isidentifier() or len(name.encode()) > LONGEST_NAME]
+        fault = "must be made of letters, digits and underscores"
+        wrong = [name for name in given if not name.isidentifier()]
         if wrong:
             raise ConfigurationError(cls.subject(), [Fault((), f"the name {shown(name)} {fault}") for name in wrong])
         return given
@@ -299,7 +293,7 @@ class Case(Configuration):
     def _consistent(self) -> Case:
         wrong = [*self._wrong_names(), *self._wrong_units()]
         if not wrong:  # the others need labels and units
-            wrong = [*self._wrong_axes(), *self._wrong_outcomes(), *self._wrong_others()]
+            wrong = [*self._wrong_others()]
         if wrong:
             raise ConfigurationError(self.subject(), wrong)
         return self
@@ -337,34 +331,6 @@ class Case(Configuration):
                     check_rig(self.measured.data, self.rig)
                 except InputError as error:
                     yield Fault(("measured",), str(error))
-
-    def _wrong_axes(self) -> Iterator[Fault]:
-        """Yield the axes of the rig's patches that results would mix up with other columns."""
-        conditions = {name for grid in (*self.sweeps.values(), *self.profiles.values()) for name in grid.given}
-        for axis in next(iter(self.sweeps.values())).problem(self.rig).dims:
-            if axis in (*RESERVED, "node", *conditions):
-                yield Fault(
-                    ("rig",), f"its axis {shown(axis)} has the name of another column of results; rename the axis"
-                )
-
-    def _wrong_outcomes(self) -> Iterator[Fault]:
-        """Yield the laws whose results would be mixed up with others."""
-        first: dict[str, Law] = {}
-        conditions = {name for grid in (*self.sweeps.values(), *self.profiles.values()) for name in grid.given}
-        for number, law in enumerate(self.laws):
-            outcome, path = law.outcome, ("laws", str(number))
-            other = first.setdefault(outcome.name, law)
-            if (outcome.unit, outcome.of) != (other.outcome.unit, other.outcome.of):
-                units = f"[{outcome.unit}] of {outcome.of}, but {other.name} in [{other.outcome.unit}] of"
-                yield Fault(
-                    path, f"{law.name} gives {outcome.name} in {units} {other.outcome.of}; put one in a case of its own"
-                )
-            if outcome.name == WEAR:
-                yield Fault(path, f"{law.name} predicts the wear rate; derive it from wl.WearLaw, for wear_laws")
-            if outcome.name in (*RESERVED, *conditions):
-                yield Fault(path, f"its outcome '{outcome.name}' is the name of another column of results; rename it")
-            if any(law.name == wear_law.name for wear_law in self.wear_laws):
-                yield Fault(path, f"a wear law of the case is called '{law.name}' too; put it in a case of its own")
 
 
 def case_text(name_or_path: str) -> str:

@@ -173,7 +173,7 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
     subject = f"section '{name}' of {found['section'].origin(name)}"
     try:
         with notes.of(f"section '{name}'"):
-            section = make(_copied(study))
+            section = make(study)
         if not isinstance(section, Section):
             raise TypeError(f"it must be a Section, got {shown(section)}")
     except WearlawError as error:
@@ -185,15 +185,6 @@ def _section(name: str, study: Study, notes: Notes) -> Section:
     except BaseException as error:
         raise ModelError(f"{subject} failed with {described(error)}") from error
     return section
-
-
-def _copied(study: Study) -> Study:
-    """Return a study with tables of its own, which a section may change."""
-    sweeps, profiles = (
-        {name: dataset.copy(deep=True) for name, dataset in datasets.items()}
-        for datasets in (study.sweeps, study.profiles)
-    )
-    return replace(study, sweeps=sweeps, profiles=profiles)
 
 
 def evaluations(case: Case) -> int:

@@ -7,9 +7,9 @@ from typing import Any
 
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import DataError, InputError
-from wearlaw.tables import Table
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.points import Points
+from wearlaw_tables import Table
 
 
 def posed(points: Points, pose: Callable[[Mapping[str, Any]], Problem]) -> Problem:

@@ -26,7 +26,7 @@ from wearlaw.units.registry import symbol
 from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
-    from wearlaw.tables import Table
+    from wearlaw_tables import Table
 
 ITEM = np.dtype(np.float64).itemsize
 

@@ -13,11 +13,11 @@ import numpy as np
 
 from wearlaw.arrays.array import Array
 from wearlaw.errors import ConditionsError, DataError, UnitError
-from wearlaw.tables import Column, Table, open_table
 from wearlaw.units.quantities import Q
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.located import advice
 from wearlaw_sweeps.points import OnDisk, Points, Varying, split
+from wearlaw_tables import Column, Table, open_table
 
 Columns = Mapping[str, str]
 """The columns of a table by the names that they get, as in {"normal_force": "-Fz [N]"}."""

@@ -94,7 +94,7 @@ def rows(
     start : Rows, optional
         Those of a penetration close by; they save iterations.
     """
-    spacing, samples = float(place.step[0]), np.maximum(place.samples[0], 0.0)
+    spacing, samples = float(place.step[0]), place.samples[0]
     rise = np.sqrt(samples) - np.sqrt(depth)  # linear from sample to sample where the gap is a parabola
     within, beyond = (np.maximum(one[:-1], 0.0) + np.maximum(one[1:], 0.0) for one in (-rise, rise))
     dy = spacing * float((within / (within + beyond)).sum()) / count

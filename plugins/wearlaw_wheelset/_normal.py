@@ -109,8 +109,8 @@ def penetrated(
     start, step : array_like, (patches,)
         Place of the first sample of the gap, and the distance from one to the next [m].
     gap : array_like, (patches, samples)
-        Gap g at x = 0 between the bodies as they touch [m]. Samples outside of the patch's window are infinite or NaN;
-        the window runs to both sides of the smallest gap.
+        Gap g at x = 0 between the bodies as they touch [m], at four places of the patch's window at least. Samples
+        outside of it are infinite; the window runs to both sides of the smallest gap.
     curvature_x : array_like, (patches,)
         A of the gap A x² + g(t) [1/m], half the relative curvature along the rolling direction.
     modulus : array_like, (patches,)
@@ -121,19 +121,12 @@ def penetrated(
         Number of strips of a patch.
     among : int
         Number of patches of the task, if these are some of them: compiled loops pay for the last few as well.
-
-    Raises
-    ------
-    InputError
-        If a patch has fewer than four samples, a value is not positive, or there are fewer than two strips.
     """
-    samples = np.array(gap, dtype=float, order="C")
-    samples[np.isnan(samples)] = np.inf
+    samples = np.ascontiguousarray(gap, dtype=float)
     count = len(samples)
     given = np.empty((count, 4))
     for column, value in enumerate((step, curvature_x, modulus, penetration)):
         given[:, column] = value
-    _check(samples, given, strips)
     cosine, sine = _even(strips)
     share, weight = _nodes()
     fields, sums = np.empty((count, 3, strips)), np.empty((count, 3))
@@ -158,25 +151,6 @@ def hertz(curvature_x: Array, curvature_y: Array, modulus: Array | float, normal
     a, b = wl.hertz_ellipse.semi_axes(normal_force, curvature_x, curvature_y, modulus)
     approach = wl.hertz_ellipse.approach(normal_force, a, b, modulus)
     return HertzPatch(a, b, wl.hertz_ellipse.max_pressure(normal_force, a, b), approach)
-
-
-def _check(samples: Array, given: Array, strips: int) -> None:
-    """Raise an error if the strips or the samples are too few, or a value is not positive."""
-    if strips < 2:
-        raise wl.InputError(f"strips: {strips} given; a patch has at least 2")
-    finite = np.isfinite(samples)
-    few = finite.sum(axis=1) < loops.NEED
-    if few.any():
-        at = int(few.argmax())
-        raise wl.InputError(
-            f"gap: patch {at} has {np.count_nonzero(finite[at])} finite samples; at least {loops.NEED} are needed, "
-            "so sample it more finely or widen its window"
-        )
-    for name, values in zip(("step", "curvature_x", "modulus", "penetration"), given.T, strict=True):
-        bad = ~((values > 0.0) & np.isfinite(values))
-        if bad.any():
-            at = int(bad.argmax())
-            raise wl.InputError(f"{name}: {values[at]:g} at patch {at}; it must be positive")
 
 
 @cache

@@ -172,6 +172,11 @@ class Section:
         return tuple(np.where(side == 0, left, right) for left, right in zip(of_left, of_right, strict=True))
 
     @property
+    def tables(self) -> tuple[tuple[float, float, Array], ...]:
+        """The tables of y, radius and the rail, for compiled loops."""
+        return self.wheel_y[:3], self.wheel_radius[:3], self.rail_z[:3]
+
+    @property
     def steepest(self) -> float:
         """Arc length of the steepest place of the flange; where it is straight, of its end towards the top [m]."""
         flange = (self.wheel.s >= self.wheel_y.start) & (self.wheel.y < 0.0)
@@ -482,9 +487,9 @@ def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | N
     roll_found = np.zeros(displacement.size) if roll is None else roll.copy()
     arc, above, saddle = (np.empty(shape) for _ in range(3))
     least = np.empty(shape[:2])
-    tables = ((*one.coarse, *one.wheel_y[:3], *one.wheel_radius[:3], *one.rail_z[:3]) for one in section.sides)
     compiled_search(
-        np.ascontiguousarray(displacement), np.ascontiguousarray(yaw), roll is not None, *zip(*tables, strict=True),
+        np.ascontiguousarray(displacement), np.ascontiguousarray(yaw), roll is not None,
+        tuple(tuple(one.coarse) for one in section.sides), tuple(one.tables for one in section.sides),
         roll_found, arc, above, saddle, least,
     )  # fmt: skip
     return roll_found, Touching(arc, above, saddle, least)

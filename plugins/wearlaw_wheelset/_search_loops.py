@@ -39,9 +39,8 @@ ROUNDING = 1e-12
 
 VECTOR = "float64[::1]"
 ROWS = "float64[:, ::1]"
-TABLE = f"float64, float64, {ROWS}"
-BOTH = f"UniTuple({VECTOR}, 2)"
-TABLES = f"UniTuple(float64, 2), UniTuple(float64, 2), UniTuple({ROWS}, 2)"
+TABLES = f"UniTuple(Tuple((float64, float64, {ROWS})), 3)"
+"""Start, step and cubics of the tables of a wheel's y and radius over its arc length, and of its rail's z over y."""
 
 
 def locus(y: Any, radius: Any, slope: Any, displacement: Any, turn: tuple[Any, Any, Any, Any]) -> tuple[Any, ...]:
@@ -131,8 +130,9 @@ def lagrange(x: Any, places: Any) -> tuple[Any, Any, Any, Any]:
     )
 
 
-def at(x: float, start: float, step: float, cubics: Array) -> tuple[float, float]:
+def at(x: float, table: tuple[float, float, Array]) -> tuple[float, float]:
     """Return the value and the slope of a table at x; beyond its ends those of the outermost cubic."""
+    start, step, cubics = table
     share = (x - start) / step
     index = min(max(int(share), 0), cubics.shape[1] - 1)
     of_cell = cubics[0, index], cubics[1, index], cubics[2, index], cubics[3, index]
@@ -140,30 +140,27 @@ def at(x: float, start: float, step: float, cubics: Array) -> tuple[float, float
     return found
 
 
-def near(x: float, start: float, step: float, cubics: Array) -> tuple[float, float]:
-    """Return the value and the slope of a table at x; the value is infinite beyond its ends."""
-    if not start <= x < start + step * cubics.shape[1]:
-        return np.inf, 0.0
-    return at(x, start, step, cubics)
+def ends(table: tuple[float, float, Array]) -> tuple[float, float]:
+    """Return the ends of a table."""
+    start, step, cubics = table
+    return start, start + step * cubics.shape[1]
+
+
+def below(arc: float, tables: Any, shift: float, turn: tuple[float, float, float, float]) -> tuple[float, ...]:
+    """Return y and z of the locus at an arc length of the wheel, its slope dz/dy, and z and slope of the rail there."""
+    there, d_there = at(arc, tables[0])
+    size, d_size = at(arc, tables[1])
+    _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
+    rail, rail_slope = at(across, tables[2])
+    return across, down, steep, rail, rail_slope
 
 
 def touch(
     shift: float,
     turn: tuple[float, float, float, float],
     every: int,
-    arc: Array,
-    y: Array,
-    radius: Array,
-    slope: Array,
-    y_start: float,
-    y_step: float,
-    y_cubics: Array,
-    r_start: float,
-    r_step: float,
-    r_cubics: Array,
-    z_start: float,
-    z_step: float,
-    z_cubics: Array,
+    points: tuple[Array, Array, Array, Array],
+    tables: Any,
     gap: Array,
     rise: Array,
     height: Array,
@@ -177,6 +174,7 @@ def touch(
 
     One in `every` coarse points is read. If that is zero, they are looked for around the first of those in `found`.
     """
+    arc, y, radius, slope = points
     spacing = arc[2] - arc[1]
     lever = 0.0
     begin, end = 0, arc.size
@@ -187,30 +185,31 @@ def touch(
         end = begin + WINDOW
     for patch in range(PATCHES):
         place[patch], height[patch], cell[patch] = np.nan, np.inf, -1
-    moved, z_end = abs(turn[0]) + abs(turn[2]), z_start + z_step * z_cubics.shape[1]
+    moved = abs(turn[0]) + abs(turn[2])
+    first, last = ends(tables[2])
     for k in range(begin, end, every):
         away = moved * (radius[k] + y[k])  # farther than roll and yaw move the point across the rail
-        if y[k] + shift < z_start - away or y[k] + shift > z_end + away:
-            gap[k], rise[k] = np.inf, 0.0
-        else:
+        gap[k], rise[k] = np.inf, 0.0
+        if first - away <= y[k] + shift <= last + away:
             _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
-            rail, rail_slope = near(across, z_start, z_step, z_cubics)
-            gap[k], rise[k] = rail - down, rail_slope - steep
+            if first <= across < last:
+                rail, rail_slope = at(across, tables[2])
+                gap[k], rise[k] = rail - down, rail_slope - steep
         if k == begin:
             continue
-        last = k - every
-        falls = rise[last] < 0.0 or gap[last] == np.inf
+        before = k - every
+        falls = rise[before] < 0.0 or gap[before] == np.inf
         low = falls and rise[k] >= 0.0 and gap[k] < np.inf
-        if not low and not (rise[last] < 0.0 and gap[last] < np.inf and gap[k] == np.inf):
+        if not low and not (rise[before] < 0.0 and gap[before] < np.inf and gap[k] == np.inf):
             continue
-        size = min(gap[last], gap[k])
-        last = PATCHES - 1
-        if size >= height[last]:
+        size = min(gap[before], gap[k])
+        rank = PATCHES - 1
+        if size >= height[rank]:
             continue
-        while last > 0 and size < height[last - 1]:
-            height[last], cell[last] = height[last - 1], cell[last - 1]
-            last -= 1
-        height[last], cell[last] = size, k - every
+        while rank > 0 and size < height[rank - 1]:
+            height[rank], cell[rank] = height[rank - 1], cell[rank - 1]
+            rank -= 1
+        height[rank], cell[rank] = size, before
     for patch in range(PATCHES):
         k = cell[patch]
         if k < 0:
@@ -226,10 +225,7 @@ def touch(
             if iteration > 1:
                 share = at_right / (at_right - at_left) if at_right != at_left else 0.0
                 root = right - share * (right - left)
-            there, d_there = at(root, y_start, y_step, y_cubics)
-            size, d_size = at(root, r_start, r_step, r_cubics)
-            _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
-            rail, rail_slope = at(across, z_start, z_step, z_cubics)
+            _, down, steep, rail, rail_slope = below(root, tables, shift, turn)
             value = rail_slope - steep
             if iteration == 0:
                 at_left = value
@@ -246,17 +242,14 @@ def touch(
             if abs(value) < ROUNDING or right == left:
                 break
         place[patch] = right
-    for first in range(PATCHES - 1):  # sort by the gap at the roots
-        for patch in range(PATCHES - 1 - first):
+    for done in range(PATCHES - 1):  # sort by the gap at the roots
+        for patch in range(PATCHES - 1 - done):
             if height[patch + 1] < height[patch]:
                 height[patch], height[patch + 1] = height[patch + 1], height[patch]
                 place[patch], place[patch + 1] = place[patch + 1], place[patch]
                 cell[patch], cell[patch + 1] = cell[patch + 1], cell[patch]
     if cell[0] >= 0:
-        there, d_there = at(place[0], y_start, y_step, y_cubics)
-        size, d_size = at(place[0], r_start, r_step, r_cubics)
-        _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
-        _, rail_slope = at(across, z_start, z_step, z_cubics)
+        across, down, _, _, rail_slope = below(place[0], tables, shift, turn)
         lever = across + rail_slope * down
     for patch in range(PATCHES):
         found[patch] = place[patch]
@@ -269,26 +262,15 @@ def touch(
 
 
 @wl.compiled_loop(
-    f"void({VECTOR}, {VECTOR}, boolean, {BOTH}, {BOTH}, {BOTH}, {BOTH}, {TABLES}, {TABLES}, {TABLES}, {VECTOR},"
+    f"void({VECTOR}, {VECTOR}, boolean, UniTuple(UniTuple({VECTOR}, 4), 2), UniTuple({TABLES}, 2), {VECTOR},"
     " float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1])"
 )
 def compiled_search(
     displacement: Array,
     yaw: Array,
     given: bool,
-    arc_of: tuple[Array, Array],
-    y_of: tuple[Array, Array],
-    radius_of: tuple[Array, Array],
-    slope_of: tuple[Array, Array],
-    y_start_of: tuple[float, float],
-    y_step_of: tuple[float, float],
-    y_cubics_of: tuple[Array, Array],
-    r_start_of: tuple[float, float],
-    r_step_of: tuple[float, float],
-    r_cubics_of: tuple[Array, Array],
-    z_start_of: tuple[float, float],
-    z_step_of: tuple[float, float],
-    z_cubics_of: tuple[Array, Array],
+    points: tuple[Any, Any],
+    tables: tuple[Any, Any],
     roll: Array,
     found: Array,
     above: Array,
@@ -299,30 +281,22 @@ def compiled_search(
 
     Coarse points and tables are those of the left and the right side.
     """
-    most = max(arc_of[0].size, arc_of[1].size)
+    most = max(points[0][0].size, points[1][0].size)
     gap, rise = np.empty(most), np.empty(most)
     height, cell, place = np.empty(PATCHES), np.empty(PATCHES, np.int64), np.empty(PATCHES)
     for point in range(displacement.size):
-        shift, sin_yaw, cos_yaw = displacement[point], math.sin(yaw[point]), math.cos(yaw[point])
+        sin_yaw, cos_yaw = math.sin(yaw[point]), math.cos(yaw[point])
         every = 1 if given else FIRST  # all points once the roll is found
         for _ in range(ROLLS):
-            sin_roll, cos_roll = math.sin(roll[point]), math.cos(roll[point])
-            least[point, 0], left = touch(
-                -shift, (-sin_roll, cos_roll, -sin_yaw, cos_yaw), every,
-                arc_of[0], y_of[0], radius_of[0], slope_of[0],
-                y_start_of[0], y_step_of[0], y_cubics_of[0],
-                r_start_of[0], r_step_of[0], r_cubics_of[0],
-                z_start_of[0], z_step_of[0], z_cubics_of[0],
-                gap, rise, height, cell, place, found[point, 0], above[point, 0], saddle[point, 0],
-            )  # fmt: skip
-            least[point, 1], right = touch(
-                shift, (sin_roll, cos_roll, sin_yaw, cos_yaw), every,
-                arc_of[1], y_of[1], radius_of[1], slope_of[1],
-                y_start_of[1], y_step_of[1], y_cubics_of[1],
-                r_start_of[1], r_step_of[1], r_cubics_of[1],
-                z_start_of[1], z_step_of[1], z_cubics_of[1],
-                gap, rise, height, cell, place, found[point, 1], above[point, 1], saddle[point, 1],
-            )  # fmt: skip
+            sin_roll, cos_roll, levers = math.sin(roll[point]), math.cos(roll[point]), 0.0
+            for side in range(2):
+                out = 2.0 * side - 1.0
+                least[point, side], lever = touch(
+                    out * displacement[point], (out * sin_roll, cos_roll, out * sin_yaw, cos_yaw), every,
+                    points[side], tables[side], gap, rise, height, cell, place,
+                    found[point, side], above[point, side], saddle[point, side],
+                )  # fmt: skip
+                levers += lever
             excess = least[point, 1] - least[point, 0]
             lost = math.isnan(found[point, 0, 0]) or math.isnan(found[point, 1, 0])
             level = not abs(excess) > ROLL_ACCURACY
@@ -330,25 +304,17 @@ def compiled_search(
                 break
             every = 1 if lost or level else 0
             if not every:
-                roll[point] += roll_step(excess, left + right)
+                roll[point] += roll_step(excess, levers)
 
 
-@wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {TABLE}, {TABLE}, {TABLE}, {ROWS}, {ROWS})")
+@wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {TABLES}, {ROWS}, {ROWS})")
 def compiled_samples(
     displacement: Array,
     roll: Array,
     yaw: Array,
     arc: Array,
     spacings: Array,
-    y_start: float,
-    y_step: float,
-    y_cubics: Array,
-    r_start: float,
-    r_step: float,
-    r_cubics: Array,
-    z_start: float,
-    z_step: float,
-    z_cubics: Array,
+    tables: Any,
     samples: Array,
     arcs: Array,
 ) -> None:
@@ -358,7 +324,7 @@ def compiled_samples(
     """
     count = samples.shape[1]
     height, tangent = np.empty(count), np.empty(count)
-    end, rail_end = y_start + y_step * y_cubics.shape[1], z_start + z_step * z_cubics.shape[1]
+    (begin, end), (rail_begin, rail_end) = ends(tables[0]), ends(tables[2])
     for point in range(arc.size):
         turn = math.sin(roll[point]), math.cos(roll[point]), math.sin(yaw[point]), math.cos(yaw[point])
         spacing = spacings[point]
@@ -367,16 +333,13 @@ def compiled_samples(
         for step in range(count + 1):
             k = step - 1 if step else count // 2  # the contact point first
             place = arc[point] + spacing * (k - count // 2)
-            there, d_there = at(place, y_start, y_step, y_cubics)
-            size, d_size = at(place, r_start, r_step, r_cubics)
-            _, across, down, _ = locus(there, size, d_size / d_there, displacement[point], turn)
-            rail, slope = at(across, z_start, z_step, z_cubics)
+            across, down, _, rail, slope = below(place, tables, displacement[point], turn)
             if not step:
                 own, own_slope, own_across, own_down = rail - down, slope, across, down
                 continue
             height[k], facing = normal_gap(rail - down - own, slope, own_slope)
             tangent[k] = tangential(across - own_across, down - own_down, own_slope)
-            outside = place < y_start or place > end or across < z_start or across > rail_end or not facing
+            outside = place < begin or place > end or across < rail_begin or across > rail_end or not facing
             turns = k > 0 and tangent[k] <= tangent[k - 1]  # behind its own horizon
             if k <= count // 2 and (outside or turns):
                 first = k + 1 if outside else k

@@ -71,12 +71,6 @@ def test_a_wrong_argument_is_one_clear_error_and_nothing_is_written(
     assert files(folder) == before
 
 
-def test_an_unknown_figure_format_is_refused_with_the_known_ones(folder: Path) -> None:
-    write(folder / "c.toml", table())
-    refused = wearlaw("run", "c.toml", "--figure-format", "gif")
-    assert_refused(refused, "'gif' is not one of 'png', 'pdf', 'svg'", exit_code=2)
-
-
 @pytest.mark.usefixtures("blank_figures")
 def test_earlier_results_are_only_replaced_when_asked(folder: Path) -> None:
     write(folder / "c.toml", table(profiles={}))
@@ -87,12 +81,6 @@ def test_earlier_results_are_only_replaced_when_asked(folder: Path) -> None:
     write(folder / "c.toml", table(contact_models=["global"], profiles={}))
     assert wearlaw("run", "c.toml", "--overwrite").exit_code == 0
     assert set(pd.read_csv("c-results/results.csv")["contact_model"]) == {"global"}
-
-
-@pytest.mark.parametrize("arguments", [["nonsense"], ["run"], ["run", "a", "b"], ["run", "a", "--nonsense"]])
-def test_a_wrong_use_says_where_help_is(arguments: list[str]) -> None:
-    result = wearlaw(*arguments)
-    assert_refused(result, "Try 'main", exit_code=2)
 
 
 def test_a_plugin_that_was_left_out_is_named_where_its_model_is_missed(install: Install, folder: Path) -> None:

@@ -16,7 +16,6 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import Linear
 from wearlaw import Configuration, Q
-from wearlaw_studies.grid import Axis  # private: one part of a study, without the whole
 
 STEEL = wl.steel()
 IN_MM = 'give it in mm or another unit of that dimension, such as "1.0 mm"'
@@ -31,8 +30,6 @@ def disc(**fields: Any) -> wl.Disc:
     ("make", "message"),
     [
         (lambda: disc(diameter=47), f"Disc: diameter: got the bare number 47, which has no unit; {IN_MM}"),
-        (lambda: disc(diameter=True), f"Disc: diameter: got True, which has no unit; {IN_MM}"),
-        (lambda: disc(diameter=4j), f"Disc: diameter: got 4j, which has no unit; {IN_MM}"),
         (lambda: disc(diameter="47"), f"Disc: diameter: '47' is not a number with a unit; {IN_MM}"),
         (
             lambda: disc(diameter="47 kN"),
@@ -40,37 +37,22 @@ def disc(**fields: Any) -> wl.Disc:
         ),
         (lambda: disc(diameter="47 xyz"), f"Disc: diameter: 'xyz' is not a known unit; {IN_MM}"),
         (lambda: disc(diameter="nan mm"), f"Disc: diameter: must be a number, got nan mm; {IN_MM}"),
-        (lambda: disc(diameter="0 mm"), f"Disc: diameter: must be greater than zero, got 0.000 mm; {IN_MM}"),
         (lambda: disc(diameter="-4 mm"), f"Disc: diameter: must be greater than zero, got -4.000 mm; {IN_MM}"),
         (lambda: disc(diameter=Q([1, 2], "mm")), "Disc: diameter: must be one value, got an array of shape (2,)"),
         (lambda: disc(diametr="4 mm"), "did you mean 'diameter'? The fields are: diameter, material"),
         (lambda: wl.Disc(diameter="4 mm"), "Disc: material: is missing"),  # type: ignore[call-arg]
         (lambda: disc(material="steal"), "Disc: material: no material is called 'steal'; did you mean 'steel'?"),
-        (lambda: disc(material=7), "Disc: material: input should be a valid dictionary or instance of Material"),
         (lambda: disc(material={**dict(STEEL), "density": 1}), "Disc: material.density: got the bare number 1"),
         (lambda: wl.steel(youngs_modulus=Q(0, "GPa")), f"must be greater than zero, got 0.000 GPa; {IN_GPA}"),
-        (lambda: wl.steel(youngs_modulus=Q(-1, "GPa")), f"must be greater than zero, got -1.000 GPa; {IN_GPA}"),
         (lambda: wl.steel(poisson_ratio=0.51), "poisson_ratio: input should be less than or equal to 0.5, got 0.51"),
-        (lambda: wl.steel(poisson_ratio=-0.1), "poisson_ratio: input should be greater than or equal to 0, got -0.1"),
         (lambda: wl.steel(poisson_ratio=float("nan")), "poisson_ratio: input should be a finite number, got nan"),
         (lambda: wl.steel(poisson_ratio=True), "poisson_ratio: True is not a real number; give it as a plain number"),
-        (lambda: wl.steel(poisson_ratio="0.3"), "poisson_ratio: input should be a valid number, got '0.3'"),  # type: ignore[arg-type]
-        (lambda: wl.steel(density="7850 kg"), "got 7850 kg, which does not have the dimension of 'kg/m^3'"),
-        (
-            lambda: wl.steel(shear_yield_stress="0 GPa"),
-            f"shear_yield_stress: must be greater than zero, got 0.000 GPa; {IN_GPA}",
-        ),
     ],
 )
 def test_a_wrong_field_is_named_with_value_unit_and_fix(make: Callable[[], object], message: str) -> None:
     with pytest.raises(wl.ConfigurationError) as caught:
         make()
     assert message in str(caught.value)
-
-
-@pytest.mark.parametrize("ratio", [0, 0.0, 0.5])
-def test_the_ends_of_the_range_of_poissons_ratio_are_allowed(ratio: float) -> None:
-    assert wl.steel(poisson_ratio=ratio).poisson_ratio == ratio
 
 
 def test_all_wrong_fields_are_named_at_once_with_their_paths() -> None:
@@ -89,12 +71,6 @@ def test_all_wrong_fields_are_named_at_once_with_their_paths() -> None:
 def test_wrong_json_is_an_error_of_the_package(text: str) -> None:
     with pytest.raises(wl.ConfigurationError, match=r"^Disc: ?"):
         wl.Disc.model_validate_json(text)
-
-
-def test_a_long_value_is_cut_in_the_message() -> None:
-    with pytest.raises(wl.ConfigurationError) as caught:
-        disc(material=["steel"] * 1000)
-    assert len(str(caught.value)) < 600
 
 
 def test_equal_lengths_in_other_units_are_equal_and_hash_alike() -> None:
@@ -135,13 +111,6 @@ def test_a_configuration_prints_as_text_with_units() -> None:
     assert str(disc()) == repr(disc())
 
 
-class Texts(Configuration):
-    """A record of texts."""
-
-    one: str = ""
-    two: str = ""
-
-
 def test_a_long_configuration_breaks_between_its_fields() -> None:
     both = wl.TwinDisc.suros(disc_2=disc())
     lines = repr(both).splitlines()
@@ -149,9 +118,6 @@ def test_a_long_configuration_breaks_between_its_fields() -> None:
     assert max(map(len, lines)) <= 100
     assert all(line.endswith(",") for line in lines[:-1])
     assert " ".join(map(str.strip, lines)).startswith("TwinDisc(disc_1=Disc(diameter=47.0 mm, material=Material(youngs")
-    for quote in ("'", '"', "'\"", "\\'", ""):
-        record = Texts(one=f"a, b{quote}, c" * 10, two="d, e" * 30)
-        assert eval(repr(record), {"Texts": Texts}) == record
 
 
 def test_the_schema_describes_a_quantity_as_text_with_its_unit() -> None:
@@ -167,14 +133,6 @@ def test_a_changed_copy_is_checked_and_keeps_nothing_computed_before() -> None:
     assert changed.numbers == wl.wear_law("usfd", tr_sc=wl.Q(100, "N/mm^2")).numbers != law.numbers
     with pytest.raises(wl.ConfigurationError, match="usfd: tr_sc: got the bare number 100"):
         law.model_copy(update={"tr_sc": 100})
-
-
-def test_a_copy_without_changes_is_equal() -> None:
-    ends: Any = {"from": "1 %", "to": "2 %", "points": 3}
-    axis = Axis(**ends)
-    for made in (wl.steel(), wl.TwinDisc.suros(), wl.contact_model("global"), wl.wear_law("kth"), axis):
-        assert made.model_copy() == made
-    assert axis.model_copy(update={"points": 4}).points == 4
 
 
 def test_a_copy_of_a_model_that_keeps_what_it_computed_computes_it_anew() -> None:
@@ -200,20 +158,6 @@ def test_a_class_shows_its_fields_as_signature_before_and_after_it_is_used() -> 
         assert list(inspect.signature(Second).parameters) == ["a", "b"]
         assert Second(a=1.0).b == 1.0
     assert list(inspect.signature(First).parameters) == ["a"]
-
-
-def test_a_class_that_waits_for_a_type_has_a_signature_once_that_is_there() -> None:
-    class Waits(wl.Configuration):
-        later: Later
-
-    assert list(inspect.signature(Waits).parameters) != ["later"]
-
-    class Later(wl.Configuration):
-        a: float = 1.0
-
-    Waits.model_rebuild()
-    assert list(inspect.signature(Waits).parameters) == ["later"]
-    assert Waits(later=Later()).later.a == 1.0
 
 
 def test_many_threads_may_use_a_class_first() -> None:

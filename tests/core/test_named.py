@@ -75,24 +75,6 @@ def test_case_files_name_parameter_sets_and_materials(install: Install) -> None:
     assert not validator.is_valid(table(**{**changes, "wear_laws": ["lab_2027"]}))
 
 
-def test_two_sets_of_tests_of_one_name_are_refused_with_both_plugins(install: Install) -> None:
-    install("lab", LAB.replace("lab_tests", "lewis2004"))
-    with pytest.raises(
-        wl.UnknownModelError, match=r"test set 'lewis2004' is .* more than once, by lab 1\.0 .* and wear"
-    ):
-        wl.read_tests("lewis2004")
-
-
-def test_the_provenance_names_where_tests_come_from(install: Install, tmp_path: Path) -> None:
-    install("lab", LAB, version="1.2.3")
-    path = tmp_path / "own.csv"
-    path.write_text("creepage [%],normal_force [kN],wear_rate [ug/m/mm^2]\n1,7,30\n", encoding="utf-8")
-    expected: dict[str, dict[str, str]] = {"lab_tests": {"lab_tests": "lab 1.2.3"}, str(path): {}}
-    for tests, said in expected.items():
-        assert provenance(case(measured={"label": "m", "tests": tests}))["test_sets"] == said
-    assert provenance(case())["test_sets"] == {}
-
-
 LAB_STUDY = """
     title = "A study of the lab"
     contact_models = ["exact"]
@@ -135,15 +117,6 @@ def test_the_case_of_a_run_has_the_same_provenance_as_the_run(install: Install, 
     assert provenance(again)["materials"] == {"soft_steel": "lab 1.2.3"}
 
 
-def test_what_was_not_looked_up_by_name_is_not_in_the_provenance(install: Install) -> None:
-    install("lab", LAB)
-    changed = wl.wear_law("lab_2026").model_copy(update={"m_c": "75 ug/m/N"})
-    steel = wl.material("soft_steel").model_copy()
-    said = provenance(case(contact_models=["exact"], wear_laws=[changed], rig=wl.TwinDisc.suros(material=steel)))
-    assert said["parameter_sets"] == said["materials"] == said["cases"] == {}
-    assert changed == wl.wear_law("lab_2026", m_c="75 ug/m/N")
-
-
 def test_a_run_says_what_it_used(
     install: Install,
     tmp_path: Path,
@@ -179,18 +152,6 @@ def test_what_is_not_of_its_kind_is_left_out_with_the_reason(
     with pytest.warns(wl.PluginWarning, match="left out: lab 1.0"):
         found = loader.installed()
     assert cause in found.broken[0].cause
-
-
-@pytest.mark.parametrize(
-    ("stated", "message"),
-    [
-        (("wear_indx", "0 N", "1 N"), "unknown variable 'wear_indx'; did you mean 'wear_index'"),
-        (("wear_index", "0 mm", "1 N"), "wear_index: got 0.000 mm"),
-    ],
-)
-def test_a_stated_range_needs_a_variable_and_its_unit(stated: Any, message: str) -> None:
-    with pytest.raises(wl.ConfigurationError, match=message):
-        wl.Calibration(contact_model="exact", scale="cells", materials="-", source="-", stated_range=(stated,))
 
 
 def test_a_parameter_set_is_explained_with_its_numbers(install: Install) -> None:

@@ -98,13 +98,6 @@ def test_a_rig_of_ones_own_predicts_what_the_discs_do(law: str) -> None:
     np.testing.assert_allclose(found.wear_rate.magnitude, expected.wear_rate.magnitude, rtol=8 * EPS)
 
 
-def test_parameters_fitted_for_another_contact_give_a_warning(recwarn: pytest.WarningsRecorder) -> None:
-    Roller() | wl.contact_model("global") | wl.wear_law("usfd")
-    assert not recwarn.list
-    with pytest.warns(wl.CalibrationWarning, match="were fitted for patch means"):
-        Roller() | MODEL | wl.wear_law("usfd")
-
-
 def test_parameters_fitted_for_another_shape_of_patch_give_a_warning_once_the_shape_is_known() -> None:
     predict = OnRail() | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
     for call in (
@@ -139,21 +132,6 @@ def test_a_sweep_runs_along_the_conditions_of_the_rig() -> None:
     assert float(swept.wear_rate[1, 2]) == alone
 
 
-def test_the_creepage_for_a_traction_is_found() -> None:
-    creepage = wl.creepage_for(Roller() | MODEL, traction_coefficient=0.2, mass="20 kg")
-    r = (Roller() | MODEL)(mass="20 kg", creepage=creepage)
-    # `find_root` stops within a few roundings of the logarithm of the creepage, of which T/N is a power below 1.
-    assert float(r.traction_coefficient.magnitude) == pytest.approx(0.2, rel=1e-12)
-
-
-def test_a_rig_that_makes_ellipses_gives_their_results() -> None:
-    r = (OnRail() | wl.contact_model("fastsim") | KTH)(mass="8000 kg", longitudinal_creepage="0.2 %")
-    assert isinstance(r, wl.Prediction)
-    assert r.wear_rate.magnitude > 0.0
-    with pytest.raises(wl.CompositionError, match="'exact' does not solve elliptic contacts"):
-        (OnRail() | MODEL)(mass="8000 kg", longitudinal_creepage="0.2 %")
-
-
 @pytest.mark.parametrize(
     ("given", "said"),
     [
@@ -166,12 +144,6 @@ def test_wrong_conditions_are_named(given: dict[str, Any], said: str) -> None:
     predict: Any = Roller() | MODEL | KTH
     with pytest.raises(wl.InputError, match=said):
         predict(**given)
-
-
-def test_conditions_are_given_by_name() -> None:
-    predict: Any = Roller() | MODEL | KTH
-    with pytest.raises(wl.ConditionsError, match="'20 kg': is given without a name; write mass="):
-        predict("20 kg", creepage="1 %")
 
 
 @pytest.mark.parametrize(

@@ -75,13 +75,6 @@ def test_the_first_party_plugins_are_found_by_name_in_order() -> None:
     assert not loader.installed().broken
 
 
-def test_look_ups_return_instances_with_their_options() -> None:
-    model = wl.contact_model("fastsim", bound="elliptic")
-    assert isinstance(model, wl.contact_models()["fastsim"])
-    assert model.model_dump().items() >= {"bound": "elliptic", "flexibility": "line"}.items()
-    assert isinstance(wl.wear_law("brr"), wl.wear_laws()["brr"])
-
-
 def test_an_outside_law_is_found_beside_the_others(install: Install) -> None:
     install("outside_plugin", LAW.format(name="outside"), version="3.2")
     assert wl.wear_law("outside").name == "outside"
@@ -201,14 +194,6 @@ def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_return_nothing(ins
     install("outside_plugin", LAW.format(name="outside") + hooks)
     assert "outside" in wl.wear_laws()
     assert "outside_steel" in wl.materials()
-
-
-def test_plugins_are_loaded_in_the_order_of_their_distributions(install: Install) -> None:
-    for name in ("zebra_plugin", "ant_plugin", "mole_plugin"):
-        install(name, LAW.format(name=name))
-    names = [origin.distribution for origin in loader.installed().plugins]
-    assert names == sorted(names)
-    assert {"zebra_plugin", "ant_plugin", "mole_plugin"} < set(names)
 
 
 def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(

@@ -108,7 +108,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"poisson_ratio": 0.6}, "poisson_ratio: must lie between 0 and 0.5, got 0.6"),
     ({"poisson_ratio": "steel"}, "poisson_ratio: 'steel' is not a number with a unit; give poisson_ratio as"),
     ({"friction_coefficient": 0.0}, "friction_coefficient: must be a positive finite number, got 0"),
-    ({"a": Q([1, 2], "mm"), "b": Q([1, 2, 3], "mm")}, "the shapes of the conditions do not broadcast"),
+    ({"a": Q([1, 2], "mm"), "b": Q([1, 2, 3], "mm")}, "the shapes do not broadcast"),
 ]
 
 

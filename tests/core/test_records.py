@@ -95,17 +95,6 @@ def test_a_solution_on_a_line_stands_for_the_whole_track_width() -> None:
     np.testing.assert_allclose(solved.area, [[3e-6]], rtol=1e-15)
 
 
-def test_unflattening_reshapes_the_batch_and_leaves_the_nodes() -> None:
-    reshaped = contact().unflattened(line_problem((2, 1)))
-    assert reshaped.pressure.shape == (2, 1, 3)
-    assert reshaped.rolling_speed.shape == (2, 1)
-    np.testing.assert_array_equal(reshaped.mean_slip, contact().mean_slip[:, None])
-
-
-def test_per_node_broadcasts_over_the_nodes() -> None:
-    assert contact().per_node(contact().density).shape == (2, 1)
-
-
 def test_a_problem_is_indexed_and_flattened_in_all_its_arrays() -> None:
     problem = line_problem((2, 3))
     part, flat = problem[1, ::2], problem.flatten()
@@ -116,13 +105,6 @@ def test_a_problem_is_indexed_and_flattened_in_all_its_arrays() -> None:
         np.testing.assert_array_equal(getattr(flat, name), getattr(problem, name).ravel())
     assert part.geometry == flat.geometry == "line"
     assert part.traction_coefficient is None
-
-
-def test_a_measured_traction_coefficient_is_indexed_too() -> None:
-    problem = line_problem((4,)).replaced(traction_coefficient=np.array([0.1, 0.2, 0.3, 0.4]))
-    part = problem[2:].traction_coefficient
-    assert part is not None
-    np.testing.assert_array_equal(part, [0.3, 0.4])
 
 
 def test_areas_and_forces_of_a_problem_take_the_whole_width() -> None:
@@ -136,12 +118,6 @@ def test_a_contact_is_equal_to_itself_alone_and_can_be_a_key() -> None:
     one = contact()
     assert one != contact()
     assert {one: 1}[one] == 1
-
-
-def test_the_arrays_of_a_contact_are_given_by_name() -> None:
-    made: Any = wl.Contact
-    with pytest.raises(TypeError, match="positional"):
-        made(*[np.zeros((1, 1))] * len(dataclasses.fields(wl.Contact)))
 
 
 @pytest.mark.parametrize("record", [contact(), line_problem((2,))], ids=["Contact", "Problem"])

@@ -103,12 +103,6 @@ def test_names_that_are_no_list_are_refused() -> None:
         GLOBAL(**POINT).to_dataset(["wearrate"])
 
 
-def test_a_named_condition_is_a_variable() -> None:
-    ds = GLOBAL(**ON_LINE).to_dataset(["normal_force"])
-    assert ds.normal_force.dims == ("point_0",)
-    np.testing.assert_array_equal(ds["normal_force"], LOADS.magnitude)
-
-
 def test_a_dataset_without_a_law_and_of_a_problem() -> None:
     contact = EXACT.without_law()
     ds = contact(**ON_LINE).to_dataset()
@@ -161,13 +155,6 @@ def test_a_dataset_is_the_one_of_a_sweep() -> None:
         assert found[name].attrs == one.attrs
     of_patches = axles.PREDICT(**GIVEN).to_dataset()
     xr.testing.assert_allclose(of_patches, wl.sweep(axles.PREDICT, **GIVEN), rtol=64 * EPS)
-
-
-def test_a_table_can_be_swept_again() -> None:
-    found = EXACT(**GRID)
-    conditions = [head for head in found.to_dataframe() if head.partition(" ")[0] in GRID]
-    again = wl.sweep(EXACT, found.to_dataframe()[conditions])
-    np.testing.assert_array_equal(again.wear_rate, found.wear_rate.magnitude.reshape(-1))
 
 
 def test_square_brackets_choose_points_by_position() -> None:
@@ -268,13 +255,6 @@ def test_one_axis_is_a_curve_with_its_conditions_above() -> None:
     assert legend(axes) == []
 
 
-def test_a_picture_goes_into_given_axes_or_a_new_figure() -> None:
-    _, given = plt.subplots()
-    assert EXACT(**ON_LINE).plot(ax=given) is given
-    first, second = (EXACT(**ON_LINE).plot() for _ in range(2))
-    assert first.figure is not second.figure
-
-
 def test_two_axes_are_curves_over_the_longer_one_or_a_map() -> None:
     found = EXACT(**GRID)
     axes = found.plot()
@@ -292,15 +272,6 @@ def test_two_axes_are_curves_over_the_longer_one_or_a_map() -> None:
     assert mesh.colorbar.ax.get_ylabel() == "wear rate [µg/m/mm²]"
     assert axes.get_title() == ""
     assert axes.get_title(loc="left") == "friction coefficient 0.4"
-
-
-def test_another_variable_can_be_the_horizontal_axis() -> None:
-    found = EXACT(**GRID)
-    axes = found.plot("tangential_force", x="wear_index")
-    assert axes.get_xlabel() == "wear index Tγ [N]"
-    assert curves(axes)["creepage 5 %"][0] == found.wear_index.magnitude[:, 2].tolist()
-    with pytest.raises(wl.CompositionError, match="wear_indx"):
-        found.plot(x="wear_indx")
 
 
 def test_conditions_that_vary_together_are_named_above() -> None:
@@ -324,11 +295,6 @@ def test_what_lies_outside_the_range_of_a_law_is_pale() -> None:
     np.testing.assert_array_equal(np.isnan(inside.get_ydata()), outside)
     assert legend(axes) == ["outside the range of the law"]
     assert legend(found.plot("tangential_force")) == []  # no outcome of the law
-
-
-def test_the_map_hatches_what_lies_outside() -> None:
-    assert legend(GLOBAL(**FINE).plot()) == ["outside the range of the law"]
-    assert legend(EXACT(**FINE).plot()) == []
 
 
 def test_there_is_a_curve_or_a_bar_for_each_patch() -> None:

@@ -54,12 +54,6 @@ def test_serialising_keeps_the_name_and_the_options() -> None:
     assert held(**dumped) == held({"model": "fastsim", "bound": "elliptic"})
 
 
-def test_the_table_that_was_given_is_not_modified() -> None:
-    table = {"model": "fastsim", "bound": "elliptic"}
-    held(table)
-    assert table == {"model": "fastsim", "bound": "elliptic"}
-
-
 @pytest.mark.parametrize(
     ("value", "message"),
     [
@@ -82,8 +76,3 @@ def test_a_wrong_model_is_named_with_its_path(value: Any, message: str) -> None:
 def test_a_wrong_option_of_a_law_is_named_with_its_path() -> None:
     with pytest.raises(wl.ConfigurationError, match=r"Holder: wear_law\.m_m: got the bare number 5\.3"):
         held(wear_law={"model": "usfd", "m_m": 5.3})
-
-
-def test_the_schema_takes_a_name_or_a_table() -> None:
-    schema = Holder.model_json_schema()["properties"]["contact_model"]
-    assert {option["type"] for option in schema["anyOf"]} == {"string", "object"}

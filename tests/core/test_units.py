@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import pint
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from pydantic import TypeAdapter
 
 import wearlaw as wl
 from tests.core.units import LENGTH, TO_SI
 from wearlaw import Q, coefficient
-from wearlaw.units.quantities import from_si, in_unit, real_array  # private: texts and floats at the rim
+from wearlaw.units.quantities import from_si, in_unit  # private: texts and floats at the rim
 
 CREEPAGE = wl.Unit("", positive=False, limit=1.0)
 
@@ -29,24 +28,16 @@ def test_every_unit_becomes_coherent_si(unit: str, factor: float) -> None:
     ("value", "said"),
     [
         (47, "the bare number 47, which has no unit"),
-        (np.float64(47.5), "47.5"),
         (True, "got True, which has no unit"),
-        (None, "got None"),
         ([1.0, 2.0], "got [1.0, 2.0], which has no unit"),
-        (np.ones(2), "which has no unit"),
         ("47", "'47' is not a number with a unit"),
-        ("forty", "'forty' is not a number with a unit"),
         ("47 foo", "'foo' is not a known unit"),
         ("47 kN", "got 47.00 kN, which does not have the dimension of 'mm'"),
-        (Q(1, "%"), "got 1.000 %, which does not have the dimension of 'mm'"),
         ("nan mm", "must be a number, got nan mm"),
         ("inf mm", "must be finite, got inf mm"),
         ("-1 mm", "must be greater than zero, got -1.000 mm"),
-        ("0 mm", "must be greater than zero, got 0.000 mm"),
         (pint.Quantity(1j, "mm"), "1j is not a real number"),
-        (pint.Quantity(np.array([True]), "mm"), "is not a real number"),
         (pint.Quantity([3, -2], "mm"), "must be greater than zero, got -2.000 mm at index [1]"),
-        (Q(np.linspace(-1, 1, 5000), "mm"), "must be greater than zero, got -1.000 mm at index [0]"),
         (Q(np.array([[1, 2], [np.nan, 3]]), "mm"), "must be a number, got nan mm at index [1, 0]"),
     ],
 )
@@ -65,11 +56,8 @@ def test_wrong_length_is_refused_with_field_value_unit_and_fix(value: Any, said:
     ("value", "said"),
     [
         (1, "the bare number 1, which has no unit"),
-        (0.01, "the bare number 0.01, which has no unit"),
         ("1", "'1' is not a number with a unit"),
-        ("0.01", "'0.01' is not a number with a unit"),
         ("150 %", "must not exceed 1 in magnitude, got 150.0 %"),
-        (Q(-1.0001, ""), "must not exceed 1 in magnitude, got -1.000"),
         (Q([100.0, 150.0], "%"), "must not exceed 1 in magnitude, got 150.0 % at index [1]"),
         (Q(1, "mm"), "got 1.000 mm, which is not a ratio"),
     ],
@@ -92,17 +80,6 @@ def test_infinity_is_accepted_only_where_it_is_allowed() -> None:
         wl.Unit("mm", infinite=True).si("-inf mm", "diameter")
 
 
-@pytest.mark.parametrize("unit", ["mm", ""])
-def test_the_example_in_the_schema_is_one_of_the_unit(unit: str) -> None:
-    (example,) = TypeAdapter(Annotated[wl.Quantity, wl.Unit(unit)]).json_schema()["examples"]
-    assert wl.Unit(unit).si(example, "x") == wl.Unit(unit).si(Q(1.0, unit), "x")
-
-
-def test_arrays_without_entries_are_taken() -> None:
-    assert LENGTH.si(Q([], "mm"), "x").shape == (0,)
-    assert coefficient([], "friction_coefficient").shape == (0,)
-
-
 def test_a_limit_is_in_the_unit_that_is_due() -> None:
     two = wl.Unit("mm", positive=False, limit=2.0)
     assert two.si("1999 um", "x") == pytest.approx(1.999e-3, rel=4 * np.finfo(float).eps)
@@ -121,12 +98,6 @@ def test_infinity_of_either_sign_is_refused_where_the_sign_is_free(text: str) ->
 def test_units_with_offset_or_logarithm_are_refused(unit: str, due: str) -> None:
     with pytest.raises(wl.UnitError, match="offset or is logarithmic"):
         wl.Unit(due).si(pint.Quantity(3.0, unit), "value")
-
-
-def test_memory_is_shared_where_the_unit_is_si_already() -> None:
-    given_values = np.array([1.0, 2.0])
-    assert np.shares_memory(wl.Unit("mm").si(Q(given_values, "m"), "x"), given_values)
-    assert np.shares_memory(wl.Unit("%", positive=False).si(Q(given_values, ""), "x"), given_values)
 
 
 @pytest.mark.parametrize("unit", ["m", "mm"])
@@ -166,10 +137,7 @@ def test_si_floats_are_written_in_a_unit() -> None:
     [
         ("0.4", "'0.4' is not a number with a unit"),
         (True, "True is not a real number"),
-        (1j, "1j is not a real number"),
         (np.nan, "must be a positive finite number, got nan"),
-        (np.inf, "must be a positive finite number, got inf"),
-        (0, "must be a positive finite number, got 0"),
         (-0.3, "must be a positive finite number, got -0.3"),
         ([0.3, -0.4], "must be a positive finite number, got -0.4 at index [1]"),
         (Q(0.4, "m"), "got 0.4000 m, which is not a ratio"),
@@ -199,18 +167,3 @@ def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
         said = r"static_coefficient: .* give it as a plain number or in percent"
         with pytest.raises(wl.ConfigurationError, match=said):
             wl.FallingFriction(static_coefficient=wrong, **given)
-
-
-def test_real_array_keeps_the_memory_of_float64() -> None:
-    values = np.arange(3.0)
-    assert real_array(values) is values
-
-
-def test_a_field_without_its_unit_is_refused_with_the_unit_to_give() -> None:
-    with pytest.raises(wl.ConfigurationError, match=r"diameter: .*give it in mm"):
-        wl.Disc(diameter=47, material=wl.steel())  # type: ignore[arg-type]
-
-
-def test_a_field_takes_one_value() -> None:
-    with pytest.raises(wl.ConfigurationError, match=r"diameter: must be one value, got an array of shape \(1,\)"):
-        wl.Disc(diameter=Q([47.0], "mm"), material=wl.steel())

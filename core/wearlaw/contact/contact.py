@@ -336,7 +336,10 @@ class Contact:
                 " traction and slip as magnitudes"
             )
         return cls(
-            **nodes,
+            pressure=p,
+            traction=q,
+            slip=s,
+            area=a,
             traction_bound=np.full(p.shape, np.inf),
             x=np.zeros(p.shape),
             rolling_speed=speed,

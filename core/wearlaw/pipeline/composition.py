@@ -228,13 +228,6 @@ def warn_of_unlike_materials(model: ContactModel, problem: Problem) -> None:
         )
 
 
-def check_one_patch(problem: Problem, rig: Model, application: str) -> None:
-    """Raise an error if an application takes one patch at each operating point and the rig makes several."""
-    several = several_patches(problem, rig)
-    if several:
-        raise CompositionError(f"{application}: {several}")
-
-
 def several_patches(problem: Problem, rig: Model) -> str:
     """Return the message for an application that takes one patch if the rig makes several, or "" if it makes one."""
     if not problem.dims:

@@ -37,10 +37,10 @@ from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.composition import (
     check_geometry,
     check_laws,
-    check_one_patch,
     check_scale,
     check_traction,
     law_among,
+    several_patches,
     warn_of_calibration,
     warn_of_materials,
     warn_of_parameters,
@@ -452,8 +452,8 @@ class Pipeline(Configuration, Generic[P]):
             If the application needs one patch and the rig makes several.
         """
         rig, problem = self.rig, self.rig.checked_problem(conditions)
-        if of_one_patch:
-            check_one_patch(problem, rig, of_one_patch)
+        if of_one_patch and (several := several_patches(problem, rig)):
+            raise CompositionError(f"{of_one_patch}: {several}")
         if type(rig).balanced is Rig.balanced:
             return problem
         with Blame(rig), steadily():

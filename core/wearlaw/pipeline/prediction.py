@@ -239,10 +239,6 @@ class Prediction:
         index = self._solution.law(name, body)
         return from_si(self._solution.value(index, body), self.laws[index].outcome.unit)
 
-    def outcome_error(self, name: str, body: str | None = None) -> Quantity:
-        """Return an estimate of the error of an outcome, as in `wear_rate_error`."""
-        return self._error(self._solution.law(name, body))
-
     def _error(self, index: int) -> Quantity:
         return from_si(self._solution.error_with_energy(index), self.laws[index].outcome.unit)
 

@@ -14,6 +14,7 @@ from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_fastsim._march import Ellipses  # private: patches with any flexibilities
 from wearlaw_fastsim._strips import even_strips  # private: with any number of nodes
+from wearlaw_fastsim._zones import Nodes, _where_it_sticks  # private: whatever the excess along a slip zone
 
 
 @pytest.mark.validates(
@@ -231,3 +232,14 @@ def test_compiled_loops_are_the_same_as_numpy(elliptic: bool) -> None:
         plain, compiled = (getattr(fields, name) for fields in found)
         # rounding of some ten operations in each of the nodes, as where a patch is mirrored
         np.testing.assert_allclose(compiled, plain, rtol=0.0, atol=1000 * EPS * np.abs(plain).max(), err_msg=name)
+
+
+def test_a_slip_zone_whose_excess_does_not_fall_to_zero_after_all_sticks_where_it_is_least() -> None:
+    x = np.array([0.1, 0.4, 0.7])[:, None]
+    bound, none = 1.0 - x**2, np.zeros((3, 1))
+    zone = Nodes(x, none + 1.0, bound, 0.6 * bound, -0.8 * bound, none, none, np.array([[3.0], [0.5], [2.0]]))
+    point = _where_it_sticks(zone, elliptic=False)
+    assert np.cos(point.angle) == pytest.approx(0.4, rel=ROUNDING)
+    assert (point.x[0], point.y[0]) == pytest.approx((0.6 * 0.84, -0.8 * 0.84), rel=ROUNDING)
+    at_once = _where_it_sticks(zone._replace(excess=np.array([[-1.0], [-2.0], [2.0]])), elliptic=False)
+    assert np.cos(at_once.angle) == pytest.approx(0.1, rel=ROUNDING)

@@ -161,6 +161,21 @@ def test_even_strips_integrate_polynomials_over_the_ellipse(count: int) -> None:
         assert found == pytest.approx(exact, rel=ROUNDING)
 
 
+def test_loops_are_compiled_by_the_number_of_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+
+    def accelerated(points: int) -> bool:
+        asked.append(points)
+        return False
+
+    monkeypatch.setattr(wl, "accelerated", accelerated)
+    patches = sample(False, count=5)
+    layout = layout_on(patches, *even_strips(9))
+    strips(patches, layout, 3, 11)
+    forces_alone(patches, layout, 3, 11)
+    assert [repr(points) for points in asked] == ["157"] * 2  # 5 × 9 × 14 / 4, rounded down
+
+
 @pytest.mark.skipif(not find_spec("numba"), reason="needs numba")
 @each_bound
 def test_compiled_loops_add_up_the_fields_of_strips(elliptic: bool) -> None:

@@ -13,20 +13,15 @@ from tests.core.cases import OWN_TESTS, changed, load, table
 
 WRONG: list[tuple[str, Any, str]] = [
     ("title", None, "title"),
-    ("title", 1, "title"),
     ("titel", "x", "titel"),
     ("rig", None, "rig"),
     ("rig", "suros", "rig"),
     ("rig", "twin_disk", "rig"),
-    ("rig", 1, "rig"),
     ("rig", {}, "rig"),
-    ("rig", {"wheel_radius": "460 mm"}, "rig"),
     ("rig", {"type": "twin_disc"}, "rig.disc_1"),
     ("rig.type", "twin_disk", "rig.type"),
-    ("rig.type", 1, "rig.type"),
     ("rig.type", "wheel_rail", "rig.preset"),
     ("rig.preset", "sros", "rig.preset"),
-    ("rig.preset", 1, "rig.preset"),
     ("rig.diametre", "47 mm", "rig.diametre"),
     ("rig.diameter", 47, "rig.diameter"),
     (
@@ -35,23 +30,13 @@ WRONG: list[tuple[str, Any, str]] = [
         "rig.material.poisson_ratio",
     ),
     ("rig.material", {"youngs_modulus": "1 GPa", "poisson_ratio": 0.3}, "rig.material.density"),
-    (
-        "rig.disc_1",
-        {
-            "diameter": "47 mm",
-            "material": {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "density": "7.8 g/cm^3", "E": 1},
-        },
-        "rig.disc_1.material.E",
-    ),
     ("contact_models", None, "contact_models"),
     ("contact_models", [], "contact_models"),
     ("contact_models", "exact", "contact_models"),
     ("contact_models", ["exat"], "contact_models.0"),
     ("contact_models", ["exact", "usfd"], "contact_models.1"),
-    ("contact_models", [{"slip": "consistent"}], "contact_models.0"),
     ("contact_models", [{"model": "exact", "slp": "x"}], "contact_models.0.slp"),
     ("contact_models", [{"model": "exact", "slip": "x"}], "contact_models.0.slip"),
-    ("contact_models", [3], "contact_models.0"),
     ("wear_laws", [], "wear_laws"),
     ("wear_laws", None, "wear_laws"),
     ("wear_laws", ["brr", "usdf"], "wear_laws.1"),
@@ -59,7 +44,6 @@ WRONG: list[tuple[str, Any, str]] = [
     ("wear_laws", [{"model": "usfd", "m_m": 5.3}], "wear_laws.0.m_m"),
     ("sweeps", None, "sweeps"),
     ("sweeps", {}, "sweeps"),
-    ("sweeps.creepage", 1, "sweeps.creepage"),
     ("sweeps.creepage.creepage.points", 1, "sweeps.creepage.creepage.points"),
     ("sweeps.creepage.creepage.step", 1, "sweeps.creepage.creepage.step"),
     ("sweeps.creepage.frictioncoefficient", 0.4, "sweeps.creepage.frictioncoefficient"),
@@ -67,24 +51,16 @@ WRONG: list[tuple[str, Any, str]] = [
     ("profiles.partial_slip.creepage", None, "profiles.partial_slip.creepage"),
     ("measured", {"label": "m"}, "measured.tests"),
     ("measured", {"tests": "lewis2004"}, "measured.label"),
-    ("measured", {"label": "m", "tests": 1}, "measured.tests"),
     ("measured", {"label": "m", "tests": "lewis2004", "source": "s"}, "measured.source"),
 ]
 """What both the loader and the schema refuse."""
 
 WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
     ("rig.diameter", "47 kN", "rig.diameter"),
-    ("rig.diameter", "-1 mm", "rig.diameter"),
-    ("rig.diameter", "47 foo", "rig.diameter"),
     ("sweeps.creepage.max_pressure", "1 kN", "sweeps.creepage.max_pressure"),
     ("sweeps.creepage.creepage", 1, "sweeps.creepage.creepage"),
     ("sweeps.creepage.normal_force", "1 N", "sweeps.creepage"),
     ("sweeps.a b", {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}, "sweeps"),
-    (
-        "sweeps.ééééééééééééééééééééééééééééééééééééééééééééééééééé",
-        {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46},
-        "sweeps",
-    ),
     ("profiles.a/b", {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}, "profiles"),
     ("profiles.partial_slip.creepage", ["1 %"], "profiles.partial_slip"),
 ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,6 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray
-from click.testing import Result
 
 import wearlaw as wl
 from tests.core import cases
@@ -95,37 +93,6 @@ def test_files_of_others_survive_a_second_run_into_the_same_folder(folder: Path)
     assert (folder / "out" / "figures" / "mine.png").read_text() == "years of work"
     assert [name for name in files(folder / "out") & ours if name.endswith(".png")] == []
     assert "kth on exact" in (folder / "out" / "report.html").read_text(encoding="utf-8")
-
-
-@pytest.mark.usefixtures("blank_figures")
-@pytest.mark.parametrize("overwrite", [False, True])
-def test_of_two_runs_into_one_folder_the_second_to_end_replaces_the_first_only_when_asked(
-    folder: Path, overwrite: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The second begins and ends while the first writes."""
-    from wearlaw_studies import commands  # private: one run begins inside another
-
-    for name in ("usfd", "kth"):
-        write(folder / f"{name}.toml", table(contact_models=["global"], wear_laws=[name], profiles={}))
-    if overwrite:
-        assert wearlaw("run", "usfd.toml", "-o", "out").exit_code == 0
-    options = ["-o", "out", "--figure-format", "svg", *(["--overwrite"] if overwrite else [])]
-    write_results: Callable[..., list[str]] = commands.write  # type: ignore[attr-defined]
-    winners: list[Result] = []
-
-    def late(*arguments: Any) -> list[str]:
-        monkeypatch.setattr(commands, "write", write_results)
-        winners.append(wearlaw("run", "kth.toml", *options))
-        written: list[str] = write_results(*arguments)
-        return written
-
-    monkeypatch.setattr(commands, "write", late)
-    last = wearlaw("run", "usfd.toml", *options)
-    assert [first.exit_code for first in winners] == [0]
-    if not overwrite:
-        assert_refused(last, "Error: output: 'out' is not empty")
-    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
-    assert ("usfd on global" in page, "kth on global" in page) == (overwrite, not overwrite)
 
 
 def test_figures_and_tables_are_written_in_the_formats_that_are_asked_for(folder: Path, results: Path) -> None:

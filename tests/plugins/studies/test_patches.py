@@ -22,7 +22,6 @@ from tests.core.distributions import Install
 from tests.plugins.studies.panels import by_label, by_name, one_panel
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_sweeps import points  # private: blocks of a few points, which would take millions otherwise
 
 THERE: list[dict[str, Any]] = [
     {"side": "left", "patch": 1}, {"side": "left", "patch": 2}, {"side": "right", "patch": 1},
@@ -175,27 +174,6 @@ def test_a_strip_shows_where_a_shown_patch_is_beyond_shakedown() -> None:
     assert not beyond.sel(patch=2).any()
     assert on_tread[0].spans == ((-7.0, 7.0),)
     assert on_flange == ()
-
-
-@pytest.mark.parametrize("name", ["pair", "load"])
-def test_an_axis_of_patches_cannot_have_the_name_of_another_column(install_model: InstallModel, name: str) -> None:
-    class Misnamed(Axle):
-        """The axle with another name for its sides."""
-
-        name: ClassVar[str] = "misnamed"
-        axis: str
-
-        def problem(self, **conditions: Any) -> wl.Problem:
-            """Return the problem with that name."""
-            return super().problem(**conditions).replaced(dims={self.axis: SIDES, "patch": PATCHES})
-
-        @classmethod
-        def conditions(cls) -> Mapping[str, wl.Condition]:
-            return Axle.conditions()
-
-    install_model(Misnamed)
-    with pytest.raises(wl.ConfigurationError, match=f"rig: its axis '{name}' has the name of another column"):
-        wl.Case(**{**ON_AXLE, "rig": {"type": "misnamed", "axis": name}})
 
 
 # --- Profiles --------------------------------------------------------------------------------------------------------
@@ -359,94 +337,3 @@ def test_a_case_runs_from_the_command_line_and_again_from_what_it_wrote() -> Non
     frame = pd.read_csv("out/tables/wear_rate_moving.csv")
     assert len(frame) == 2 * 4 * (1 + 3)  # models, patches, and laws with the ends of the band of kth
     assert frame.isna().sum().sum() == len(frame) // 2 * 4  # a flange touches at one of the five displacements
-
-
-def test_blocks_hold_fewer_points_of_several_patches_and_workers_give_the_same(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(points, "BLOCK", 8)  # two points of four patches
-    from wearlaw_sweeps import evaluation, workers  # private: a fault in one part of a sweep
-
-    blocks = []
-
-    def counted(job: Any, part: Any, *arguments: Any) -> Any:
-        blocks.append(part)
-        return evaluation.evaluate(job, part, *arguments)
-
-    case = wl.Case(**{**ON_AXLE, "contact_models": ["fastsim"], "wear_laws": ["kth"], "profiles": {}})
-    with monkeypatch.context() as patch:
-        patch.setattr(workers, "evaluate", counted)
-        alone = wl.run(case).sweeps["moving"]
-    assert len(blocks) == 3 * (3 + 1)  # of five points and of one, with both ends of the band
-    xarray.testing.assert_identical(alone, wl.run(case, workers=2).sweeps["moving"])
-
-
-# --- Sections --------------------------------------------------------------------------------------------------------
-
-SECTION = """
-    import numpy as np
-    import wearlaw as wl
-
-    def shapes(study):
-        given = study.conditions(profile="flanging")
-        predict = study.pair("kth on fastsim").pipeline
-        right = predict(**given).sel(side="right")
-        moving = predict(**study.conditions(sweep="moving"))
-        y = np.linspace(-60.0, 60.0, 9)
-        rail = wl.Curve("rail", y, 0.01 * y**2, colour=0)
-        wheel = wl.Curve("wheel", y, 0.01 * y**2 - 1.0, colour=1)
-        places = np.array([0.0, 0.0, np.nan, 9.0, 9.0])
-        joining = wl.Curve("contact", places, np.array([0.0, -1.0, np.nan, 0.81, -0.19]))
-        panel = wl.Panel(
-            wl.PlotAxis("y [mm]"), wl.PlotAxis("z [mm]", inverted=True), (rail, wheel, joining), "right", equal=True
-        )
-        text = f"{right.wear_rate.magnitude.tolist()} {moving.wear_rate.shape}"
-        return wl.Section("Shapes", text, figures=(wl.FigureData("shapes", "Shapes", (panel,)),))
-
-    @wl.hookimpl
-    def wearlaw_resources():
-        return {"section": {"shapes": shapes}}
-"""
-
-
-@pytest.mark.usefixtures("folder")
-def test_a_section_predicts_at_the_points_of_the_case_and_draws_shapes(install: Install) -> None:
-    install("shapes", SECTION)
-    study = ran(sections=["shapes"])
-    expected = direct("fastsim", "kth").sel(side="right").wear_rate.magnitude
-    assert study.sections[0].text == f"{expected.tolist()} (5, 2, 2)"
-    cases.write(Path("c.toml"), {**ON_AXLE, "sections": ["shapes"], "figures": {"one": BY_DISPLACEMENT}})
-    done = wearlaw("run", "c.toml", "-o", "out")
-    assert done.exit_code == 0, done.output
-    assert Path("out/figures/shapes.png").is_file()
-    assert '"scaleanchor": "x"' in Path("out/report.html").read_text(encoding="utf-8")
-
-
-# --- Laws of other outcomes and stages -------------------------------------------------------------------------------
-
-
-def test_stages_and_other_outcomes_work_patch_by_patch(install: Install) -> None:
-    install(
-        "cracks",
-        """
-        import wearlaw as wl
-
-        class Crack(wl.Law):
-            name = "crack"
-            source = "a test"
-            outcome = wl.Outcome("crack_damage", unit="", of="patch", signed=True)
-
-            def rate(self, contact, p):
-                return contact.wear_index / 1e6 - 1e-6
-
-        @wl.hookimpl
-        def wearlaw_models():
-            return [Crack]
-        """,
-    )
-    study = small(laws=["crack"], stages=["patch_mean"], wear_laws=["brr"])
-    sweep = study.sweeps["moving"]
-    damage = sweep.crack_damage.sel(pair="crack on fastsim with patch_mean")
-    index = sweep.wear_index.sel(contact_model="fastsim with patch_mean")
-    np.testing.assert_allclose(damage, index / 1e6 - 1e-6, rtol=1e-12)
-    assert (damage.notnull().values == EXISTS).all()

@@ -196,21 +196,6 @@ def test_hovering_shows_the_value_with_its_unit(page: webdriver.Chrome) -> None:
     assert hover_text(page, element, 10.0, 30.0) == "risingcreepage [%]: 10wear rate [µg/m/mm²]: 30from 20 to 40"
 
 
-def test_dragging_zooms_and_a_double_click_zooms_out(page: webdriver.Chrome) -> None:
-    element = plot(page, THREE.name)
-    ends = "return arguments[0]._fullLayout.xaxis2.range"
-    before = page.execute_script(ends, element)
-    drag = element.find_element("css selector", ".draglayer .x2y2 .nsewdrag")
-    ActionChains(page).move_to_element_with_offset(drag, -50, -50).click_and_hold().move_by_offset(
-        100, 100
-    ).release().perform()
-    wait(page, lambda: page.execute_script(ends, element) != before)
-    low, high = page.execute_script(ends, element)
-    assert before[0] < low < high < before[1]
-    ActionChains(page).double_click(drag).perform()
-    wait(page, lambda: page.execute_script(ends, element) == before)
-
-
 def luminance(colour: str) -> float:
     """Return the relative luminance of an rgb colour (WCAG 2, definition of relative luminance)."""
     parts = np.array([float(part) for part in colour.split("(")[1].rstrip(")").split(",")[:3]]) / 255.0

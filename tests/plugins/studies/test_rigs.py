@@ -193,27 +193,6 @@ def test_a_figure_shows_what_is_asked_for_of_a_wheel() -> None:
     assert shown["rail"].panels[0].y.ends == (0.0, 10.0)
 
 
-WRONG: list[tuple[str, Any, str]] = [
-    ("rig.wheel_radius", None, "rig.wheel_radius: is missing"),
-    ("rig.wheel_diameter", "1 m", "rig.wheel_diameter: unknown field; did you mean 'wheel_radius'?"),
-    ("sweeps.curve.longitudinal_creepage", None, "sweeps.curve.longitudinal_creepage: is missing"),
-    ("sweeps.curve.creepage", "1 %", "sweeps.curve.creepage: unknown condition"),
-    ("sweeps.curve.lateral_crepage", "1 %", "sweeps.curve.lateral_crepage: unknown condition; did you mean 'lateral_c"),
-    ("uncertainty.one", {**RUNNING, "creepage": "1 %"}, "uncertainty.one.creepage: unknown condition"),
-]
-
-
-@pytest.mark.parametrize(("path", "value", "message"), WRONG)
-def test_a_wrong_field_of_a_wheel_is_named_by_its_path(path: str, value: Any, message: str) -> None:
-    with pytest.raises(wl.ConfigurationError, match=re.escape(message)):
-        wl.Case(**changed(path, value, ON_RAIL))
-
-
-@pytest.mark.parametrize(("path", "value", "message"), WRONG)
-def test_the_schema_refuses_it_too(validator: Any, path: str, value: Any, message: str) -> None:
-    assert not validator.is_valid(changed(path, value, ON_RAIL)), message
-
-
 @pytest.mark.usefixtures("folder")
 def test_its_uncertainty_is_that_of_direct_samples() -> None:
     spread = {"one": {**CURVE, "spin": {"normal": ["1 1/m", "0.1 1/m"]}}}

@@ -28,30 +28,15 @@ LAB = """
         warnings.warn("beyond all tests", wl.RangeWarning)
         return wl.Section("Warned", f"It has {len(study.pairs)} pairs.")
 
-    def in_millionths(study):
-        for dataset in (*study.sweeps.values(), *study.profiles.values()):
-            for values in dataset.data_vars.values():
-                values *= 1e-6
-            dataset["made_up"] = 0.0
-        study.sweeps.clear()
-        return wl.Section("In millionths", "")
-
     def needs_load(study):
         return wl.Section("Loads", str(study.sweep("lod")))
-
-    def wrong(study):
-        return "Highest"
 
     def raises(study):
         return 1 / 0
 
     @wl.hookimpl
     def wearlaw_resources():
-        sections = {
-            "highest": highest, "warned": warned, "needs_load": needs_load, "wrong": wrong, "raises": raises,
-            "in_millionths": in_millionths,
-        }
-        return {"section": sections}
+        return {"section": {"highest": highest, "warned": warned, "needs_load": needs_load, "raises": raises}}
 """
 
 
@@ -75,15 +60,6 @@ def test_a_claim_has_one_of_four_verdicts(verdict: Any) -> None:
         wl.CheckedClaim("It wears little.", "section 3", "It reaches 55.", verdict, "Below 60.")
 
 
-def test_a_section_that_changes_its_tables_changes_no_others(install: Install) -> None:
-    install("lab", LAB)
-    study, without = wl.run(case(sections=["in_millionths", "highest"])), wl.run(case())
-    for kept, expected in ((study.sweeps, without.sweeps), (study.profiles, without.profiles)):
-        assert [*kept] == [*expected]
-        assert all(kept[name].equals(expected[name]) for name in kept)
-    assert study.sections[1].claims[0].verdict == "does not hold"
-
-
 def test_a_warning_becomes_one_note_of_the_section(install: Install) -> None:
     install("lab", LAB)
     without = wl.run(case()).notes
@@ -102,12 +78,6 @@ def test_what_a_section_cannot_do_names_it_and_its_plugin(install: Install) -> N
         "\nTo run the case without this section, take 'needs_load' out of `sections`"
     )
     assert "Dimensions" in wl.run(case(sections=["needs_load"], sweeps={"lod": SWEEP})).sections[0].text
-
-
-def test_what_is_no_section_is_the_plugins_fault(install: Install) -> None:
-    install("lab", LAB)
-    with pytest.raises(wl.ModelError, match=r"section 'wrong' of lab 1\.0 .* must be a Section, got 'Highest'"):
-        wl.run(case(sections=["wrong"]))
 
 
 def test_what_a_section_raises_is_the_plugins_fault_and_kept_as_the_cause(install: Install) -> None:

@@ -63,7 +63,7 @@ def of_netcdf(folder: Path) -> Any:
 def test_a_file_gives_what_its_arrays_give(
     table_of: Callable[[Path], Any], stored: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw.tables.CELLS", 28)  # private: tables in small pieces
+    monkeypatch.setattr("wearlaw_tables.CELLS", 28)  # private: tables in small pieces
     if stored:
         pytest.importorskip("zarr")
     ds = swept(table_of(tmp_path), store=tmp_path / "map.zarr" if stored else None)
@@ -165,7 +165,7 @@ def test_wrong_files_are_refused_with_line_and_column(name: str, folder: Path) -
 
 
 def test_a_fault_far_down_is_found_in_any_piece(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw.tables.CELLS", 28)  # private: tables in small pieces
+    monkeypatch.setattr("wearlaw_tables.CELLS", 28)  # private: tables in small pieces
     monkeypatch.setattr("wearlaw_sweeps.sweep.SAMPLE", 5)  # private: small blocks
     monkeypatch.setattr("wearlaw_sweeps.sweep.BLOCK", 11)  # private: small blocks
     table = frame()
@@ -270,7 +270,7 @@ def peak_of(rows: int, folder: Path) -> int:
 
 def test_four_times_the_rows_take_no_more_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("zarr")
-    monkeypatch.setattr("wearlaw.tables.CELLS", 4000)  # private: tables in small pieces
+    monkeypatch.setattr("wearlaw_tables.CELLS", 4000)  # private: tables in small pieces
     monkeypatch.setattr(points, "BLOCK", 1000)
     monkeypatch.setattr("wearlaw_sweeps.sweep.BLOCK", 1000)  # private: small blocks
     monkeypatch.setattr("wearlaw_sweeps.provenance.BLOCK", 1000)  # private: small blocks

@@ -28,17 +28,7 @@ CONDITIONS: dict[str, Any] = {
     "longitudinal_creepage": Q(0.2, "%"),
 }
 FASTSIM = wl.contact_model("fastsim")
-
-
-class PerEnergy(wl.WearLaw):
-    """Rate in proportion to the energy dissipated."""
-
-    name = "per_energy"
-    source = "made up for these tests"
-    slope: float = 1e-12
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-        return p["slope"] * contact.wear_index_density
+PER_ENERGY = wl.wear_law("energy", mass_per_energy="0.001 ug/J")
 
 
 def rig(**changes: Any) -> wl.WheelRail:
@@ -50,7 +40,7 @@ def problem(contact_angle: Any = None, **changes: Any) -> wl.Problem:
 
 
 def predicted(**changes: Any) -> wl.Prediction:
-    return (rig() | FASTSIM | PerEnergy())(**{**CONDITIONS, **changes})
+    return (rig() | FASTSIM | PER_ENERGY)(**{**CONDITIONS, **changes})
 
 
 def arrays(found: wl.Problem) -> dict[str, Any]:
@@ -229,7 +219,7 @@ def test_the_normal_depth_over_the_surface_is_the_mass_lost() -> None:
 
 def test_a_missing_patch_has_no_parts_of_a_depth() -> None:
     two = problem(Q([70.0, 20.0], "deg")).replaced(dims={"patch": (1, 2)}, exists=np.array([True, False]))
-    profile = (rig() | FASTSIM | PerEnergy()).predict(two).wear_profile("wheel")
+    profile = (rig() | FASTSIM | PER_ENERGY).predict(two).wear_profile("wheel")
     alone = predicted(contact_angle="70 deg").wear_profile("wheel")
     assert profile.depth_lateral.dims[0] == "patch"
     assert profile.depth_lateral.values[0] == pytest.approx(alone.depth_lateral.values, rel=64 * EPS)

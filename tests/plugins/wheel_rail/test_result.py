@@ -28,18 +28,7 @@ CONDITIONS: dict[str, Any] = {
 FASTSIM = wl.contact_model("fastsim")
 
 
-class PerEnergy(wl.WearLaw):
-    """Rate in proportion to the energy dissipated."""
-
-    name = "per_energy"
-    source = "made up for these tests"
-    slope: float = 1e-12
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-        return p["slope"] * contact.wear_index_density
-
-
-PER_ENERGY = PerEnergy()
+PER_ENERGY = wl.wear_law("energy", mass_per_energy="0.001 ug/J")
 
 
 def test_the_pipeline_gives_what_the_model_solves() -> None:

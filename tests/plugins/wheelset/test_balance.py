@@ -83,13 +83,3 @@ def test_compiled_gaps_around_contact_points_are_those_of_numpy(spacing: float) 
     assert np.isinf(samples[0]).any()
     # Gaps are differences of heights near 0.46 m, with a few roundings of 5e-17 m each; cosines enlarge them tenfold.
     np.testing.assert_allclose(samples[0], samples[1], rtol=1e-12, atol=5e-15)
-
-
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
-@pytest.mark.parametrize("march", ["adaptive", "uniform"])
-def test_forces_of_fastsim_are_those_of_its_fields(pressure: str, march: str) -> None:
-    model = wl.contact_model("fastsim", march=march)
-    problem = (wheelset(pressure=pressure) | MODEL).posed(conditions(10))
-    forces, fields = model.creep_forces(problem), model.solve(problem).forces
-    for name in ("longitudinal", "lateral", "spin_moment"):
-        np.testing.assert_array_equal(getattr(forces, name), getattr(fields, name))

@@ -95,29 +95,6 @@ def test_wrong_conditions_are_named(changed: dict[str, Any], error: type[Excepti
         predict(**{**GIVEN, **changed})
 
 
-def test_friction_in_percent_is_a_ratio() -> None:
-    friction = {"friction_coefficient": 0.25, "flange_friction_coefficient": 0.125}
-    given = {**GIVEN, **friction, "lateral_displacement": "6.2 mm"}
-    in_percent = {"friction_coefficient": Q(25.0, "%"), "flange_friction_coefficient": "12.5 %"}
-    one, other = (pair().problem(**values).friction_coefficient for values in (given, {**given, **in_percent}))
-    assert {*one[np.isfinite(one)]} == {0.25, 0.125}
-    np.testing.assert_allclose(other, one, rtol=2 * np.finfo(float).eps)  # the factor and the product round
-
-
-def test_friction_of_a_users_own_law_is_that_of_its_numbers() -> None:
-    class Wet:
-        """Friction that does not fall."""
-
-        def coefficient(self, creep_speed: wl.Array) -> wl.Array:
-            return np.full(creep_speed.shape, 0.3)
-
-    predict = pair() | wl.contact_model("fastsim")
-    found, expected = (
-        predict(**{**GIVEN, "friction_coefficient": one}).longitudinal_force.magnitude for one in (Wet(), 0.3)
-    )
-    np.testing.assert_array_equal(found, expected)
-
-
 @pytest.mark.parametrize(
     ("changed", "message"),
     [

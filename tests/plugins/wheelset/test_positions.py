@@ -82,36 +82,6 @@ def test_a_rail_turned_by_hand_is_one_with_cant() -> None:
     assert_same(geometry(turned, GRID, 10e-3), geometry(STANDARD, GRID, 10e-3), but=("rail_y", "rail_z"))
 
 
-def test_profiles_turned_together_touch_at_the_same_points_of_both() -> None:
-    # A wheelset whose profiles are turned about their contact points in the middle keeps these points: both surfaces
-    # turn with them.
-    middle = geometry(STANDARD, np.array([0.0])).sel(side="right", patch=1, lateral_displacement=0.0)
-    by = Q(4, "mrad")
-    wheel = STANDARD.wheel.shifted(y=Q(-middle.wheel_y.item(), "mm"), z=Q(-middle.wheel_z.item(), "mm")).turned(by)
-    wheel = wheel.shifted(y=Q(middle.wheel_y.item(), "mm"), z=Q(middle.wheel_z.item(), "mm"))
-    rail = STANDARD.rail.turned(by)
-    # The gauge moves with the turn, so that the rail's contact point does; the wheels go with it.
-    turned = wheelset(wheel=wheel, rail=rail)
-    at = rail.curve.at(1e-3 * middle.rail_position.item())
-    cant = np.arctan(1.0 / 40.0)
-    across = at[0] * np.cos(cant) + at[1] * np.sin(cant)
-    found = geometry(turned, np.array([0.0])).sel(side="right", patch=1, lateral_displacement=0.0)
-    origin = 1e-3 * found.y.item() - found_across(rail, 1e-3 * found.rail_position.item(), cant)
-    wider = Q(1360.0 + 2e3 * (origin + across - 1e-3 * middle.y.item()), "mm")
-    found = geometry(wheelset(wheel=wheel, rail=rail, flange_back_distance=wider), np.array([0.0]))
-    found = found.sel(side="right", patch=1, lateral_displacement=0.0)
-    for name in ("wheel_y", "wheel_z", "rail_position", "rolling_radius"):
-        assert found[name].item() == pytest.approx(middle[name].item(), rel=0.0, abs=1e3 * ROUNDING), name
-    turn = np.radians(found.contact_angle.item() - middle.contact_angle.item())
-    assert turn == pytest.approx(4e-3, rel=0.0, abs=ROUNDING)
-
-
-def found_across(rail: ws.Profile, s: float, cant: float) -> float:
-    """Return how far a point of a rail with cant is outwards of its origin [m]."""
-    y, z, _, _ = rail.curve.at(s)
-    return float(y * np.cos(cant) + z * np.sin(cant))
-
-
 def test_shifted_wheel_profiles_with_their_inner_faces_are_the_same_wheels() -> None:
     shifted = wheelset(
         wheel=ws.Profile.s1002().shifted(y="3 mm", z="2 mm"), flange_back_position="-67 mm", nominal_radius="458 mm"
@@ -123,14 +93,6 @@ def test_shifted_wheel_profiles_with_their_inner_faces_are_the_same_wheels() -> 
     for name, shift in (("wheel_y", 3e-3), ("wheel_z", 2e-3), ("vertical_displacement", -2e-3)):
         found = values(other.sel(patch=1), name)
         assert found == pytest.approx(values(one.sel(patch=1), name) + shift, rel=0.0, abs=ROUNDING), name
-
-
-def test_a_wider_gauge_on_wider_wheels_only_flattens_the_roll() -> None:
-    wide = wheelset(gauge="1475 mm", flange_back_distance="1400 mm")
-    found, expected = (geometry(pair, np.array([0.0])).sel(patch=1) for pair in (wide, STANDARD))
-    assert values(found, "y") * np.array([-1.0, 1.0]) == pytest.approx(
-        values(expected, "y") * np.array([-1.0, 1.0]) + 20e-3, rel=0.0, abs=ROUNDING
-    )
 
 
 def test_shifted_rail_profiles_change_nothing() -> None:
@@ -178,15 +140,6 @@ def test_two_patches_are_listed_at_a_jump_and_are_those_on_its_sides() -> None:
     assert ((gap[:, 1] > 0.0) & (gap[:, 1] < 1e-6)).all()
 
 
-def test_patches_within_a_gap_are_listed_by_it() -> None:
-    near, far = (
-        STANDARD.geometry(lateral_displacement="4 mm", within=Q(gap, "mm")).dataset.sel(side="right")
-        for gap in (0.05, 0.5)
-    )
-    assert (values(far, "gap")[~np.isnan(values(far, "gap"))] <= 0.5e-3).all()
-    assert np.isfinite(values(far, "y")).sum() > np.isfinite(values(near, "y")).sum() == 1
-
-
 # ------------------------------------------------------------------------------------------------ compiled loops
 
 
@@ -217,14 +170,6 @@ def test_compiled_loops_find_what_numpy_finds(rolled: bool) -> None:
     assert np.array_equal(np.isnan(one.arc[same]), np.isnan(other.arc[same]))
     for found, expected in ((other.arc, one.arc), (other.gap, one.gap), (other.saddle, one.saddle)):
         assert found[same] == pytest.approx(expected[same], rel=0.0, abs=ROUNDING, nan_ok=True)
-
-
-def test_blocks_of_positions_do_not_touch_each_other() -> None:
-    wl.accelerate(False)
-    displacement = np.linspace(-8e-3, 8e-3, 601)
-    whole, _ = searched(STANDARD._section, displacement, np.zeros(601))
-    single = [searched(STANDARD._section, displacement[k : k + 1], np.zeros(1))[0][0] for k in range(0, 601, 50)]
-    assert whole[::50] == pytest.approx(np.array(single), rel=0.0, abs=4.0 * ROLL_ACCURACY)
 
 
 # ------------------------------------------------------------------------------------------------------ no contact
@@ -264,12 +209,6 @@ def test_a_wheel_beside_its_rail_is_an_error(displacement: str, compiled: bool) 
     wl.accelerate(compiled)
     with pytest.raises(wl.ConditionsError, match=r"the (left|right) wheel does not touch its rail"):
         STANDARD.geometry(lateral_displacement=displacement)
-
-
-@pytest.mark.parametrize("gauge", ["1300 mm", "1400 mm", "1600 mm", "1 m"])
-def test_a_gauge_that_cannot_be_is_an_error(gauge: str) -> None:
-    with pytest.raises(wl.ConfigurationError, match=r"gauge: rails .* must leave 0 to 40 mm"):
-        wheelset(gauge=gauge)
 
 
 def test_a_climbing_wheel_is_warned_of_and_has_a_result() -> None:

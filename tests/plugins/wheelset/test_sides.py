@@ -89,14 +89,6 @@ def test_loads_of_swapped_profiles_are_the_mirrored_ones(pressure: Pressure) -> 
         assert mirrored[:, ::-1] == pytest.approx(value, rel=1e-5, nan_ok=True), name
 
 
-def test_the_same_profile_on_the_left_changes_nothing() -> None:
-    one, other = (
-        (wheelset(**left) | wl.contact_model("strip_theory"))(lateral_displacement=Q(PLACES, "m"), **CONDITIONS)
-        for left in ({}, {"left_wheel": NEW, "left_rail": RAIL})
-    )
-    assert np.array_equal(one.wear_index.magnitude, other.wear_index.magnitude, equal_nan=True)
-
-
 def test_kind_of_a_left_profile_is_checked() -> None:
     with pytest.raises(wl.ConfigurationError, match="left_wheel is the profile of a rail"):
         wheelset(left_wheel=RAIL)
