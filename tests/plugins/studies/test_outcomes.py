@@ -13,10 +13,10 @@ import xarray as xr
 from pydantic import Field
 
 import wearlaw as wl
-from tests.core import test_outcomes
+from tests.core import outcome_laws
 from tests.core.cases import POINT, InstallModel, case, load, table, wearlaw
+from tests.core.outcome_laws import Heat, Volume
 from tests.core.stages import EXACT, KTH, RIG, predicted, silently
-from tests.core.test_outcomes import Heat, Volume
 
 EPS = float(np.finfo(np.float64).eps)
 ON_RAILS: Any = {
@@ -40,7 +40,7 @@ ON_RAILS: Any = {
 BOTH: Any = {"contact_models": ["exact", "global"], "wear_laws": ["kth"], "laws": ["damage", "heat"]}
 
 
-class Damage(test_outcomes.Damage):
+class Damage(outcome_laws.Damage):
     """The same law, with a default that the schema can show."""
 
     threshold: Annotated[wl.Quantity, wl.Unit("N")] = Field(default="15 N", validate_default=True)
