@@ -7,7 +7,7 @@ from typing import Protocol
 
 import pint
 
-from wearlaw.contact.problem import Geometry
+from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.units.quantities import Quantity
