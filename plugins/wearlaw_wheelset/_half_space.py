@@ -114,6 +114,8 @@ def rows(
     height = distance + depth
     known = np.isfinite(place.between(place.samples, y[None])[0]) & (np.abs(y) < -place.start[0])
     height = np.where(known, height, FAR * depth)
+    if not (height < depth).any():  # on the way to a balance, the contact point may lie beyond the known surfaces
+        height[own - 1 : own + 2] = 0.0
     bend = 0.5 * curvature_along(section, place.position, there, arc) / np.cos(there.angle - turn)
     near = height < depth
     middle = int((np.abs(shift[near]) + np.sqrt((depth - height[near]) / bend[near])).max() / dx) + 1
