@@ -133,7 +133,7 @@ def test_a_profile_along_a_line_shows_means_over_the_area_alone() -> None:
     heat = profile.heat_flux.sel(pair="heat on exact")
     point: Any = POINT
     power = abs(profile.traction * profile.slip).sel(contact_model="exact") * 1e-2 * RIG.problem(**point).rolling_speed
-    np.testing.assert_allclose(heat, power, rtol=64 * EPS)  # 1 MPa m/s is 1 W/mm²
+    np.testing.assert_allclose(heat, 0.5 * power, rtol=64 * EPS)  # half of it; 1 MPa m/s is 1 W/mm²
     assert profile.heat_flux.sel(pair="kth on exact").isnull().all()
 
 
