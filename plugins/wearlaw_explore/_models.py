@@ -13,9 +13,9 @@ import pandas as pd
 import wearlaw as wl
 from wearlaw.models.model import labelled
 from wearlaw.pipeline.prediction import SHOWN
-from wearlaw.pipeline.several import composed
 from wearlaw.units.variables import name_of
 from wearlaw_output.notes import Notes
+from wearlaw_sweeps.several import composed
 
 MEANS: Any = wl.patch_mean()
 """The stage for a law of patch means."""

@@ -11,8 +11,8 @@ from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, Outcome
 from wearlaw.pipeline.composition import TAKE_MEANS
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.pipeline.several import composed
 from wearlaw_output.notes import Notes
+from wearlaw_sweeps.several import composed
 
 
 @dataclass(frozen=True)

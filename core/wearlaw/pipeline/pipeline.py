@@ -9,7 +9,7 @@ import dataclasses
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, cached_property, lru_cache, partial
-from typing import Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast, overload
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast, overload
 
 import numpy as np
 import pint
@@ -28,6 +28,7 @@ from wearlaw.errors import (
     shown,
     warn,
 )
+from wearlaw.extras import load
 from wearlaw.models.contact_model import ContactModel, Scale, Stage
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.model import Blame, Model, fault
@@ -48,10 +49,12 @@ from wearlaw.pipeline.composition import (
 )
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch
-from wearlaw.pipeline.several import LAW, Pipelines
 from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.settings.configuration import LINE, Configuration
 from wearlaw.units.registry import with_magnitude
+
+if TYPE_CHECKING:
+    from wearlaw_sweeps.several import Pipelines
 
 ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
 
@@ -260,7 +263,7 @@ class Rig(Model):
         """Return the pipeline that solves this rig's contact with a contact model, or with each of a list of them."""
         assert isinstance(self, Rig)
         if isinstance(model, list | tuple):
-            return Pipelines(self, model)
+            return _several(self, model)
         if not isinstance(model, ContactModel):
             raise CompositionError(
                 f"a rig is followed by a contact model, not by {shown(model)};"
@@ -417,7 +420,7 @@ class Pipeline(Configuration, Generic[P]):
     def __or__(self, part: Law | Stage | Sequence[Law]) -> Pipeline[P] | Pipelines[P]:
         """Return the pipeline with one more law or stage around the contact model, or with each of a list of laws."""
         if isinstance(part, list | tuple) and not self.laws:
-            return Pipelines(self.rig, [self.contact_model], self.stages, part, dims=[LAW])
+            return _several(self.rig, [self.contact_model], self.stages, part, dims=["law"])
         if isinstance(part, Stage):
             if self.laws:
                 raise CompositionError(f"a stage stands before the laws, not after them: {shown(part)}; {ORDER}")
@@ -533,3 +536,8 @@ def expect_pipeline(predict: object) -> None:
     """Raise an `InputError` unless the argument `predict` of an application is a pipeline."""
     if not isinstance(predict, Pipeline):
         raise InputError(f"predict: must be a pipeline, as in rig | contact model | wear law; got {shown(predict)}")
+
+
+def _several(*parts: Any, **more: Any) -> Any:
+    """Return the pipelines of lists of models, which give a dataset and need what sweeps need."""
+    return load("wearlaw_sweeps.several", "Pipelines", "a list of models")(*parts, **more)
