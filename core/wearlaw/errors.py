@@ -8,7 +8,6 @@ can catch either.
 from __future__ import annotations
 
 import os
-import re
 import sys
 import warnings
 from collections.abc import Iterable, Iterator
@@ -71,9 +70,6 @@ class DataError(InputError):
     problems : tuple of str
         Every problem with its place, not only the first one.
     """
-
-    MOST = PROBLEMS
-    """Largest number of problems that the message lists."""
 
     def __init__(self, subject: str, problems: Iterable[str] = ()) -> None:
         self.subject = subject
@@ -174,24 +170,17 @@ class PluginWarning(WearlawWarning):
     """A plugin, or a part of it, could not be used and is left out."""
 
 
-_WORDS = re.compile(r"[^\W_]{3,}")
-"""The words of a name such as "coefficient.low_speed"; letters such as the "m" of "m_c" are none."""
-
-
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return "; did you mean 'x'?" for the nearest known word, or a full stop if no word is near.
 
     Case does not matter. A word that is part of longer names, such as creepage in longitudinal_creepage, suggests the
     first of them.
     """
-    names = list(known)
     sought = word.lower()
-    parts = set(_WORDS.findall(sought))
-    whole = [name for name in names if name.lower() == sought]
-    longer = [name for name in names if parts and parts <= set(_WORDS.findall(name.lower()))]
-    spelt = {name.lower(): name for name in reversed(names)}  # of equal names, the first counts
-    near = [*whole, *longer, *(spelt[name] for name in get_close_matches(sought, spelt, n=1))]
-    return f"; did you mean {shown(near[0])}?" if near else "."
+    spelt = {name.lower(): name for name in reversed(list(known))}  # of equal names, the first counts
+    longer = [name for name in reversed(spelt) if len(sought) > 2 and sought in name]
+    near = [*longer, *get_close_matches(sought, spelt, n=1)]
+    return f"; did you mean {shown(spelt[sought if sought in spelt else near[0]])}?" if near else "."
 
 
 INSIDE = ("wearlaw", "numpy", "contextlib")

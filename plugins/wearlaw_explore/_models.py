@@ -34,7 +34,8 @@ class Subject:
 
     def __post_init__(self) -> None:
         models = {**self.own_models, **_installed(wl.contact_model, wl.contact_models())}
-        laws = {**self.own_laws, **_installed(wl.wear_law, [*wl.wear_laws(), *wl.parameter_sets()])}
+        own = {law: code for law, code in self.own_laws.items() if isinstance(law, wl.WearLaw)}
+        laws = {**own, **_installed(wl.wear_law, [*wl.wear_laws(), *wl.parameter_sets()])}
         self.codes = {MEANS: "wl.patch_mean()", **self.stages, **models, **laws}
         fitting = []
         for model in models:
@@ -42,6 +43,7 @@ class Subject:
                 self.rig | model
                 fitting.append(model)
         self.models, self.laws = labelled(fitting), labelled([*laws])
+        self.first_laws = [*self.laws][: len(own)] or ["usfd"]
 
     def conditions(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """Return the example conditions of the rig and the given ones, which replace those that they exclude."""

@@ -32,9 +32,6 @@ from wearlaw_studies.case import load_case
 FIELDS = ("pressure", "slip", "wear_rate")
 """The fields of a patch."""
 
-POINTS = 25
-"""Points of a curve."""
-
 APART = 0.015
 """Distance by which wheel and rail are drawn apart [m]."""
 
@@ -112,7 +109,7 @@ def fields(predictions: Iterable[wl.Prediction]) -> dict[str, tuple[Any, Any]]:
 
 
 class OnProfiles:
-    """Figures of the profiles of a wheel and its rail with their contacts, and of the wear across the wheel."""
+    """Figures of a wheel and its rail, drawn apart, with their contacts, and of the wear across the wheel."""
 
     def __init__(self, profiles: Any, laws: Iterable[str]) -> None:
         self.profiles, y = profiles, "y in the track [mm]"
@@ -161,14 +158,14 @@ class Page:
         sliders = {name: slider(rig, name, value) for name, value in self.start.items()}
         self.sliders = {name: one for name, one in sliders.items() if one is not None}
         self.model = pn.widgets.Select(label="Contact model", options=[*subject.models], **STRETCHED)
-        first = [*subject.laws][: len(subject.own_laws)] or ["usfd"]
-        self.laws = pn.widgets.CheckBoxGroup(options=[*subject.laws], value=first, inline=True)
+        self.laws = pn.widgets.CheckBoxGroup(options=[*subject.laws], value=subject.first_laws, inline=True)
         self.patch = pn.widgets.Select(label="Patch", options=[""], visible=False, **STRETCHED)
         line = rig.patch_geometry == "line"
         self.fields: Any = [Lines(name_of(one), label("x"), label(one), [one]) if line else Map(one) for one in FIELDS]
         self.along = self.sliders.get(rig.creepage)
         along = self.along.label if self.along is not None else ""
-        self.curve = Lines(f"wear over {name_of(rig.creepage)}", along, label("wear_rate"), subject.laws)
+        title = f"wear over {name_of(rig.creepage or 'creepage')}"
+        self.curve = Lines(title, along, label("wear_rate"), subject.laws)
         self.curves: dict[str, Any] = {}
         self.curves_of: Any = None
         self.profiles: Any = (
@@ -230,7 +227,7 @@ class Page:
         creepage, model, laws = self.subject.rig.creepage, self.model.value, self.laws.value
         key = model, laws, {**conditions, creepage: None}
         if self.curves_of != key:  # along the curve itself it stays
-            x = np.linspace(self.along.start, self.along.end, POINTS)
+            x = np.linspace(self.along.start, self.along.end, 25)
             there = {**conditions, creepage: wl.Q(x, self.along.unit)}
             found = self.subject.predict(model, laws, there, Notes()) if self.seconds < SLOW * len(laws) else {}
             self.curves, self.curves_of = {law: (x, largest(one)) for law, one in found.items()}, key
@@ -261,18 +258,9 @@ def explore(predict: Any, /, **conditions: Any) -> Any:
     """
     expect_pipeline(predict)
     pn.extension(inline=True)
-    laws = [law for law in predict.laws if isinstance(law, wl.WearLaw)]
-    own = numbered("predict.laws", predict.laws)
-    return Page(
-        Subject(
-            predict.rig,
-            "predict.rig",
-            own_models={predict.contact_model: "predict.contact_model"},
-            own_laws={law: own[law] for law in laws},
-            stages=numbered("predict.stages", predict.stages),
-        ),
-        conditions,
-    ).layout()
+    models = {predict.contact_model: "predict.contact_model"}
+    laws, stages = numbered("predict.laws", predict.laws), numbered("predict.stages", predict.stages)
+    return Page(Subject(predict.rig, "predict.rig", "", models, laws, stages), conditions).layout()
 
 
 @click.command("explore")

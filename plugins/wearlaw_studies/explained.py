@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any
 
 from wearlaw.cli.show import wrapped
-from wearlaw.errors import InputError
 from wearlaw.plugins import loader
 from wearlaw.settings.text_files import parse_toml
 from wearlaw_studies.case import load_case
@@ -42,15 +41,6 @@ def explain_section(name: str, make: Callable[..., Any]) -> Iterator[str]:
         yield from (documented, "")
     yield f'A case adds it to its report with sections = ["{name}"].'
     cases = loader.installed()["case"].items()
-    users = [case for case, text in cases.items() if name in _sections(text)]
+    users = [case for case, text in cases.items() if name in parse_toml(text).get("sections", [])]
     if users:
         yield f"Shipped cases with it: {', '.join(users)}"
-
-
-def _sections(text: str) -> list[str]:
-    """Return the sections of a case file, none if it is not valid TOML."""
-    try:
-        named: list[str] = parse_toml(text).get("sections", [])
-    except InputError:
-        return []
-    return named

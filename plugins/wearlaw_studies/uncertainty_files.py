@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,9 +15,6 @@ from wearlaw_studies.study import provenance
 from wearlaw_studies.uncertainty import CaseUncertainty, UncertainPair
 
 UNCERTAINTY = "uncertainty.json"
-
-LONGEST_NAME = 100
-"""Most bytes of a figure's name; file systems allow 255 for a name with its ending."""
 
 
 def write_uncertainty(
@@ -48,13 +44,11 @@ def write_uncertainty(
 def figure_files(pairs: Sequence[UncertainPair]) -> list[str]:
     """Return a file name for each figure, such as "scatter_usfd_on_exact" for an operating point called "scatter".
 
-    Pairs with several outcomes add the outcome; names that would be equal add a number.
+    Pairs with several outcomes add the outcome.
     """
     labels = [f"{one.point} {one.pair.label}" for one in pairs]
-    names: list[str] = []
-    for label, one in zip(labels, pairs, strict=True):
-        text = label if labels.count(label) == 1 else f"{label} {one.uncertainty.outcomes[0]}"
-        name = re.sub(r"\W+", "_", text).strip("_").encode()[:LONGEST_NAME].decode(errors="ignore")
-        numbered = (f"{name}_{number}" for number in itertools.count(2))
-        names.append(name if name not in names else next(other for other in numbered if other not in names))
-    return names
+    names = [
+        label if labels.count(label) == 1 else f"{label} {one.uncertainty.outcomes[0]}"
+        for label, one in zip(labels, pairs, strict=True)
+    ]
+    return [re.sub(r"\W+", "_", name).strip("_") for name in names]

@@ -55,12 +55,6 @@ def test_an_inherited_field_is_described_where_it_was_annotated_last() -> None:
     assert field_docstrings(Inheriting) == {**field_docstrings(Described), "below": "", "silent": "Said at last."}
 
 
-def test_the_schema_describes_the_fields_of_what_a_field_holds() -> None:
-    schema = wl.TwinDisc.model_json_schema()
-    assert "flat body" in schema["$defs"]["Disc"]["properties"]["diameter"]["description"]
-    assert schema["properties"]["disc_1"]["description"] == field_docstrings(wl.TwinDisc)["disc_1"] != ""
-
-
 def test_a_class_whose_source_is_gone_works_without_descriptions() -> None:
     names: dict[str, Any] = {"wl": wl, "__name__": "a_module_that_is_gone"}
     exec("class Toy(wl.Configuration):\n    a: float = 1.0\n    'The a.'\n", names)

@@ -5,10 +5,8 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
-from pathlib import Path
 
 import wearlaw as wl
-from tests.core.distributions import Install
 
 
 def test_a_pickled_pipeline_predicts_the_same_in_a_fresh_process() -> None:
@@ -23,11 +21,3 @@ def test_a_pickled_pipeline_predicts_the_same_in_a_fresh_process() -> None:
     assert run.returncode == 0, run.stderr.decode()
     expected = predict(normal_force="2.7 kN", creepage="1 %", friction_coefficient=0.46)
     assert float(run.stdout) == expected.wear_rate.magnitude
-
-
-def test_the_plugin_is_named_where_a_shell_shows_it(install: Install, tmp_path: Path) -> None:
-    install("ending", "raise SystemExit(0)")
-    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from wearlaw.cli import main; main()"
-    done = subprocess.run([sys.executable, "-c", code, "show", "usfd"], capture_output=True, text=True, check=True)
-    assert done.stdout.startswith("usfd: a wear law of wearlaw ")
-    assert "PluginWarning: left out: ending 1.0 (plugin 'ending'): SystemExit: 0\n" in done.stderr

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import POINT, case, load, table, wearlaw
+from tests.core.cases import POINT, case, load, table
 from tests.core.distributions import Install
 from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import case_schema, load_case, written  # private: a case without its files
@@ -131,22 +131,6 @@ def test_a_case_of_a_run_names_material_class_and_plugin_as_the_first_one_did(tm
     assert [tables[f"disc_{n}"]["material"]["type"] for n in (1, 2)] == ["r350", "RailSteel"]
 
 
-@pytest.mark.usefixtures("steels")
-def test_the_report_shows_the_fields_of_a_material_with_units(tmp_path: Path) -> None:
-    read = load(tmp_path, table(rig={"preset": "suros", "material": "r350"}, sweeps={"point": POINT}, profiles={}))
-    rows = parameters(run(read)).frame
-    (row,) = rows[rows["parameter"] == "disc_1.material.hardness"].itertuples(index=False)
-    assert (row.value, row.meaning) == ("3.5 GPa", "Hardness, H [Pa].")
-
-
-@pytest.mark.usefixtures("steels")
-def test_plugins_are_listed_with_their_materials_and_classes() -> None:
-    listed = {(kind, name, str(origin).split()[0]) for kind, name, origin in loader.installed().listing()}
-    assert {("material", "r350", "steels"), ("material type", "RailSteel", "steels")} <= listed
-    assert ("material type", "Bare", "steels") in listed
-    assert "RailSteel" in wearlaw("plugins").stdout
-
-
 def test_a_material_of_a_script_works_everywhere_but_in_files(tmp_path: Path) -> None:
     rig = wl.TwinDisc.suros(material=own())
     assert pickle.loads(pickle.dumps(rig)).disc_1.material == own()
@@ -157,22 +141,7 @@ def test_a_material_of_a_script_works_everywhere_but_in_files(tmp_path: Path) ->
     (tmp_path / "case.toml").write_text(written(study.case)["case.toml"], encoding="utf-8")
     with pytest.raises(wl.CaseError) as error:
         load_case(str(tmp_path / "case.toml"))
-    assert str(error.value).splitlines()[1] == (
-        "  rig.disc_1.material: no material is called 'Own'. Installed: R200, R220, R260, R260Mn, R320Cr, R350HT,"
-        " R350LHT, steel, SteelWithHardness. `type` names a material or a class of materials of an"
-        " installed plugin; ship a class of a script in a plugin, or leave `type` out for a plain Material"
-    )
-
-
-def test_a_field_of_ones_own_keeps_the_class_too() -> None:
-    class Coated(wl.Configuration):
-        base: wl.Material
-
-    coated = Coated(base=own())
-    assert json.loads(coated.model_dump_json())["base"] == own().model_dump(mode="json")
-    assert own().model_dump(mode="json")["type"] == "Own"
-    assert Own.model_validate_json(own().model_dump_json()) == own() == Own(**own().model_dump())
-    assert "type" not in wl.steel().model_dump(mode="json")
+    assert "rig.disc_1.material: no material is called 'Own'. Installed: R200, " in str(error.value)
 
 
 def test_the_record_of_a_fit_keeps_the_class_of_its_bodies(install: Install) -> None:
@@ -269,10 +238,3 @@ def test_a_wrong_class_of_materials_is_left_out_with_the_reason(
     with pytest.warns(wl.PluginWarning, match="left out: steels 1.0"):
         (broken,) = loader.installed().broken
     assert cause in broken.cause
-
-
-def test_one_class_name_of_two_plugins_is_an_error_that_names_both(install: Install) -> None:
-    install("steels", STEELS)
-    install("alloys", STEELS.replace("softer", "harder").replace("r350", "r400"))
-    with pytest.raises(wl.UnknownModelError, match=r"material type 'RailSteel' is provided more than once, by alloys"):
-        wl.material("RailSteel", **FIELDS, hardness="1 GPa")

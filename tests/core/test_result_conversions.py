@@ -96,10 +96,3 @@ def test_conversions_refuse_a_wrong_body_or_distance() -> None:
     for wrong in (10, "10", "10 kg", "-1 km", "0 km"):
         with pytest.raises(wl.UnitError, match=r'^over: .* such as "1.0 km"$'):
             result.mass_lost(over=wrong, body="disc_1")  # type: ignore[arg-type]
-
-
-def test_a_distance_may_be_an_array() -> None:
-    result = PREDICT(creepage=Q([1.0, 2.0], "%"), **CONDITIONS)
-    lost = result.mass_lost(over=Q([1.0, 10.0], "km"), body="disc_1")
-    each = result.mass_lost(over="1 km", body="disc_1")
-    np.testing.assert_allclose(lost.magnitude, each.magnitude * [1.0, 10.0], rtol=4 * EPS)

@@ -274,15 +274,6 @@ def test_two_axes_are_curves_over_the_longer_one_or_a_map() -> None:
     assert axes.get_title(loc="left") == "friction coefficient 0.4"
 
 
-def test_another_variable_can_be_the_horizontal_axis() -> None:
-    found = EXACT(**GRID)
-    axes = found.plot("tangential_force", x="wear_index")
-    assert axes.get_xlabel() == "wear index Tγ [N]"
-    assert curves(axes)["creepage 5 %"][0] == found.wear_index.magnitude[:, 2].tolist()
-    with pytest.raises(wl.CompositionError, match="wear_indx"):
-        found.plot(x="wear_indx")
-
-
 def test_conditions_that_vary_together_are_named_above() -> None:
     found = EXACT(normal_force=LOADS[:3], creepage=CREEPAGES, friction_coefficient=0.4)
     axes = found.plot()
@@ -304,11 +295,6 @@ def test_what_lies_outside_the_range_of_a_law_is_pale() -> None:
     np.testing.assert_array_equal(np.isnan(inside.get_ydata()), outside)
     assert legend(axes) == ["outside the range of the law"]
     assert legend(found.plot("tangential_force")) == []  # no outcome of the law
-
-
-def test_the_map_hatches_what_lies_outside() -> None:
-    assert legend(GLOBAL(**FINE).plot()) == ["outside the range of the law"]
-    assert legend(EXACT(**FINE).plot()) == []
 
 
 def test_there_is_a_curve_or_a_bar_for_each_patch() -> None:

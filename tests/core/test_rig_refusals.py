@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
 
 import wearlaw as wl
@@ -28,11 +27,6 @@ def test_a_wrong_rotational_speed_is_refused(value: Any) -> None:
         wl.TwinDisc.suros(rotational_speed=value)
 
 
-def test_a_rotational_speed_is_one_value() -> None:
-    with pytest.raises(wl.UnitError, match=r"^rotational_speed: must be one value, got an array of shape \(2,\)$"):
-        wl.TwinDisc.suros(rotational_speed=Q([400, 500], "rpm"))
-
-
 @pytest.mark.parametrize("value", ["10 Hz", Q(7, "1/s")])
 def test_a_rotational_speed_must_say_what_it_counts(value: Any) -> None:
     with pytest.raises(wl.UnitError, match=r"rotational_speed: .* revolutions or radians; give it in rpm or rad/s"):
@@ -42,22 +36,6 @@ def test_a_rotational_speed_must_say_what_it_counts(value: Any) -> None:
 def test_rolling_and_rotational_speed_together_are_refused() -> None:
     with pytest.raises(wl.InputError, match="rolling_speed: follows from rotational_speed; give one of the two"):
         wl.TwinDisc.suros(rotational_speed="400 rpm", rolling_speed="1 m/s")
-
-
-@pytest.mark.parametrize("field", ["track_width", "rolling_speed"])
-@pytest.mark.parametrize("value", [10, "0 {}", "-1 {}", "inf {}", "nan {}", "3 kg"])
-def test_a_wrong_width_or_speed_is_refused(field: str, value: Any) -> None:
-    unit = {"track_width": "mm", "rolling_speed": "m/s"}[field]
-    wrong = value.format(unit) if isinstance(value, str) else value
-    values: dict[str, Any] = {field: wrong}
-    with pytest.raises(wl.ConfigurationError, match=rf'^TwinDisc: {field}: .* such as "1.0 {unit}"$'):
-        wl.TwinDisc.suros(**values)
-
-
-@pytest.mark.parametrize("value", ["disc_2", "Mean", 1, True])
-def test_a_rig_keeps_the_mean_speed_or_that_of_disc_1(value: Any) -> None:
-    with pytest.raises(wl.ConfigurationError, match=r"^TwinDisc: speed_of: input should be 'mean' or 'disc_1', got "):
-        wl.TwinDisc.suros(speed_of=value)
 
 
 WRONG_CONDITIONS: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
@@ -71,41 +49,15 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
         wl.ConditionsError,
         ["exactly one", "normal_force and max_pressure"],
     ),
-    (
-        {"max_pressure": "1 GPa", "normal_force": "1 kN", "normal_force_per_width": "1 kN/m"},
-        wl.ConditionsError,
-        ["normal_force and normal_force_per_width and max_pressure"],
-    ),
     ({"creepage": None}, wl.ConditionsError, ["creepage: is missing", 'creepage=Q(1, "%")']),
     ({"friction_coefficient": None}, wl.ConditionsError, ["friction_coefficient: is missing", "=0.46"]),
     ({"creepge": "1 %"}, wl.ConditionsError, ["creepge: unknown condition", "did you mean 'creepage'?"]),
-    ({"speed": "1 m/s"}, wl.ConditionsError, ["speed: unknown condition", "The conditions are: normal_force,"]),
     ({"normal_force": 7000}, wl.UnitError, ["normal_force: got the bare number 7000", '"1.0 kN"']),
-    ({"normal_force": "0 N"}, wl.UnitError, ["normal_force: must be greater than zero, got 0.000 N"]),
-    ({"normal_force": "-5 N"}, wl.UnitError, ["normal_force: must be greater than zero, got -5.000 N"]),
-    ({"normal_force": "inf N"}, wl.UnitError, ["normal_force: must be finite, got inf N"]),
     ({"normal_force": "5 mm"}, wl.UnitError, ["normal_force: got 5.000 mm, which does not have the dimension of 'kN'"]),
-    ({"normal_force_per_width": "5 kN"}, wl.UnitError, ["normal_force_per_width: got 5.000 kN", '"1.0 kN/m"']),
-    ({"max_pressure": "0 MPa"}, wl.UnitError, ["max_pressure: must be greater than zero", '"1.0 MPa"']),
-    ({"max_pressure": "5 N"}, wl.UnitError, ["max_pressure: got 5.000 N"]),
     ({"creepage": 1}, wl.UnitError, ["creepage: got the bare number 1", 'such as "1 %"']),
-    ({"creepage": "1"}, wl.UnitError, ["creepage: '1' is not a number with a unit", 'such as "1 %"']),
     ({"creepage": "101 %"}, wl.UnitError, ["creepage: must not exceed 1 in magnitude, got 101.0 %"]),
-    ({"creepage": Q([0.5, -1.5], "")}, wl.UnitError, ["creepage: must not exceed 1", "got -1.500 at index [1]"]),
-    ({"creepage": Q(np.nan, "%")}, wl.UnitError, ["creepage: must be a number, got nan %"]),
-    ({"creepage": True}, wl.UnitError, ["creepage: got True"]),
-    ({"creepage": "much"}, wl.UnitError, ["creepage: 'much' is not a number with a unit"]),
-    ({"creepage": 1j}, wl.UnitError, ["creepage: got 1j"]),
     ({"creepage": Q([], "%")}, wl.ConditionsError, ["creepage: is empty; give at least one value"]),
-    ({"friction_coefficient": 0}, wl.UnitError, ["friction_coefficient: must be a positive finite number, got 0"]),
     ({"friction_coefficient": -0.3}, wl.UnitError, ["friction_coefficient: ", "got -0.3", "such as 0.3 or '30 %'"]),
-    (
-        {"friction_coefficient": Q(0.4, "m")},
-        wl.UnitError,
-        ["friction_coefficient: got 0.4000 m", "such as 0.3 or '30 %'"],
-    ),
-    ({"friction_coefficient": []}, wl.ConditionsError, ["friction_coefficient: is empty"]),
-    ({"traction_coefficient": -0.3}, wl.UnitError, ["traction_coefficient: ", "got -0.3"]),
     (
         {"creepage": Q([0.1, 0.2], ""), "friction_coefficient": [0.1, 0.2, 0.3]},
         wl.ConditionsError,

@@ -10,11 +10,10 @@ import pytest
 
 import wearlaw as wl
 from tests.strategies import EPS
-from wearlaw import InputError, Q
+from wearlaw import Q
 from wearlaw.numerics.integrate import BLOCK, integrate_laws  # private: integrals at the size of blocks
 from wearlaw.settings.parameters import (  # private: the numbers of a record, for fits
     changed,
-    number_in_si,
     number_like,
     numbers,
 )
@@ -146,20 +145,8 @@ def test_checked_rate_takes_the_numbers_of_the_law_unless_given_others() -> None
     assert twice == pytest.approx(2.0 * own, rel=4 * EPS)
 
 
-def test_numbers_are_named_through_nested_records() -> None:
-    found = numbers(wl.wear_law("kth").explicit())
-    assert found["coefficient.mid_speed"] == 35e-4
-    assert found["hardness"] == Q(2.625, "GPa")
-    assert number_in_si(found["hardness"]) == pytest.approx(2.625e9, rel=4 * EPS)
-
-
 def test_changed_numbers_are_checked_like_new_ones() -> None:
     law = wl.wear_law("kth").explicit()
     assert numbers(changed(law, {"coefficient.mid_speed": 4e-3}))["coefficient.mid_speed"] == 4e-3
     with pytest.raises(wl.ConfigurationError, match="mid_speed"):
         changed(law, {"coefficient.mid_speed": -1.0})
-
-
-def test_an_unknown_number_is_named() -> None:
-    with pytest.raises(InputError, match=r"usfd: 'qs' is not a number among its fields; did you mean 'q_s'\?"):
-        changed(wl.wear_law("usfd"), {"qs": 1.0})

@@ -217,9 +217,7 @@ def _value(model: type[Configuration], default: Configuration | None, name: str)
 
 
 def _shown(value: Any) -> str:
-    return (
-        f"{value.magnitude} {symbol(value.units, '~P')}".rstrip() if isinstance(value, pint.Quantity) else repr(value)
-    )
+    return text_of(value) if isinstance(value, pint.Quantity) else repr(value)
 
 
 def _choices(schema: Mapping[str, Any]) -> list[str]:

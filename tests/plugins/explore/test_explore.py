@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from time import perf_counter, sleep
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import panel as pn
@@ -23,6 +23,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 import wearlaw as wl
 from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, FLAGS, PATIENCE_S
+from wearlaw_explore._models import Subject  # private: a rig that is not installed
 from wearlaw_explore._page import Page, fields, named  # private: the page without a browser
 from wearlaw_output.notes import Notes  # private: what the page shows as notes
 
@@ -179,6 +180,16 @@ def test_a_case_brings_its_models_laws_and_stages() -> None:
     subject = named("tassini2010")
     assert {"exact", "global"} <= {*subject.models}
     assert "case = wl.load_case('tassini2010')" in subject.python("exact", ["usfd"], subject.conditions({}))
+
+
+def test_a_rig_whose_creepage_no_condition_sets_has_no_curve() -> None:
+    class Speeds(wl.TwinDisc):
+        name: ClassVar[str] = "speeds"
+        creepage: ClassVar[str | None] = None
+
+    page = Page(Subject(Speeds(**dict(wl.TwinDisc.suros())), "rig"), {})
+    assert page.curves == {}
+    assert "wear rate by usfd" in page.numbers.object
 
 
 def test_errors_are_notes_and_a_load_replaces_the_other() -> None:
