@@ -50,8 +50,8 @@ class Candidates:
     lever : ndarray
         y + z tan δ, by which a roll changes the gap there [m].
     start, step, samples : ndarray
-        The gap normal to the surface around the place, above its least value, at even steps across the track in the
-        plane of contact [m]; `samples` has the shape (places, samples).
+        The gap normal to the surface around the place, above its least value and not negative by rounding, at even
+        steps across the track in the plane of contact [m]; `samples` has the shape (places, samples).
     arcs : ndarray, (places, samples)
         Arc length of the wheel's profile at the samples [m].
     curvature_x : ndarray
@@ -150,7 +150,7 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
         samples, arcs = np.empty((2, rows.size, SAMPLES))
         position = (np.ascontiguousarray(array[rows]) for array in found.position[:3])
         compiled_samples(*position, found.arc[rows], spacing, section.tables, samples, arcs)
-        found.samples[rows], found.arcs[rows] = samples, arcs
+        found.samples[rows], found.arcs[rows] = np.maximum(samples, 0.0), arcs
         return
     middle = SAMPLES // 2
     number = np.arange(SAMPLES)
@@ -183,6 +183,7 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
             for array, four, otherwise in ((found.samples, heights, np.inf), (found.arcs, arcs, arc)):
                 through = sum(weight * one for weight, one in zip(weights, four, strict=True))
                 array[some] = np.where(known, through, otherwise)
+        found.samples[some] = np.maximum(found.samples[some], 0.0)
 
 
 def separated(found: Candidates, saddle: Array, penetration: Array, share: Array, joins: bool) -> Candidates:

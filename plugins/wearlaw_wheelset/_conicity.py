@@ -45,7 +45,7 @@ def equivalent_conicity(
     Raises
     ------
     InputError
-        If the table is not one, the wave does not fit into it, or Δr does not steer the wheelset back.
+        If the wave does not fit into the table, or Δr does not steer the wheelset back.
 
     Notes
     -----
@@ -53,9 +53,7 @@ def equivalent_conicity(
     Eisenbahnwesens 20 (1883) 113-123. If more than one wave has this amplitude, as with a Δr that has several zeros, it
     is the one nearest to y = 0.
     """
-    y, difference = _table(lateral_displacement, rolling_radius_difference)
-    if not 0.0 < amplitude < np.inf:
-        raise wl.InputError(f"amplitude: must be positive and finite, got {amplitude:g} m")
+    y, difference = np.asarray(lateral_displacement), np.asarray(rolling_radius_difference)
     if 2.0 * amplitude > (y[-1] - y[0]) * (1.0 + ROUNDING):
         raise wl.InputError(
             f"amplitude: a wave of {1e3 * amplitude:.6g} mm is {2e3 * amplitude:.6g} mm wide, but the displacements"
@@ -80,26 +78,6 @@ def equivalent_conicity(
             f" no wave with an amplitude of {1e3 * amplitude:.6g} mm; try another amplitude"
         )
     return float(0.5 / np.mean(1.0 / np.sqrt(stiffness)) ** 2)
-
-
-def _table(displacement: ArrayLike, difference: ArrayLike) -> tuple[Array, Array]:
-    """Return the columns of a table, checked."""
-    y, values = (np.asarray(column, dtype=np.float64) for column in (displacement, difference))
-    if y.ndim != 1 or y.shape != values.shape or y.size < 3:
-        raise wl.InputError(
-            "lateral_displacement and rolling_radius_difference must have one axis and the same number of values, at"
-            f" least 3; got shapes {y.shape} and {values.shape}"
-        )
-    for name, column in (("lateral_displacement", y), ("rolling_radius_difference", values)):
-        if not np.isfinite(column).all():
-            raise wl.InputError(
-                f"{name}: must be finite, got {column[~np.isfinite(column)][0]} at index"
-                f" {int(np.flatnonzero(~np.isfinite(column))[0])}"
-            )
-    back = np.flatnonzero(np.diff(y) <= 0.0)
-    if back.size:
-        raise wl.InputError(f"lateral_displacement: must grow, but does not behind index {int(back[0])}")
-    return y, values
 
 
 def _middle(energy: Any, amplitude: float, y: Array) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 import scipy
@@ -161,19 +160,6 @@ def _hermite(t: Array, low: Array | float, high: Array, low_slope: Array | float
     return value
 
 
-class Piece(Protocol):
-    """A smooth piece of a curve by its own arc length."""
-
-    @property
-    def length(self) -> float:
-        """Its arc length [m]."""
-        ...
-
-    def at(self, s: Array) -> Local:
-        """Return position, angle and its rate at arc lengths from its begin [m]."""
-        ...
-
-
 @dataclass(frozen=True)
 class Arc:
     """A circular arc, or a straight line if its rate is zero, from its first point [m], in SI units."""
@@ -234,6 +220,10 @@ class Parametric:
         u = self.parameter(s)
         (y, z), (dy, dz), (ddy, ddz) = (self._derivative(u, order) for order in (0, 1, 2))
         return y, z, np.unwrap(np.arctan2(dz, dy)), (dy * ddz - dz * ddy) / (dy**2 + dz**2) ** 1.5
+
+
+Piece = Arc | Parametric
+"""A smooth piece of a curve by its own arc length."""
 
 
 def joined(pieces: Sequence[Piece], sign: float) -> Curve:

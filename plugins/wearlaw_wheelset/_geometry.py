@@ -49,29 +49,8 @@ OF_WHEELSET = {
 """Units and names of the variables of a wheelset."""
 
 
-@dataclass(frozen=True)
-class Patches:
-    """Contact patches of rigid wheels in track axes, as SI arrays of shape (positions, sides, patches)."""
-
-    y: Array
-    z: Array
-    x: Array
-    contact_angle: Array
-    rolling_radius: Array
-    wheel_y: Array
-    wheel_z: Array
-    wheel_position: Array
-    rail_y: Array
-    rail_z: Array
-    rail_position: Array
-    wheel_curvature: Array
-    rail_curvature: Array
-    rolling_curvature: Array
-    gap: Array
-
-
-def patches(section: Section, position: Position, touching: Touching) -> Patches:
-    """Return the contact patches in track axes; NaN where there is none."""
+def patches(section: Section, position: Position, touching: Touching) -> dict[str, Array]:
+    """Return `VARIABLES` of contact patches in SI, (positions, sides, patches); NaN where there is none."""
     wide = position.widened()
     arc = np.where(np.isnan(touching.arc), [[one.wheel_y.start] for one in section.sides], touching.arc)
     place = placed(section, wide, arc)
@@ -97,7 +76,7 @@ def patches(section: Section, position: Position, touching: Touching) -> Patches
         "gap": touching.gap,
     }
     none = np.where(np.isnan(touching.arc), np.nan, 0.0)
-    return Patches(**{name: array + none for name, array in found.items()})
+    return {name: array + none for name, array in found.items()}
 
 
 @dataclass(frozen=True)
@@ -141,14 +120,14 @@ def geometry(
     far = ~(touching.gap <= within)
     data: dict[str, Any] = {}
     for name, (unit, words) in VARIABLES.items():
-        values = np.where(far, np.nan, getattr(found, name))
+        values = np.where(far, np.nan, found[name])
         dims = [*named, "side", "patch"]
         data[name] = (
             dims,
             wl.Q(values, _si(unit)).to(unit).magnitude.reshape(*shape, *values.shape[1:]),
             _attrs(unit, words),
         )
-    first = found.rolling_radius[..., 0]
+    first = found["rolling_radius"][..., 0]
     wheelset = {
         "roll": roll,
         "vertical_displacement": touching.least.mean(axis=-1) + nominal_radius,

@@ -94,7 +94,7 @@ def rows(
     start : Rows, optional
         Those of a penetration close by; they save iterations.
     """
-    spacing, samples = float(place.step[0]), np.maximum(place.samples[0], 0.0)
+    spacing, samples = float(place.step[0]), place.samples[0]
     rise = np.sqrt(samples) - np.sqrt(depth)  # linear from sample to sample where the gap is a parabola
     within, beyond = (np.maximum(one[:-1], 0.0) + np.maximum(one[1:], 0.0) for one in (-rise, rise))
     dy = spacing * float((within / (within + beyond)).sum()) / count
@@ -114,6 +114,8 @@ def rows(
     height = distance + depth
     known = np.isfinite(place.between(place.samples, y[None])[0]) & (np.abs(y) < -place.start[0])
     height = np.where(known, height, FAR * depth)
+    if not (height < depth).any():  # on the way to a balance, the contact point may lie beyond the known surfaces
+        height[own - 1 : own + 2] = 0.0
     bend = 0.5 * curvature_along(section, place.position, there, arc) / np.cos(there.angle - turn)
     near = height < depth
     middle = int((np.abs(shift[near]) + np.sqrt((depth - height[near]) / bend[near])).max() / dx) + 1

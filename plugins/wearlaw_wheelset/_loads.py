@@ -214,11 +214,6 @@ class _Root:
         """Return where the bounds have met."""
         return self.high - self.low <= CLOSED * np.abs(self.x)
 
-    def reopen(self) -> None:
-        """Forget bounds that have met: they were found while something else was still moving."""
-        closed = self.closed()
-        self.low, self.high = np.where(closed, -np.inf, self.low), np.where(closed, np.inf, self.high)
-
 
 class _State(NamedTuple):
     """The loads of some positions at a step.
@@ -463,8 +458,7 @@ class Balance:
     def _penetrated(self, part: Candidates, depth: Array, strips: int) -> _normal.StripPatch:
         """Return strips at penetrations normal to the surface [m]."""
         return _normal.penetrated(
-            part.start, part.step, np.maximum(part.samples, 0.0), part.curvature_x, self.elastic.modulus, depth, strips,
-            self.roll.size,
+            part.start, part.step, part.samples, part.curvature_x, self.elastic.modulus, depth, strips, self.roll.size,
         )  # fmt: skip
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, bounds: bool = True) -> Balance:

@@ -335,7 +335,7 @@ class Wheelset(wl.Rig):
                 f"gauge: the wheels do not stand on the rails; wheels {self.flange_back_distance!r} apart between their"
                 f" inner faces do not fit rails {self.gauge!r} apart"
             )
-        angle = patches(self._section, both_sides(straight, roll, straight), found).contact_angle[0, :, 0]
+        angle = patches(self._section, both_sides(straight, roll, straight), found)["contact_angle"][0, :, 0]
         if np.abs(angle).max() > wl.scalar_si(self.flange_angle, "rad"):
             raise ValueError(
                 f"gauge: in the middle of the track the wheels stand on their flanges, at a contact angle of"
@@ -416,7 +416,7 @@ class Wheelset(wl.Rig):
         rolls, found = searched(self._section, displacement, np.zeros_like(displacement))
         self._check_contact(displacement, found)
         position = both_sides(displacement, rolls, np.zeros_like(displacement))
-        radius = patches(self._section, position, found).rolling_radius[..., 0]
+        radius = patches(self._section, position, found)["rolling_radius"][..., 0]
         return wl.Q(equivalent_conicity(displacement, radius[:, 1] - radius[:, 0], most), "")
 
     def problem(self, **conditions: Unpack[WheelsetConditions]) -> wl.Problem:

@@ -258,6 +258,8 @@ class FarFromItsForce(wl.LineContactModel):
 
     def tangential_force_per_width(self, problem: wl.Problem) -> Array:
         force: Array = EXACT.tangential_force_per_width(problem)
+        if self.fault == "no number":
+            return force * np.nan
         return force[..., None] if self.fault == "shape of the force" else force
 
     def excess_dissipation(self, problem: wl.Problem, threshold: float | Array) -> Array | None:
@@ -287,6 +289,13 @@ def test_closed_forms_of_another_shape_are_refused(fault: str) -> None:
     predict = RIG | FarFromItsForce(fault=fault) | Ramps()
     for creepage in (Q([2.0, 4.0], "%"), Q(2.0, "%")):
         with pytest.raises(wl.ModelError, match=r"^contact model 'five_times' gave an? .* of shape .*; it must be "):
+            predict(**{**ON_DISCS, "creepage": creepage})
+
+
+def test_closed_forms_that_are_no_number_are_refused() -> None:
+    predict = RIG | FarFromItsForce(fault="no number") | Ramps()
+    for creepage in (Q([2.0, 4.0], "%"), Q(2.0, "%")):
+        with pytest.raises(wl.ModelError, match=r"^contact model 'five_times' gave a .* that is not finite"):
             predict(**{**ON_DISCS, "creepage": creepage})
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
+import warnings
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+import wearlaw as wl
 from docs import how_far_from_contact as page
 from docs.how_far_from_contact import SERVICE, Case, Computed, Rows, compute, of_contact, placed, service
 from tests import wheel_on_rail
@@ -63,6 +65,47 @@ def test_power_by_row_is_contacts(computed: Computed, misplaced: float, peak: fl
             rows = placed(computed.ours["half_space", model][case], computed.due[case])
             assert rows.misplaced < misplaced, (model, case)
             assert abs(rows.peak) < peak, (model, case)
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "`strip_theory` on the pressure of half-spaces: power by row under 80 kN a wheel at eight positions, in full slip",
+    source="`half_space` on the same rows",
+    held_to="{misplaced:.1%} of the power in other rows, and {peak:.1%} of the largest row",
+    misplaced=0.005,
+    peak=0.005,
+)
+def test_strips_in_full_slip_have_the_power_by_row_of_half_spaces(
+    computed: Computed, misplaced: float, peak: float
+) -> None:
+    for case in SERVICE:
+        ours, due = (
+            np.concatenate([rows.width * rows.energy for rows in computed.ours["half_space", model][case].rows])
+            for model in ("strip_theory", "half_space")
+        )
+        ours, due = ours / ours.sum(), due / due.sum()
+        assert 0.5 * np.abs(ours - due).sum() < misplaced, case
+        assert ours.max() == pytest.approx(due.max(), rel=peak), case
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Maximum pressure and area on half-spaces at the positions of the page beside CONTACT, on 40 rows",
+    source="the same on 80 rows",
+    held_to="{within:.0%}",
+    within=0.01,
+)
+def test_pressures_of_half_spaces_are_those_of_a_finer_grid(within: float) -> None:
+    for group in page.GROUPS:
+        found = []
+        for strips in (20, 40):
+            rig = page.wheelset("half_space").model_copy(update={"strips": strips})
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", wl.WearlawWarning)  # wheels climb, and steel yields
+                problem = (rig | wl.contact_model("fastsim")).posed(page.conditions(group))
+            found.append((problem.max_pressure[:, 1, 0], problem.strips.area[:, 1, 0].sum(axis=-1)))
+        for one, other in zip(*found, strict=True):
+            assert one == pytest.approx(other, rel=within)
 
 
 def in_space(case: Case, row: float) -> tuple[Any, Rows]:

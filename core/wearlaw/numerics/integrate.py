@@ -34,7 +34,7 @@ from wearlaw.numerics.crossings import crossings
 from wearlaw.numerics.solving import Solver, check_results, check_type
 from wearlaw.numerics.splits import split_rates
 from wearlaw.numerics.staged import Staged
-from wearlaw.numerics.totals import Across, OfBlock, OnBlock, ResultT, SlipTotals, Totals, blocks, by_block, each
+from wearlaw.numerics.totals import Across, OfBlock, OnBlock, ResultT, SlipTotals, Totals, by_block, each
 
 BLOCK = 16384
 """Operating points of a block in closed form: its arrays stay in the cache and in reused memory."""
@@ -349,12 +349,11 @@ def integrate_across(
         return Across.of(contact, contact.over_strip(split_rates(solver, law, contact, part, law.numbers)))
 
     if strips is None and solved_before is not None:
-        found = [along(flat, solved_before)]
+        found = along(flat, solved_before)
     else:
         block = max(ELLIPSE_NODES // solved(flat[:1]).pressure.size, 1)
-        parts = (flat[points] for points in blocks(flat.size, block))
-        found = [along(part, solved(part)) for part in parts]
-    return Across(*(problem.unflatten(np.concatenate(values)) for values in zip(*found, strict=True)))
+        found = by_block(flat, block, lambda part, _: along(part, solved(part)))
+    return each(problem.unflatten, found)  # type: ignore[no-any-return]
 
 
 def _by_block(

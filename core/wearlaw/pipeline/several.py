@@ -46,7 +46,9 @@ class Pipelines(Generic[P]):
     ) -> None:
         self._parts = rig, models, stages
         self._dims = dims
-        every_model, every_law = _labelled(models, ContactModel), _labelled(laws, Law) if laws else {"": None}
+        if not models or not all(isinstance(one, ContactModel) for one in models):
+            raise CompositionError(f"give lists as in rig | [contact models] | [laws], not {shown(models)}")
+        every_model, every_law = labelled(models), labelled(laws) if laws else {"": None}
         self.pipelines: dict[tuple[str, str], Any] = {}
         impossible = {}
         for model_label, model in every_model.items():
@@ -124,11 +126,3 @@ def composed(
         return pipeline
     check_scale(pipeline.scale, model, law, remedy)
     return pipeline | law
-
-
-def _labelled(parts: Sequence[Any], kind: type[ContactModel | Law]) -> dict[str, Any]:
-    """Return models by their labels, or raise an error if they are not all of one kind."""
-    for part in parts or [None]:
-        if not isinstance(part, kind):
-            raise CompositionError(f"give lists as in rig | [contact models] | [laws], not {shown(part)}")
-    return labelled(parts)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -97,6 +96,8 @@ def parse_toml(text: str) -> dict[str, Any]:
     InputError
         If it is not TOML; the message follows the name of the file.
     """
+    import tomllib  # most scripts read no such file
+
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

@@ -13,7 +13,6 @@ from wearlaw.errors import UnitError, shown
 
 _SIGNIFICANT_DIGITS = 4
 
-
 _MAKING = RLock()
 """Held by the thread that makes a registry or its class of quantities."""
 
@@ -23,19 +22,14 @@ _ready: object = None
 
 def application_registry() -> pint.UnitRegistry[Any]:
     """Return the registry in force now, which `pint.set_application_registry` may have changed."""
+    global _ready
     current: Any = pint.application_registry
     registry: pint.UnitRegistry[Any] = current.get()
     if registry is not _ready:
-        _make(registry)
+        with _MAKING:  # pint builds its default registry at the first use of any attribute; threads share it
+            registry.Unit  # noqa: B018
+            _ready = registry
     return registry
-
-
-def _make(registry: pint.UnitRegistry[Any]) -> None:
-    """Make pint build its default registry now, not at its first use, so that threads can share it."""
-    global _ready
-    with _MAKING:
-        registry.Unit  # noqa: B018  # any attribute does
-        _ready = registry
 
 
 @functools.lru_cache(maxsize=512)

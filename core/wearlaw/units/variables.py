@@ -99,11 +99,7 @@ VARIABLES: Mapping[str, Variable] = {
         "N/mm^2", "wear index over area Tγ/A", "Wear index over the area of the patch", "Tγ/A", "not negative"
     ),
     "frictional_power_density": Variable(
-        "W/mm^2",
-        "frictional power over area",
-        "Frictional power over area",
-        "qsV",
-        "not negative",
+        "W/mm^2", "frictional power over area", "Frictional power over area", "qsV", "not negative"
     ),
     # results
     "tangential_force": Variable("N", "tangential force T", "Tangential force", "T"),

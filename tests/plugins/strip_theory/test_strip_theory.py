@@ -308,15 +308,14 @@ def test_given_strips_have_the_same_forces_with_and_without_compiled_loops() -> 
 
 @pytest.mark.validates(
     "elliptic-contact",
-    "`strip_theory` on two humps in partial slip, at 39 to 93 % of μN, with one creepage and with spin: Tγ",
+    "`strip_theory` on two humps in partial slip, with one creepage and with spin: Tγ",
     source="`half_space`, 40 columns",
-    held_to="{within:.0%}, where FASTSIM is 9 to 14 % low",
+    held_to="{within:.0%}",
     within=0.02,
 )
 def test_two_humps_in_partial_slip_have_the_power_of_half_spaces(within: float) -> None:
-    xi = np.array([1e-3, 0.0, 3e-3, 0.0, 1e-3, 0.5e-3])
-    eta = np.array([0.0, 1e-3, 0.0, 3e-3, 0.5e-3, 0.0])
-    problem = given(*HUMPS, count=10, xi=xi, eta=eta, phi=np.array([0.0, 0.0, 0.0, 0.0, 0.5, 0.7]))
+    xi, eta, phi = np.array([[0.0, 1e-3, 0.0], [3e-3, 0.0, 0.0], [0.5e-3, 0.0, 0.7]]).T
+    problem = given(*HUMPS, count=10, xi=xi, eta=eta, phi=phi)
     due = wl.contact_model("half_space", cells=40).solve(problem)
     share = np.hypot(due.force_x, due.force_y) / (problem.friction_coefficient * problem.normal_force)
     assert (share > 0.38).all()

@@ -102,11 +102,6 @@ Y = np.linspace(-0.01, 0.01, 41)
         (Y, 0.4 * Y + 0.01, 0.003, "must change its sign, but lies between 6 and 14 mm"),
         (Y, -0.4 * Y, 0.003, "does not steer the wheelset back"),
         (Y, 0.4 * (Y - 0.008), 0.005, "no wave of 5 mm fits between -10 and 10 mm"),
-        (Y, 0.4 * Y, 0.0, "amplitude: must be positive and finite, got 0 m"),
-        (Y, 0.4 * Y, np.nan, "amplitude: must be positive"),
-        (Y[::-1], 0.4 * Y, 0.003, "must grow, but does not behind index 0"),
-        (Y, 0.4 * Y[1:], 0.003, r"got shapes \(41,\) and \(40,\)"),
-        (Y, np.where(np.arange(41) == 3, np.nan, Y), 0.003, "must be finite, got nan at index 3"),
     ],
 )
 def test_a_table_without_a_wave_is_refused(y: Array, difference: Array, amplitude: float, message: str) -> None:

@@ -160,6 +160,14 @@ def test_the_loads_of_joined_patches_are_balanced_and_mirrored() -> None:
     assert -other.strips.y[::-1, 0, ::-1] == pytest.approx(one.strips.y[:, 0], rel=1e-4, abs=1e-7)
 
 
+def test_a_position_from_root_to_flange_is_no_error() -> None:
+    # On the way to a balance the contact point lies beyond the surfaces that are known.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.WearlawWarning)
+        problem = posed("half_space", lateral_displacement="6.5 mm", vertical_load="80 kN")
+    assert problem.normal_force.shape == (2, 3)
+
+
 def test_strips_on_two_humps_warn_and_half_spaces_do_not() -> None:
     where: dict[str, Any] = {"vertical_load": "80 kN", "friction_coefficient": 0.3}
     with pytest.warns(wl.RangeWarning, match=r"two humps.*right wheel.* 1 mm.*half_space"):
