@@ -36,7 +36,7 @@ def read_only(array: ArrayT) -> ArrayT:
     """Return an array that cannot be written to: itself, or a view of it, so that its owner still can write."""
     if array.flags.num & WRITEABLE:
         array = array.view()
-        array.setflags(write=False)
+        array.setflags(False)  # a keyword would take as long again
     return array
 
 
@@ -44,7 +44,7 @@ def freeze(record: object, names: Iterable[str]) -> None:
     """Make those fields of a frozen record read-only that are arrays."""
     for name in names:
         value = getattr(record, name)
-        if type(value) is np.ndarray:
+        if type(value) is np.ndarray and value.flags.num & WRITEABLE:
             object.__setattr__(record, name, read_only(value))
 
 

@@ -518,19 +518,16 @@ class Contact:
         """Return the contact of a flattened problem in the shape of its batch, with NaN for missing patches."""
         if problem.exists is None and problem.batch_shape == self.rolling_speed.shape:
             return self
-        return self._mapped(problem.unflatten, problem)
+        return self.mapped(problem.unflatten, problem)
 
     def __getitem__(self, index: Any) -> Self:
         """Return the contact at some operating points of the batch; `index` is any NumPy index."""
         return self.mapped(lambda array: array[index])
 
-    def mapped(self, function: Callable[[Array], Array]) -> Self:
-        """Return the contact with a function applied to each of its arrays and each array of its problem."""
-        return self._mapped(function, self.problem and self.problem.mapped(function))
-
-    def _mapped(self, function: Callable[[Array], Array], problem: Problem | None) -> Self:
-        fields = {name: getattr(self, name) for name in self.__slots__ if name != "problem"}
-        return type(self)(**{name: function(value) for name, value in fields.items()}, problem=problem)
+    def mapped(self, function: Callable[[Array], Array], problem: Problem | None = None) -> Self:
+        """Return the contact with a function applied to each of its arrays and, if none is given, of its problem."""
+        fields = {name: function(getattr(self, name)) for name in self.__slots__ if name != "problem"}
+        return type(self)(**fields, problem=problem or (self.problem and self.problem.mapped(function)))
 
     def replaced(self, **fields: Any) -> Self:
         """Return the contact with some of its fields replaced."""
