@@ -140,6 +140,7 @@ def test_si_floats_are_written_in_a_unit() -> None:
         (True, "True is not a real number"),
         (np.nan, "must be a positive finite number, got nan"),
         (-0.3, "must be a positive finite number, got -0.3"),
+        (0.0, "must be a positive finite number, got 0"),
         (np.inf, "must be a positive finite number, got inf"),
         ([0.3, 0.0, -0.4], "must be a positive finite number, got 0 at index [1]"),
         (Q(0.4, "m"), "got 0.4000 m, which is not a ratio"),
@@ -176,3 +177,7 @@ def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
         said = r"static_coefficient: .* give it as a plain number or in percent"
         with pytest.raises(wl.ConfigurationError, match=said):
             wl.FallingFriction(static_coefficient=wrong, **given)
+    with pytest.raises(wl.ConfigurationError, match="static_coefficient: must be one value, got an array"):
+        wl.FallingFriction(static_coefficient=Q([0.2, 0.3], ""), **given)
+    with pytest.raises(wl.ConfigurationError, match=r"static_coefficient: input should be a valid number, got '0\.25'"):
+        wl.FallingFriction(static_coefficient="0.25", **given)
