@@ -249,13 +249,9 @@ def _scaled(magnitude: NDArray[np.float64], factor: float) -> NDArray[np.float64
     return magnitude * factor
 
 
-LARGEST = 2**53
-"""Largest of the whole numbers that are all floats too."""
-
-
 def real_array(value: object) -> NDArray[np.float64]:
     """Return `value` as float64; raise an error for booleans, complex numbers, text and masked entries."""
-    if type(value) is float or (type(value) is int and abs(value) <= LARGEST):
+    if type(value) is float or type(value) is int:
         return np.float64(value)  # type: ignore[return-value]  # computes like an array without axes, but faster
     if np.ma.is_masked(value):
         raise UnitError("masked entries have no value")
