@@ -106,7 +106,7 @@ def test_input_is_never_modified(unit: str) -> None:
     given_values = np.array([1.0, 2.0])
     given_values.flags.writeable = False
     quantity = Q(given_values, unit)
-    LENGTH.si(quantity, "x")
+    assert np.shares_memory(LENGTH.si(quantity, "x"), given_values) == (unit == "m")
     assert quantity.magnitude.tolist() == [1.0, 2.0]
     assert quantity.units == Q(1, unit).units
 
@@ -160,6 +160,7 @@ def test_a_coefficient_may_be_given_in_percent() -> None:
         # The factor of a percent and the product are rounded.
         assert wl.coefficient(value, "friction_coefficient") == pytest.approx(0.46, rel=np.finfo(float).eps)
     assert wl.coefficient("0 %", "mean_slip", positive=False) == 0.0
+    assert isinstance(wl.coefficient(np.array(0.46), "friction_coefficient"), np.float64)
     with pytest.raises(wl.UnitError, match="mean_slip: must be a finite number, got -inf"):
         wl.coefficient(-np.inf, "mean_slip", positive=False)
 
