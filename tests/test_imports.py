@@ -21,6 +21,7 @@ DEFERRED = {
     ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
     ("wearlaw.pipeline.datasets", "xarray"): "takes as long to load as the rest of wearlaw; for datasets alone",
     ("wearlaw.pipeline.several", "xarray"): "takes as long to load as the rest of wearlaw; for lists of models alone",
+    ("wearlaw.settings.text_files", "tomllib"): "few scripts read a file in TOML",
     ("wearlaw_sweeps.sweep", "wearlaw_sweeps.store"): "zarr takes as long to load as all else",
     ("wearlaw_sweeps.wear_profile", "wearlaw_sweeps.folder"): "zarr takes as long to load as all else",
     ("wearlaw_sweeps.workers", "loky"): "is for several processes alone",

@@ -76,4 +76,5 @@ def _table() -> Array:
     """Return G_K and G_E at even steps of η/√(1+η²) from 0 to 1; at zero, where both strips are one, a finite value."""
     z = np.maximum(np.arange(KNOTS + 1), 1) / KNOTS
     k, e, m = scipy.special.ellipkm1(z**2), scipy.special.ellipe(1.0 - z**2), np.maximum(1.0 - z**2, 0.0)
-    return 2.0 * np.sqrt(m) * np.stack([k - e, m * e + z**2 * (k - e)])
+    table: Array = 2.0 * np.sqrt(m) * np.stack([k - e, m * e + z**2 * (k - e)])
+    return table

@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 import wearlaw as wl
 from docs import how_far_from_contact as page
 from docs.how_far_from_contact import SERVICE, Case, Computed, Rows, compute, of_contact, placed, service
+from docs.wheelset_benchmark import wheelset
 from tests import wheel_on_rail
 from wearlaw_wheelset._half_space import pressed  # private: the normal problem, against its theory
 
@@ -99,10 +100,11 @@ def test_pressures_of_half_spaces_are_those_of_a_finer_grid(within: float) -> No
     for group in page.GROUPS:
         found = []
         for strips in (20, 40):
-            rig = page.wheelset("half_space").model_copy(update={"strips": strips})
+            rig = wheelset("half_space").model_copy(update={"strips": strips})
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", wl.WearlawWarning)  # wheels climb, and steel yields
                 problem = (rig | wl.contact_model("fastsim")).posed(page.conditions(group))
+            assert problem.strips is not None
             found.append((problem.max_pressure[:, 1, 0], problem.strips.area[:, 1, 0].sum(axis=-1)))
         for one, other in zip(*found, strict=True):
             assert one == pytest.approx(other, rel=within)

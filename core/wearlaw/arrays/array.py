@@ -36,7 +36,7 @@ def read_only(array: ArrayT) -> ArrayT:
     """Return an array that cannot be written to: itself, or a view of it, so that its owner still can write."""
     if array.flags.num & WRITEABLE:
         array = array.view()
-        array.setflags(False)  # a keyword would take as long again
+        array.setflags(False)  # type: ignore[call-arg]  # a keyword would take as long again
     return array
 
 

@@ -13,15 +13,13 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, shown
 from wearlaw.extras import needed_for
 from wearlaw.pipeline.selection import Selection, axis_names
-from wearlaw.pipeline.variables import default_variables, long_name, unit_of
+from wearlaw.pipeline.variables import Predicted, default_variables, long_name, unit_of
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import name_of
 
 if TYPE_CHECKING:
     import pandas
     import xarray
-
-    from wearlaw.pipeline.prediction import Prediction
 
 POINT = "point"
 """Name of the rows of a table."""
@@ -113,7 +111,7 @@ def _fits(shape: tuple[int, ...], whole: tuple[int, ...]) -> bool:
         return False
 
 
-def dataset(prediction: Prediction, conditions: Conditions, names: Sequence[str] | None) -> xarray.Dataset:
+def dataset(prediction: Predicted, conditions: Conditions, names: Sequence[str] | None) -> xarray.Dataset:
     """Return a prediction as a dataset with its conditions as coordinates; see `Prediction.to_dataset`."""
     problem = prediction.problem
     every = axis_names(problem)
@@ -140,7 +138,7 @@ def _coordinate(name: str, one: Known, dims: Sequence[str]) -> tuple[list[str], 
     return [dims[axis] for axis in kept], values, {"units": one.unit or "", "long_name": name_of(name)}
 
 
-def frame(prediction: Prediction, conditions: Conditions, names: Sequence[str] | None) -> pandas.DataFrame:
+def frame(prediction: Predicted, conditions: Conditions, names: Sequence[str] | None) -> pandas.DataFrame:
     """Return a prediction as a table; see `Prediction.to_dataframe`."""
     found = dataset(prediction, conditions, names)
     units = {str(name): one.attrs.get("units", "") for name, one in found.variables.items()}

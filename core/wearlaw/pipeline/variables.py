@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import pint
 
-from wearlaw.contact.problem import Geometry
+from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS, name_of
-
-if TYPE_CHECKING:
-    from wearlaw.pipeline.prediction import Prediction
 
 ERROR = "_error"
 """Ending of the name of an outcome's numerical error in results."""
@@ -72,8 +69,19 @@ OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
 """Variables that results leave out for a shape of patch because they repeat another one or say nothing."""
 
 
+class Predicted(Protocol):
+    """A prediction: a contact problem, laws, and variables by name."""
+
+    problem: Problem
+    laws: tuple[Law, ...]
+
+    def __getitem__(self, name: str, /) -> Quantity:
+        """Return a variable."""
+        ...
+
+
 def default_variables(
-    prediction: Prediction, without: Iterable[str] = (), several_patches: bool | None = None
+    prediction: Predicted, without: Iterable[str] = (), several_patches: bool | None = None
 ) -> list[str]:
     """Return the variables of datasets and sweeps for which no names are given: the outcomes of laws come first.
 
@@ -91,7 +99,7 @@ def default_variables(
     return [name for name in dict.fromkeys(every) if name not in left_out]
 
 
-def offered(prediction: Prediction, variables: Iterable[str], several_patches: bool | None = None) -> tuple[str, ...]:
+def offered(prediction: Predicted, variables: Iterable[str], several_patches: bool | None = None) -> tuple[str, ...]:
     """Return the variables that the results of a prediction show; for `several_patches` see `default_variables`."""
     problem = prediction.problem
     others = OF_OTHERS[problem.geometry]
@@ -103,7 +111,7 @@ def offered(prediction: Prediction, variables: Iterable[str], several_patches: b
     return tuple(name for name in variables if name not in others and _has(prediction, name))
 
 
-def _has(prediction: Prediction, name: str) -> bool:
+def _has(prediction: Predicted, name: str) -> bool:
     if name in prediction.problem.results:
         return True
     try:

@@ -14,11 +14,8 @@ from tests.half_spaces import DRAWS, POISSON_RATIO, table
 from tests.half_spaces import contact as half_spaces
 from wearlaw import Array, Q
 from wearlaw_half_space import influence
-from wearlaw_strip_theory import (
-    StripTheory,
-    _strips,  # private: strips one by one
-    full_slips,  # private: one step of the theory, against its source
-)
+from wearlaw_strip_theory import StripTheory, _strips  # private: strips one by one
+from wearlaw_strip_theory._interaction import full_slips  # private: one step of the theory, against its source
 
 MODEL, FASTSIM = wl.contact_model("strip_theory"), wl.contact_model("fastsim")
 INPUTS = ("ratio", "xi", "eta", "phi")

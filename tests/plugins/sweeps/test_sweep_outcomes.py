@@ -11,8 +11,8 @@ import pytest
 import xarray as xr
 
 import wearlaw as wl
+from tests.core.outcome_laws import MIXED, Damage, Heat, Volume
 from tests.core.stages import EXACT, FASTSIM, KTH, RIG, silently
-from tests.core.test_outcomes import MIXED, Damage, Heat, Volume
 from wearlaw import Q
 
 GIVEN: dict[str, Any] = {

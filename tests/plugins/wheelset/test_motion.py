@@ -143,7 +143,7 @@ CURVES = [
 @pytest.mark.parametrize(
     ("pair", "state"),
     [(STANDARD, state) for state in STATES + MOVING + CURVES] + [(CONES, state) for state in STATES + MOVING],
-    ids=str,
+    ids=lambda one: str(one) if isinstance(one, State) else "cones" if one is CONES else "s1002",
 )
 def test_creepages_are_the_velocities_of_material_points(
     pair: ws.Wheelset, state: State, relative: float, moving: float
