@@ -22,7 +22,9 @@ from wearlaw.plugins import loader  # private: all that is installed, by kind
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 SENTENCES = " ".join(TEXT.split())
 PLUGINS = sorted((ROOT / "plugins").glob("wearlaw_*"))
-APPLICATIONS = {f"wearlaw_{name}" for name in ("explore", "fits", "kit", "life", "output", "studies", "sweeps")}
+APPLICATIONS = {
+    f"wearlaw_{name}" for name in ("explore", "fits", "kit", "life", "output", "studies", "sweeps", "tables")
+}
 
 
 def imported(path: Path) -> Iterator[tuple[str, str]]:

@@ -13,7 +13,7 @@ import wearlaw_half_space
 from docs import half_spaces
 from docs.half_spaces import LIMIT, SIZE, UNIT, ellipses
 from tests.environments import ROOT
-from tests.half_spaces import CELLS, DRAWS, FORCES, INPUTS, columns, points, solved, table
+from tests.half_spaces import CELLS, DRAWS, FORCES, INPUTS, columns, contact, points, solved, table
 from tests.plugins.full_theory import rows, spheres
 
 
@@ -94,6 +94,36 @@ def test_half_space_meets_contact(within: float, cells: tuple[int, int]) -> None
         expected = np.array([full.force_x[at], full.force_y[at]]) / LIMIT
         assert found[:2] == pytest.approx(expected, abs=within), full.names[at]
     assert f"within {100.0 * within:.1f} % of μN of CONTACT" in words("theory-elliptic")
+
+
+@pytest.mark.validates(
+    "elliptic-contact",
+    "`strip_theory`: the energy by rows across the patch in partial slip, from 30 to 97 % of μN, a/b {ratios}",
+    source="`half_space` on as many rows",
+    held_to="{misplaced:.0%} of the energy in other rows, and {peak:.0%} of the largest row",
+    ratios=(0.1, 1, 3, 10),
+    misplaced=0.13,
+    peak=0.24,
+)
+def test_rows_of_strips_in_partial_slip(ratios: tuple[float, ...], misplaced: float, peak: float) -> None:
+    cells = 28
+    shares = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
+    strips, furthest = wl.contact_model("strip_theory"), np.zeros(2)
+    for ratio in ratios:
+        for xi, eta, phi in ((0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.1), (0.0, 0.07, 0.07), (0.0, 0.2, -0.2)):
+            half = contact((ratio, xi, eta, phi), cells)
+            if not 0.3 < np.hypot(half.force_x, half.force_y) < 0.97:
+                continue
+            problem = ellipses(*(np.array([one]) for one in (ratio, xi, eta, phi)))
+            found = strips.on_strips(problem, shares)
+            assert found is not None
+            due, ours = (np.ravel(one.over_strip(one.wear_index_density) * one.strip_width) for one in (half, found))
+            due, ours = due / due.sum(), ours / ours.sum()
+            off = 0.5 * np.abs(ours - due).sum(), np.abs(ours.max() / due.max() - 1.0)
+            furthest = np.maximum(furthest, off)
+    assert (furthest < (misplaced, peak)).all()
+    assert (furthest > (0.7 * misplaced, 0.7 * peak)).all()
+    assert f"up to {misplaced:.0%}".replace("%", " %") in words("theory-elliptic")
 
 
 def test_the_worst_points_are_where_the_theory_says() -> None:
