@@ -67,7 +67,8 @@ TESTS = {
     " plugins/fastsim/test_given_strips.py core/test_several_patches.py core/test_outcomes.py"
     " core/test_materials.py core/test_scale.py core/test_blame.py",
     "wearlaw_archard.coefficients": "plugins/archard/test_wear_coefficients.py",
-    "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py",
+    "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py"
+    " core/test_configuration.py",
 }
 """The test files of each package or module; a plugin must pass the conformance kit too, and each mutant the oracle."""
 

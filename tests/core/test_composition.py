@@ -208,7 +208,7 @@ def test_parameters_on_another_contact_give_one_warning_that_names_both(
 
 def test_what_is_no_rig_is_refused() -> None:
     wrong: Any = 3
-    with pytest.raises(wl.ConfigurationError, match=r"rig: must be a rig, its name, or a table of .*; got 3"):
+    with pytest.raises(wl.ConfigurationError, match=r"rig: input should be .* instance of Rig, got 3"):
         wl.Pipeline(rig=wrong, contact_model=GLOBAL)
 
 

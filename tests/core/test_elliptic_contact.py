@@ -180,6 +180,13 @@ def test_the_batch_can_be_reshaped() -> None:
     assert contact.strip_width.shape == (2, 1, 3)
 
 
+def test_one_point_of_the_batch_is_taken_with_its_problem() -> None:
+    one = on_strips()[1]
+    assert one.pressure.shape == (4, 3)
+    assert one.problem is not None
+    assert one.problem.normal_force == one.normal_force == 1e5
+
+
 def test_a_law_is_evaluated_at_the_nodes_of_an_ellipse() -> None:
     contact = on_strips()
     wear = contact | wl.wear_law("kth", coefficient="low")

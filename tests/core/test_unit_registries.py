@@ -41,6 +41,8 @@ def original_registry() -> Iterator[None]:
 def test_quantities_of_another_registry_are_brought_home() -> None:
     foreign: Any = pint.UnitRegistry()
     assert LENGTH.si(foreign.Quantity(47.0, "mm"), "x") == pytest.approx(0.047, rel=1e-15)
+    foreign.define("railgauge = 1435 mm")
+    assert LENGTH.si(foreign.Quantity(2.0, "railgauge"), "x") == pytest.approx(2.87, rel=1e-15)
     disc = wl.Disc(diameter=foreign.Quantity(47.0, "mm"), material=wl.steel())
     assert disc == wl.Disc(diameter=Q(47.0, "mm"), material=wl.steel())
     with pytest.raises(wl.UnitError, match=r"x: got 1\.000 kN, which does not have the dimension of 'mm'"):

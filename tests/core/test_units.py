@@ -36,8 +36,9 @@ def test_every_unit_becomes_coherent_si(unit: str, factor: float) -> None:
         ("nan mm", "must be a number, got nan mm"),
         ("inf mm", "must be finite, got inf mm"),
         ("-1 mm", "must be greater than zero, got -1.000 mm"),
+        ("0 mm", "must be greater than zero, got 0.000 mm"),
         (pint.Quantity(1j, "mm"), "1j is not a real number"),
-        (pint.Quantity([3, -2], "mm"), "must be greater than zero, got -2.000 mm at index [1]"),
+        (pint.Quantity([3, -2, -1], "mm"), "must be greater than zero, got -2.000 mm at index [1]"),
         (Q(np.array([[1, 2], [np.nan, 3]]), "mm"), "must be a number, got nan mm at index [1, 0]"),
     ],
 )
@@ -105,7 +106,7 @@ def test_input_is_never_modified(unit: str) -> None:
     given_values = np.array([1.0, 2.0])
     given_values.flags.writeable = False
     quantity = Q(given_values, unit)
-    LENGTH.si(quantity, "x")
+    assert np.shares_memory(LENGTH.si(quantity, "x"), given_values) == (unit == "m")
     assert quantity.magnitude.tolist() == [1.0, 2.0]
     assert quantity.units == Q(1, unit).units
 
@@ -139,7 +140,9 @@ def test_si_floats_are_written_in_a_unit() -> None:
         (True, "True is not a real number"),
         (np.nan, "must be a positive finite number, got nan"),
         (-0.3, "must be a positive finite number, got -0.3"),
-        ([0.3, -0.4], "must be a positive finite number, got -0.4 at index [1]"),
+        (0.0, "must be a positive finite number, got 0"),
+        (np.inf, "must be a positive finite number, got inf"),
+        ([0.3, 0.0, -0.4], "must be a positive finite number, got 0 at index [1]"),
         (Q(0.4, "m"), "got 0.4000 m, which is not a ratio"),
     ],
 )
@@ -157,6 +160,14 @@ def test_a_coefficient_may_be_given_in_percent() -> None:
         # The factor of a percent and the product are rounded.
         assert wl.coefficient(value, "friction_coefficient") == pytest.approx(0.46, rel=np.finfo(float).eps)
     assert wl.coefficient("0 %", "mean_slip", positive=False) == 0.0
+    assert isinstance(wl.coefficient(np.array(0.46), "friction_coefficient"), np.float64)
+    with pytest.raises(wl.UnitError, match="mean_slip: must be a finite number, got -inf"):
+        wl.coefficient(-np.inf, "mean_slip", positive=False)
+
+
+def test_arrays_without_entries_are_taken() -> None:
+    assert LENGTH.si(Q([], "mm"), "x").shape == (0,)
+    assert coefficient([], "friction_coefficient").shape == (0,)
 
 
 def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
@@ -167,3 +178,7 @@ def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
         said = r"static_coefficient: .* give it as a plain number or in percent"
         with pytest.raises(wl.ConfigurationError, match=said):
             wl.FallingFriction(static_coefficient=wrong, **given)
+    with pytest.raises(wl.ConfigurationError, match="static_coefficient: must be one value, got an array"):
+        wl.FallingFriction(static_coefficient=Q([0.2, 0.3], ""), **given)
+    with pytest.raises(wl.ConfigurationError, match=r"static_coefficient: input should be a valid number, got '0\.25'"):
+        wl.FallingFriction(static_coefficient="0.25", **given)

@@ -19,7 +19,7 @@ from pydantic_core import core_schema
 
 from wearlaw.arrays.array import extremes
 from wearlaw.errors import UnitError, shown
-from wearlaw.units.registry import application_registry, divided, quantity, si_factor, symbol, unit_in_si
+from wearlaw.units.registry import divided, quantity, si_factor, symbol, unit_in_si
 from wearlaw.units.registry import from_si as from_si
 
 if TYPE_CHECKING:
@@ -209,10 +209,7 @@ class Unit:
             if isinstance(value, str) or with_units(value):
                 return parse(value)
             raise UnitError(f"got {_describe(value)}, which has no unit")
-        quantity: Quantity = value
-        if quantity._REGISTRY is not application_registry():
-            return Q(quantity.magnitude, str(quantity.units))
-        return quantity
+        return value
 
     def _fix(self, name: str, value: object) -> str:
         """Return what to do, with an example in a form that Python and TOML share unless the value is an array."""
@@ -252,13 +249,9 @@ def _scaled(magnitude: NDArray[np.float64], factor: float) -> NDArray[np.float64
     return magnitude * factor
 
 
-LARGEST = 2**53
-"""Largest of the whole numbers that are all floats too."""
-
-
 def real_array(value: object) -> NDArray[np.float64]:
     """Return `value` as float64; raise an error for booleans, complex numbers, text and masked entries."""
-    if type(value) is float or (type(value) is int and abs(value) <= LARGEST):
+    if type(value) is float or type(value) is int:
         return np.float64(value)  # type: ignore[return-value]  # computes like an array without axes, but faster
     if np.ma.is_masked(value):
         raise UnitError("masked entries have no value")
