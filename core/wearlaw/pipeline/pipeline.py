@@ -263,7 +263,8 @@ class Rig(Model):
         """Return the pipeline that solves this rig's contact with a contact model, or with each of a list of them."""
         assert isinstance(self, Rig)
         if isinstance(model, list | tuple):
-            return _several(self, model)
+            pipelines: Pipelines[P] = _several(self, model)
+            return pipelines
         if not isinstance(model, ContactModel):
             raise CompositionError(
                 f"a rig is followed by a contact model, not by {shown(model)};"
@@ -420,7 +421,8 @@ class Pipeline(Configuration, Generic[P]):
     def __or__(self, part: Law | Stage | Sequence[Law]) -> Pipeline[P] | Pipelines[P]:
         """Return the pipeline with one more law or stage around the contact model, or with each of a list of laws."""
         if isinstance(part, list | tuple) and not self.laws:
-            return _several(self.rig, [self.contact_model], self.stages, part, dims=["law"])
+            pipelines: Pipelines[P] = _several(self.rig, [self.contact_model], self.stages, part, dims=["law"])
+            return pipelines
         if isinstance(part, Stage):
             if self.laws:
                 raise CompositionError(f"a stage stands before the laws, not after them: {shown(part)}; {ORDER}")
