@@ -50,7 +50,7 @@ STUDY += "&& .venv/bin/wearlaw run tassini2010 -o out"
 INSTALL = 'python3 -m venv .venv && .venv/bin/python -m pip install --quiet ".[studies]" && .venv/bin/wearlaw plugins'
 STEEP = 'wearlaw check steep --expect-failure "rate_jumps_only_where_declared=the jump is still to be declared"'
 HOUSE = "applications    wearlaw_explore | wearlaw_life -> "
-HOUSE += "wearlaw_studies -> wearlaw_fits -> wearlaw_sweeps -> wearlaw_output -> wearlaw_tables"
+HOUSE += "wearlaw_studies -> wearlaw_fits -> wearlaw_sweeps -> wearlaw_output -> wearlaw_show | wearlaw_tables"
 
 NOT_RUN = {
     ("README.md", STUDY): "installs from an index; .ci/run runs it",

@@ -42,7 +42,7 @@ def test_pyproject_names_every_package_wherever_packages_are_named() -> None:
     assert [
         Path(path).name for path in tools["hatch"]["build"]["targets"]["wheel"]["packages"] if path[-3:] != ".py"
     ] == names
-    without_hooks = {"wearlaw_output", "wearlaw_sweeps", "wearlaw_tables"}
+    without_hooks = {"wearlaw_output", "wearlaw_show", "wearlaw_sweeps", "wearlaw_tables"}
     found = PYPROJECT["project"]["entry-points"]["wearlaw"].values()
     assert sorted(found) == [name for name in names[1:] if name not in without_hooks]
     assert tools["importlinter"]["root_packages"] == names

@@ -23,7 +23,7 @@ TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 SENTENCES = " ".join(TEXT.split())
 PLUGINS = sorted((ROOT / "plugins").glob("wearlaw_*"))
 APPLICATIONS = {
-    f"wearlaw_{name}" for name in ("explore", "fits", "kit", "life", "output", "studies", "sweeps", "tables")
+    f"wearlaw_{name}" for name in ("explore", "fits", "kit", "life", "output", "show", "studies", "sweeps", "tables")
 }
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import click
 
-from wearlaw.cli.show import accuracies
 from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, shown
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
@@ -20,6 +19,7 @@ from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw_kit.kit import Check, checks, validate_expected
 from wearlaw_kit.scaffold import Kind, write_plugin
 from wearlaw_output.commands import echo, fields, values
+from wearlaw_show import accuracies
 
 
 @click.command("new-plugin")

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from wearlaw.cli.show import wrapped
 from wearlaw.plugins import loader
 from wearlaw.settings.text_files import parse_toml
+from wearlaw_show import wrapped
 from wearlaw_studies.case import load_case
 
 

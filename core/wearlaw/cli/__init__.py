@@ -16,10 +16,10 @@ from wearlaw.plugins import loader
 from wearlaw.version import __version__
 
 OWN = (
-    Command("plugins", "wearlaw.cli.show:list_plugins", "List what the installed plugins provide."),
-    Command("show", "wearlaw.cli.show:show", "Explain anything that wearlaw plugins lists."),
+    Command("plugins", "wearlaw_show:list_plugins", "List what the installed plugins provide."),
+    Command("show", "wearlaw_show:show", "Explain anything that wearlaw plugins lists."),
 )
-"""The commands of wearlaw itself. Their modules import pandas, matplotlib and more when a command is called."""
+"""The commands that are there whatever plugin is broken; their module is imported when one is called."""
 
 
 def commands() -> dict[str, Command]:

@@ -14,12 +14,12 @@ from tests.core import cases
 from tests.core.outcome_laws import Damage as BaseOfDamage
 from tests.core.outcome_laws import Heat
 from tests.plugins.kit.wrong_rigs import Weight
-from wearlaw.cli.show import describe  # private: the program, in this process
 from wearlaw.models.model import Model  # private: the bound of a quadrature
 from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 from wearlaw.settings.configuration import (
     field_docstrings,
 )  # private: what `show`, schemas and signatures say of fields
+from wearlaw_show import describe
 
 MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}
 
