@@ -340,7 +340,7 @@ class FrameTable(Table):
         self.labels = {self.dim: (self.dim, frame.index.to_numpy())}
         self._frame = frame.set_axis(range(frame.shape[1]), axis=1)
 
-    @property
+    @cached_property
     def _whole(self) -> Any:
         return self._frame
 

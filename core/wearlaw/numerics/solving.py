@@ -189,11 +189,11 @@ def check_results(model: ContactModel, problem: Problem, found: Any, name: str =
     if type(found) is Across:  # made of checked rates
         return
     if isinstance(found, tuple):
-        one_point = problem.batch_shape == ()
+        one_point, names = problem.batch_shape == (), getattr(found, "_fields", (name,) * len(found))
         for place, one in enumerate(found):
             if one is None or (one_point and type(one) is np.float64 and math.isfinite(one)):
                 continue
-            check_results(model, problem, one, found._fields[place] if hasattr(found, "_fields") else name)
+            check_results(model, problem, one, names[place])
         return
     check_type(model, name, found, problem.batch_shape)
     low, high = extremes(found)

@@ -293,7 +293,7 @@ def _add_material(name: str, item: Any, origin: Origin, found: Installed) -> Non
     cls = item if isinstance(item, type) else type(item)
     if not issubclass(cls, Material):
         raise TypeError(f"material {name!r} must be a Material or a class derived from it, got {shown(item)}")
-    if cls is not item:
+    if not isinstance(item, type):
         found["material"].add(name, known_as(name, item), origin)
     elif name != cls.__name__:
         raise TypeError(f"a class of materials goes by its own name: write {cls.__name__!r} in place of {name!r}")
@@ -404,7 +404,7 @@ def law(name: str, /, **options: Any) -> Law:
     Parameters and errors are those of `contact_model`.
     """
     found = installed()
-    if name not in found["law"].providers or name in found["wear law"].providers:
+    if name in found["wear law"].providers or name in found["parameter set"].providers:
         return wear_law(name, **options)
     made: Law = found.find("law", name)(**options)
     return made

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import pint_pandas  # noqa: F401  (registers the type of columns)
 import pytest
 import xarray as xr
 
@@ -57,20 +56,13 @@ HEADS = {
 }
 
 
-def typed() -> Any:
-    table: Any = pd.DataFrame({"creepage": HEADS["creepage [%]"], "max_pressure": HEADS["max_pressure [MPa]"]})
-    table["creepage"] = table["creepage"].astype("pint[percent]")
-    table["max_pressure"] = table["max_pressure"].astype("pint[MPa]")
-    return table.assign(friction_coefficient=HEADS["friction_coefficient"])
-
-
 def of_xarray() -> xr.Dataset:
     units = {"creepage": "%", "max_pressure": "MPa", "friction_coefficient": ""}
     columns = zip(units.items(), HEADS.values(), strict=True)
     return xr.Dataset({name: ("test", values, {"units": unit}) for (name, unit), values in columns})
 
 
-@pytest.mark.parametrize("make", [lambda: pd.DataFrame(HEADS), of_xarray, typed])
+@pytest.mark.parametrize("make", [lambda: pd.DataFrame(HEADS), of_xarray])
 def test_a_table_is_taken_row_by_row(make: Any) -> None:
     predict = predictor()
     ds = wl.sweep(predict, make())
