@@ -6,14 +6,14 @@ names marked `@wearlaw.hookimpl`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, overload
 
 import pluggy
 
 if TYPE_CHECKING:
     from wearlaw.contact.material import Material
-    from wearlaw.models.law import WearLaw
+    from wearlaw.models.law import Law
     from wearlaw.models.model import Model
 
 PROJECT = "wearlaw"
@@ -49,8 +49,24 @@ class ResourceKind(NamedTuple):
     `wearlaw show`. It is imported when a user asks."""
 
 
-hookimpl = pluggy.HookimplMarker(PROJECT)
-"""Marks a function of a plugin as the hook of its name."""
+if TYPE_CHECKING:
+    Provided = (
+        Iterable[type[Model]]
+        | Mapping[str, Law | Material | type[Material]]
+        | Mapping[str, Mapping[str, Any]]
+        | Iterable[Command]
+    )
+    Implementation = TypeVar("Implementation", bound=Callable[[], Provided | None])
+    Function = TypeVar("Function", bound=Callable[..., Any])
+
+    @overload
+    def hookimpl(function: Implementation, /) -> Implementation: ...
+    @overload
+    def hookimpl(*, specname: str = ..., optionalhook: bool = ...) -> Callable[[Function], Function]: ...
+    def hookimpl(*function: Any, **options: Any) -> Any:
+        """Mark a function of a plugin as the hook of its name; checkers see if no hook returns what it does."""
+else:
+    hookimpl = pluggy.HookimplMarker(PROJECT)
 
 
 @hookspec
@@ -62,7 +78,7 @@ def wearlaw_models() -> Iterable[type[Model]]:  # type: ignore[empty-body]
 
 
 @hookspec
-def wearlaw_named() -> Mapping[str, WearLaw | Material | type[Material]]:  # type: ignore[empty-body]
+def wearlaw_named() -> Mapping[str, Law | Material | type[Material]]:  # type: ignore[empty-body]
     """Return parameter sets and materials by name.
 
     A parameter set is a wear law with parameters of its own, such as a lab's law for its pair of steels. Files know the

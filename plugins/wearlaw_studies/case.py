@@ -47,6 +47,7 @@ from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.plugins import loader
 from wearlaw.plugins.fields import ContactModelField, LawField, StageField, WearLawField, preset_fields
+from wearlaw.plugins.law_files import is_law_file
 from wearlaw.plugins.loader import Shelf
 from wearlaw.settings.configuration import Configuration, known_as
 from wearlaw.settings.text_files import LARGEST, beside, parse_toml, read_text, reading
@@ -85,11 +86,23 @@ def _name_of(value: Any) -> str:
     return name if isinstance(name, str) else ""
 
 
+def _known_law(value: Any) -> Any:
+    """Raise an error for the name of no law, which lists the laws that can stand here."""
+    name = _name_of(value)
+    if name and not is_law_file(name) and name not in {**loader.wear_laws(), **loader.parameter_sets()}:
+        loader.installed().find("law", name)
+    return value
+
+
 def _other_law(law: Law) -> Law:
     """Raise an error for a wear law."""
     if law.outcome.name == WEAR:
         raise InputError(f"{law.name} predicts the wear rate; list it under wear_laws")
     return law
+
+
+OtherLaw = Annotated[LawField, BeforeValidator(_known_law), AfterValidator(_other_law)]
+"""A field that takes a law of another outcome than wear."""
 
 
 def _wear_law(value: Any) -> Any:
@@ -161,7 +174,7 @@ class Case(Configuration):
     """The contact models, each a name or a table of its name and options."""
     stages: Annotated[tuple[StageField, ...], BeforeValidator(_models)] = ()
     """Stages around every contact model, such as "patch_mean", likewise; the first one stands next to the model."""
-    laws: Annotated[tuple[Annotated[LawField, AfterValidator(_other_law)], ...], BeforeValidator(_models)] = ()
+    laws: Annotated[tuple[OtherLaw, ...], BeforeValidator(_models)] = ()
     """Laws of other outcomes than wear, such as damage by fatigue, likewise."""
     wear_laws: Annotated[tuple[Annotated[WearLawField, BeforeValidator(_wear_law)], ...], BeforeValidator(_models)] = ()
     """The wear laws, likewise; they can be left out if there are `laws`."""

@@ -404,7 +404,7 @@ def law(name: str, /, **options: Any) -> Law:
     Parameters and errors are those of `contact_model`.
     """
     found = installed()
-    if name in found["wear law"].providers or name in found["parameter set"].providers:
+    if name not in found["law"].providers or name in found["wear law"].providers:
         return wear_law(name, **options)
     made: Law = found.find("law", name)(**options)
     return made
