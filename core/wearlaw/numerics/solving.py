@@ -96,7 +96,7 @@ class Solver:
         on_block: OnBlock[ResultT] | None = None,
         kept: Callable[[ResultT], ResultT] | None = None,
     ) -> ResultT:
-        """Return the results of a function of the problem in the shape of its batch; see `blocks.by_block`.
+        """Return the results of a function of the problem in the shape of its batch; see `totals.by_block`.
 
         A single line stays one: its scalars take less time than arrays of one number. Contacts that are already solved
         are one block.
