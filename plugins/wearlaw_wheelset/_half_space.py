@@ -11,7 +11,8 @@ gradients find it together with the area of contact, with products by FFT (I. A.
 which the undeformed bodies overlap. So the force is a continuous function of δ, and on an ellipse the error of its
 grid does not depend on δ.
 
-The gap of a wheel is g(t) + A(t) (x - x_m(t))², with the place x_m of the least gap, which yaw moves along the rail. A
+The gap of a wheel is that between the surfaces in space. Rows of elements are halved where a hump is so narrow that the
+pressure changes much from one row to the next; rows of wider humps then become one with their neighbours. A
 row of elements with the force per width q and the maximum pressure p0 becomes a strip of half the length 2q/(π p0),
 which it has if its pressure is half an ellipse, as on Hertz's patch. Strips lie about x = 0: x_m is left out of them.
 """
@@ -22,11 +23,13 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
+from numpy.typing import NDArray
 
 from wearlaw import Array
 from wearlaw_wheelset._candidates import Candidates
 from wearlaw_wheelset._motion import curvature_along, placed
-from wearlaw_wheelset._search import Section, gaps
+from wearlaw_wheelset._search import Position, Section, gaps
+from wearlaw_wheelset._search_loops import tangential
 
 FAR = 1e3
 """Gap where the bodies are sure not to touch, over the approach."""
@@ -40,6 +43,15 @@ ITERATIONS = 500
 NEWTON = 3
 """Steps to the distance of a wheel from its rail along the normal: a tenth of a millimetre to 1e-9 m."""
 
+TARGET = 0.02
+"""Estimated error of the maximum pressure from which on rows are halved, as a share of it."""
+
+FINEST = 8
+"""Greatest number of rows in place of one."""
+
+ONE_ROW = 0.25
+"""Estimated error of the maximum pressure on a hump of one row."""
+
 FLOOR = 1e-6
 """Pressure and length of strips that do not touch, over the greatest ones."""
 
@@ -49,14 +61,17 @@ class Rows(NamedTuple):
 
     Attributes
     ----------
-    y, half_length, max_pressure : ndarray
-        Place across the patch from the contact point, half the length [m] and the maximum pressure [Pa] of each row.
-    width : float
-        Width of a row [m].
+    y, half_length, max_pressure, width : ndarray
+        Place across the patch from the contact point, half the length [m], the maximum pressure [Pa] and the width of
+        each row [m].
     rail_y : float
         Place of the centre of the pressure on the rail, in the axes of `Gaps.y` [m].
     angle : float
         Contact angle, the mean over the pressure [rad].
+    error : float
+        Estimate of the error of the maximum pressure, as a share of it [-].
+    finer : int
+        Rows of elements in place of one of the count that was asked for.
     pressure : ndarray, (along x, along y)
         Pressure of the elements [Pa].
     middle, own : int
@@ -66,9 +81,11 @@ class Rows(NamedTuple):
     y: Array
     half_length: Array
     max_pressure: Array
-    width: float
+    width: Array
     rail_y: float
     angle: float
+    error: float
+    finer: int
     pressure: Array
     middle: int
     own: int
@@ -90,58 +107,216 @@ def rows(
         Effective modulus, E* [Pa].
     count : int
         Number of rows over the width in which the undeformed bodies overlap, and of elements over its length. Those
-        rows that touch are about two thirds of them.
+        rows that touch are about two thirds of them. Rows are halved until the error is `TARGET`; neighbours then
+        become one, so that `count` are returned all the same.
     start : Rows, optional
-        Those of a penetration close by; they save iterations.
+        Those of a penetration close by; they save iterations, and their rows are at least as narrow.
     """
-    spacing, samples = float(place.step[0]), place.samples[0]
-    rise = np.sqrt(samples) - np.sqrt(depth)  # linear from sample to sample where the gap is a parabola
-    within, beyond = (np.maximum(one[:-1], 0.0) + np.maximum(one[1:], 0.0) for one in (-rise, rise))
-    dy = spacing * float((within / (within + beyond)).sum()) / count
+    low, high, width = _overlap(section, place, depth)
     dx = 2.0 * np.sqrt(depth / float(place.curvature_x[0])) / count
-    low, high = place.start[0] + spacing * (np.flatnonzero(rise < 0.0)[[0, -1]] + (-1.0, 1.0))
-    y = dy * np.arange(np.floor(low / dy) - count // 2, np.ceil(high / dy) + count // 2)
+    finer = 1 if start is None else start.finer
+    while True:
+        dy = width / (count * finer)
+        y = dy * np.arange(np.floor(low / dy) - count // 2, np.ceil(high / dy) + count // 2)
+        grid = _grid(section, place, depth, y, dx)
+        guess = None if start is None else _moved(start, grid)
+        pressure, left = _pressed_near(grid, dx, dy, modulus, depth, guess)
+        error = _error(pressure.max(axis=0), left)
+        if error <= TARGET or finer == FINEST:
+            break
+        finer, start = 2 * finer, None
+    most, force = pressure.max(axis=0), dx * pressure.sum(axis=0)
+    share = force / force.sum()
+    # The pressed wheel overlaps the rail, and on a slope the surfaces' points on a normal then differ in y.
+    rail_y = float(np.interp(share @ y, y, grid.foot))
+    kept, first = _joined(most, grid.height, count)
+    size = np.diff(np.append(first, kept.size))
+    y, force = (np.add.reduceat(one[kept], first) / size for one in (y, force))
+    most = np.maximum(np.maximum.reduceat(most[kept], first), FLOOR * most.max())
+    half_length = 2.0 / np.pi * force / most
+    half_length = np.maximum(half_length, FLOOR * half_length.max())
+    return Rows(
+        y, half_length, most, dy * size, rail_y, float(share @ grid.angle), error, finer, pressure, grid.middle,
+        grid.own,
+    )  # fmt: skip
+
+
+def _overlap(section: Section, place: Candidates, depth: float) -> tuple[float, float, float]:
+    """Return places across the patch between which the undeformed bodies overlap, and the width in which they do [m]."""
+    window = np.flatnonzero(np.isfinite(place.samples[0]))
+    y, arc = place.start[0] + place.step[0] * window, place.arcs[0, window]
+    shift = gaps(section, place.position, arc).x - gaps(section, place.position, place.arc).x
+    height = _above(section, place, depth, shift, y, arc)[0]
+    rise = np.sqrt(np.maximum(height, 0.0)) - np.sqrt(depth)  # linear from sample to sample where the gap is a parabola
+    within, beyond = (np.maximum(one[:-1], 0.0) + np.maximum(one[1:], 0.0) for one in (-rise, rise))
+    step = float(place.step[0])
+    low, high = y[np.flatnonzero(rise < 0.0)[[0, -1]]]
+    return low - step, high + step, step * float((within / (within + beyond)).sum())
+
+
+def _error(most: Array, left: Array) -> float:
+    """Return an estimate of the error of the maximum pressure, as a share of it.
+
+    It is an eighth of the second difference of the pressure from row to row at a peak. Peaks with less than half the
+    greatest pressure do not count. A hump that touches between two rows counts as one with a row.
+
+    Parameters
+    ----------
+    most, left : ndarray
+        Maximum pressure [Pa] and least gap [m] of each row; the gap is infinite far from the patch.
+    """
+    before, here, after = most[:-2], most[1:-1], most[2:]
+    peak = (here >= before) & (here >= after) & (here >= 0.5 * most.max())
+    error = ((2.0 * here - before - after)[peak] / (8.0 * here[peak])).max()
+    with np.errstate(invalid="ignore"):  # far from the patch
+        rise, curved = left[2:] - left[:-2], left[2:] + left[:-2] - 2.0 * left[1:-1]
+        between = left[1:-1] - rise**2 / (8.0 * curved)
+    lowest = (left[1:-1] < left[:-2]) & (left[1:-1] <= left[2:]) & (here == 0.0)
+    return max(float(error), ONE_ROW if (lowest & (between < 0.0)).any() else 0.0)
+
+
+def _humps(most: Array) -> NDArray[np.intp]:
+    """Return the number of the hump of each row, from 1 on; 0 for rows with less than half the pressure on both sides.
+
+    `most` is the maximum pressure of each row [Pa].
+    """
+    before, after = np.maximum.accumulate(most), np.maximum.accumulate(most[::-1])[::-1]
+    hump = (most > 0.0) & (most >= 0.5 * np.minimum(before, after))
+    number: NDArray[np.intp] = np.cumsum(np.diff(hump, prepend=False) & hump) * hump
+    return number
+
+
+def _joined(most: Array, height: Array, count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the rows to keep, and where the groups of neighbours begin that become one row each, `count` in all.
+
+    Humps, and what lies between them, share the groups by the root of their number of rows. Where few rows touch, all
+    of them are kept, and the nearest of the others.
+    """
+    touches = most > 0.0
+    if np.count_nonzero(touches) <= count:
+        return np.sort(np.argsort(np.where(touches, most, -height))[-count:]), np.arange(count)
+    kept = np.flatnonzero(touches)
+    borders = np.flatnonzero((np.diff(kept) > 1) | (np.diff(_humps(most)[kept]) != 0)) + 1
+    begins = np.append(0, borders)
+    wide, groups = np.diff(np.append(begins, kept.size)), np.ones(begins.size, dtype=np.intp)
+    while groups.sum() < count:
+        groups[np.where(groups < wide, np.sqrt(wide) / groups, 0.0).argmax()] += 1
+    first = [begin + np.arange(n) * size // n for begin, size, n in zip(begins, wide, groups, strict=True)]
+    return kept, np.concatenate(first)
+
+
+class _Grid(NamedTuple):
+    """Gap of the undeformed bodies.
+
+    Attributes
+    ----------
+    gap : ndarray, (along x, along y)
+        The gap as they touch, on elements [m]; far from the patch, `FAR` approaches.
+    height, foot, angle : ndarray, (along y,)
+        The least gap of a row [m], its place on the rail, in the axes of `Gaps.y` [m], and contact angle [rad].
+    middle, own : int
+        Indices of the contact point.
+    """
+
+    gap: Array
+    height: Array
+    foot: Array
+    angle: Array
+    middle: int
+    own: int
+
+
+def _grid(section: Section, place: Candidates, depth: float, y: Array, dx: float) -> _Grid:
+    """Return the gap on rows at y, of elements dx long [m]; the rest as in `rows`."""
     own = int(np.abs(y).argmin())
-    arc = place.between(place.arcs, y[None])[0]
-    at, there = gaps(section, place.position, arc), placed(section, place.position, arc)
-    shift, turn = at.x - at.x[own], float(there.angle[own])
-    # The wheel is lowered, not pressed along its normal, and the gap taken along the normal.
-    vertical, distance = at.gap - at.gap[own] - depth / np.cos(turn), np.zeros(y.shape)
-    for _ in range(NEWTON):
-        rail, slope = section.rail_z.at(at.y - distance * np.sin(turn))
-        left = vertical + rail - section.rail_z.at(at.y)[0] - distance * np.cos(turn)
-        distance += left / (np.cos(turn) + slope * np.sin(turn))
-    height = distance + depth
     known = np.isfinite(place.between(place.samples, y[None])[0]) & (np.abs(y) < -place.start[0])
-    height = np.where(known, height, FAR * depth)
+    arc = place.between(place.arcs, y[None])[0]
+    height, foot, shift = np.full(y.shape, FAR * depth), y.copy(), np.zeros(y.shape)
+    if known.sum() > 1:
+        shift[known] = gaps(section, place.position, arc[known]).x - gaps(section, place.position, place.arc).x
+        height[known], arc[known], foot[known] = _above(section, place, depth, shift[known], y[known], arc[known])
     if not (height < depth).any():  # on the way to a balance, the contact point may lie beyond the known surfaces
         height[own - 1 : own + 2] = 0.0
-    bend = 0.5 * curvature_along(section, place.position, there, arc) / np.cos(there.angle - turn)
+    there = placed(section, place.position, arc)
+    bend = 0.5 * curvature_along(section, place.position, there, arc) / np.cos(there.angle - place.angle)
     near = height < depth
     middle = int((np.abs(shift[near]) + np.sqrt((depth - height[near]) / bend[near])).max() / dx) + 1
     x = dx * np.arange(-middle, middle + 1.0)[:, None]
     gap = np.where(near, height + bend * (x - shift) ** 2, FAR * depth)
+    true = near & known
+    if true.sum() > 1:
+        gap[:, true], _, _ = _above(section, place, depth, x, y[true], arc[true])
+    return _Grid(gap, height, foot, there.angle, middle, own)
 
-    pressure, guess = np.zeros(gap.shape), None if start is None else _moved(start, gap.shape, middle, own)
+
+def _pressed_near(
+    grid: _Grid, dx: float, dy: float, modulus: float, depth: float, guess: Array | None
+) -> tuple[Array, Array]:
+    """Return the pressure of all elements [Pa], and the least gap that is left in each row [m]."""
+    near = grid.height < depth
     inside = slice(near.argmax(), near.size - near[::-1].argmax())
-    first = None if guess is None or not guess[:, inside].any() else guess[:, inside]
-    pressure[:, inside] = pressed(gap[:, inside], dx, dy, modulus, depth, first)
-    most = pressure.max(axis=0)
-    kept = np.sort(np.argsort(np.where(most > 0.0, most, -height))[-count:])
-    force, most = dx * pressure.sum(axis=0)[kept], np.maximum(most[kept], FLOOR * most.max())
-    half_length = 2.0 / np.pi * force / most
-    half_length = np.maximum(half_length, FLOOR * half_length.max())
-    share = force / force.sum()
-    # The pressed wheel overlaps the rail, and on a slope the surfaces' points on a normal then differ in y.
-    foot = np.interp(share @ y[kept], y[kept], (at.y - distance * np.sin(turn))[kept])
-    return Rows(y[kept], half_length, most, dy, float(foot), float(share @ there.angle[kept]), pressure, middle, own)
+    start = None if guess is None or not guess[:, inside].any() else guess[:, inside]
+    pressure, least = np.zeros(grid.gap.shape), np.full(near.shape, np.inf)
+    pressure[:, inside], left = pressed(grid.gap[:, inside], dx, dy, modulus, depth, start)
+    least[inside] = left.min(axis=0)
+    return pressure, np.where(near, least, np.inf)
 
 
-def _moved(start: Rows, shape: tuple[int, ...], middle: int, own: int) -> Array:
+def _above(
+    section: Section, place: Candidates, depth: float, x: Array, y: Array, arc: Array
+) -> tuple[Array, Array, Array]:
+    """Return the gap along the normal [m], the arc length of the wheel, and y of the rail, at places in the plane.
+
+    The wheel is lowered, not pressed along its normal, and the gap taken along the normal.
+
+    Parameters
+    ----------
+    section : Section
+    place : Candidates
+    depth : float
+        As in `rows`.
+    x, y : ndarray
+        Distances from the contact point along the rail and across it, in the plane of contact [m].
+    arc : ndarray, like y
+        Guess of the arc length of the wheel below them [m].
+    """
+    first, slope = gaps(section, place.position, place.arc), float(np.tan(place.angle[0]))
+    cos, sin = np.cos(place.angle), np.sin(place.angle)
+    rate, along = np.gradient(arc, y), first.x + x
+    across = down = np.empty(0)
+    for _ in range(NEWTON):
+        across, down = _wheel(section, place.position, along, arc)
+        arc = arc + rate * (y - tangential(across - first.y, down - first.z, slope))
+    across, down = _wheel(section, place.position, along, arc)
+    distance = np.zeros(across.shape)
+    for _ in range(NEWTON):
+        rail, slopes = section.rail_z.at(across - distance * sin)
+        left = rail - down - first.gap - depth / cos - distance * cos
+        distance += left / (cos + slopes * sin)
+    return distance + depth, arc, across - distance * sin
+
+
+def _wheel(section: Section, position: Position, x: Array, arc: Array) -> tuple[Array, Array]:
+    """Return y and z of points of the wheel at places x along the rail and arc lengths of the profile [m]."""
+    y, radius = section.wheel_y.at(arc)[0], section.wheel_radius.at(arc)[0]
+    displacement, roll, yaw, _ = position
+    across = y * np.cos(roll) - radius * np.sin(roll)
+    sine = cosine = np.zeros(1)
+    for _ in range(2):  # the height above the axle hardly changes the place across
+        sine = (x + across * np.sin(yaw)) / (radius * np.cos(yaw))
+        cosine = np.sqrt(1.0 - sine**2)
+        across = y * np.cos(roll) - radius * cosine * np.sin(roll)
+    return across * np.cos(yaw) + radius * sine * np.sin(yaw) + displacement, y * np.sin(
+        roll
+    ) + radius * cosine * np.cos(roll)
+
+
+def _moved(start: Rows, grid: _Grid) -> Array:
     """Return a pressure on another grid, by elements from the contact point."""
-    found = np.zeros(shape)
+    found = np.zeros(grid.gap.shape)
     new, old = [], []
-    for size, other, at, was in zip(shape, start.pressure.shape, (middle, own), (start.middle, start.own), strict=True):
+    ends = zip(grid.gap.shape, start.pressure.shape, (grid.middle, grid.own), (start.middle, start.own), strict=True)
+    for size, other, at, was in ends:
         before, after = min(at, was), min(size - at, other - was)
         new.append(slice(at - before, at + after))
         old.append(slice(was - before, was + after))
@@ -149,8 +324,10 @@ def _moved(start: Rows, shape: tuple[int, ...], middle: int, own: int) -> Array:
     return found
 
 
-def pressed(gap: Array, dx: float, dy: float, modulus: float, approach: float, start: Array | None = None) -> Array:
-    """Return the pressure of half-spaces on the elements of a grid, (along x, along y) [Pa].
+def pressed(
+    gap: Array, dx: float, dy: float, modulus: float, approach: float, start: Array | None = None
+) -> tuple[Array, Array]:
+    """Return the pressure of half-spaces on the elements of a grid [Pa], and the gap that they leave [m].
 
     Parameters
     ----------
@@ -177,8 +354,8 @@ def pressed(gap: Array, dx: float, dy: float, modulus: float, approach: float, s
     quarter = np.diff(np.diff(corner, axis=0), axis=1) / (np.pi * modulus)
     kernel = np.zeros(shape)
     kernel[:nx, :ny] = quarter
-    kernel[-nx + 1 :, :ny] = quarter[:0:-1]
-    kernel[:, -ny + 1 :] = kernel[:, ny - 1 : 0 : -1]
+    kernel[shape[0] - nx + 1 :, :ny] = quarter[:0:-1]
+    kernel[:, shape[1] - ny + 1 :] = kernel[:, ny - 1 : 0 : -1]
     transform = scipy.fft.rfft2(kernel)
 
     def displaced(pressure: Array) -> Array:
@@ -198,7 +375,7 @@ def pressed(gap: Array, dx: float, dy: float, modulus: float, approach: float, s
     for _ in range(ITERATIONS):
         touches = pressure > 0.0
         if np.abs(rest[touches]).max() < small and rest[~touches].min(initial=0.0) > -small:
-            return pressure
+            return pressure, rest
         norm = float(np.square(rest[touches]).sum())
         step = np.where(touches, rest + norm / before * step, 0.0)
         moved = displaced(step)

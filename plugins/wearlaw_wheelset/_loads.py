@@ -437,7 +437,7 @@ class Balance:
         """Return the vertical penetration if one patch of each wheel carries the whole load, and widen its samples."""
         penetration = self.whole[found.wheel[rows]]
         open_ = np.arange(rows.size)
-        widest = self._spacing * 2.0**WIDENINGS
+        widest = self._spacing if self.pressure == "half_space" else SPACING * 2.0**WIDENINGS
         while open_.size:
             part = found.part(rows[open_])
             load = self.task.load[part.point, part.side] / part.cosine
@@ -814,28 +814,29 @@ class Balance:
 
     def _half_spaces(self, part: Candidates) -> dict[str, Array]:
         """Return rows of elements as strips, an ellipse of their area and length, their centres and mean angles."""
-        y, half_length, pressure = np.empty((3, part.arc.size, 2 * self.strips))
-        width, (rail_y, angle) = np.empty((part.arc.size, 1)), np.empty((2, part.arc.size))
+        y, half_length, pressure, width = np.empty((4, part.arc.size, 2 * self.strips))
+        rail_y, angle, error = np.empty((3, part.arc.size))
         for k, depth in enumerate(self._depth(part)):
             key = int(part.wheel[k]), int(part.number[k])
             self.starts[key] = found = _half_space.rows(
                 self.section.sides[part.side[k]], part.part(np.array([k])), float(depth), self.elastic.modulus,
                 2 * self.strips, self.starts.get(key),
             )  # fmt: skip
-            y[k], half_length[k], pressure[k], width[k], rail_y[k], angle[k] = found[:6]
-        load, a = half_length * pressure, half_length.max(axis=-1)
+            y[k], half_length[k], pressure[k], width[k], rail_y[k], angle[k], error[k] = found[:7]
+        load, a = half_length * pressure * width, half_length.max(axis=-1)
         return self._sided(
             part,
             {
                 "y": y,
-                "width": np.broadcast_to(width, y.shape),
+                "width": width,
                 "half_length": half_length,
                 "max_pressure": pressure,
                 "a": a,
-                "b": 2.0 / np.pi * half_length.sum(axis=-1) * width[:, 0] / a,
+                "b": 2.0 / np.pi * (half_length * width).sum(axis=-1) / a,
                 "centre": (load * y).sum(axis=-1) / load.sum(axis=-1),
                 "rail_y": rail_y,
                 "angle": angle,
+                "error": error,
             },
         )
 
