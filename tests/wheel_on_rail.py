@@ -1,8 +1,8 @@
-"""The gap between an S1002 wheel and a canted 60E1 rail, surface against surface, as a reference.
+"""The gap between an S1002 wheel and a canted UIC 60 rail, surface against surface, as a reference.
 
 The wheel is a surface of revolution, moved, rolled and yawed in space; no contact is searched for. Lengths are in mm.
 The track's axes are x forwards, y to the right, z down, and the wheel is the right one. Formulas of the profiles: UIC
-510-2 and EN 13674-1.
+510-2 and 861-3.
 """
 
 from __future__ import annotations
@@ -73,8 +73,13 @@ def wheel(s: Array) -> Array:
 def rail() -> tuple[Array, Array]:
     """Return points of the right rail, y and z, from the gauge side outwards."""
     y, z, begin, centre = [], [], 0.0, (0.0, 300.0)
+    middle, side = (
+        10.5 * (1.0 - 80.0 / 300.0),
+        13.0 * np.cos(np.arctan(0.05)),
+    )  # sides lean by 1:20, and the head is 72 mm wide
+    border = middle + 80.0 * (36.0 - side - middle) / (80.0 - 13.0)
     for radius, end, smaller in ((300.0, np.arcsin(10.5 / 300.0), 80.0), (80.0, None, 13.0), (13.0, 1.5, 13.0)):
-        end = np.arcsin((26.0 - centre[0]) / radius) if end is None else end
+        end = np.arcsin((border - centre[0]) / radius) if end is None else end
         angle = np.linspace(begin, end, 10000)
         y.append(centre[0] + radius * np.sin(angle))
         z.append(centre[1] - radius * np.cos(angle))

@@ -12,9 +12,9 @@ which the undeformed bodies overlap. So the force is a continuous function of δ
 grid does not depend on δ.
 
 The gap of a wheel is that between the surfaces in space. Rows of elements are halved where a hump is so narrow that the
-pressure changes much from one row to the next; rows of wider humps then become one with their neighbours. A
-row of elements with the force per width q and the maximum pressure p0 becomes a strip of half the length 2q/(π p0),
-which it has if its pressure is half an ellipse, as on Hertz's patch. Strips lie about x = 0: x_m is left out of them.
+pressure changes much from one row to the next; rows of wider humps then become one with their neighbours. A row with
+the force per width q and the maximum pressure p0 becomes a strip of half the length 2q/(π p0), which it has if its
+pressure is half an ellipse, as on Hertz's patch. Strips lie about x = 0, although yaw moves rows along the rail.
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ def rows(
 
 
 def _overlap(section: Section, place: Candidates, depth: float) -> tuple[float, float, float]:
-    """Return places across the patch between which the undeformed bodies overlap, and the width in which they do [m]."""
+    """Return places across the patch beyond the overlap of the undeformed bodies, and the width of the overlap [m]."""
     window = np.flatnonzero(np.isfinite(place.samples[0]))
     y, arc = place.start[0] + place.step[0] * window, place.arcs[0, window]
     shift = gaps(section, place.position, arc).x - gaps(section, place.position, place.arc).x
@@ -182,7 +182,7 @@ def _humps(most: Array) -> NDArray[np.intp]:
     """
     before, after = np.maximum.accumulate(most), np.maximum.accumulate(most[::-1])[::-1]
     hump = (most > 0.0) & (most >= 0.5 * np.minimum(before, after))
-    number: NDArray[np.intp] = np.cumsum(np.diff(hump, prepend=False) & hump) * hump
+    number: NDArray[np.intp] = np.where(hump, np.cumsum(np.diff(hump, prepend=False) & hump), 0)
     return number
 
 

@@ -104,6 +104,9 @@ IMBALANCE = 1e-3
 """Share of the load that may be left over without a warning; the forces of FASTSIM jump by less than that, as a strip
 begins to stick once more."""
 
+GRID_ERROR = 0.03
+"""Estimated error of the maximum pressure of half-spaces from which it is warned of."""
+
 MARGIN = 1e-3
 """Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
 
@@ -464,6 +467,7 @@ class Wheelset(wl.Rig):
         if not balance.balanced.all():
             self._warn_of_jams(balance)
         self._warn_of_humps(balance)
+        self._warn_of_grids(balance)
         balance.balanced &= ~climbs
         left = np.where(balance.balanced, balance.imbalance, 0.0)
         if (left > IMBALANCE).any():
@@ -630,6 +634,23 @@ class Wheelset(wl.Rig):
             wl.RangeWarning,
             stacklevel=5,
         )
+
+    def _warn_of_grids(self, balance: Balance) -> None:
+        """Warn of patches with a hump that is too narrow for the rows of half-spaces."""
+        if self.pressure != "half_space":
+            return
+        error = balance.shapes["error"]
+        if (error > GRID_ERROR).any():
+            worst = int(error.argmax())
+            point, side = balance.found.point[worst], DIMS["side"][balance.found.side[worst]]
+            warnings.warn(
+                f"{np.count_nonzero(error > GRID_ERROR)} of {error.size} patches have a hump that is too narrow for"
+                f" their rows, the worst on the {side} wheel at a lateral displacement of"
+                f" {1e3 * balance.task.displacement[point]:.4g} mm, where the maximum pressure may be off by"
+                f" {error[worst]:.0%}; give more than {self.strips} strips",
+                wl.RangeWarning,
+                stacklevel=5,
+            )
 
     def _warn_of_points(self, problem: wl.Problem) -> None:
         """Warn of a pressure that the points of a measured profile give, rather than its shape."""

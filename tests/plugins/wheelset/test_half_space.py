@@ -21,11 +21,13 @@ A, MODULUS = 1.0 / (2.0 * R0), 82e9 / (1.0 - 0.28)
 FASTSIM = wl.contact_model("fastsim")
 
 
-def posed(pressure: Any, **conditions: Any) -> Any:
+def posed(pressure: Any, strips: int = 20, **conditions: Any) -> Any:
     """Return the balanced problem of the benchmark's wheelset."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.RangeWarning)
-        return (wheelset(pressure=pressure, material=STEEL) | FASTSIM).posed(conditions | {"friction_coefficient": 0.3})
+        return (wheelset(pressure=pressure, strips=strips, material=STEEL) | FASTSIM).posed(
+            conditions | {"friction_coefficient": 0.3}
+        )
 
 
 @pytest.mark.validates(
@@ -73,6 +75,25 @@ def test_a_ball_with_a_hump_is_carried_by_both_areas() -> None:
     assert again == pytest.approx(little, rel=0.0, abs=1e-6 * little.max())
 
 
+def pressed_in_space(
+    problem: Any, displacement: float, yaw: float, half_width: float, half_length: float
+) -> tuple[Any, Any, Any]:
+    """Return the first place of the right wheel, and t [mm] and the pressure [Pa] of half-spaces there under its force.
+
+    The gap is that between the surfaces in space, on elements of 0.3 mm by 0.05 mm.
+    """
+    balance = problem.balance
+    part = balance.found.part(np.flatnonzero((balance.found.side == 1) & (balance.found.number == 0)))
+    place = placed(balance.section, part.position, part.arc)
+    gap = wheel_on_rail.gap(
+        displacement, 1e3 * (balance.height[0, 1] + R0 + balance.penetration[1]), problem.roll[1, 0], 1e-3 * yaw,
+        angle=float(place.angle[0]), at=float(1e3 * place.y[0] + displacement),
+        half_width=half_width, half_length=half_length, step=0.05,
+    )  # fmt: skip
+    found = normal_half_space.pressed(1e-3 * gap.height[::6], 3e-4, 5e-5, MODULUS, problem.normal_force[1, 0])
+    return place, gap.t, found.pressure
+
+
 @pytest.mark.validates(
     "wheelset",
     "Maximum pressure on strongly yawed flanges, 24 and 36 mrad, under 20 kN a wheel, at wearlaw's force",
@@ -88,23 +109,44 @@ def test_yawed_flanges_are_pressed_as_in_space(
     # The grid has 18 rows across the patch.
     where: dict[str, Any] = {"lateral_displacement": Q(displacement, "mm"), "yaw": Q(yaw, "mrad")}
     problem = posed("half_space", **where, vertical_load="20 kN")
-    balance, force = problem.balance, problem.normal_force[1, 0]
-    part = balance.found.part(np.flatnonzero((balance.found.side == 1) & (balance.found.number == 0)))
-    place = placed(balance.section, part.position, part.arc)
-    gap = wheel_on_rail.gap(
-        displacement, 1e3 * (balance.height[0, 1] + R0 + balance.penetration[1]), problem.roll[1, 0], 1e-3 * yaw,
-        angle=float(place.angle[0]), at=float(1e3 * place.y[0] + displacement),
-        half_width=2.0, half_length=13.0, step=0.05,
-    )  # fmt: skip
-    in_space = normal_half_space.pressed(1e-3 * gap.height[::6], 3e-4, 5e-5, MODULUS, force).pressure
+    place, t, in_space = pressed_in_space(problem, displacement, yaw, 2.0, 13.0)
     full = in_space.max()
     assert problem.max_pressure[1, 0] == pytest.approx(full, rel=half_spaces)
     moved = 1e3 * (problem.bodies["rail"].profile_position[1, 0] - place.rail_arc[0])
-    assert moved == pytest.approx(gap.t @ in_space.sum(axis=0) / in_space.sum(), abs=0.05 / 4)  # a quarter of a row
+    assert moved == pytest.approx(t @ in_space.sum(axis=0) / in_space.sum(), abs=0.05 / 4)  # a quarter of a row
     for pressure in ("kpec", "hertz"):
         other = posed(pressure, **where, vertical_load="20 kN")
-        assert other.normal_force[1, 0] == pytest.approx(force, rel=0.005)  # 0.17 % of the pressure
+        assert other.normal_force[1, 0] == pytest.approx(
+            problem.normal_force[1, 0], rel=0.005
+        )  # 0.17 % of the pressure
         assert other.max_pressure[1, 0] == pytest.approx(full, rel=strips), pressure
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Maximum pressure on half-spaces with 12 mrad of yaw: where a second hump begins to touch (4.6 and 4.8 mm), from"
+    " the root to the flange (6.2 mm), and where the curvature of the flange steps (6.4 mm)",
+    source="half-spaces between the surfaces in space, on a grid of 0.3 mm by 0.05 mm",
+    held_to="{within:.0%}, with 20 and 40 `strips`",
+    within=0.03,
+)
+@pytest.mark.parametrize(
+    ("displacement", "load", "half_width", "half_length"),
+    [(4.8, 10, 12.5, 6.0), (4.6, 80, 12.5, 11.0), (6.2, 80, 10.5, 18.0), (6.4, 10, 2.0, 10.0)],
+)
+def test_humps_are_pressed_as_in_space(
+    displacement: float, load: float, half_width: float, half_length: float, within: float
+) -> None:
+    for strips in (20, 40):
+        problem = posed(
+            "half_space", strips=strips, lateral_displacement=Q(displacement, "mm"), yaw="12 mrad",
+            vertical_load=Q(load, "kN"),
+        )  # fmt: skip
+        _, _, pressure = pressed_in_space(problem, displacement, 12.0, half_width, half_length)
+        assert problem.max_pressure[1, 0] == pytest.approx(pressure.max(), rel=within), strips
+        rows = problem.strips
+        assert rows.y.shape[-1] == 2 * strips
+        assert rows.normal_force.sum(axis=-1)[1, 0] == pytest.approx(problem.normal_force[1, 0], rel=1e-12)
 
 
 @pytest.mark.validates(
