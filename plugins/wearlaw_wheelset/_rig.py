@@ -647,7 +647,7 @@ class Wheelset(wl.Rig):
                 f"{np.count_nonzero(error > GRID_ERROR)} of {error.size} patches have a hump that is too narrow for"
                 f" their rows, the worst on the {side} wheel at a lateral displacement of"
                 f" {1e3 * balance.task.displacement[point]:.4g} mm, where the maximum pressure may be off by"
-                f" {error[worst]:.0%}; give more than {self.strips} strips",
+                f" {100.0 * error[worst]:.0f} %; give more than {self.strips} strips",
                 wl.RangeWarning,
                 stacklevel=5,
             )

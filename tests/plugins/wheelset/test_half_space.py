@@ -13,6 +13,7 @@ from tests import normal_half_space, wheel_on_rail
 from tests.plugins.wheelset.test_roll import STEEL, service
 from tests.plugins.wheelset.wheelsets import R0, wheelset
 from wearlaw import Q
+from wearlaw_wheelset import _half_space  # private: the finest of its grids
 from wearlaw_wheelset._half_space import pressed  # private: the normal problem, against its theory
 from wearlaw_wheelset._motion import placed  # private: one step of the contact, against another way to it
 from wearlaw_wheelset._normal import hertz  # private: the normal problem, against its theory
@@ -218,3 +219,18 @@ def test_strips_on_two_humps_warn_and_half_spaces_do_not() -> None:
         warnings.simplefilter("error")
         (wheelset() | FASTSIM).posed(where | {"lateral_displacement": "3 mm"})
         (wheelset(pressure="half_space") | FASTSIM).posed(where | {"lateral_displacement": "1 mm"})
+
+
+def test_a_hump_that_is_too_narrow_for_its_rows_warns(monkeypatch: pytest.MonkeyPatch) -> None:
+    where: dict[str, Any] = {
+        "lateral_displacement": Q([3.0, 4.8], "mm"), "yaw": "12 mrad", "vertical_load": "10 kN",
+        "friction_coefficient": 0.3,
+    }  # fmt: skip
+    pipeline = wheelset(pressure="half_space") | FASTSIM
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        pipeline.posed(where)
+    monkeypatch.setattr(_half_space, "FINEST", 1)
+    told = r"1 of 4 patches .*right wheel .* 4\.8 mm, .* off by (5|6|7|8|9|1[0-5]) %.* 20 strips"
+    with pytest.warns(wl.RangeWarning, match=told):
+        pipeline.posed(where)
