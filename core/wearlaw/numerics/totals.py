@@ -157,9 +157,9 @@ OfBlock: TypeAlias = Callable[[Problem, slice], ResultT]
 OnBlock: TypeAlias = Callable[[Problem, ResultT], None]
 """A function called with a block of operating points and its results."""
 
-# An array of 16 MiB that is freed makes the C library of Linux keep as much memory of later arrays for the next ones.
+# An array of 31 MiB that is freed makes the C library of Linux keep as much memory of later arrays for the next ones.
 # Otherwise it would return the memory to the system and request it again, which takes as long as the arithmetic.
-np.empty(2**24, dtype=np.uint8)
+np.empty(31 * 2**20, dtype=np.uint8)
 
 
 def each(function: Callable[..., Any], first: Any, *others: Any) -> Any:
