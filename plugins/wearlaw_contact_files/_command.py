@@ -9,9 +9,9 @@ import click
 import pandas as pd
 
 from wearlaw.contact.contact import Contact
+from wearlaw.fields import specification
 from wearlaw.models.law import Law
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.plugins.fields import specification
 from wearlaw.units.variables import readable
 from wearlaw.version import __version__
 from wearlaw_contact_files._reading import read_contact

@@ -18,9 +18,9 @@ from bokeh.plotting import figure
 
 import wearlaw as wl
 from wearlaw.contact.conditions import Known
+from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.pipeline import expect_pipeline
-from wearlaw.plugins.law_files import is_law_file
 from wearlaw.units.variables import VARIABLES, label, name_of
 from wearlaw_explore._models import Subject, by_patch, largest, numbered, numbers
 from wearlaw_output.commands import values

@@ -12,8 +12,8 @@ import click
 
 from wearlaw.errors import FitError, PlasticityWarning, shown
 from wearlaw.models.law import Law
+from wearlaw.parameters import numbers
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.settings.parameters import numbers
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import click
 
+from wearlaw import loader
 from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, shown
+from wearlaw.fields import is_law_file, read_law
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
 from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.plugins import loader
-from wearlaw.plugins.law_files import is_law_file, read_law
 from wearlaw_kit.kit import Check, checks, validate_expected
 from wearlaw_kit.scaffold import Kind, write_plugin
 from wearlaw_output.commands import fields, values

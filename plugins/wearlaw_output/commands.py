@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from wearlaw import loader
+from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, InputError, shown, with_problems
+from wearlaw.fields import is_law_file, read_law
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
 from wearlaw.pipeline.pipeline import Rig, RigField
-from wearlaw.plugins import loader
-from wearlaw.plugins.law_files import is_law_file, read_law
-from wearlaw.settings.configuration import Configuration
-from wearlaw.settings.text_files import read_toml
+from wearlaw.text_files import read_toml
 
 if TYPE_CHECKING:
     import pandas as pd

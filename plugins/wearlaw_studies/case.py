@@ -28,6 +28,8 @@ from pydantic import (
     model_validator,
 )
 
+from wearlaw import loader
+from wearlaw.configuration import Configuration, known_as
 from wearlaw.errors import (
     CaseError,
     ConfigurationError,
@@ -39,16 +41,14 @@ from wearlaw.errors import (
     shown,
     with_problems,
 )
+from wearlaw.fields import ContactModelField, LawField, StageField, preset_fields
+from wearlaw.loader import Shelf
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.model import Model, labelled, labels
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig, RigField
-from wearlaw.plugins import loader
-from wearlaw.plugins.fields import ContactModelField, LawField, StageField, preset_fields
-from wearlaw.plugins.loader import Shelf
-from wearlaw.settings.configuration import Configuration, known_as
-from wearlaw.settings.text_files import LARGEST, beside, parse_toml, read_text, reading
+from wearlaw.text_files import LARGEST, beside, parse_toml, read_text, reading
 from wearlaw.units.variables import UNITS
 from wearlaw_studies.figure_spec import FigureSpec
 from wearlaw_studies.grid import Condition, Grid

@@ -12,7 +12,8 @@ import numpy as np
 import pint
 from pydantic import BeforeValidator, Field, model_validator
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
 from wearlaw.errors import (
     ConfigurationError,
     Fault,
@@ -24,7 +25,6 @@ from wearlaw.errors import (
     shown,
 )
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import Q, Quantity, parse
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS

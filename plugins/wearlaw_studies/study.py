@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import xarray
 
-from wearlaw.arrays.array import Array, steady
+from wearlaw import loader
+from wearlaw.arrays import Array, steady
+from wearlaw.configuration import LINE, known_name, parts
 from wearlaw.contact.material import Material
 from wearlaw.errors import (
     ConfigurationError,
@@ -32,8 +34,6 @@ from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
-from wearlaw.plugins import loader
-from wearlaw.settings.configuration import LINE, known_name, parts
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
 from wearlaw_fits.pairs import Pair
@@ -47,7 +47,7 @@ from wearlaw_sweeps.evaluator import Evaluator
 from wearlaw_sweeps.points import Points
 
 if TYPE_CHECKING:
-    from wearlaw.plugins.loader import Shelf
+    from wearlaw.loader import Shelf
     from wearlaw_output.curves import FigureData
     from wearlaw_studies.grid import Grid
 

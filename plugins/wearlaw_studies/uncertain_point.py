@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from wearlaw.configuration import Configuration
 from wearlaw.errors import Fault, InputError, did_you_mean, shown
 from wearlaw.models.law import Law
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.settings.configuration import Configuration
 from wearlaw_fits.distributions import (
     Distribution,
     PublishedRange,

@@ -18,11 +18,11 @@ import pint
 import xarray
 from numpy.typing import NDArray
 
+from wearlaw.configuration import Configuration, field_docstrings
 from wearlaw.errors import InputError, WearlawWarning
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.model import Blame, Model, labelled
 from wearlaw.pipeline.variables import MASS
-from wearlaw.settings.configuration import Configuration, field_docstrings
 from wearlaw.units.quantities import Q, from_si
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS, name_of, readable

@@ -19,13 +19,13 @@ from typing import Any, NamedTuple
 import pluggy
 
 from wearlaw import hookspecs
+from wearlaw.configuration import known_as
 from wearlaw.contact.material import Material
 from wearlaw.errors import PluginWarning, UnknownModelError, described, did_you_mean, shown, warn
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, WearLaw
 from wearlaw.models.model import Model
 from wearlaw.models.reader import Reader
-from wearlaw.settings.configuration import known_as
 
 MODELS = ("rig", "contact model", "stage", "wear law", "law", "reader")
 """The kinds of models."""
