@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 import pandas as pd
 
-from wearlaw.arrays.array import Array, steady
+from wearlaw.arrays import Array, steady
 from wearlaw.errors import (
     CalibrationWarning,
     FitError,

@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConfigurationError, FitError, ModelError
 from wearlaw.models.law import WEAR, named_outcomes

@@ -15,12 +15,12 @@ import pandas as pd
 import pint
 import tomli_w
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError, OutputError, shown
+from wearlaw.fields import specification
 from wearlaw.models.law import Law
-from wearlaw.plugins.fields import specification
-from wearlaw.settings.text_files import reason_of
+from wearlaw.text_files import reason_of
 from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor, symbol
 from wearlaw.units.variables import UNITS, label, name_of

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 import scipy
 
-from wearlaw.arrays.array import Array, steadily
+from wearlaw.arrays import Array, steadily
 from wearlaw.contact.conditions import Known, broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import named_outcomes

@@ -44,7 +44,7 @@ from wearlaw_studies.results import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wearlaw.arrays.array import Array
+    from wearlaw.arrays import Array
 
 MOST_MAPS = 6
 """Most panels of a map."""

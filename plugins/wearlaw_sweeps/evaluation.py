@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pint
 
-from wearlaw.arrays import kernels
-from wearlaw.arrays.array import Array, steady
+from wearlaw import kernels
+from wearlaw.arrays import Array, steady
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, RangeWarning, caught_warnings, did_you_mean, shown

@@ -10,12 +10,12 @@ from typing import Any
 
 import pint
 
-from wearlaw.arrays.array import Array
-from wearlaw.arrays.kernels import WORTHWHILE, accelerated
+from wearlaw import loader
+from wearlaw.arrays import Array
+from wearlaw.configuration import parts
 from wearlaw.errors import OutputError, shown, with_problems
+from wearlaw.kernels import WORTHWHILE, accelerated
 from wearlaw.models.model import Model
-from wearlaw.plugins import loader
-from wearlaw.settings.configuration import parts
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 from wearlaw_sweeps.evaluation import Job

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray
 
+from wearlaw.configuration import parts
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import (
     ConditionsError,
@@ -30,7 +31,6 @@ from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, expect_pipeline
 from wearlaw.pipeline.prediction import unsolved
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.pipeline.worn import POSITION
-from wearlaw.settings.configuration import parts
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.evaluation import Job, output_units, range_warnings
 from wearlaw_sweeps.located import posed

@@ -12,7 +12,7 @@ import numpy as np
 import xarray
 from pydantic import TypeAdapter
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConditionsError, DataError, caught_warnings, shown
 from wearlaw.pipeline.pipeline import Pipeline

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar
 
 import numpy as np
 
+from wearlaw.configuration import Configuration
 from wearlaw.errors import CompositionError, InputError, ModelError, WearlawError, described, did_you_mean
 from wearlaw.extras import load
-from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import text_of
 
 Claim: TypeAlias = str

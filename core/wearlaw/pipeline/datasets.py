@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.conditions import Known
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, shown

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import same, steady
+from wearlaw.arrays import same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.contact.quadrature import Nodes

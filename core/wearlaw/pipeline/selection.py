@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown

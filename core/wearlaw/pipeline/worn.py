@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, steady
+from wearlaw.arrays import Array, steady
 from wearlaw.contact.problem import Body, Problem
 from wearlaw.errors import CompositionError, InputError, shown
 from wearlaw.numerics.totals import blocks
