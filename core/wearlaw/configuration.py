@@ -240,5 +240,7 @@ def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
         return f"unknown field{hint} The fields are: {', '.join(known) or 'none'}"
     if details["type"] == "missing":
         return "is missing"
+    if details["type"] == "tuple_type":
+        return f"must be a list, got {shown(details['input'])}"
     message = details["msg"]
     return f"{message[0].lower()}{message[1:]}, got {shown(details['input'])}"

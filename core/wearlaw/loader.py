@@ -404,8 +404,10 @@ def law(name: str, /, **options: Any) -> Law:
     Parameters and errors are those of `contact_model`.
     """
     found = installed()
-    if name not in found["law"].providers or name in found["wear law"].providers:
+    if name in found["wear law"].providers or name in found["parameter set"].providers:
         return wear_law(name, **options)
+    if name not in found["law"].providers:
+        raise UnknownModelError(found.unknown("law", name, [*laws(), *wear_laws(), *parameter_sets()]))
     made: Law = found.find("law", name)(**options)
     return made
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from threading import RLock
@@ -51,3 +51,12 @@ class Notes:
             yield
         for warning in caught:
             self.add(f"{subject}: {warning}")
+
+
+def grouped(texts: Iterable[str]) -> list[str]:
+    """Return notes with one in place of those that say the same of several subjects."""
+    subjects: dict[str, list[str]] = {}
+    for text in texts:
+        subject, _, remark = text.partition(": ")
+        subjects.setdefault(f": {remark}" if remark else subject, []).append(subject if remark else "")
+    return [", ".join(those) + remark for remark, those in subjects.items()]

@@ -40,8 +40,7 @@ from wearlaw_fits.pairs import Pair
 from wearlaw_output.notes import Notes
 from wearlaw_studies.case import Case
 from wearlaw_studies.figures import figures_of, wrong_figures
-from wearlaw_studies.pairs import pairs_of
-from wearlaw_studies.results import PATCH_AXES, Results, axes_of
+from wearlaw_studies.results import LIMITS, PATCH_AXES, Results, axes_of, pairs_of
 from wearlaw_studies.sections import Section
 from wearlaw_sweeps.evaluation import weight
 from wearlaw_sweeps.evaluator import Evaluator
@@ -55,9 +54,6 @@ if TYPE_CHECKING:
 
 Dims: TypeAlias = Mapping[str, tuple[str | int, ...]]
 """The axes that a rig adds for several patches, with their labels."""
-
-LIMITS = ("max_pressure", "first_yield", "shakedown_limit")
-"""Variables that show whether the contact of a profile stays elastic, if the yield stress of a body is known."""
 
 PROFILE_STRIPS = 101
 """Strips of a profile across the patch, if the contact model can choose them."""
@@ -442,7 +438,7 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     The profile of a line runs along the patch, over x. That of an ellipse runs across it, over y, with the wear of
     each body that the law is for.
     """
-    limits = LIMITS if len(offered(prediction, LIMITS)) == len(LIMITS) else ()
+    limits = offered(prediction, ("max_pressure", *LIMITS))  # if the yield stress of a body is known
     whole = {name: ((), getattr(prediction, name).magnitude, {"units": UNITS[name]}) for name in limits}
     of_law = {"outside_range": ((), prediction.outside_range.magnitude, {"units": ""})}
     (law,) = prediction.laws
