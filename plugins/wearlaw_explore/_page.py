@@ -17,18 +17,18 @@ from bokeh.palettes import Viridis256
 from bokeh.plotting import figure
 
 import wearlaw as wl
-from wearlaw.contact.conditions import Known
 from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_explore._models import Subject, by_patch, largest, numbered, numbers
 from wearlaw_output.commands import values
+from wearlaw_output.conditions import Known
 from wearlaw_output.drawing import PALETTE
 from wearlaw_output.labels import label
 from wearlaw_output.notes import Notes
 from wearlaw_output.pictures import cells, fields_of
 from wearlaw_studies.case import load_case
+from wearlaw_sweeps.evaluation import expect_pipeline
 
 FIELDS = ("pressure", "slip", "wear_rate")
 """The fields of a patch."""

@@ -13,13 +13,12 @@ import pandas as pd
 import scipy
 
 from wearlaw.arrays import Array, steadily
-from wearlaw.contact.conditions import Known, broadcast
+from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import WEAR, Numbers, named_outcomes
 from wearlaw.numerics.integrate import integrate_laws
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
-from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
 from wearlaw.units.variables import UNITS, name_of
@@ -27,9 +26,11 @@ from wearlaw_fits.distributions import Distribution, PublishedRange
 from wearlaw_fits.named_numbers import Kind, Place, check_loads_stay, part_at, staged_models
 from wearlaw_fits.result import Fit
 from wearlaw_fits.uncertain_inputs import OTHERS, Uncertain, UncertainCondition, check_samples, numbers_of, of_fit
+from wearlaw_output.conditions import Known
 from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis, Shade
 from wearlaw_output.labels import label
 from wearlaw_output.plot import plot
+from wearlaw_sweeps.evaluation import expect_pipeline
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -102,16 +102,6 @@ def test_a_contact_beyond_first_yield_is_warned_of_at_the_users_line(rig: Any) -
     assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)]
 
 
-def test_a_problem_of_the_other_kind_of_rig_is_refused() -> None:
-    ellipse = RAILS.problem(**ON_RAILS)
-    on_discs: Any = RIG | FASTSIM | KTH
-    on_rails: Any = RAILS | FASTSIM | KTH
-    with pytest.raises(wl.WearlawError, match="'ellipse', but a TwinDisc makes problems with the geometry 'line'"):
-        on_discs.predict(ellipse)
-    with pytest.raises(wl.WearlawError, match="'line', but a WheelRail makes problems with the geometry 'ellipse'"):
-        on_rails.predict(RIG.problem(**CONDITIONS))
-
-
 def test_the_range_warning_counts_the_points_outside() -> None:
     predict = RIG | GLOBAL | FITTED["global"]
     with pytest.warns(wl.RangeWarning, match=r"2 of 4 operating points lie outside, as far as 135\.5"):
