@@ -85,6 +85,21 @@ PLUGIN = """
         def breakpoints(self, p):
             return {"pressure": 2.1e9}
 
+    class FloatRamp(Law):
+        name = "float_ramp"
+        def breakpoints(self, p):
+            return {}
+        def ramps(self, p):
+            return (1e6,)
+
+    class OwnVariable(Law):
+        name = "own_variable"
+        @property
+        def own_variables(self):
+            return {"heat": lambda contact: contact.heat}
+        def breakpoints(self, p):
+            return {"heat": (1.0,)}
+
     class NoSuchBody(Law):
         name = "no_such_body"
         def rate(self, contact, p):
@@ -92,7 +107,7 @@ PLUGIN = """
 
     @wl.hookimpl
     def wearlaw_models():
-        laws = [LawOnPressure, LawOnNumbers, FloatBreakpoint, NoSuchBody]
+        laws = [LawOnPressure, LawOnNumbers, FloatBreakpoint, FloatRamp, OwnVariable, NoSuchBody]
         stages = [StageWithoutFriction, SolvingWithoutFriction]
         return [*laws, *stages, ModelOnProblem, FieldsOnNodes, RigOnCondition, RigWithoutFriction]
 """
@@ -150,6 +165,14 @@ WRONG: dict[str, tuple[Any, str]] = {
     "FloatBreakpoint": (
         lambda: silently(RIG, EXACT, wl.wear_law("float_breakpoint")),
         "wear law 'float_breakpoint' gives {'pressure': 2100000000.0} as `breakpoints`; it must be like {",
+    ),
+    "FloatRamp": (
+        lambda: silently(RIG, EXACT, wl.wear_law("float_ramp"))(**CONDITIONS),
+        "wear law 'float_ramp' failed: TypeError: cannot unpack non-iterable float",
+    ),
+    "OwnVariable": (
+        lambda: silently(RIG, EXACT, wl.wear_law("own_variable"))(**CONDITIONS),
+        "wear law 'own_variable' failed: AttributeError: 'Contact' object has no attribute 'heat'",
     ),
 }
 """Pipelines of wrong models by the class at fault, and what their errors say."""
