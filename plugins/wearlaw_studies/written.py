@@ -14,7 +14,7 @@ import xarray
 from wearlaw.errors import OutputError, shown
 from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import disarmed, save_figure, save_table, writing
+from wearlaw_output.files import save_figure, save_table
 from wearlaw_studies.case import CASE_FILE, Case, written
 from wearlaw_studies.report.page import report
 from wearlaw_studies.report.tables import tables
@@ -81,17 +81,16 @@ def write(
     `on_stage` is called with a text for each stage, to show progress.
     """
     case_files = written(study.case)
-    with writing():
-        on_stage("writing results")
-        write_netcdf(study, folder / RESULTS)
-        if csv:
-            disarmed(table(study)).to_csv(folder / CSV, index=False, encoding="utf-8", errors="replace")
-        for name, text in case_files.items():
-            (folder / name).write_text(text, encoding="utf-8")
-        names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files, *_write_tables(study, folder, latex)]
-        names += _write_figures(study, folder, figure_formats, on_stage)
-        on_stage("writing the report")
-        (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
+    on_stage("writing results")
+    write_netcdf(study, folder / RESULTS)
+    if csv:
+        table(study).to_csv(folder / CSV, index=False, encoding="utf-8", errors="replace")
+    for name, text in case_files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files, *_write_tables(study, folder, latex)]
+    names += _write_figures(study, folder, figure_formats, on_stage)
+    on_stage("writing the report")
+    (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
     return names
 
 
