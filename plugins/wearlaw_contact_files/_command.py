@@ -10,7 +10,6 @@ import pandas as pd
 
 from wearlaw.fields import specification
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.units.variables import readable
 from wearlaw.version import __version__
 from wearlaw_contact_files._reading import read_contact
 from wearlaw_contact_files._worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
@@ -25,6 +24,7 @@ from wearlaw_output.commands import (
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import named, write_files, written_formats
 from wearlaw_output.folder import results_folder
+from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
 
 MOST = 12

@@ -21,10 +21,11 @@ from wearlaw.contact.conditions import Known
 from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.pipeline import expect_pipeline
-from wearlaw.units.variables import VARIABLES, label, name_of
+from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_explore._models import Subject, by_patch, largest, numbered, numbers
 from wearlaw_output.commands import values
 from wearlaw_output.drawing import PALETTE
+from wearlaw_output.labels import label
 from wearlaw_output.notes import Notes
 from wearlaw_output.pictures import cells, fields_of
 from wearlaw_studies.case import load_case

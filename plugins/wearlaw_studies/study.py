@@ -17,7 +17,7 @@ import xarray
 
 from wearlaw import loader
 from wearlaw.arrays import Array, steady
-from wearlaw.configuration import LINE, known_name, parts
+from wearlaw.configuration import LINE, known_name
 from wearlaw.contact.material import Material
 from wearlaw.errors import (
     ConfigurationError,
@@ -45,6 +45,7 @@ from wearlaw_studies.sections import Section
 from wearlaw_sweeps.evaluation import weight
 from wearlaw_sweeps.evaluator import Evaluator
 from wearlaw_sweeps.points import Points
+from wearlaw_sweeps.provenance import parts
 
 if TYPE_CHECKING:
     from wearlaw.loader import Shelf

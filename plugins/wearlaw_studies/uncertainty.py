@@ -13,11 +13,12 @@ import pandas as pd
 from wearlaw.errors import InputError
 from wearlaw.models.law import WEAR
 from wearlaw.units.quantities import WEAR_RATE
-from wearlaw.units.variables import name_of, readable
+from wearlaw.units.variables import name_of
 from wearlaw_fits.pairs import Pair
 from wearlaw_fits.uncertainty import CONFIDENCE, Uncertainty, uncertainty
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import write_files
+from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
 from wearlaw_studies.case import Case, written
 from wearlaw_studies.results import pairs_of
