@@ -409,6 +409,20 @@ class Wheelset(wl.Rig):
         """Return the right wheel and its rail in the middle of the track, as SI arrays."""
         return profiles(self._section, wl.scalar_si(self.nominal_radius, "m"))
 
+    def profile_figures(self, found: Mapping[str, wl.Prediction], name: str = "state") -> tuple[wl.FigureData, ...]:
+        """Return figures of the contacts on the profiles, and of the wear along them by each of several laws.
+
+        Parameters
+        ----------
+        found : mapping of str to Prediction
+            Predictions of one operating point, whose contact model resolves the patches, by name of the law.
+        name : str
+            Name of the operating point.
+        """
+        from wearlaw_wheelset._section import profile_figures
+
+        return profile_figures(self, found, name)
+
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel."""
         most = _one(wl.Unit("mm"), amplitude, "amplitude")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
@@ -57,7 +58,7 @@ def section(study: wl.Study) -> wl.Section:
             continue
         first = next(iter(found.values()))
         tables[f"patches_{name}"] = _table(first)
-        figures += [_contact(rig, name, first), _wear(rig, name, found)]
+        figures += profile_figures(rig, found, name)
     return wl.Section(
         title="The wheelset on its rails",
         text="Patch 1 of a wheel is the one that touches first. y runs to the right and z down. Forces act from the"
@@ -94,6 +95,11 @@ def _geometry(rig: Wheelset) -> wl.FigureData:
         caption="Rigid wheels and rails, no yaw. The equivalent conicity at 3 mm is"
         f" {conicity.magnitude:.3f}, after Klingel's equation.",
     )
+
+
+def profile_figures(rig: Wheelset, found: Mapping[str, wl.Prediction], name: str) -> tuple[wl.FigureData, ...]:
+    """Return the figures of the contacts on the profiles and of the wear along them; see `Wheelset.profile_figures`."""
+    return _contact(rig, name, next(iter(found.values()))), _wear(rig, name, found)
 
 
 def _contact(rig: Wheelset, name: str, found: wl.Prediction) -> wl.FigureData:
@@ -134,7 +140,7 @@ def _contact(rig: Wheelset, name: str, found: wl.Prediction) -> wl.FigureData:
     )
 
 
-def _wear(rig: Wheelset, name: str, found: dict[str, wl.Prediction]) -> wl.FigureData:
+def _wear(rig: Wheelset, name: str, found: Mapping[str, wl.Prediction]) -> wl.FigureData:
     """Return the depth that both wheels and rails lose along their profiles."""
     panels = []
     for body in ("wheel", "rail"):
