@@ -17,15 +17,15 @@ from bokeh.models import CustomJS
 
 import wearlaw as wl
 from wearlaw.contact.conditions import Known
+from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.prediction import SHOWN
-from wearlaw.pipeline.selection import in_words
-from wearlaw.plugins.law_files import is_law_file
-from wearlaw.units.variables import VARIABLES, label, name_of
+from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_explore._subject import Subject, numbered
-from wearlaw_output.commands import echo, values
+from wearlaw_output.commands import values
 from wearlaw_output.curves import BLACK, Map
+from wearlaw_output.labels import in_words, label
 from wearlaw_output.notes import Notes
 from wearlaw_output.pictures import fields_of, raster
 from wearlaw_studies.case import load_case
@@ -263,7 +263,7 @@ def command(rig: str, laws: tuple[str, ...], conditions: tuple[str, ...], port: 
     Page(subject, start)  # an error before the server starts
     look: dict[str, Any] = {"show": browser, "verbose": False, "title": f"wearlaw: {subject.rig.name}"}
     server: Any = pn.serve(opened, port=port, address="localhost", start=False, **look)
-    echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
+    click.echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
     server.run_until_shutdown()
 
 

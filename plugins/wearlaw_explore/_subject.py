@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import wearlaw as wl
-from wearlaw.models.model import labelled
+from wearlaw_output.labels import labelled
 from wearlaw_output.notes import Notes
 from wearlaw_sweeps.several import composed
 

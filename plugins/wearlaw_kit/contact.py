@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw import loader
+from wearlaw.arrays import Array
 from wearlaw.contact import hertz, hertz_ellipse
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel
 from wearlaw.numerics.integrate import integrate_laws
-from wearlaw.plugins import loader
 from wearlaw_kit.bisection import lost_digits
 from wearlaw_kit.examples import EPS, SAME, SUM, assert_close, for_each
 from wearlaw_kit.law_contacts import NODE_FIELDS, arrays_of

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact import kalker
 from wearlaw.contact.problem import CreepForces, Problem, Strips
 

@@ -17,13 +17,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw import loader
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import join
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel, Stage
 from wearlaw.numerics.staged import staged
-from wearlaw.plugins import loader
 from wearlaw_kit.examples import SAME, assert_close, failing, for_each
 from wearlaw_kit.reduced import (
     creeping,

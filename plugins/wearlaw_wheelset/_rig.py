@@ -18,7 +18,7 @@ from wearlaw_wheelset._conicity import equivalent_conicity
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
 from wearlaw_wheelset._guidance import guided
 from wearlaw_wheelset._loads import Balance, Elastic, Friction, Pressure, Task
-from wearlaw_wheelset._pictures import Profiles
+from wearlaw_wheelset._pictures import Profiles, contact_figure, wear_figure
 from wearlaw_wheelset._profile import Profile
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
 from wearlaw_wheelset._search_loops import PATCHES
@@ -419,9 +419,8 @@ class Wheelset(wl.Rig):
         name : str
             Name of the operating point.
         """
-        from wearlaw_wheelset._section import profile_figures
-
-        return profile_figures(self, found, name)
+        profiles, first = self.profiles_in_track(), next(iter(found.values()))
+        return contact_figure(profiles, name, first), wear_figure(profiles, name, found)
 
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel."""
