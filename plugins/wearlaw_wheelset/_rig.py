@@ -18,7 +18,7 @@ from wearlaw_wheelset._conicity import equivalent_conicity
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
 from wearlaw_wheelset._guidance import guided
 from wearlaw_wheelset._loads import Balance, Elastic, Friction, Pressure, Task
-from wearlaw_wheelset._pictures import Profiles
+from wearlaw_wheelset._pictures import Profiles, contact_figure, wear_figure
 from wearlaw_wheelset._profile import Profile
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
 from wearlaw_wheelset._search_loops import PATCHES
@@ -377,6 +377,19 @@ class Wheelset(wl.Rig):
     def profiles_in_track(self) -> Profiles:
         """Return the right wheel and its rail in the middle of the track, as SI arrays."""
         return profiles(self._section, wl.scalar_si(self.nominal_radius, "m"))
+
+    def profile_figures(self, found: Mapping[str, wl.Prediction], name: str = "state") -> tuple[wl.FigureData, ...]:
+        """Return figures of the contacts on the profiles, and of the wear along them by each of several laws.
+
+        Parameters
+        ----------
+        found : mapping of str to Prediction
+            Predictions of one operating point, whose contact model resolves the patches, by name of the law.
+        name : str
+            Name of the operating point.
+        """
+        profiles, first = self.profiles_in_track(), next(iter(found.values()))
+        return contact_figure(profiles, name, first), wear_figure(profiles, name, found)
 
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel."""
