@@ -9,6 +9,7 @@ bound, where ξ/L1 is the steepest slope of the bound, 4μN/(πa²b).
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from wearlaw.arrays.array import Array
 from wearlaw.contact import kalker
@@ -19,8 +20,6 @@ SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 
 FULL_SLIP = (1.0, 1.5)
 """Reduced creepages at which Carter's theory and FASTSIM slip everywhere on a line."""
-
-_RIGHT = 0.5 * np.pi
 
 STRIP_AT = np.linspace(-0.95, 0.95, 20)
 """Positions y/b of the strips of a patch."""
@@ -82,11 +81,6 @@ def parts_of_power(problem: Problem, forces: CreepForces) -> Array:
     )
 
 
-def with_creepage(problem: Problem, creepage: Array | float) -> Problem:
-    """Return the problem at another longitudinal creepage."""
-    return problem.replaced(longitudinal_creepage=np.asarray(creepage, dtype=np.float64))
-
-
 def creeping(problem: Problem, *factors: Array | float) -> Problem:
     """Return the problem with ξ, η and φ multiplied by a factor each, or by a single one."""
     longitudinal, lateral, spin = factors * (3 // len(factors))
@@ -95,14 +89,14 @@ def creeping(problem: Problem, *factors: Array | float) -> Problem:
     )
 
 
+def at_factors(problem: Problem, factors: ArrayLike) -> Problem:
+    """Return the problems at their creepages times each factor, (points, factors)."""
+    return creeping(problem[:, None].broadcast_to((problem.size, np.size(factors))), np.asarray(factors))
+
+
 def without_spin(problem: Problem) -> Problem:
     """Return the problem with the same translation and no spin."""
     return creeping(problem, 1.0, 1.0, 0.0)
-
-
-def saturation(problem: Problem) -> Array:
-    """Return μa/R of a line, at which Carter's theory slips everywhere."""
-    return problem.friction_coefficient * problem.half_width / problem.relative_radius
 
 
 def unit_creepages(problem: Problem) -> tuple[Array, Array, Array]:
@@ -112,7 +106,7 @@ def unit_creepages(problem: Problem) -> tuple[Array, Array, Array]:
     """
     if problem.geometry == "line":
         none = np.zeros(problem.batch_shape)
-        return saturation(problem), none, none
+        return problem.friction_coefficient * problem.half_width / problem.relative_radius, none, none
     known = kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
     area = problem.a * problem.b
     unit = friction_limit(problem) / (problem.shear_modulus * area)
@@ -175,9 +169,8 @@ def wide_ellipses(points: int, seed: int = 7) -> Problem:
     """
     random = np.random.default_rng(seed)
     size = _reduced(random, points, (1e-2, 30.0), SATURATION)
-    angle = np.where(
-        random.random(points) < 0.5, random.uniform(-np.pi, np.pi, points), _RIGHT * (np.arange(points) // 2)
-    )
+    right = 0.5 * np.pi * (np.arange(points) // 2)
+    angle = np.where(random.random(points) < 0.5, random.uniform(-np.pi, np.pi, points), right)
     spin = 10.0 ** random.uniform(-2, 1, points) * random.choice([-1.0, 1.0], points) * (np.arange(points) % 2)
     problem = _resting_ellipses(random, points, ratios=(0.05, 20.0))
     problem = at_reduced(problem, size * np.cos(angle), size * np.sin(angle), spin)
