@@ -5,14 +5,14 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
 
 from wearlaw.arrays.array import Array
-from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact
+from wearlaw.contact.contact import Contact
 from wearlaw.errors import WearlawError
 from wearlaw.models.law import Law, Numbers, WearLaw
 from wearlaw.settings.parameters import changed, number_like, numbers
@@ -312,20 +312,13 @@ def declared_names_are_variables(law: Law) -> None:
 
     Every value in `jumps` is a breakpoint too.
     """
-    of_law = (*LAW_VARIABLES, *law.own_variables)
-    declared: dict[str, tuple[Mapping[str, Any], tuple[str, ...]]] = {
-        "breakpoints": (law.breakpoints(law.numbers) or {}, of_law),
-        "jumps": (law.jumps(law.numbers), of_law),
-        "valid_range": (law.valid_range, PATCH_VARIABLES),
-        "monotone_in": (dict.fromkeys(law.monotone_in, ()), LAW_VARIABLES),
-    }
-    for subject, (variables, known) in declared.items():
-        for name, values in variables.items():
-            assert name in known, f"`{subject}` names '{name}'; the variables are: {', '.join(known)}"
-            bad = np.isnan(values).any() or (subject != "valid_range" and not np.isfinite(values).all())
-            assert not bad, f"`{subject}` has {name} = {values}"
-    for name, values in declared["jumps"][0].items():
-        missing = {*values} - {*declared["breakpoints"][0].get(name, ())}
+    law.check_variables()
+    breakpoints, jumps = law.breakpoints(law.numbers) or {}, law.jumps(law.numbers)
+    for subject, declared in (("breakpoints", breakpoints), ("jumps", jumps)):
+        for name, values in declared.items():
+            assert np.isfinite(values).all(), f"`{subject}` has {name} = {values}"
+    for name, values in jumps.items():
+        missing = {*values} - {*breakpoints.get(name, ())}
         assert not missing, f"`jumps` has {name} = {sorted(missing)}, which `breakpoints` lacks"
     for name, (low, high) in law.valid_range.items():
         assert low < high, f"`valid_range` of {name} goes from {low:g} to {high:g}"

@@ -132,6 +132,11 @@ def assert_same_forces(problem: Problem, found: CreepForces, due: CreepForces, m
         assert_close(getattr(found, name), getattr(due, name), f"{WORDS[name]} {message}", 0.0, error * size)
 
 
+def of_model(model: ContactModel, points: int) -> list[tuple[ContactModel, Problem]]:
+    """Return a model with random problems of each shape that it solves."""
+    return [(model, shape.draw(points)) for shape in SHAPES if shape.geometry in model.geometries()]
+
+
 def of_stage(stage: Stage, points: int) -> list[tuple[ContactModel, Problem]]:
     """Return a stage around contact models of wearlaw, each with random problems of a shape that the model solves."""
     models = {"line": "exact", "ellipse": "fastsim", "strips": "fastsim"}
