@@ -19,8 +19,6 @@ from wearlaw_kit.reduced import (
     at_factors,
     at_reduced,
     friction_limit,
-    random_ellipses,
-    random_lines,
     sliding_power,
     without_spin,
 )
@@ -178,10 +176,10 @@ def _errors(model: ContactModel, shape: Shape) -> dict[str, float]:
 
 
 @on_shapes(ELLIPSE, applies=lambda model: type(model).on_strips is not ContactModel.on_strips)
-def other_strips_have_the_same_sums(model: ContactModel, shape: Shape) -> None:  # noqa: ARG001
+def other_strips_have_the_same_sums(model: ContactModel, shape: Shape) -> None:
     """On given strips, traction and energy sum to the same over y as on the model's own."""
     shares = (2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0
-    problem = random_ellipses(PATCHES)
+    problem = shape.draw(PATCHES)
     contact, own = model.on_strips(problem, shares), model.solve(problem)
     if contact is None:  # its nodes are where they are
         return
@@ -257,18 +255,14 @@ def _inside(problem: Problem, contact: Contact) -> NDArray[np.bool_]:
     return within
 
 
-@on_shapes(*SHAPES, applies=has_nodes)
-def nodes_lie_where_their_areas_do(model: ContactModel, shape: Shape) -> None:
+@on_problems(*SHAPES, applies=has_nodes)
+def nodes_lie_where_their_areas_do(model: ContactModel, problem: Problem) -> None:
     """The sums of x, y, x² and y² over the areas are the integrals over the patch."""
-
-    def examine(problem: Problem) -> None:
-        contact, error = model.solve(problem), error_of_sums(model, problem)
-        for name, half, (first, second) in _moments(problem):
-            at, size = getattr(contact, name), problem.patch_area * half
-            assert_close(contact.integral(at), first, f"∫ {name} dA", 0.0, error * size)
-            assert_close(contact.integral(at, at), second, f"∫ {name}² dA", 0.0, error * size * half)
-
-    for_each(shape.problems, examine)
+    contact, error = model.solve(problem), error_of_sums(model, problem)
+    for name, half, (first, second) in _moments(problem):
+        at, size = getattr(contact, name), problem.patch_area * half
+        assert_close(contact.integral(at), first, f"∫ {name} dA", 0.0, error * size)
+        assert_close(contact.integral(at, at), second, f"∫ {name}² dA", 0.0, error * size * half)
 
 
 def _moments(problem: Problem) -> list[tuple[str, Array, tuple[Array, Array]]]:
@@ -284,32 +278,27 @@ def _moments(problem: Problem) -> list[tuple[str, Array, tuple[Array, Array]]]:
     return [("x", strips.half_length.max(axis=-1), (none, along)), ("y", b, across)]
 
 
-@on_shapes(ELLIPSE, PATCH, applies=has_nodes)
-def strips_have_their_widths(model: ContactModel, shape: Shape) -> None:
+@on_problems(ELLIPSE, PATCH, applies=has_nodes)
+def strips_have_their_widths(model: ContactModel, problem: Problem) -> None:
     """The widths of strips sum to that of the patch, and each strip has the area of its width times its length.
 
     Strips of a problem keep their width. On an ellipse, a strip may be longer or shorter by a cell, and the patch wider
     or narrower by a strip.
     """
-
-    def examine(problem: Problem) -> None:
-        contact, error = model.solve(problem), error_of_sums(model, problem)
-        y, area = contact.y[..., 0, :], contact.area.sum(axis=-2)
-        width = np.where(area > 0.0, contact.strip_width, 0.0)
-        length, cell = (
-            np.divide(part, width, out=np.zeros_like(area), where=width > 0.0)
-            for part in (area, contact.area.max(axis=-2))
-        )
-        if problem.strips is not None:
-            assert_close(width, problem.strips.width, "the width of a strip")
-            assert_close(length, 2.0 * problem.strips.half_length, "the area of a strip over its width", error)
-            return
-        a, b = problem.a[..., None], problem.b[..., None]
-        chord = np.where(area > 0.0, 2.0 * a * np.sqrt(np.maximum(1.0 - (y / b) ** 2, 0.0)), 0.0)
-        assert_close(length, chord, "the area of a strip over its width", 0.0, error * 2.0 * a + cell)
-        assert_close(width.sum(axis=-1), 2.0 * problem.b, "the sum of the widths of strips", error, width.max(axis=-1))
-
-    for_each(shape.problems, examine)
+    contact, error = model.solve(problem), error_of_sums(model, problem)
+    y, area = contact.y[..., 0, :], contact.area.sum(axis=-2)
+    width = np.where(area > 0.0, contact.strip_width, 0.0)
+    length, cell = (
+        np.divide(part, width, out=np.zeros_like(area), where=width > 0.0) for part in (area, contact.area.max(axis=-2))
+    )
+    if problem.strips is not None:
+        assert_close(width, problem.strips.width, "the width of a strip")
+        assert_close(length, 2.0 * problem.strips.half_length, "the area of a strip over its width", error)
+        return
+    a, b = problem.a[..., None], problem.b[..., None]
+    chord = np.where(area > 0.0, 2.0 * a * np.sqrt(np.maximum(1.0 - (y / b) ** 2, 0.0)), 0.0)
+    assert_close(length, chord, "the area of a strip over its width", 0.0, error * 2.0 * a + cell)
+    assert_close(width.sum(axis=-1), 2.0 * problem.b, "the sum of the widths of strips", error, width.max(axis=-1))
 
 
 @on_problems(*SHAPES)
@@ -321,17 +310,13 @@ def pressure_sums_to_the_load(model: ContactModel, problem: Problem) -> None:
     assert_close(load, problem.normal_force, "the sum of the pressures", error_of_sums(model, problem))
 
 
-@on_shapes(*SHAPES, claims=("pressure",), applies=has_nodes)
-def pressure_is_that_of_the_problem(model: ContactModel, shape: Shape) -> None:
+@on_problems(*SHAPES, claims=("pressure",), applies=has_nodes)
+def pressure_is_that_of_the_problem(model: ContactModel, problem: Problem) -> None:
     """At each node the pressure is Hertz's at its x and y, or that of its strip."""
-
-    def examine(problem: Problem) -> None:
-        for contact in solutions(model, problem):
-            due, highest = _pressure(problem, contact), contact.per_node(problem.max_pressure)
-            # Squares, since next to an edge the pressure is the root of a rounded distance.
-            assert_close((contact.pressure / highest) ** 2, (due / highest) ** 2, "(p/p0)² at a node", 0.0, SAME)
-
-    for_each(shape.problems, examine)
+    for contact in solutions(model, problem):
+        due, highest = _pressure(problem, contact), contact.per_node(problem.max_pressure)
+        # Squares, since next to an edge the pressure is the root of a rounded distance.
+        assert_close((contact.pressure / highest) ** 2, (due / highest) ** 2, "(p/p0)² at a node", 0.0, SAME)
 
 
 def _pressure(problem: Problem, contact: Contact) -> Array:
@@ -397,7 +382,7 @@ def closed_forms_are_those_of_the_fields(model: LineContactModel) -> None:
     """A law wears as where a search of the fields takes the place of `crossings` and `excess_dissipation`."""
     searches = {name: getattr(LineContactModel, name) for name in CLOSED_FORMS}
     searched = type("Searched", (type(model),), {**searches, "__module__": __name__, "__doc__": ""})(**dict(model))
-    problem = random_lines(POINTS)
+    problem = LINE.draw(POINTS)
     for name in ("usfd", "kth"):  # with ramps of q·s, and with jumps at a pressure and a slip speed
         found, due = (integrate_laws(one, (loader.wear_law(name),), problem) for one in (model, searched))
         errors = sum(totals.errors[0] for totals in (found, due) if totals.errors[0] is not None)

@@ -21,7 +21,6 @@ from wearlaw_kit.reduced import (
     friction_limit,
     lever,
     parts_of_power,
-    random_ellipses,
     sliding_power,
     translation,
     without_spin,
@@ -277,27 +276,27 @@ def initial_slope_is_that_of_the_half_space(model: ContactModel, problem: Proble
 
 
 @on_shapes(ELLIPSE, claims=("initial_slope",))
-def initial_slopes_are_kalkers(model: ContactModel, shape: Shape) -> None:  # noqa: ARG001
+def initial_slopes_are_kalkers(model: ContactModel, shape: Shape) -> None:
     """For small creepages Fx is G ab C11 ξ, and Fy is G ab C22 η and G ab √(ab) C23 φ.
 
     The creepage is a millionth of the creepage at saturation, so that the force differs from the linear one by far less
     than `SLOPE`. A march over coarse cells ends the traction up to a cell too soon. That error is within its accuracy,
     and of first order: at least 1.5 times smaller on nodes twice as fine.
     """
-    error = _slope_error(model)
+    error = _slope_error(model, shape)
     if error <= SLOPE:
         return
     finer = model.refined()
     assert finer is not None and error <= model.elliptic_accuracy, f"a slope is off by {error:.2g} of Kalker's"  # noqa: PT018
-    left = _slope_error(finer)
+    left = _slope_error(finer, shape)
     assert left <= max(error / 1.5, SLOPE), f"a slope is off by {error:.2g}, and still by {left:.2g} on finer nodes"
 
 
-def _slope_error(model: ContactModel) -> float:
+def _slope_error(model: ContactModel, shape: Shape) -> float:
     """Return the largest error of the initial slopes, relative to Kalker's slope for the same creepage."""
     small, errors = 1e-6, []
     for cause, (along, across) in enumerate([(1.0, 0.0), (0.0, 1.0), (0.0, 1.0)]):
-        problem = at_reduced(random_ellipses(POINTS), *(small * np.eye(3)[cause]))
+        problem = at_reduced(shape.draw(POINTS), *(small * np.eye(3)[cause]))
         forces, unit = model.creep_forces(problem), small * friction_limit(problem)
         errors += [np.abs(forces.longitudinal / unit - along).max(), np.abs(forces.lateral / unit - across).max()]
     return float(max(errors))
