@@ -11,14 +11,14 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw import loader
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Body, Problem, Strips
 from wearlaw.errors import DataError, InputError, ModelError, UnknownModelError, did_you_mean, shown
 from wearlaw.models.model import Blame, fault
 from wearlaw.models.reader import Reader, Solved, flat
 from wearlaw.numerics.solving import Solver
-from wearlaw.plugins import loader
 
 File: TypeAlias = str | os.PathLike[str]
 """The path of a file."""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.models.law import WEAR, named_outcomes
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity

@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 
 import wearlaw as wl
-from wearlaw.models.model import labelled
 from wearlaw.pipeline.prediction import SHOWN
 from wearlaw.units.variables import name_of
+from wearlaw_output.labels import labelled
 from wearlaw_output.notes import Notes
 from wearlaw_sweeps.several import composed
 

@@ -18,13 +18,14 @@ from bokeh.plotting import figure
 
 import wearlaw as wl
 from wearlaw.contact.conditions import Known
+from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.pipeline import expect_pipeline
-from wearlaw.plugins.law_files import is_law_file
-from wearlaw.units.variables import VARIABLES, label, name_of
+from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_explore._models import Subject, by_patch, largest, numbered, numbers
-from wearlaw_output.commands import echo, values
+from wearlaw_output.commands import values
 from wearlaw_output.drawing import PALETTE
+from wearlaw_output.labels import label
 from wearlaw_output.notes import Notes
 from wearlaw_output.pictures import cells, fields_of
 from wearlaw_studies.case import load_case
@@ -291,7 +292,7 @@ def command(rig: str, laws: tuple[str, ...], conditions: tuple[str, ...], port: 
     Page(subject, start)  # an error before the server starts
     look: dict[str, Any] = {"show": browser, "verbose": False, "title": f"wearlaw: {subject.rig.name}"}
     server: Any = pn.serve(opened, port=port, address="localhost", start=False, **look)
-    echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
+    click.echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
     server.run_until_shutdown()
 
 

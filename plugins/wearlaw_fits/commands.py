@@ -12,8 +12,8 @@ import click
 
 from wearlaw.errors import FitError, PlasticityWarning, shown
 from wearlaw.models.law import Law
+from wearlaw.parameters import numbers
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.settings.parameters import numbers
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named
@@ -24,7 +24,6 @@ from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.commands import (
     contact_model,
-    echo,
     fields,
     folder_for,
     law_of,
@@ -133,7 +132,7 @@ def fit(
         with notes.of("figure"):
             names = _write_fit(fitted, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
-    echo(repr(fitted))
+    click.echo(repr(fitted))
     print_results(folder, names)
 
 
@@ -256,7 +255,7 @@ def compare(
         with notes.of("figure"):
             names = _write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
-    echo(repr(comparison))
+    click.echo(repr(comparison))
     print_results(folder, names)
 
 

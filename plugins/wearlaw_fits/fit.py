@@ -12,17 +12,17 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, steadily
+from wearlaw import loader
+from wearlaw.arrays import Array, steadily
+from wearlaw.configuration import known_name
 from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown
+from wearlaw.fields import specification
 from wearlaw.models.law import Calibration, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import warn_of_parameters
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.ranges import overload_of
-from wearlaw.plugins import loader
-from wearlaw.plugins.fields import specification
-from wearlaw.settings.configuration import known_name
 from wearlaw.units.quantities import Quantity, QuantityLike, coefficient, in_unit
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__

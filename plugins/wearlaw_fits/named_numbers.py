@@ -9,13 +9,13 @@ from typing import Any, Literal, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.errors import CompositionError, InputError, shown
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
 from wearlaw.numerics.staged import staged
+from wearlaw.parameters import changed, number_like, numbers
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.settings.parameters import changed, number_like, numbers
 
 PartT = TypeVar("PartT", bound=Stage | Law)
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConditionsError, DataError, InputError, UnitError, did_you_mean, shown
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, parse, real_array

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw import loader
+from wearlaw.arrays import Array
 from wearlaw.contact import hertz, hertz_ellipse
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel
 from wearlaw.numerics.integrate import integrate_laws
 from wearlaw.numerics.solving import check_finite, check_types
-from wearlaw.plugins import loader
 from wearlaw_kit.bisection import lost_digits
 from wearlaw_kit.examples import EPS, SAME, SUM, assert_close, for_each
 from wearlaw_kit.reduced import (

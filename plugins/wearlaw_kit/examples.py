@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ModelError, described

@@ -11,11 +11,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.errors import WearlawError
 from wearlaw.models.law import Law, Numbers, WearLaw
-from wearlaw.settings.parameters import changed, number_like, numbers
+from wearlaw.parameters import changed, number_like, numbers
 from wearlaw.units.quantities import Quantity
 from wearlaw_kit.examples import SAME, assert_close
 from wearlaw_kit.law_contacts import (

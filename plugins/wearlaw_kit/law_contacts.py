@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import LAW_VARIABLES, Contact, variable_at_nodes
 from wearlaw.contact.material import steel
 from wearlaw.contact.problem import Body

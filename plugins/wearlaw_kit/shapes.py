@@ -18,13 +18,13 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw import loader
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import join
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel, Stage
 from wearlaw.numerics.staged import staged
-from wearlaw.plugins import loader
 from wearlaw_kit.examples import SAME, assert_close, failing, for_each
 from wearlaw_kit.reduced import friction_limit, in_strips, lever, random_ellipses, random_lines, wide_ellipses
 from wearlaw_kit.rules import Applies, any_model, rule

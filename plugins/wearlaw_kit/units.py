@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array
-from wearlaw.arrays.kernels import accelerate
+from wearlaw.arrays import Array
 from wearlaw.errors import InputError
+from wearlaw.kernels import accelerate
 from wearlaw.models.contact_model import ContactModel, LineContactModel, Stage
 from wearlaw.models.law import Law
 from wearlaw.models.model import Model

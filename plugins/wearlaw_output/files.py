@@ -15,7 +15,7 @@ import matplotlib as mpl
 import pandas as pd
 
 from wearlaw.errors import OutputError
-from wearlaw.settings.text_files import reason_of
+from wearlaw.text_files import reason_of
 from wearlaw_output.commands import verbose
 from wearlaw_output.curves import FigureData, FigureFormat
 from wearlaw_output.drawing import draw

@@ -14,15 +14,16 @@ import numpy as np
 from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.datasets import Conditions, data_of, dataset, labelled
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.selection import in_words
+from wearlaw.pipeline.selection import Conditions
 from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
-from wearlaw.units.variables import UNITS, label, name_of, readable
+from wearlaw.units.variables import UNITS, name_of
+from wearlaw_output.datasets import data_of, dataset, labelled
+from wearlaw_output.labels import in_words, label, readable
 
 if TYPE_CHECKING:
     import xarray

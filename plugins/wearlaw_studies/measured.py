@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array
+from wearlaw import loader
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
 from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import InputError
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.plugins import loader
-from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import from_si, in_unit
 from wearlaw.units.variables import UNITS
 from wearlaw_fits.read_tests import parse_tests, text_of_tests

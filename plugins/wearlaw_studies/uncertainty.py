@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,12 +11,13 @@ import pandas as pd
 from wearlaw.errors import InputError
 from wearlaw.models.law import WEAR
 from wearlaw.units.quantities import WEAR_RATE
-from wearlaw.units.variables import name_of, readable
+from wearlaw.units.variables import name_of
 from wearlaw_fits.pairs import Pair
 from wearlaw_fits.uncertainty import CONFIDENCE, Uncertainty, uncertainty
+from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
 from wearlaw_studies.case import Case
-from wearlaw_studies.pairs import pairs_of
+from wearlaw_studies.results import pairs_of
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ def uncertainty_of(
     found: list[UncertainPair] = []
     rates, indices = [], []
     for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
-        subject = f"{name}: {pair.label}"
+        subject = f"{name}, {pair.label}"
         if not point.varies(pair.law):
             notes.add(f"{subject} is left out, since none of its inputs is uncertain")
             on_pair(1)
@@ -111,22 +112,7 @@ def uncertainty_of(
     if only_wear:
         ends = {name: f"{name} [{readable(WEAR_RATE)}]" for name in medians.columns.drop(["point", "pair"])}
         medians = medians.drop(columns=["outcome", "unit"]).rename(columns=ends)
-    return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, _folded(notes.texts, found))
-
-
-def _folded(texts: Sequence[str], pairs: Sequence[UncertainPair]) -> tuple[str, ...]:
-    """Return notes with one in place of those that all pairs of an operating point share."""
-    subjects: dict[str, list[str]] = {}
-    for one in pairs:
-        subjects.setdefault(one.point, []).append(f"{one.point}: {one.pair.label}: ")
-    shared: dict[str, str] = {}
-    for point, heads in subjects.items():
-        every = dict.fromkeys(heads)
-        for text in texts:
-            rest = text.removeprefix(next(iter(every)))
-            if rest != text and all(head + rest in texts for head in every):
-                shared |= {head + rest: f"{point}: {rest}" for head in every}
-    return tuple(dict.fromkeys(shared.get(text, text) for text in texts))
+    return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, tuple(notes.texts))
 
 
 def _interval(one: Uncertainty) -> dict[str, str | float]:

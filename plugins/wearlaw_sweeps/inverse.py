@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import elementwise
 
-from wearlaw.arrays.array import Array, steady
+from wearlaw.arrays import Array, steady
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, ConditionsError

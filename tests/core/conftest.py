@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import wearlaw as wl
 from tests.core import cli_data
 from tests.core.cases import POINT, case
-from wearlaw.arrays import kernels  # private: the choice between NumPy and numba
+from wearlaw import kernels  # private: the choice between NumPy and numba
 from wearlaw_studies.case import case_schema  # private: a case without its files
 from wearlaw_studies.study import Study, run  # private: a case run without its files
 from wearlaw_sweeps import points  # private: small blocks

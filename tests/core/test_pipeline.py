@@ -219,7 +219,7 @@ def test_wrong_json_is_an_error_of_the_package_with_the_path() -> None:
         wl.Pipeline.model_validate_json(text)
     message = str(caught.value)
     assert "rig.track_width: got 10.00 kN, which does not have the dimension of 'mm'" in message
-    assert "laws.0: no wear law is called 'khh'; did you mean 'kth'?" in message
+    assert "laws.0: no law is called 'khh'; did you mean 'kth'?" in message
 
 
 def test_negative_creepage_mirrors_the_force_and_leaves_the_wear() -> None:

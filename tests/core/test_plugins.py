@@ -18,8 +18,8 @@ from click.testing import CliRunner
 
 import wearlaw as wl
 from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
+from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw.cli import main  # private: the program in this process
-from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
 
 BROKEN = {
     "import_that_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named"),

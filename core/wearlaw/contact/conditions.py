@@ -27,9 +27,9 @@ import pint
 from numpy.typing import ArrayLike
 from pydantic import Field
 
-from wearlaw.arrays.array import Array, extremes, read_only
+from wearlaw.arrays import Array, extremes, read_only
+from wearlaw.configuration import Configuration, item_docstrings
 from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described
-from wearlaw.settings.configuration import Configuration, item_docstrings
 from wearlaw.units.quantities import (
     Quantity,
     QuantityLike,

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
 
 import numpy as np
 
-from wearlaw.arrays.array import Array, extremes, freeze, steady
+from wearlaw.arrays import Array, extremes, freeze, steady
 from wearlaw.contact import hertz
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material

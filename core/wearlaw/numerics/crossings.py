@@ -8,7 +8,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes, Zone

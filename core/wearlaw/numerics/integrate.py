@@ -21,7 +21,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, extremes, read_only, steadily, steady
+from wearlaw.arrays import Array, extremes, read_only, steadily, steady
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.contact.quadrature import Zone, join, remainder

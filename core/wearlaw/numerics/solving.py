@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, extremes, type_name
+from wearlaw.arrays import Array, extremes, type_name
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Problem, Strips
 from wearlaw.contact.quadrature import Nodes

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import NODE_VARIABLES, TOTALS, Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.models.law import Law, Numbers

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from wearlaw import loader
 from wearlaw.contact.material import dundurs_beta
 from wearlaw.contact.problem import PATCHES, Body, Geometry, Problem
 from wearlaw.errors import (
@@ -22,7 +23,6 @@ from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.models.model import Model
 from wearlaw.numerics.staged import without_stages
-from wearlaw.plugins import loader
 
 PEAKS = (
     "The peak of the traction is 4/π or 3/2 times its mean on a line (elliptic or parabolic bound), but 3/2 or 2 times"

@@ -15,7 +15,8 @@ import numpy as np
 import pint
 from pydantic import model_validator
 
-from wearlaw.arrays.array import Array, extremes, read_only, steadily, steady
+from wearlaw.arrays import Array, extremes, read_only, steadily, steady
+from wearlaw.configuration import LINE, Configuration
 from wearlaw.contact.conditions import Condition, FrictionLaw, broadcast, declared, friction_at, is_friction_law
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import (
@@ -29,6 +30,7 @@ from wearlaw.errors import (
     warn,
 )
 from wearlaw.extras import load
+from wearlaw.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.models.contact_model import ContactModel, Scale, Stage
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.model import Blame, Model, fault
@@ -49,8 +51,6 @@ from wearlaw.pipeline.composition import (
 )
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch
-from wearlaw.plugins.fields import RIG, ContactModelField, LawField, StageField
-from wearlaw.settings.configuration import LINE, Configuration
 from wearlaw.units.registry import with_magnitude
 
 if TYPE_CHECKING:

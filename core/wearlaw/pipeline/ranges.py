@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, extremes, steady
+from wearlaw.arrays import Array, extremes, steady
 from wearlaw.contact.elastic_limit import Overload, first_yield, overload, shakedown_limit
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, RangeWarning, warn

@@ -15,8 +15,8 @@ from plotly.offline import get_plotlyjs
 
 from wearlaw.version import __version__
 from wearlaw_output.curves import FigureData
+from wearlaw_output.notes import grouped
 from wearlaw_output.styled import html_table
-from wearlaw_studies.notes import grouped
 from wearlaw_studies.report.interactive import plotly_figure
 from wearlaw_studies.report.tables import main_table, models, of_section, parameters, profiles, summaries
 from wearlaw_studies.results import axes_of

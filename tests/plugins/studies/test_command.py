@@ -59,8 +59,8 @@ def test_the_short_table_shows_the_rates_and_the_band(folder: Path) -> None:
     write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["usfd", "kth"], profiles={}))
     printed = wearlaw("run", "c.toml").stdout
     assert "Sweep 'creepage': wear rate [µg/m/mm²] by creepage [%]" in printed
-    cells = [line.rsplit(maxsplit=5) for line in printed.splitlines() if line.startswith(" ")]
-    rows = {row[0].strip(): row[1:] for row in cells if len(row) == 6}
+    cells = [line.rsplit(maxsplit=5) for line in printed.splitlines()]
+    rows = {row[0].strip(): row[1:] for row in cells if row and " on " in row[0]}
     csv = pd.read_csv("c-results/results.csv").groupby("wear_law")
     due = {"usfd on exact": ("usfd", "wear_rate"), "kth on exact": ("kth", "wear_rate")}
     due |= {f"kth on exact, {end} end": ("kth", f"wear_rate_{end}") for end in ("low", "high")}

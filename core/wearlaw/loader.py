@@ -19,13 +19,13 @@ from typing import Any, NamedTuple
 import pluggy
 
 from wearlaw import hookspecs
+from wearlaw.configuration import known_as
 from wearlaw.contact.material import Material
 from wearlaw.errors import PluginWarning, UnknownModelError, described, did_you_mean, shown, warn
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, WearLaw
 from wearlaw.models.model import Model
 from wearlaw.models.reader import Reader
-from wearlaw.settings.configuration import known_as
 
 MODELS = ("rig", "contact model", "stage", "wear law", "law", "reader")
 """The kinds of models."""
@@ -404,8 +404,10 @@ def law(name: str, /, **options: Any) -> Law:
     Parameters and errors are those of `contact_model`.
     """
     found = installed()
-    if name not in found["law"].providers or name in found["wear law"].providers:
+    if name in found["wear law"].providers or name in found["parameter set"].providers:
         return wear_law(name, **options)
+    if name not in found["law"].providers:
+        raise UnknownModelError(found.unknown("law", name, [*laws(), *wear_laws(), *parameter_sets()]))
     made: Law = found.find("law", name)(**options)
     return made
 
