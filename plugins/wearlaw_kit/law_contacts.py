@@ -19,7 +19,7 @@ from wearlaw.contact.material import steel
 from wearlaw.contact.problem import Body
 from wearlaw.models.law import Law
 from wearlaw_kit.examples import failing, for_each
-from wearlaw_kit.reduced import random_lines, wide_ellipses
+from wearlaw_kit.reduced import random_lines, wide_ellipses, without_spin
 from wearlaw_kit.rules import rule
 
 NODE_FIELDS = (
@@ -243,14 +243,14 @@ def with_totals(**fields: Any) -> Contact:
 
 
 def with_problem(contact: Contact, law: Law | None = None) -> Contact:
-    """Return the contact with a problem of its shape, of two bodies of the material to try the law with.
+    """Return the contact with a problem of its shape without spin, of two bodies of the material to try the law with.
 
     The bodies are called "body_1" and "body_2", and one of them as the law's `body`.
     """
     speed = contact.rolling_speed
     material = STEEL if law is None or law.example_material is None else law.example_material
     names = dict.fromkeys([*([law.body] if law is not None and law.body else []), "body_1", "body_2"])
-    problem = (wide_ellipses if contact.on_strips else random_lines)(speed.size).replaced(
+    problem = without_spin((wide_ellipses if contact.on_strips else random_lines)(speed.size)).replaced(
         rolling_speed=speed,
         density=contact.density,
         rolled_distance=np.full_like(speed, 1e3),

@@ -31,8 +31,8 @@ POINTS = 64
 FEW = 12
 """Operating points for loops that are not compiled."""
 
-TOTALS = ("tangential_force", "moment_z", "wear_index", "mean_slip", "patch_area", "normal_force", "rolling_speed")
-"""Totals of a contact, among them those that a stage may change."""
+TOTALS = ("tangential_force", "wear_index", "mean_slip", "patch_area", "normal_force", "rolling_speed")
+"""Totals of a contact, all above zero, among them those that a stage may change."""
 
 
 @rule(Rig, always=True)

@@ -202,7 +202,7 @@ def check_results(model: ContactModel, problem: Problem, found: Any, name: str =
 
 
 def check_types(model: ContactModel, contact: Any, problem: Problem) -> None:
-    """Raise a `ModelError` unless a contact has the arrays of its shape of patch, of float64 and of the right shapes."""
+    """Raise a `ModelError` unless a contact has float64 arrays of the right shapes for its problem."""
     ellipse = problem.geometry != "line"
     if not isinstance(contact, Contact):
         raise fault(model, f"returned {shown(contact)}, not a wearlaw.Contact")
