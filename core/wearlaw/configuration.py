@@ -25,7 +25,7 @@ from wearlaw.errors import (
 from wearlaw.units.quantities import plain_number, text_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Mapping
     from inspect import Signature
 
     from pydantic import GetJsonSchemaHandler, ValidationInfo
@@ -203,18 +203,6 @@ def item_docstrings(cls: type) -> dict[str, str]:
             case ast.AnnAssign(target=ast.Name(id=name)), _:
                 found[name] = ""
     return found
-
-
-def parts(value: object) -> Iterator[Configuration]:
-    """Yield all configurations in a value: the value itself, and those in its fields at any depth."""
-    inner: Iterable[object] = ()
-    if isinstance(value, Configuration):
-        yield value
-        inner = (getattr(value, name) for name in type(value).model_fields)
-    elif isinstance(value, (list, tuple)):
-        inner = value
-    for one in inner:
-        yield from parts(one)
 
 
 def known_as(name: str, record: ConfigurationT) -> ConfigurationT:

@@ -17,10 +17,11 @@ from wearlaw.models.law import WEAR, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
-from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw.units.variables import UNITS, name_of
 from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
 from wearlaw_fits.named_numbers import Place, check_loads_stay, staged_models
 from wearlaw_fits.wear_tests import WearTests
+from wearlaw_output.labels import label
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
 """Scatter of measurements: by a factor, by an amount, or by their stated uncertainties."""

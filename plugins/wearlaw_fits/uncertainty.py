@@ -22,12 +22,13 @@ from wearlaw.pipeline.composition import check_traction, warn_of_unlike_material
 from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
-from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw.units.variables import UNITS, name_of
 from wearlaw_fits.distributions import Distribution, PublishedRange
 from wearlaw_fits.named_numbers import Kind, Place, check_loads_stay, part_at, staged_models
 from wearlaw_fits.result import Fit
 from wearlaw_fits.uncertain_inputs import OTHERS, Uncertain, UncertainCondition, check_samples, numbers_of, of_fit
 from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis, Shade
+from wearlaw_output.labels import label
 from wearlaw_output.plot import plot
 
 if TYPE_CHECKING:

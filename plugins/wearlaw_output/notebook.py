@@ -16,7 +16,8 @@ from wearlaw.models.law import Law
 from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.units.quantities import Q
-from wearlaw.units.variables import name_of, readable
+from wearlaw.units.variables import name_of
+from wearlaw_output.labels import readable
 
 WIDTH, HEIGHT = 280, 160
 """Of a drawing, in pixels."""

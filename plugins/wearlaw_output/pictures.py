@@ -13,16 +13,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
+from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.datasets import Conditions, data_of, dataset, labelled
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.selection import in_words
+from wearlaw.pipeline.selection import Conditions
 from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
-from wearlaw.units.variables import UNITS, label, name_of, readable
+from wearlaw.units.variables import UNITS, name_of
+from wearlaw_output.datasets import data_of, dataset, labelled
+from wearlaw_output.labels import in_words, label, readable
 
 if TYPE_CHECKING:
     import xarray
@@ -239,26 +241,56 @@ def cells(prediction: Prediction) -> Array:
 
     Their sides are bent like the edge: that of an ellipse, or else a smooth one through the ends of the strips.
     """
-    contact, problem = prediction.contact, prediction.problem
-    shape = contact.pressure.shape[-2:]
-    width = contact.strip_width.reshape(shape[1])
-    length = contact.area.reshape(shape) / width
-    left, right = _ends(contact.x.reshape(shape), length)
-    low, high = _ends(np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0], width)
+    nodes, length, strips, width = _strips(prediction)
+    left, right = _ends(nodes, length)
+    low, high = _ends(strips, width)
     bend = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, SIDE))[:, None]
     y = low + (high - low) * bend
-    half_length = 0.5 * length.sum(axis=0)
-    if problem.geometry == "ellipse":
-        edge = problem.a * np.sqrt(np.maximum(1.0 - (y / problem.b) ** 2, 0.0))
-    else:
-        order = np.argsort(low)
-        places = np.concatenate([[low.min()], 0.5 * (low + high)[order], [high.max()]])
-        edge = np.sqrt(np.interp(y, places, np.concatenate([[0.0], half_length[order] ** 2, [0.0]])))
-    stretch = edge / np.maximum(half_length, np.finfo(float).tiny)
+    stretch = _edge(prediction, y) / np.maximum(0.5 * length.sum(axis=0), np.finfo(float).tiny)
     y, stretch = y[:, None], stretch[:, None]  # (places along a side, nodes, strips)
     sides = [np.stack(np.broadcast_arrays(end * stretch, y), axis=-1) for end in (left, right)]
     outlines = np.concatenate([sides[0], sides[1][::-1]])
     return 1e3 * np.moveaxis(outlines, 0, -2).reshape(-1, len(outlines), 2)
+
+
+def raster(prediction: Prediction, columns: int = 81, rows: int = 51) -> tuple[Array, Array, NDArray[np.intp]]:
+    """Return x and y of a grid over a patch [mm], and the index of the cell at each of its points, -1 outside.
+
+    The cells are those of `cells`, whose sides lie here halfway between nodes.
+    """
+    nodes, length, strips, width = _strips(prediction)
+    low, high = _ends(strips, width)
+    y = low.min() + np.ptp([low, high]) * (np.arange(rows) + 0.5) / rows
+    edge = _edge(prediction, y)
+    x = edge.max() * (2.0 * np.arange(columns) + 1.0 - columns) / columns
+    strip = np.abs(y[:, None] - strips).argmin(axis=1)
+    stretch = edge / np.maximum(0.5 * length.sum(axis=0)[strip], np.finfo(float).tiny)
+    node = np.abs(x[:, None] - stretch[:, None, None] * nodes.T[strip, None]).argmin(axis=-1)
+    return 1e3 * x, 1e3 * y, np.where(np.abs(x) <= edge[:, None], node * strips.size + strip[:, None], -1)
+
+
+def _strips(prediction: Prediction) -> tuple[Array, Array, Array, Array]:
+    """Return x of the nodes of a patch and their lengths, (nodes, strips), y of the strips and their widths [m]."""
+    contact = prediction.contact
+    shape = contact.pressure.shape[-2:]
+    width = contact.strip_width.reshape(shape[1])
+    y = np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0]
+    return contact.x.reshape(shape), contact.area.reshape(shape) / width, y, width
+
+
+def _edge(prediction: Prediction, y: Array) -> Array:
+    """Return half the length of a patch at positions across it [m]."""
+    problem = prediction.problem
+    if problem.geometry == "ellipse":
+        squared = problem.a**2 * np.maximum(1.0 - (y / problem.b) ** 2, 0.0)
+    else:
+        _, length, strips, width = _strips(prediction)
+        low, high = _ends(strips, width)
+        order = np.argsort(low)
+        places = np.concatenate([[low.min()], 0.5 * (low + high)[order], [high.max()]])
+        squared = np.interp(y, places, np.concatenate([[0.0], (0.5 * length.sum(axis=0)[order]) ** 2, [0.0]]))
+    half_length: Array = np.sqrt(squared)
+    return half_length
 
 
 def _ends(middle: Array, size: Array) -> tuple[Array, Array]:

@@ -45,11 +45,12 @@ from wearlaw.fields import ContactModelField, LawField, StageField, preset_field
 from wearlaw.loader import Shelf
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import WEAR, Law, Outcome
-from wearlaw.models.model import Model, labelled, labels
+from wearlaw.models.model import Model
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.text_files import LARGEST, beside, parse_toml, read_text, reading
 from wearlaw.units.variables import UNITS
+from wearlaw_output.labels import labelled, labels
 from wearlaw_studies.figure_spec import FigureSpec
 from wearlaw_studies.grid import Condition, Grid
 from wearlaw_studies.measured import MeasuredTests, check_rig

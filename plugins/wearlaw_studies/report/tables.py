@@ -21,13 +21,14 @@ from numpy.typing import NDArray
 from wearlaw.configuration import Configuration, field_docstrings
 from wearlaw.errors import InputError, WearlawWarning
 from wearlaw.models.law import WEAR, Law
-from wearlaw.models.model import Blame, Model, labelled
+from wearlaw.models.model import Blame, Model
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.quantities import Q, from_si
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import UNITS, name_of, readable
-from wearlaw.units.variables import label as label_of
+from wearlaw.units.variables import UNITS, name_of
 from wearlaw_fits.pairs import Pair
+from wearlaw_output.labels import label as label_of
+from wearlaw_output.labels import labelled, readable
 from wearlaw_output.styled import Marked
 from wearlaw_studies.figures import main_result
 from wearlaw_studies.results import (
