@@ -173,7 +173,7 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
         raise InputError(
             "plot: there is one operating point, and the contact model gives means of its patch; give a condition"
             ' several values, such as creepage=Q([0.5, 1, 2], "%"), or take a contact model that resolves the patch,'
-            ' such as wl.contact_model("fastsim")'
+            ' such as wl.contact_model("exact") for discs and wl.contact_model("strip_theory") for wheels'
         )
     line = prediction.problem.geometry == "line"
     fields = fields_of(prediction)
