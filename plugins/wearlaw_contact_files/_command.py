@@ -8,9 +8,7 @@ from pathlib import Path
 import click
 import pandas as pd
 
-from wearlaw.contact.contact import Contact
 from wearlaw.fields import specification
-from wearlaw.models.law import Law
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.version import __version__
 from wearlaw_contact_files._reading import read_contact
@@ -89,7 +87,8 @@ def wear(
     labels = _labels(files)
     with results_folder(folder, overwrite, WEAR) as fresh:
         contact = read_contact(files if others else first, reader=reader, **given)
-        found = _predicted(contact.patch_mean() if patch_mean else contact, chosen, notes)
+        with notes.of("wear"):
+            found = Prediction.of(contact.patch_mean() if patch_mean else contact, *chosen)
         if not others and found.problem.batch_shape:
             labels = [f"{labels[0]} {number}" for number in range(1, found.problem.size + 1)]
         with notes.of("wear"):
@@ -107,11 +106,6 @@ def wear(
     print_notes(notes.texts)
     _print(table)
     print_results(folder, names)
-
-
-def _predicted(contact: Contact, laws: Sequence[Law], notes: Notes) -> Prediction:
-    with notes.of("wear"):
-        return Prediction.of(contact, *laws)
 
 
 def _labels(files: Sequence[str]) -> list[str]:

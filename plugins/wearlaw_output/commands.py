@@ -131,8 +131,7 @@ def _form(name: str, given: Mapping[str, str | float]) -> str:
 
 def folder_for(path: str, ending: str) -> Path:
     """Return the folder for the results of a file unless the user names one, such as "case-results"."""
-    stem = "".join(letter if letter.isprintable() else "_" for letter in Path(path).stem)
-    return Path(f"{stem}-{ending}")
+    return Path(f"{Path(path).stem}-{ending}")
 
 
 def echo_file(text: str) -> None:

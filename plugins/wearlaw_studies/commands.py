@@ -21,8 +21,7 @@ from wearlaw_studies.case import load_case
 from wearlaw_studies.report.tables import summaries
 from wearlaw_studies.study import Study, evaluations, used
 from wearlaw_studies.study import run as run_case
-from wearlaw_studies.uncertainty import uncertainty_of
-from wearlaw_studies.uncertainty_files import UNCERTAINTY, write_uncertainty
+from wearlaw_studies.uncertainty import UNCERTAINTY, uncertainty_of, write_uncertainty
 from wearlaw_studies.written import RESULTS, check_room, without_csv, write
 from wearlaw_sweeps.progress import Bar
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 import xarray
@@ -289,24 +289,15 @@ def _of_pair(pair: Pair, problem: Any) -> tuple[str, ...]:
     return (pair.outcome.name, *error, "outside_range", *mass)
 
 
-@dataclass(frozen=True)
-class _Variables:
-    """Variables of a sweep besides the rates of its pairs.
-
-    Attributes
-    ----------
-    of_contact : dict of str to list of str
-        For each contact model, the variables that its predictions have. If the rig balances its loads with the forces,
-        they include those of the operating points.
-    of_point : list of str
-        Variables of the operating points, which do not depend on the contact model.
-    conditions : dict of str to float
-        Conditions that are the same at all points.
-    """
+class _Variables(NamedTuple):
+    """Variables of a sweep besides the rates of its pairs."""
 
     of_contact: dict[str, list[str]]
+    """For each contact model, those of its predictions; also those of the points if the rig balances its loads."""
     of_point: list[str]
+    """Those of the operating points, which do not depend on the contact model."""
     conditions: dict[str, float]
+    """Conditions that are the same at all points."""
 
 
 def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -14,10 +16,13 @@ from wearlaw.units.quantities import WEAR_RATE
 from wearlaw.units.variables import name_of
 from wearlaw_fits.pairs import Pair
 from wearlaw_fits.uncertainty import CONFIDENCE, Uncertainty, uncertainty
+from wearlaw_output.curves import FigureFormat
+from wearlaw_output.files import write_files
 from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
-from wearlaw_studies.case import Case
+from wearlaw_studies.case import Case, written
 from wearlaw_studies.results import pairs_of
+from wearlaw_studies.study import provenance
 
 
 @dataclass(frozen=True)
@@ -27,6 +32,9 @@ class UncertainPair:
     point: str
     pair: Pair
     uncertainty: Uncertainty
+
+
+UNCERTAINTY = "uncertainty.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,18 +65,7 @@ class CaseUncertainty:
 def uncertainty_of(
     case: Case, samples: int, seed: int, on_pair: Callable[[int], None] = lambda _: None
 ) -> CaseUncertainty:
-    """Compute the uncertainty of the predictions of a case.
-
-    Parameters
-    ----------
-    case : Case
-        With at least one operating point under `uncertainty`.
-    samples : int
-        Number of samples, rounded up to a power of two.
-    seed : int
-        The same seed gives the same samples.
-    on_pair : callable, optional
-        Called with 1 after each pair, to show progress.
+    """Return the uncertainty of the predictions of a case; `on_pair` is called with 1 after each pair.
 
     Raises
     ------
@@ -120,3 +117,35 @@ def _interval(one: Uncertainty) -> dict[str, str | float]:
     ends = {"median": one.median, f"{50 - 50 * CONFIDENCE:g} %": low, f"{50 + 50 * CONFIDENCE:g} %": high}
     values = {name: float(value.to(one.unit or "dimensionless").magnitude) for name, value in ends.items()}
     return {"outcome": one.outcomes[0], "unit": one.unit or "-", **values}
+
+
+def write_uncertainty(
+    case: Case,
+    found: CaseUncertainty,
+    seed: int,
+    folder: Path,
+    figure_formats: Sequence[FigureFormat] = ("png",),
+    latex: bool = False,
+) -> list[str]:
+    """Write the uncertainty of a case, and the case itself, into an empty folder, and return the names of the files."""
+    record = {"samples": found.samples, "seed": seed, "provenance": provenance(case), "notes": list(found.notes)}
+    tables = {"wear_rates": found.wear_rates, **({"sobol_indices": found.indices} if len(found.indices) else {})}
+    figures = {}
+    for file, one in zip(figure_files(found.pairs), found.pairs, strict=True):
+        name = name_of(one.uncertainty.outcomes[0])
+        title = f"{name[:1].upper()}{name[1:]} by {one.pair.label}: {one.point}"
+        figures[file] = replace(one.uncertainty.figure_data(), title=title)
+    return write_files(folder, UNCERTAINTY, record, tables, figures, figure_formats, latex, written(case))
+
+
+def figure_files(pairs: Sequence[UncertainPair]) -> list[str]:
+    """Return a file name for each figure, such as "scatter_usfd_on_exact" for an operating point called "scatter".
+
+    Pairs with several outcomes add the outcome.
+    """
+    labels = [f"{one.point} {one.pair.label}" for one in pairs]
+    names = [
+        label if labels.count(label) == 1 else f"{label} {one.uncertainty.outcomes[0]}"
+        for label, one in zip(labels, pairs, strict=True)
+    ]
+    return [re.sub(r"\W+", "_", name).strip("_") for name in names]

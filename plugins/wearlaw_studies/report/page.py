@@ -25,15 +25,7 @@ from wearlaw_studies.study import Study, used
 
 
 def report(study: Study, case_text: str) -> str:
-    """Return the page; the same study gives the same bytes.
-
-    Parameters
-    ----------
-    study : Study
-        The study to show.
-    case_text : str
-        The case, as TOML.
-    """
+    """Return the page of a study with its case as TOML; the same study gives the same bytes."""
     has_main = bool(axes_of(next(iter(study.sweeps.values()))))
     claims = [claim for section in study.sections for claim in section.claims]
     return _template().render(

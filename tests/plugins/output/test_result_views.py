@@ -279,7 +279,7 @@ def test_what_lies_outside_the_range_of_a_law_is_pale() -> None:
     assert outside.any()
     assert not outside.all()
     axes = found.plot()
-    whole, inside, _ = axes.get_lines()
+    inside, whole, _ = axes.get_lines()
     assert whole.get_alpha() < 1.0
     np.testing.assert_array_equal(np.isnan(inside.get_ydata()), outside)
     assert legend(axes) == ["outside the range of the law"]
