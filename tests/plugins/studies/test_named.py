@@ -12,7 +12,7 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import case, table, wearlaw
+from tests.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import Case, case_schema, case_text, load_case, written  # private: a case without its files
