@@ -37,7 +37,7 @@ from wearlaw_fits.intervals import (
     undetermined,
 )
 from wearlaw_fits.lack_of_fit import LackOfFit, lack_of_fit, repeats
-from wearlaw_fits.least_squares import Bounds, Solutions, refine, search
+from wearlaw_fits.least_squares import Bounds, Solutions, fit_many, search
 from wearlaw_fits.named_numbers import changed_parts, staged_models
 from wearlaw_fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
 from wearlaw_fits.result import Fit
@@ -241,12 +241,11 @@ class _Task:
         target = np.zeros(self.weights.size)
         reach = np.where(self.free.positive, math.log(NEAR), NEAR)
         near = Bounds(bounds.clip(-reach), bounds.clip(reach))
-        fits = search(self.model, target, first, bounds, near, starts, seed)
-        best = min(fits, key=lambda one: float(one.cost[0]))
+        best = search(self.model, target, first, bounds, near, starts, seed)
         if len(self.observations) > 1:
             for _ in range(ROUNDS):
                 self._weigh(best)
-                best = refine(self.model, target, best.theta[0], bounds)
+                best = fit_many(self.model, target[None], best.theta, bounds)
         if not best.converged[0]:
             advice = give_bounds(self.free.names[0])
             raise FitError(f"the fit has not converged; {advice}, or a law whose parameters are nearer to the tests")

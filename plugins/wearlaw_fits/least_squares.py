@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import scipy
@@ -31,8 +31,8 @@ LEAST_GAIN = float(np.finfo(np.float64).eps)
 ITERATIONS = 100
 """Most iterations of a fit; smooth problems take about ten."""
 
-REFINED = 4
-"""Number of starting points that `search` refines, besides the given one."""
+FITTED = 8
+"""Number of starting points from which `search` fits, besides the given one."""
 
 SOFTEST, STIFFEST = 1e-12, 1e12
 """Least and greatest damping. At the greatest one, a step is as small as rounding. A fit that it does not improve has
@@ -75,6 +75,11 @@ class Solutions:
     def cost(self) -> Array:
         """Sum of the squares of the residuals, (sets,)."""
         return _squares(self.residuals)
+
+    def __getitem__(self, index: int) -> Solutions:
+        """Return one of the fits, still with the axis of sets."""
+        one = slice(index, index + 1)
+        return Solutions(self.theta[one], self.residuals[one], self.jacobian[one], self.converged[one])
 
 
 def jacobian(model: Model, theta: Array, predicted: Array, bounds: Bounds) -> Array:
@@ -130,39 +135,10 @@ def fit_many(model: Model, targets: Array, start: Array, bounds: Bounds) -> Solu
     return Solutions(state.theta, state.residuals, state.jacobian, state.converged)
 
 
-def refine(model: Model, target: Array, start: Array, bounds: Bounds) -> Solutions:
-    """Fit one set of data by the trust-region method of scipy; `target` is of shape (n,), `start` of shape (p,)."""
-
-    def predicted(theta: Array) -> Array:
-        one: Array = model(theta[None])[0]
-        return one
-
-    def slopes(theta: Array) -> Array:
-        one: Array = jacobian(model, theta[None], model(theta[None]), bounds)[0]
-        return one
-
-    least_squares: Any = scipy.optimize.least_squares
-    found = least_squares(
-        lambda theta: predicted(theta) - target,
-        start,
-        jac=slopes,
-        bounds=(bounds.low, bounds.high),
-        method="trf",
-        x_scale="jac",
-        xtol=TOLERANCE,
-        ftol=1e-15,
-        gtol=1e-15,
-        max_nfev=ITERATIONS * 10,
-    )
-    theta = bounds.clip(found.x)
-    converged = np.array([found.status > 0])
-    return Solutions(theta[None], (predicted(theta) - target)[None], slopes(theta)[None], converged)
-
-
 def search(
     model: Model, target: Array, start: Array, bounds: Bounds, near: Bounds, starts: int, seed: int
-) -> list[Solutions]:
-    """Fit one set of data from several starting points.
+) -> Solutions:
+    """Return the best of fits to one set of data from several starting points.
 
     Parameters
     ----------
@@ -177,23 +153,19 @@ def search(
     near : Bounds
         Range of the other starting points, a Latin hypercube.
     starts : int
-        Number of other starting points. They are evaluated in one batch, and the best few refined.
+        Number of other starting points. They are evaluated in one batch, and the best few fitted in another.
     seed : int
         Seed of the Latin hypercube.
-
-    Returns
-    -------
-    list of Solutions
-        The refined fits, the one from `start` first.
     """
-    chosen = [bounds.clip(start)]
+    chosen = bounds.clip(start)[None]
     if starts:
         shares = scipy.stats.qmc.LatinHypercube(start.size, rng=np.random.default_rng(seed)).random(starts)
         points = bounds.clip(near.low + shares * (near.high - near.low))
         with np.errstate(over="ignore"):
             cost = _squares(model(points) - target)
-        chosen += list(points[np.argsort(cost, kind="stable")[:REFINED]])
-    return [refine(model, target, point, bounds) for point in chosen]
+        chosen = np.concatenate([chosen, points[np.argsort(cost, kind="stable")[:FITTED]]])
+    fits = fit_many(model, np.broadcast_to(target, (len(chosen), target.size)), chosen, bounds)
+    return fits[int(np.argmin(fits.cost))]
 
 
 class _State:
