@@ -64,6 +64,9 @@ class Distribution:
 class PublishedRange:
     """The published range of a law's parameters, as in `WearLaw.band`; see `published_range`."""
 
+    def __str__(self) -> str:
+        return "published_range()"
+
 
 def uniform(low: QuantityLike | float, high: QuantityLike | float) -> Distribution:
     """Return the uniform distribution: all values from `low` to `high` are equally likely."""

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from wearlaw.arrays.array import Array, steadily
 from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown
 from wearlaw.models.law import Calibration, named_outcomes
-from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import warn_of_parameters
 from wearlaw.pipeline.pipeline import Pipeline, Rig
@@ -38,7 +37,7 @@ from wearlaw_fits.intervals import (
 )
 from wearlaw_fits.lack_of_fit import LackOfFit, lack_of_fit, repeats
 from wearlaw_fits.least_squares import Bounds, Solutions, fit_many, search
-from wearlaw_fits.named_numbers import changed_parts, staged_models
+from wearlaw_fits.named_numbers import changed_parts, traction_at
 from wearlaw_fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests, expect_tests
@@ -260,12 +259,12 @@ class _Task:
 
     def overload(self, best: Solutions) -> Any:
         """Return the test that is furthest beyond first yield, with the traction that the best fit predicts."""
-        problem, values = self.observations[0].problem, self.free.columns(best.theta[:1])
+        values = {name: one[0] for name, one in self.free.columns(best.theta).items()}
+        problem = self.observations[0].problem
         if FRICTION in values:
-            problem = problem.replaced(friction_coefficient=np.full(problem.batch_shape, values[FRICTION][0]))
-        at_places = {place: values[name] for name, place in self.free.places.items()}
-        ((model, _),) = staged_models(self.predict, at_places, 1)
-        return overload_of(problem, integrate_forces(model, problem).tangential)
+            problem = problem.replaced(friction_coefficient=np.full(problem.batch_shape, values[FRICTION]))
+        at_points = {place: np.full(problem.size, values[name]) for name, place in self.free.places.items()}
+        return overload_of(problem, problem.normal_force * traction_at(self.predict, problem, at_points))
 
     def _weigh(self, best: Solutions) -> None:
         """Weigh each kind of measurement by its scatter about the fit."""

@@ -18,7 +18,7 @@ from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
 from wearlaw.units.registry import symbol
 from wearlaw_fits.allowed_range import allowed_range
 from wearlaw_fits.least_squares import Bounds
-from wearlaw_fits.named_numbers import NamedNumbers, Place, part_at
+from wearlaw_fits.named_numbers import Place, known_names, part_at, place_of
 
 FRICTION = "friction_coefficient"
 """The only parameter that is a condition, not a number of a law or stage."""
@@ -141,21 +141,20 @@ class FreeParameters:
 
 def _places(predict: Pipeline[...], free: tuple[str, ...]) -> dict[str, Place]:
     """Return the places of the free numbers of laws and stages by name."""
-    named = NamedNumbers(predict)
-    known = [*named.known, FRICTION]
     places: dict[str, Place] = {}
     for name in (one for one in free if one != FRICTION):
         try:
-            place = named.place(name)
+            place = place_of(predict, name, others=[FRICTION])
         except InputError as error:
             raise FitError(f"free: {error}") from None
-        if place is None or place.field not in numbers(part_at(predict, place)):
-            raise FitError(
-                f"free: no number is called {shown(name)}{did_you_mean(name, known)} There are: {', '.join(known)}"
-            )
+        own = numbers(part_at(predict, place))
+        if place.field not in own:
+            inner = [one for one in own if one.startswith(f"{place.field}.")]
+            raise FitError(f"free: {shown(name)} is several numbers; name some of {', '.join(inner)}")
         places[name] = place
     if not free or len(set(places.values())) + (FRICTION in free) < len(free):
-        raise FitError(f"free: name each parameter once, at least one of {', '.join(known)}; got {shown(free)}")
+        known = ", ".join([*known_names(predict), FRICTION])
+        raise FitError(f"free: name each parameter once, at least one of {known}; got {shown(free)}")
     return places
 
 

@@ -14,12 +14,12 @@ from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConfigurationError, FitError, ModelError
 from wearlaw.models.law import WEAR, named_outcomes
-from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
+from wearlaw.numerics.integrate import integrate_forces, patch_area
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
-from wearlaw_fits.named_numbers import Place, check_loads_stay, staged_models
+from wearlaw_fits.named_numbers import Place, check_loads_stay, outcomes_at, traction_at
 from wearlaw_fits.wear_tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
@@ -113,24 +113,15 @@ class Observations:
         """
         problem = self.problem if problem is None else problem
         sets, points = len(next(iter(values.values()))), problem.size
-        found = np.empty((sets, points))
-        at_places = {place: values[name] for name, place in self.places.items()}
+        problem = problem[np.tile(np.arange(points), sets)]
+        if FRICTION in values:
+            problem = problem.replaced(friction_coefficient=np.repeat(values[FRICTION], points))
+        at_points = {place: np.repeat(values[name], points) for name, place in self.places.items()}
         try:
-            for model, members in staged_models(self.pipeline, at_places, sets):
-                part = problem[np.tile(np.arange(points), members.size)]
-                if FRICTION in values:
-                    part = part.replaced(friction_coefficient=np.repeat(values[FRICTION][members], points))
-                if self.law is None:
-                    one = integrate_forces(model, part).tangential / part.normal_force
-                else:
-                    own = {
-                        place.field: np.repeat(value[members], points)[:, None]
-                        for place, value in at_places.items()
-                        if (place.kind, place.index) == ("law", self.law)
-                    }
-                    law = self.pipeline.laws[self.law]
-                    one = integrate_laws(model, (law,), part, numbers=[{**law.numbers, **own}]).values[0]
-                found[members] = one.reshape(members.size, points)
+            if self.law is None:
+                found = traction_at(self.pipeline, problem, at_points)
+            else:
+                found = outcomes_at(self.pipeline, problem, at_points, [self.law])
         except (ConfigurationError, ModelError) as error:
             names = [name for name, place in self.places.items() if place.kind == "stage"]
             if not names:
@@ -139,7 +130,7 @@ class Observations:
                 f"the search for the best fit has met values of {' and '.join(names)} that the stage or the contact"
                 f" model does not accept; {give_bounds(names[0])}: {error}"
             ) from error
-        return found
+        return found.reshape(sets, points)
 
     def residuals(self, values: Mapping[str, Array]) -> Array:
         """Return the residuals (sets, n) for parameters in SI, (sets,) each."""

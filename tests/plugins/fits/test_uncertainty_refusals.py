@@ -18,14 +18,6 @@ UNCERTAIN: Any = {"friction_coefficient": wl.uniform(0.3, 0.5), "samples": 4}
 HINT = r"(.|\n)*samples of its distribution"
 
 
-def test_samples_outside_the_range_of_the_law_are_warned_of() -> None:
-    u = wl.uncertainty(
-        USFD, max_pressure=Q(1500, "MPa"), creepage=wl.uniform("15 %", "25 %"), friction_coefficient=0.46, samples=64
-    )
-    with pytest.warns(wl.RangeWarning, match="usfd"):
-        u.median  # noqa: B018
-
-
 @pytest.mark.parametrize(
     ("given", "names"),
     [
@@ -60,7 +52,7 @@ def test_samples_outside_the_range_of_the_law_are_warned_of() -> None:
 )
 def test_wrong_inputs_are_refused_by_name(given: dict[str, Any], names: str) -> None:
     with pytest.raises(wl.WearlawError, match=names):
-        wl.uncertainty(USFD, **{**FULL_SLIP, **given}).median  # noqa: B018
+        wl.uncertainty(USFD, **{**FULL_SLIP, **given})
 
 
 SHARE = {"share": wl.uniform(0.2, 0.4)}
@@ -70,7 +62,6 @@ BALANCED = Balanced(**dict(EXACT.rig)) | EXACT.contact_model | Softer() | Heat()
 @pytest.mark.parametrize(
     ("predict", "given", "names"),
     [
-        (EXACT | Heat() | Damage(), {"law": SHARE}, r'u\.of\("heat_flux"\)'),
         (EXACT | Heat() | Damage(), {"law": {"shore": wl.uniform(0, 1)}}, "law: .*'shore'.*'share'"),
         (EXACT | Softer() | Heat(), {"stage": SHARE}, "stage: .*'share'.* reduction"),
         (EXACT | Heat(), {"stage": SHARE}, "stage: .*'share'.* none"),
@@ -85,7 +76,7 @@ BALANCED = Balanced(**dict(EXACT.rig)) | EXACT.contact_model | Softer() | Heat()
 )
 def test_wrong_numbers_of_stages_and_laws_are_refused_by_name(predict: Any, given: Any, names: str) -> None:
     with pytest.raises((wl.InputError, wl.CompositionError), match=names):
-        wl.uncertainty(predict, **{**FULL_SLIP, "samples": 8, **given}).median  # noqa: B018
+        wl.uncertainty(predict, **{**FULL_SLIP, "samples": 8, **given})
 
 
 def test_an_outcome_that_no_law_predicts_is_refused() -> None:
@@ -93,8 +84,10 @@ def test_an_outcome_that_no_law_predicts_is_refused() -> None:
     for read in (u.__getitem__, u.of):
         with pytest.raises(wl.InputError, match=r"'heat'.*'heat_flux'"):
             read("heat")
-    with pytest.raises(wl.CompositionError, match="no wear law"):
+    with pytest.raises(wl.InputError, match="'wear_rate'"):
         _ = u.wear_rate
+    with pytest.raises(wl.InputError, match=r'u\.of\("heat_flux"\)'):
+        _ = u.median
 
 
 @pytest.mark.parametrize("value", [Q([1, 2], "%"), [0.3, 0.4], "1", None])
