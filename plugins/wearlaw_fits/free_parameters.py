@@ -47,8 +47,8 @@ class FreeParameters:
         The first values in SI.
     positive : ndarray of bool, (p,)
         Whether each must be greater than zero.
-    bounds : Bounds
-        Of θ.
+    ends : tuple of ndarray, (p,)
+        The least and the greatest values in SI.
     """
 
     names: tuple[str, ...]
@@ -56,7 +56,7 @@ class FreeParameters:
     like: tuple[Quantity | float, ...]
     first: Array
     positive: NDArray[np.bool_]
-    bounds: Bounds
+    ends: tuple[Array, Array]
 
     @classmethod
     def of(
@@ -66,13 +66,7 @@ class FreeParameters:
         friction: float | None,
         bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]],
     ) -> Self:
-        """Return the free parameters among the numbers of laws and stages and the friction coefficient.
-
-        Raises
-        ------
-        FitError
-            If a name is unknown, ambiguous or given twice, or its bounds are invalid.
-        """
+        """Return the free parameters among the numbers of laws and stages and the friction coefficient."""
         places = _places(predict, tuple(free))
         like: dict[str, Quantity | float] = {}
         ranges: dict[str, tuple[float, float, bool]] = {}
@@ -90,12 +84,19 @@ class FreeParameters:
                 raise FitError(
                     f"bounds: {shown(name)} is not free{did_you_mean(name, free)} Free are: {', '.join(free)}"
                 )
-        first = np.array([number_in_si(like[name]) for name in free])
-        ends = [_ends(name, like[name], ranges[name], bounds.get(name)) for name in free]
-        flags = np.array([ranges[name][2] for name in free])
-        chosen = cls(tuple(free), places, tuple(like[name] for name in free), first, flags, Bounds(first, first))
-        low, high = (chosen.theta(np.array(end)) for end in zip(*ends, strict=True))
-        return cls(chosen.names, places, chosen.like, first, flags, Bounds(low, high))
+        return cls(
+            names=tuple(free),
+            places=places,
+            like=tuple(like[name] for name in free),
+            first=np.array([number_in_si(like[name]) for name in free]),
+            positive=np.array([ranges[name][2] for name in free]),
+            ends=tuple(np.array([_ends(name, like[name], ranges[name], bounds.get(name)) for name in free]).T),
+        )
+
+    @property
+    def bounds(self) -> Bounds:
+        """The bounds of θ."""
+        return Bounds(*map(self.theta, self.ends))
 
     @property
     def of_contact(self) -> list[str]:
@@ -115,7 +116,9 @@ class FreeParameters:
 
     def values(self, theta: Array) -> Array:
         """Return the values in SI of scaled parameters, (..., p)."""
-        return np.where(self.positive, self.first * np.exp(np.where(self.positive, theta, 0.0)), self._linear(theta))
+        return np.where(
+            self.positive, self.first * np.exp(np.where(self.positive, theta, 0.0)), self.first + self._size * theta
+        )
 
     def slopes(self, theta: Array) -> Array:
         """Return the derivatives of the values in SI by the scaled parameters, (..., p)."""
@@ -134,9 +137,6 @@ class FreeParameters:
     @property
     def _size(self) -> Array:
         return np.where(self.first != 0.0, np.abs(self.first), 1.0)
-
-    def _linear(self, theta: Array) -> Array:
-        return self.first + self._size * theta
 
 
 def _places(predict: Pipeline[...], free: tuple[str, ...]) -> dict[str, Place]:

@@ -67,11 +67,6 @@ def place_of(predict: Pipeline[...], name: str, *kinds: Kind, others: Sequence[s
         The parts to look at, by default both kinds.
     others : sequence of str
         Other names to suggest in the error.
-
-    Raises
-    ------
-    InputError
-        If no part has it, or several have.
     """
     found = [
         (label, replace(place, field=own))
@@ -101,13 +96,7 @@ def of_part(values: Mapping[Place, Any], kind: Kind, index: int) -> dict[str, An
 
 
 def changed_parts(parts: Sequence[PartT], kind: Kind, values: Mapping[Place, Any]) -> tuple[PartT, ...]:
-    """Return stages or laws with some of their numbers changed, given as floats in SI.
-
-    Raises
-    ------
-    ConfigurationError
-        If a stage or law does not accept its numbers.
-    """
+    """Return stages or laws with some of their numbers changed, given as floats in SI."""
     found = []
     for index, part in enumerate(parts):
         own, like = of_part(values, kind, index), numbers(part)

@@ -77,21 +77,6 @@ class Observations:
         return UNITS[TRACTION] if self.law is None else self.pipeline.laws[self.law].outcome.unit
 
     @property
-    def name(self) -> str:
-        """Name of the measurement in words, such as "wear rate"."""
-        return self.observable.replace("_", " ")
-
-    @property
-    def plural(self) -> str:
-        """The measurements in words, such as "wear rates"."""
-        return f"{self.name}s" if self.observable in (WEAR, TRACTION) else f"values of {self.name}"
-
-    @property
-    def head(self) -> str:
-        """Head of a column of the measurement, as in "wear_rate [ug/m/mm^2]"."""
-        return f"{self.observable} [{self.unit}]" if self.unit else self.observable
-
-    @property
     def label(self) -> str:
         """Name of the measurement with its unit, for the axis of a figure."""
         return label(self.observable, units={self.observable: self.unit})
@@ -105,11 +90,6 @@ class Observations:
             All free parameters.
         problem : Problem, optional
             Other operating points than those of the tests, with batch shape (n,).
-
-        Raises
-        ------
-        FitError
-            If a stage does not accept its numbers.
         """
         problem = self.problem if problem is None else problem
         sets, points = len(next(iter(values.values()))), problem.size
@@ -167,11 +147,6 @@ def observe(
     """Return the measurements that depend on the free parameters: outcomes of laws, and tractions.
 
     An outcome depends on the numbers of its law and on all that changes the contact, the traction on the latter only.
-
-    Raises
-    ------
-    FitError
-        If the tests lack a measurement or condition.
     """
     of_contact = free.of_contact
     check_loads_stay(pipeline, "fit", of_contact)

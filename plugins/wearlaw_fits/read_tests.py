@@ -61,13 +61,7 @@ def read_tests(
 
 
 def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
-    """Return the text of a CSV file, or of shipped tests by their name.
-
-    Raises
-    ------
-    DataError
-        If there is no such file and no such tests, or the file is not text.
-    """
+    """Return the text of a CSV file, or of shipped tests by their name."""
     found = loader.installed()
     if path_or_name in found["test set"].providers:
         text: str = found.find("test set", str(path_or_name))
@@ -87,13 +81,7 @@ def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
 def parse_tests(
     text: str, name: str, outcomes: Collection[str] = (), sep: str | None = None, decimal: str = "."
 ) -> WearTests:
-    """Return the tests of a CSV text; its `name` stands in errors, and for the source of tests that state none.
-
-    Raises
-    ------
-    DataError
-        If the contents are wrong. The message names all faults.
-    """
+    """Return the tests of a CSV text; its `name` stands in errors, and for the source of tests that state none."""
     return _checked(wl.read_table(io.StringIO(text), sep=sep, decimal=decimal), name, outcomes)
 
 

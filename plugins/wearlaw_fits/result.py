@@ -18,12 +18,14 @@ import tomli_w
 from wearlaw.arrays.array import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError, OutputError, shown
-from wearlaw.models.law import Law
+from wearlaw.models.law import WEAR, Law
+from wearlaw.plugins import loader
 from wearlaw.plugins.fields import specification
 from wearlaw.settings.text_files import reason_of
 from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor, symbol
 from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw.version import __version__
 from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import SAME, LackOfFit
 from wearlaw_fits.observations import TRACTION, Observations, Scatter, wear_index_density
@@ -57,14 +59,10 @@ class Fit:
         Ends of the intervals, by `interval_method`.
     covariance_intervals : dict of str to (Quantity, Quantity)
         Ends of the intervals by Student's t from the covariance.
-    interval_method : str
-        "studentised bootstrap", or "Student's t" without a bootstrap.
     confidence : float
         Confidence level of the intervals.
     covariance : ndarray, (p, p)
         Of the values in SI, in the order of `parameters`, from the linearised model.
-    law : Law or None
-        The law with the fitted parameters; None if the pipeline has no law, or several, which are `predict.laws`.
     predict : Pipeline
         The pipeline with the fitted laws and stages.
     tests : WearTests
@@ -78,8 +76,6 @@ class Fit:
         Akaike's information criterion; only differences between laws fitted to the same tests matter.
     samples : dict of str to Quantity, (replicates,)
         The parameters of the bootstrap replicates.
-    provenance : dict
-        Versions, tests, settings and sums.
     observations : tuple of Observations
         The measurements with their pipeline, and the fitted friction coefficient.
     lack_of_fit : tuple of LackOfFit
@@ -91,20 +87,46 @@ class Fit:
     parameters: dict[str, Quantity]
     intervals: dict[str, tuple[Quantity, Quantity]]
     covariance_intervals: dict[str, tuple[Quantity, Quantity]]
-    interval_method: str
     confidence: float
     covariance: Array
-    law: Law | None
     predict: Pipeline[...]
     tests: WearTests
     scatter: Scatter
     chi2: float
     aic: float
     samples: dict[str, Quantity]
-    provenance: Mapping[str, Any]
     observations: tuple[Observations, ...]
     lack_of_fit: tuple[LackOfFit, ...]
     settings: Mapping[str, Any]
+
+    @property
+    def law(self) -> Law | None:
+        """The law with the fitted parameters; None if the pipeline has no law, or several, which are `predict.laws`."""
+        return self.predict.laws[0] if len(self.predict.laws) == 1 else None
+
+    @property
+    def interval_method(self) -> str:
+        """How `intervals` were made: "studentised bootstrap", or "Student's t" without a bootstrap."""
+        return "studentised bootstrap" if self.samples else "Student's t"
+
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """Versions, stages with their fitted numbers, tests, settings and sums, as a TOML table."""
+        found, model = loader.installed(), self.predict.contact_model
+        return {
+            "wearlaw": __version__,
+            "laws": {law.name: found[law.kind].distribution(law.name, type(law)) for law in self.predict.laws},
+            "contact_model": found["contact model"].distribution(model.name, type(model)),
+            "stages": [specification(stage) for stage in self.predict.stages],
+            "tests": self.tests.source,
+            "measurements": {one.observable: one.measured.size for one in self.observations},
+            "free": list(self.parameters),
+            "scatter": self.scatter,
+            "chi2": self.chi2,
+            "seed": self.settings["seed"],
+            "bootstrap": len(next(iter(self.samples.values()), ())),
+            "confidence": self.confidence,
+        }
 
     @property
     def standard_errors(self) -> dict[str, Quantity]:
@@ -141,43 +163,35 @@ class Fit:
 
         The ratio is NaN unless both values are positive.
         """
-        rows = []
+        frames = []
         for one in self.observations:
             predicted = self.fitted(one)
-            shown = one.unit
             ratio = np.full(predicted.shape, np.nan)
             np.divide(predicted, one.measured, out=ratio, where=(predicted > 0.0) & (one.measured > 0.0))
-            rows.append(
-                pd.DataFrame(
-                    {
-                        "label": one.tests.labels,
-                        "observable": one.head,
-                        "creepage [%]": from_si(one.problem.creepage, UNITS["creepage"]).magnitude,
-                        "measured": from_si(one.measured, shown).magnitude,
-                        "predicted": from_si(predicted, shown).magnitude,
-                        "residual": one.in_shown_unit(predicted),
-                        "predicted/measured": ratio,
-                    }
-                )
-            )
-        return pd.concat(rows, ignore_index=True)
+            columns = {
+                "label": one.tests.labels,
+                "observable": f"{one.observable} [{one.unit}]" if one.unit else one.observable,
+                "creepage [%]": in_unit(one.problem.creepage, UNITS["creepage"]),
+                "measured": in_unit(one.measured, one.unit),
+                "predicted": in_unit(predicted, one.unit),
+                "residual": one.in_shown_unit(predicted),
+                "predicted/measured": ratio,
+            }
+            frames.append(pd.DataFrame(columns))
+        return pd.concat(frames, ignore_index=True)
 
     def table(self) -> pd.DataFrame:
         """Return the parameters with their intervals, a row for each."""
-        rows = []
-        for name, value in self.parameters.items():
-            low, high = self.intervals[name]
-            rows.append(
-                {
-                    "parameter": name,
-                    "value": value.magnitude,
-                    "low": low.magnitude,
-                    "high": high.magnitude,
-                    "standard_error": self.standard_errors[name].magnitude,
-                    "unit": symbol(value.units, "~C"),
-                }
-            )
-        return pd.DataFrame(rows)
+        values = self.parameters.values()
+        columns = {
+            "parameter": list(self.parameters),
+            "value": [value.magnitude for value in values],
+            "low": [low.magnitude for low, _ in self.intervals.values()],
+            "high": [high.magnitude for _, high in self.intervals.values()],
+            "standard_error": [error.magnitude for error in self.standard_errors.values()],
+            "unit": [symbol(value.units, "~C") for value in values],
+        }
+        return pd.DataFrame(columns)
 
     def to_toml(self, path: str | os.PathLike[str]) -> None:
         """Write the fitted law and its provenance to a file that `read_law` reads.
@@ -199,12 +213,10 @@ class Fit:
         text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": self.provenance})
         temporary = target.with_name(f".{uuid4().hex}")  # short, since the name may be as long as names can be
         try:
-            try:
-                temporary.write_text(text, encoding="utf-8", newline="\n")
-                os.replace(temporary, target)
-            finally:
-                temporary.unlink(missing_ok=True)
-        except (OSError, ValueError) as error:
+            temporary.write_text(text, encoding="utf-8", newline="\n")
+            os.replace(temporary, target)
+        except OSError as error:
+            temporary.unlink(missing_ok=True)
             raise OutputError(f"cannot write {shown(target)}: {reason_of(error)}") from None
 
     def figure_data(self) -> FigureData:
@@ -248,7 +260,7 @@ class Fit:
 
     def _head(self) -> str:
         degrees = sum(one.measured.size for one in self.observations) - len(self.parameters)
-        counts = " and ".join(f"{one.measured.size} {one.plural}" for one in self.observations)
+        counts = " and ".join(f"{one.measured.size} {_plural(one.observable)}" for one in self.observations)
         return f"Fit to {counts}, {degrees} degrees of freedom, {self.scatter} scatter"
 
     def _lines(self) -> Iterator[tuple[str, str]]:
@@ -263,6 +275,10 @@ class Fit:
             of = f" of {name_of(one.observable)}" if len(self.observations) > 1 else ""
             yield "lack of fit", f"{'yes' if one.poor else 'none'}{of}: {one}"
         yield "intervals", f"{self.confidence:.0%}, {self.interval_method}"
+
+
+def _plural(observable: str) -> str:
+    return f"{observable.replace('_', ' ')}s" if observable in (WEAR, TRACTION) else f"values of {name_of(observable)}"
 
 
 def _panel(fit: Fit, one: Observations) -> Panel:
@@ -291,7 +307,11 @@ def _panel(fit: Fit, one: Observations) -> Panel:
         at_tests, along = values, _finer(values[order])
         x = PlotAxis(label(name, units={name: unit}))
     measured = Curve("measured", at_tests, in_unit(one.measured, one.unit), colour=BLACK, points=True)
-    return Panel(x, PlotAxis(one.label, x.scale), (_curve(fit, one, problem, along), measured))
+    return Panel(
+        x,
+        PlotAxis(one.label, x.scale),
+        (_curve(fit, one, problem, along), measured),
+    )
 
 
 def _parity(one: Observations, fitted: Array) -> Panel:

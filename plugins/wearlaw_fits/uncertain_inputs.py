@@ -98,40 +98,20 @@ Uncertain: TypeAlias = UncertainInput | UncertainFit
 
 
 def of_fit(fit: Fit, conditions: Mapping[str, Any]) -> UncertainFit:
-    """Return the parameters of a fit as an input.
-
-    Raises
-    ------
-    InputError
-        If the fit has no bootstrap replicates.
-    """
+    """Return the parameters of a fit as an input."""
     if not fit.samples:
         raise InputError("the fit has no replicates to draw from; fit it with a bootstrap, as in bootstrap=1000")
     return UncertainFit(fit, FRICTION in fit.samples and conditions.get(FRICTION) is None)
 
 
 def of_condition(name: str, given: Distribution) -> UncertainInput:
-    """Return a condition as an input, in the unit of the distribution's first number.
-
-    Raises
-    ------
-    InputError
-        If the distribution is impossible, such as with numbers of two dimensions.
-    """
+    """Return a condition as an input, in the unit of the distribution's first number."""
     unit = symbol(given.first.units, "~C") if isinstance(given.first, pint.Quantity) else None
     return UncertainInput(name, str(given), given, {name: ends_in_si(name, given, unit)}, unit)
 
 
 def of_numbers(predict: Pipeline[...], kind: Kind, given: Mapping[str, Any]) -> list[UncertainInput]:
-    """Return distributed numbers of the laws or stages of a pipeline as inputs, by their names as in `place_of`.
-
-    Raises
-    ------
-    InputError
-        If no law or stage has such a number, several have it, or its distribution is impossible.
-    UnitError
-        If a distribution has the wrong unit.
-    """
+    """Return distributed numbers of the laws or stages of a pipeline as inputs, by their names as in `place_of`."""
     found = []
     for name, one in given.items():
         try:
@@ -146,15 +126,7 @@ def of_numbers(predict: Pipeline[...], kind: Kind, given: Mapping[str, Any]) -> 
 
 
 def parameter(name: str, given: object, part: Law | Stage) -> tuple[dict[str, Ends], Distribution]:
-    """Return the two numbers in SI for each field of a law or stage that an uncertain number moves, and how it moves.
-
-    Raises
-    ------
-    InputError
-        If there is no such number or no published range for it, or the distribution is impossible.
-    UnitError
-        If the distribution has the wrong unit.
-    """
+    """Return the two numbers in SI for each field of a law or stage that an uncertain number moves, and how."""
     if isinstance(given, PublishedRange):
         return _published(name, part), uniform(0.0, 1.0)
     if not isinstance(given, Distribution):
@@ -172,24 +144,14 @@ def parameter(name: str, given: object, part: Law | Stage) -> tuple[dict[str, En
 
 
 def ends_in_si(name: str, given: Distribution, unit: str | None) -> Ends:
-    """Return the two numbers of a distribution in SI; without a unit they are coefficients.
-
-    Raises
-    ------
-    InputError
-        If the distribution is impossible or has the wrong unit.
-    """
+    """Return the two numbers of a distribution in SI; without a unit they are coefficients."""
 
     def in_si(value: Any) -> float:
         if unit is None:
             return float(value if isinstance(value, float) else coefficient(value, name))
         return float(Unit(unit, positive=False).si(value, name))
 
-    first = in_si(given.first)
-    second = float(given.second) if given.kind == "lognormal" else in_si(given.second)
-    if fault := given.fault():
-        raise InputError(f"{name}: {fault}")
-    return first, second
+    return in_si(given.first), float(given.second) if given.kind == "lognormal" else in_si(given.second)
 
 
 def _published(name: str, part: Law | Stage) -> dict[str, Ends]:
