@@ -18,7 +18,7 @@ from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named
 from wearlaw_fits.fit import fit as fit_parameters
-from wearlaw_fits.free_parameters import FRICTION
+from wearlaw_fits.named_numbers import FRICTION
 from wearlaw_fits.pairs import Pair, compose
 from wearlaw_fits.read_tests import read_tests
 from wearlaw_fits.result import Fit

@@ -29,8 +29,8 @@ from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
 from wearlaw.units.variables import label, name_of, readable
 from wearlaw_fits.agreement import Agreement, agreement
 from wearlaw_fits.fit import fit as refit
-from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import repeats
+from wearlaw_fits.named_numbers import FRICTION
 from wearlaw_fits.observations import TRACTION, test_names
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests, expect_tests

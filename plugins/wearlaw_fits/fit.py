@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from wearlaw.arrays.array import Array, steadily
 from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown, warn
 from wearlaw.models.law import Calibration, named_outcomes
+from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import warn_of_parameters
 from wearlaw.pipeline.pipeline import Pipeline, Rig
@@ -22,7 +23,7 @@ from wearlaw.pipeline.ranges import overload_of
 from wearlaw.settings.configuration import known_name
 from wearlaw.units.quantities import Quantity, QuantityLike, coefficient, in_unit
 from wearlaw.units.variables import UNITS, name_of
-from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
+from wearlaw_fits.free_parameters import FreeParameters, give_bounds
 from wearlaw_fits.intervals import (
     Replicates,
     covariance,
@@ -34,7 +35,7 @@ from wearlaw_fits.intervals import (
 )
 from wearlaw_fits.lack_of_fit import LackOfFit, lack_of_fit, repeats
 from wearlaw_fits.least_squares import Bounds, Solutions, fit_many, search
-from wearlaw_fits.named_numbers import changed_parts, traction_at
+from wearlaw_fits.named_numbers import FRICTION, changed_parts
 from wearlaw_fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests, expect_tests
@@ -158,7 +159,8 @@ def fit(
         if bootstrap:
             replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
         found = _result(task, best, replicates, confidence, settings)
-    overload = task.overload(best)
+    problem = found.observations[0].problem
+    overload = overload_of(problem, integrate_forces(found.predict.staged_model, problem).tangential)
     if overload:
         overload.warn()
     poor = (one.warning for one in found.lack_of_fit if one.poor)
@@ -248,15 +250,6 @@ class _Task:
             )
         return best
 
-    def overload(self, best: Solutions) -> Any:
-        """Return the test that is furthest beyond first yield, with the traction that the best fit predicts."""
-        values = {name: one[0] for name, one in self.free.columns(best.theta).items()}
-        problem = self.observations[0].problem
-        if FRICTION in values:
-            problem = problem.replaced(friction_coefficient=np.full(problem.batch_shape, values[FRICTION]))
-        at_points = {place: np.full(problem.size, values[name]) for name, place in self.free.places.items()}
-        return overload_of(problem, problem.normal_force * traction_at(self.predict, problem, at_points))
-
     def _weigh(self, best: Solutions) -> None:
         """Weigh each kind of measurement by its scatter about the fit."""
         residuals, groups = self.residuals(best), self.groups
@@ -333,8 +326,9 @@ def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Q
 def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observations:
     if FRICTION not in values:
         return one
-    friction = np.broadcast_to(values[FRICTION], one.measured.shape)
-    return dataclasses.replace(one, problem=one.problem.replaced(friction_coefficient=friction))
+    friction = float(values[FRICTION][0])
+    problem = one.problem.replaced(friction_coefficient=np.full(one.measured.shape, friction))
+    return dataclasses.replace(one, conditions={**one.conditions, FRICTION: friction}, problem=problem)
 
 
 def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:

@@ -18,10 +18,7 @@ from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
 from wearlaw.units.registry import symbol
 from wearlaw_fits.allowed_range import allowed_range
 from wearlaw_fits.least_squares import Bounds
-from wearlaw_fits.named_numbers import Place, known_names, part_at, place_of
-
-FRICTION = "friction_coefficient"
-"""The only parameter that is a condition, not a number of a law or stage."""
+from wearlaw_fits.named_numbers import FRICTION, Place, known_names, part_at, place_of
 
 FACTOR = 100.0
 """Default bounds of a parameter: this factor up and down from its first value."""
@@ -40,7 +37,7 @@ class FreeParameters:
     ----------
     names : tuple of str
     places : dict of str to Place
-        Where each number stands in the pipeline, by name; without the friction coefficient.
+        Where each number stands in the pipeline, by name.
     like : tuple of Quantity or float
         The first values, with the units of the parameters.
     first : ndarray, (p,)
@@ -71,14 +68,16 @@ class FreeParameters:
         like: dict[str, Quantity | float] = {}
         ranges: dict[str, tuple[float, float, bool]] = {}
         for name, place in places.items():
+            if place.kind == "condition":
+                assert friction is not None
+                like[name], ranges[name] = float(friction), (-np.inf, np.inf, True)
+                continue
             part = part_at(predict, place)
             like[name] = numbers(part)[place.field]
             least, most, positive = allowed_range(part, place.field)
             if place.kind == "stage" and name not in bounds:  # a share or a factor keeps its sign unless bounds differ
                 positive = positive or number_in_si(like[name]) > 0.0
             ranges[name] = least, most, positive
-        if friction is not None:
-            like[FRICTION], ranges[FRICTION] = float(friction), (-np.inf, np.inf, True)
         for name in bounds:
             if name not in free:
                 raise FitError(
@@ -101,7 +100,7 @@ class FreeParameters:
     @property
     def of_contact(self) -> list[str]:
         """The names of the parameters that change the contact: the friction coefficient and numbers of stages."""
-        return [name for name in self.names if name not in self.places or self.places[name].kind == "stage"]
+        return [name for name, place in self.places.items() if place.kind != "law"]
 
     @property
     def freed_laws(self) -> set[int]:
@@ -142,7 +141,10 @@ class FreeParameters:
 def _places(predict: Pipeline[...], free: tuple[str, ...]) -> dict[str, Place]:
     """Return the places of the free numbers of laws and stages by name."""
     places: dict[str, Place] = {}
-    for name in (one for one in free if one != FRICTION):
+    for name in free:
+        if name == FRICTION:
+            places[name] = Place("condition", 0, name)
+            continue
         try:
             place = place_of(predict, name, others=[FRICTION])
         except InputError as error:
@@ -152,7 +154,7 @@ def _places(predict: Pipeline[...], free: tuple[str, ...]) -> dict[str, Place]:
             inner = [one for one in own if one.startswith(f"{place.field}.")]
             raise FitError(f"free: {shown(name)} is several numbers; name some of {', '.join(inner)}")
         places[name] = place
-    if not free or len(set(places.values())) + (FRICTION in free) < len(free):
+    if not free or len(set(places.values())) < len(free):
         known = ", ".join([*known_names(predict), FRICTION])
         raise FitError(f"free: name each parameter once, at least one of {known}; got {shown(free)}")
     return places

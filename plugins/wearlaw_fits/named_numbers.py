@@ -21,12 +21,18 @@ from wearlaw.settings.parameters import changed, number_like, numbers
 
 PartT = TypeVar("PartT", bound=Stage | Law)
 
-Kind: TypeAlias = Literal["stage", "law"]
+Kind: TypeAlias = Literal["stage", "law", "condition"]
+
+FRICTION = "friction_coefficient"
+"""The only number of a fit that is a condition, not a number of a law or stage."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """The place of a number in a pipeline: a stage or a law by its index, and the number by its name there."""
+    """The place of a number in a pipeline: a stage or a law by its index, and the number by its name there.
+
+    The friction coefficient is a condition, of index 0.
+    """
 
     kind: Kind
     index: int
@@ -120,13 +126,14 @@ def outcomes_at(
     problem : Problem
         With batch shape (points,).
     values : mapping of Place to ndarray, (points,)
-        Numbers of stages and laws in SI.
+        Numbers of stages and laws in SI, and the friction coefficient.
     indices : sequence of int
         The laws.
     on_block : callable, optional
         As in `integrate_laws`.
     """
     laws = [predict.laws[index] for index in indices]
+    problem = problem.replaced(**of_part(values, "condition", 0))
     found = np.empty((len(laws), problem.size))
     for model, members in _staged_models(predict, values):
         p = [
@@ -139,6 +146,7 @@ def outcomes_at(
 
 def traction_at(predict: Pipeline[...], problem: Problem, values: Mapping[Place, Array]) -> Array:
     """Return T/N, (points,), at operating points with numbers of their own; see `outcomes_at`."""
+    problem = problem.replaced(**of_part(values, "condition", 0))
     found = np.empty(problem.size)
     for model, members in _staged_models(predict, values):
         part = problem[members]

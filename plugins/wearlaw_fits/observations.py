@@ -18,8 +18,8 @@ from wearlaw.numerics.integrate import integrate_forces, patch_area
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, label, name_of
-from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
-from wearlaw_fits.named_numbers import Place, check_loads_stay, outcomes_at, traction_at
+from wearlaw_fits.free_parameters import FreeParameters, give_bounds
+from wearlaw_fits.named_numbers import FRICTION, Place, check_loads_stay, outcomes_at, traction_at
 from wearlaw_fits.wear_tests import WearTests
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
@@ -94,8 +94,6 @@ class Observations:
         problem = self.problem if problem is None else problem
         sets, points = len(next(iter(values.values()))), problem.size
         problem = problem[np.tile(np.arange(points), sets)]
-        if FRICTION in values:
-            problem = problem.replaced(friction_coefficient=np.repeat(values[FRICTION], points))
         at_points = {place: np.repeat(values[name], points) for name, place in self.places.items()}
         try:
             if self.law is None:

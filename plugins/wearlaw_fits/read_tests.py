@@ -14,8 +14,8 @@ from wearlaw.errors import DataError, InputError, UnitError, did_you_mean, shown
 from wearlaw.pipeline.datasets import names_in
 from wearlaw.plugins import loader
 from wearlaw.settings.text_files import read_text
-from wearlaw_fits.wear_tests import COLUMNS, Values, WearTests, head
-from wearlaw_tables import Column, Table
+from wearlaw_fits.wear_tests import COLUMNS, Values, WearTests
+from wearlaw_tables import Table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -90,7 +90,7 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     table.label = f"the tests {shown(Path(name))}"
     conditions = {name for rig in loader.rigs().values() for name in rig.conditions()}
     measured = {*outcomes, *(law.outcome.name for law in loader.laws().values())}
-    wrong = list(_faulty_heads(table, {*conditions, *measured}))
+    wrong = list(_unknown(table, {*conditions, *measured}))
     if wrong:
         raise DataError(f"{table.label} are wrong in:", wrong)
     given: dict[str, Values] = {}
@@ -119,31 +119,23 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     )
 
 
-def _faulty_heads(table: Table, known: Collection[str]) -> Iterator[str]:
-    """Yield what is wrong with single columns of tests."""
+def _unknown(table: Table, known: Collection[str]) -> Iterator[str]:
+    """Yield what is wrong with columns that are neither of tests nor conditions or outcomes of installed rigs or laws.
+
+    Another condition of a rig has a unit, and a name unlike those of missing columns.
+    """
     missing = [name for name in (*COLUMNS, *TEXTS) if name not in table.columns]
     for column in table.columns.values():
-        where = f"column '{column.head}'"
-        if column.name in COLUMNS:
-            if COLUMNS[column.name].unit and column.unit is None:
-                yield f"{where}: has no unit; write it as '{head(column.name)}'"
-        elif column.name not in TEXTS and not _is_other(column, missing, known):
+        if column.name in (*COLUMNS, *TEXTS, *known):
+            continue
+        of_body = column.name.startswith("wear_rate_")  # the wear rate of one body
+        alike = [name for name in missing if not (of_body and name == "wear_rate")]
+        if column.unit is None or get_close_matches(column.name, alike, n=1):
             yield (
-                f"{where}: unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])} The columns are"
+                f"column '{column.head}': unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])} The columns are"
                 f" {', '.join([*COLUMNS, *TEXTS])}; another condition of a rig has its unit in square brackets, as in"
                 " 'mass [kg]'"
             )
-
-
-def _is_other(column: Column, missing: Collection[str], known: Collection[str]) -> bool:
-    """Return whether a column is a condition or an outcome that is not in the table of columns.
-
-    It belongs to an installed rig or law, or has a unit and a name unlike those of missing columns.
-    """
-    if column.name.startswith("wear_rate_"):  # the wear rate of one body
-        missing = [name for name in missing if name != "wear_rate"]
-    unlike = column.unit is not None and not get_close_matches(column.name, missing, n=1)
-    return column.name.isidentifier() and (column.name in known or unlike)
 
 
 def explain_tests(name: str, text: str) -> Iterator[str]:

@@ -26,7 +26,6 @@ from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor, symbol
 from wearlaw.units.variables import UNITS, label, name_of
 from wearlaw.version import __version__
-from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import SAME, LackOfFit
 from wearlaw_fits.observations import TRACTION, Observations, Scatter, wear_index_density
 from wearlaw_fits.wear_tests import WearTests
@@ -237,7 +236,7 @@ class Fit:
     def contact_parameters(self) -> tuple[str, ...]:
         """The fitted parameters that change the contact: the friction coefficient and numbers of stages."""
         places = self.observations[0].places
-        return tuple(name for name in self.parameters if name not in places or places[name].kind == "stage")
+        return tuple(name for name in self.parameters if places[name].kind != "law")
 
     def values_in_si(self, which: Mapping[str, Quantity] | None = None) -> dict[str, Array]:
         """Return the fitted parameters, or others, as SI arrays of one axis."""
@@ -289,12 +288,8 @@ def _panel(fit: Fit, one: Observations) -> Panel:
         return _parity(one, fit.fitted(one))
     name, values = varied[0], numbers[varied[0]]
     order = np.argsort(values, kind="stable")
-    problem = one.pipeline.posed(
-        {other: _between_tests(value, order) for other, value in one.conditions.items()}, of_one_patch="fit"
-    )
-    if FRICTION in fit.parameters:
-        friction = np.full(problem.batch_shape, one.problem.friction_coefficient[0])
-        problem = problem.replaced(friction_coefficient=friction)
+    conditions = {other: _finer(value, order) for other, value in one.conditions.items()}
+    problem = one.pipeline.posed(conditions, of_one_patch="fit")
     if "creepage" in name and one.law is not None and (abs(np.sign(values).sum()) == values.size):
         axis = "wear_index_density"
         at_tests, along = (
@@ -304,7 +299,7 @@ def _panel(fit: Fit, one: Observations) -> Panel:
     else:
         given = one.conditions[name]
         unit = f"{given.units:~P}" if isinstance(given, pint.Quantity) else ""
-        at_tests, along = values, _finer(values[order])
+        at_tests, along = values, _numbers(conditions[name])
         x = PlotAxis(label(name, units={name: unit}))
     measured = Curve("measured", at_tests, in_unit(one.measured, one.unit), colour=BLACK, points=True)
     return Panel(
@@ -327,19 +322,14 @@ def _numbers(value: Any) -> Array:
     return real_array(value.magnitude if isinstance(value, pint.Quantity) else value)
 
 
-def _between_tests(value: Any, order: NDArray[np.intp]) -> Any:
-    """Return a condition of the tests in some order and of points between them; a single value stays."""
+def _finer(value: Any, order: NDArray[np.intp]) -> Any:
+    """Return a condition of the tests in some order, and of points between them; a single value stays."""
     numbers = _numbers(value)
     if numbers.ndim == 0:
         return value
-    finer = _finer(numbers[order])
+    places = np.linspace(0.0, order.size - 1.0, BETWEEN * (order.size - 1) + 1)
+    finer = np.interp(places, np.arange(order.size), numbers[order])
     return Q(finer, str(value.units)) if isinstance(value, pint.Quantity) else finer
-
-
-def _finer(values: Array) -> Array:
-    """Return values and further ones between them."""
-    places = np.arange(values.size, dtype=np.float64)
-    return np.interp(np.linspace(0.0, places[-1], BETWEEN * (values.size - 1) + 1), places, values)
 
 
 def _curve(fit: Fit, one: Observations, problem: Problem, along: Array) -> Curve:

@@ -19,8 +19,7 @@ from wearlaw.settings.parameters import changed, number_like, numbers, numbers_i
 from wearlaw.units.quantities import Unit, coefficient, from_si
 from wearlaw.units.registry import symbol
 from wearlaw_fits.distributions import Distribution, PublishedRange, uniform
-from wearlaw_fits.free_parameters import FRICTION
-from wearlaw_fits.named_numbers import Kind, Place, place_of
+from wearlaw_fits.named_numbers import FRICTION, Kind, Place, place_of
 
 if TYPE_CHECKING:
     from wearlaw_fits.result import Fit
@@ -83,11 +82,13 @@ class UncertainFit:
     def at(self, probability: Array) -> Sampled:
         """Return the values at probabilities."""
         which = np.minimum((probability * self._count).astype(np.intp), self._count - 1)
-        keys: dict[str, str | Place] = dict(self.fit.observations[0].places)
-        if self.takes_friction:
-            keys[FRICTION] = FRICTION
-        samples = self.fit.values_in_si(self.fit.samples)
-        return {key: samples[name][which] for name, key in keys.items()}
+        samples, found = self.fit.values_in_si(self.fit.samples), Sampled()
+        for name, place in self.fit.observations[0].places.items():
+            if place.kind != "condition":
+                found[place] = samples[name][which]
+            elif self.takes_friction:
+                found[name] = samples[name][which]
+        return found
 
     @property
     def _count(self) -> int:
