@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 
 
 @dataclass(frozen=True)

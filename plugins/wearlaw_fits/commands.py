@@ -12,8 +12,8 @@ import click
 
 from wearlaw.errors import FitError, PlasticityWarning, shown
 from wearlaw.models.law import Law
+from wearlaw.parameters import numbers
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.settings.parameters import numbers
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named
@@ -25,7 +25,6 @@ from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.commands import (
     contact_model,
-    echo,
     fields,
     folder_for,
     law_of,
@@ -160,7 +159,7 @@ def fit(
         with notes.of("figure"):
             files = _write_fit(fitted, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
-    echo(repr(fitted))
+    click.echo(repr(fitted))
     print_results(folder, files)
 
 
@@ -268,7 +267,7 @@ def compare(
         with notes.of("figure"):
             files = _write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
-    echo(repr(comparison))
+    click.echo(repr(comparison))
     print_results(folder, files)
 
 

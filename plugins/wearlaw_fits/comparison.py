@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 import pandas as pd
 
-from wearlaw.arrays.array import Array, steady
+from wearlaw.arrays import Array, steady
 from wearlaw.errors import (
     CalibrationWarning,
     FitError,
@@ -18,15 +18,14 @@ from wearlaw.errors import (
     InputError,
     PlasticityWarning,
     RangeWarning,
-    caught_warnings,
     did_you_mean,
     shown,
 )
 from wearlaw.models.law import WEAR, Law, named_outcomes
-from wearlaw.models.model import Model, labels
+from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
-from wearlaw.units.variables import label, name_of, readable
+from wearlaw.units.variables import name_of
 from wearlaw_fits.agreement import Agreement, agreement
 from wearlaw_fits.fit import fit as refit
 from wearlaw_fits.lack_of_fit import repeats
@@ -35,7 +34,8 @@ from wearlaw_fits.observations import TRACTION, test_names
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests, expect_tests
 from wearlaw_output.curves import BLACK, Curve, FigureData
-from wearlaw_output.notes import Notes
+from wearlaw_output.labels import label, labels, readable
+from wearlaw_output.notes import Notes, caught_warnings
 from wearlaw_output.parity import parity_panels
 from wearlaw_output.plot import plot
 from wearlaw_sweeps.progress import Bar

@@ -9,7 +9,7 @@ import numpy as np
 import pint
 import scipy
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.errors import InputError, UnitError, shown
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, parse, real_array, text_of
 

@@ -12,7 +12,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array, steadily
+from wearlaw.arrays import Array, steadily
+from wearlaw.configuration import known_name
 from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown, warn
 from wearlaw.models.law import Calibration, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces
@@ -20,7 +21,6 @@ from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import warn_of_parameters
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.ranges import overload_of
-from wearlaw.settings.configuration import known_name
 from wearlaw.units.quantities import Quantity, QuantityLike, coefficient, in_unit
 from wearlaw.units.variables import UNITS, name_of
 from wearlaw_fits.free_parameters import FreeParameters, give_bounds

@@ -10,10 +10,10 @@ import numpy as np
 import pint
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.errors import FitError, InputError, UnitError, did_you_mean, shown
+from wearlaw.parameters import number_in_si, number_like, numbers
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.settings.parameters import number_in_si, number_like, numbers
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
 from wearlaw.units.registry import symbol
 from wearlaw_fits.allowed_range import allowed_range

@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 
 Model: TypeAlias = Callable[[Array], Array]
 """From parameter sets (sets, p) to predictions (sets, n)."""

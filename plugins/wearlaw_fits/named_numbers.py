@@ -8,7 +8,7 @@ from typing import Any, Literal, TypeAlias, TypeVar
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
 from wearlaw.models.contact_model import ContactModel, Stage
@@ -16,8 +16,8 @@ from wearlaw.models.law import Law
 from wearlaw.numerics.integrate import integrate_forces, integrate_laws
 from wearlaw.numerics.staged import staged
 from wearlaw.numerics.totals import OnBlock, Totals
+from wearlaw.parameters import changed, number_like, numbers
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.settings.parameters import changed, number_like, numbers
 
 PartT = TypeVar("PartT", bound=Stage | Law)
 

@@ -10,17 +10,18 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConfigurationError, FitError, ModelError
 from wearlaw.models.law import WEAR, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, patch_area
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
-from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw.units.variables import UNITS, name_of
 from wearlaw_fits.free_parameters import FreeParameters, give_bounds
 from wearlaw_fits.named_numbers import FRICTION, Place, check_loads_stay, outcomes_at, traction_at
 from wearlaw_fits.wear_tests import WearTests
+from wearlaw_output.labels import label
 
 Scatter: TypeAlias = Literal["relative", "absolute", "uncertainty"]
 """Scatter of measurements: by a factor, by an amount, or by their stated uncertainties."""

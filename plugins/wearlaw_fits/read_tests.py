@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import wearlaw as wl
+from wearlaw import loader
 from wearlaw.errors import DataError, InputError, UnitError, did_you_mean, shown
-from wearlaw.pipeline.datasets import names_in
-from wearlaw.plugins import loader
-from wearlaw.settings.text_files import read_text
+from wearlaw.text_files import read_text
 from wearlaw_fits.wear_tests import COLUMNS, Values, WearTests
+from wearlaw_output.datasets import names_in
 from wearlaw_tables import Table
 
 if TYPE_CHECKING:

@@ -15,21 +15,22 @@ import pandas as pd
 import pint
 import tomli_w
 
-from wearlaw.arrays.array import Array
+from wearlaw import loader
+from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError, OutputError, shown
+from wearlaw.fields import specification
 from wearlaw.models.law import WEAR, Law
-from wearlaw.plugins import loader
-from wearlaw.plugins.fields import specification
-from wearlaw.settings.text_files import reason_of
+from wearlaw.text_files import reason_of
 from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor, symbol
-from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw.units.variables import UNITS, name_of
 from wearlaw.version import __version__
 from wearlaw_fits.lack_of_fit import SAME, LackOfFit
 from wearlaw_fits.observations import TRACTION, Observations, Scatter, wear_index_density
 from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw_output.labels import label
 from wearlaw_output.parity import parity_panels
 from wearlaw_output.plot import plot
 

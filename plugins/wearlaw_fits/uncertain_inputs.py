@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.contact_model import Stage
 from wearlaw.models.law import Law
+from wearlaw.parameters import changed, number_like, numbers, numbers_in_si
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.settings.parameters import changed, number_like, numbers, numbers_in_si
 from wearlaw.units.quantities import Unit, coefficient, from_si
 from wearlaw.units.registry import symbol
 from wearlaw_fits.distributions import Distribution, PublishedRange, uniform

@@ -12,15 +12,14 @@ import numpy as np
 import pandas as pd
 import scipy
 
-from wearlaw.arrays.array import Array, steadily
-from wearlaw.contact.conditions import Known, broadcast
+from wearlaw.arrays import Array, steadily
+from wearlaw.contact.conditions import broadcast
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
-from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
-from wearlaw.units.variables import UNITS, label, name_of
+from wearlaw.units.variables import UNITS, name_of
 from wearlaw_fits.distributions import Distribution, PublishedRange
 from wearlaw_fits.named_numbers import Place, check_loads_stay, of_part, outcomes_at, part_at
 from wearlaw_fits.result import Fit
@@ -33,8 +32,11 @@ from wearlaw_fits.uncertain_inputs import (
     of_fit,
     of_numbers,
 )
+from wearlaw_output.conditions import Known
 from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis, Shade
+from wearlaw_output.labels import label
 from wearlaw_output.plot import plot
+from wearlaw_sweeps.evaluation import expect_pipeline
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

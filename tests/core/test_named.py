@@ -14,7 +14,7 @@ import pytest
 import wearlaw as wl
 from tests.core.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
-from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
+from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import Case, case_schema, case_text, load_case, written  # private: a case without its files
 from wearlaw_studies.study import provenance, run  # private: a case run without its files
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
 import numpy as np
 from pydantic import Field, model_validator
 
-from wearlaw.arrays.array import Array, extremes, type_name
+from wearlaw.arrays import Array, extremes, type_name
+from wearlaw.configuration import Configuration
 from wearlaw.contact.contact import (
     LAW_VARIABLES,
     PATCH_VARIABLES,
@@ -31,8 +32,7 @@ from wearlaw.errors import (
 )
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.model import Blame, Model, check_scale, fault
-from wearlaw.settings.configuration import Configuration
-from wearlaw.settings.parameters import numbers_in_si
+from wearlaw.parameters import numbers_in_si
 from wearlaw.units.quantities import WEAR_RATE, Quantity, Unit, from_si
 from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import UNITS, VARIABLES
@@ -243,10 +243,6 @@ class Law(Model):
                     ' outcome = wl.Outcome("rcf_damage", unit="", of="patch"), or derive it from wl.WearLaw'
                 )
             check_scale(cls, SCALES)
-            known = cls.__pydantic_fields__
-            for name in Law.model_fields:
-                if known[name].default is None:
-                    known[name] = known.pop(name)  # last where fields are shown
 
     def check_variables(self) -> None:
         """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` names no variable."""

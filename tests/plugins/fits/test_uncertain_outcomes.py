@@ -15,8 +15,10 @@ from tests.plugins.fits.fits import EXACT
 from tests.plugins.fits.test_fit_stages import Rubbed, Softer
 from wearlaw import Q
 from wearlaw_fits.pairs import Pair  # private: for its type
-from wearlaw_studies.uncertainty import uncertainty_of  # private: no public name
-from wearlaw_studies.uncertainty_files import write_uncertainty  # private: no public name
+from wearlaw_studies.uncertainty import (
+    uncertainty_of,  # private: no public name
+    write_uncertainty,  # private: no public name
+)
 
 EPS = float(np.finfo(np.float64).eps)
 GIVEN: Any = {"max_pressure": Q(1000, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}  # full slip

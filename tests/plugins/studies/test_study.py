@@ -16,7 +16,7 @@ from tests.core import cases
 from tests.core.cases import InstallModel, case
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_studies.notes import grouped  # private: what `wearlaw run` prints of notes
+from wearlaw_output.notes import grouped  # private: what commands print of notes
 
 LOADS = ["1000 MPa", "1500 MPa"]
 FRICTIONS = [0.3, 0.4, 0.5]
@@ -198,28 +198,9 @@ def test_what_is_left_out_and_every_warning_is_noted_once(study: wl.Study) -> No
     assert len(study.notes) == len(set(study.notes)) == 2 + len(beyond)
 
 
-def test_printed_notes_name_all_parts_of_a_case_that_share_a_remark_and_each_source_once() -> None:
-    pressure, speed = (f"wear law 'usfd' has a known range of mean {name} from 1 to 2" for name in ("pressure", "slip"))
-    source, other = " (Lewis (2004), Table 1)", " (Jendel (2002))"
-    law = "wear law 'kth' has a known range of mean slip from 1 to 2"
-    said = grouped([
-        f"sweep 'a': {pressure}{source}; 1 of 3 points lies outside, as far as 4",
-        f"sweep 'a': {speed}{source}; 2 of 3 points lie outside, as far as 5",
-        f"profile 'p': {pressure}{source}; 1 of 1 points lies outside, as far as 6",
-        "profile 'p': check it",
-        "profile 'q': check it",
-        "section 's': check it",
-        f"profile 'p': {law}{other}; 1 of 1 points lies outside, as far as 7",
-        "usfd on exact: was fitted for patch means",
-    ])  # fmt: skip
-    assert said == [
-        "usfd on exact: was fitted for patch means",
-        f"{pressure}{source}; sweep 'a': 1 of 3 points lies outside, as far as 4; profile 'p': 1 of 1 points lies"
-        " outside, as far as 6",
-        f"sweep 'a': {speed} (source above); 2 of 3 points lie outside, as far as 5",
-        "profile 'p', profile 'q' and section 's': check it",
-        f"profile 'p': {law}{other}; 1 of 1 points lies outside, as far as 7",
-    ]
+def test_printed_notes_name_all_subjects_of_a_remark_once() -> None:
+    said = grouped(["a: check it: now", "results.csv is left out", "b: check it", "c: check it: now"])
+    assert said == ["a, c: check it: now", "results.csv is left out", "b: check it"]
 
 
 def test_a_profile_that_no_model_resolves_is_left_out_and_noted() -> None:
