@@ -170,14 +170,7 @@ class WearTests:
         subject: str,
         place: Callable[[str, int], str],
     ) -> Self:
-        """Return tests from columns of one length, with the names of those that are outcomes.
-
-        Raises
-        ------
-        DataError
-            If columns are missing or exclude each other, or a value has the wrong unit, sign or size; the message names
-            the `subject`, and the `place` of each value.
-        """
+        """Return tests from columns of one length, with the names of those that are outcomes."""
         wrong = faulty_names(given, outcomes)
         columns: dict[str, Array] = {}
         for name in COLUMNS:
