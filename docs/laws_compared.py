@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from wearlaw import Array, Q
-from wearlaw.plugins.loader import installed
+from wearlaw.loader import installed
 from wearlaw_output.drawing import PALETTE, STYLE, WIDTH
 
 DPI = 110

@@ -12,10 +12,11 @@ from typing import Any, NamedTuple
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from wearlaw.plugins.loader import installed
-from wearlaw.settings.configuration import field_docstrings
-from wearlaw.settings.parameters import numbers
-from wearlaw.units.variables import UNITS, VARIABLES, label
+from wearlaw.configuration import field_docstrings
+from wearlaw.loader import installed
+from wearlaw.parameters import numbers
+from wearlaw.units.variables import UNITS, VARIABLES
+from wearlaw_output.labels import label
 from wearlaw_wheelset._rig import WheelsetProblem
 
 TABLE = Path(__file__).parent / "nomenclature.csv"

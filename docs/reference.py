@@ -23,7 +23,7 @@ TITLES = {
     "wearlaw_wheel_rail": "A wheel on a rail",
     "wearlaw_archard": "Wear coefficients of papers",
     "contact": "Problems and contacts",
-    "plugins": "Looking up models",
+    "loader": "Looking up models",
     "pipeline": "Pipelines and predictions",
     "wearlaw_sweeps": "Sweeps",
     "wearlaw_fits": "Tests, fits, comparisons, uncertainties",
@@ -36,13 +36,16 @@ TITLES = {
     "wearlaw_explore": "Explore",
     "models": "Base classes for plugins",
     "hookspecs": "Hooks",
-    "settings": "Settings",
+    "configuration": "Settings",
     "arrays": "Arrays and compiled loops",
     "wearlaw_kit": "The conformance kit",
     "errors": "Errors and warnings",
     "version": "Version",
 }
 """Sections of the page in their order, each of the names that come from one package."""
+
+TOGETHER = {"fields": "loader", "text_files": "configuration", "kernels": "arrays"}
+"""Modules whose names stand in the section of another."""
 
 
 class Entry(NamedTuple):
@@ -102,7 +105,8 @@ def entries() -> Iterator[Entry]:
     }
     for name in sorted(wl.__all__, key=list(sources).index):
         package = sources[name].split(".")
-        yield Entry("wearlaw", name, package[1] if package[0] == "wearlaw" else package[0], sources[name])
+        section = package[1] if package[0] == "wearlaw" else package[0]
+        yield Entry("wearlaw", name, TOGETHER.get(section, section), sources[name])
     for plugin in OTHERS:
         for name in importlib.import_module(plugin).__all__:
             if name not in wl.__all__:

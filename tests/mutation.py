@@ -59,7 +59,7 @@ TESTS = {
     "wearlaw.contact.hertz": "core/test_hertz.py core/test_unlike_materials.py",
     "wearlaw.contact.hertz_ellipse": "core/test_hertz_ellipse.py",
     "wearlaw.numerics.splits": "core/test_splits.py",
-    "wearlaw.settings.parameters": "core/test_varying.py",
+    "wearlaw.parameters": "core/test_varying.py",
     "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py plugins/fits/test_uncertainty.py"
     " plugins/fits/test_uncertainty_refusals.py plugins/sweeps/test_inverse.py"
     " plugins/wheel_rail/test_wheel_rail.py plugins/wheel_rail/test_result.py core/test_models.py",

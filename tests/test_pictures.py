@@ -16,7 +16,7 @@ import wearlaw as wl
 from docs import choosing, pictures, regimes
 from docs.conventions import conventions
 from tests.environments import ROOT
-from wearlaw.plugins.loader import installed  # private: all that is installed, by kind
+from wearlaw.loader import installed  # private: all that is installed, by kind
 
 
 def test_the_theory_states_the_errors_that_are_computed() -> None:

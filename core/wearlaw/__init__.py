@@ -10,8 +10,8 @@
 import sys as _sys
 from typing import TYPE_CHECKING
 
-from wearlaw.arrays.array import Array
-from wearlaw.arrays.kernels import accelerate, accelerated, compiled_loop
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
 from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
 from wearlaw.contact.conditions import Coefficient, Condition, Creepage, FallingFriction, Friction
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
@@ -44,24 +44,10 @@ from wearlaw.errors import (
     shown,
 )
 from wearlaw.extras import load as _load
+from wearlaw.fields import ContactModelField, MaterialField, WearLawField, read_law
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
-from wearlaw.models.contact_model import (
-    ContactModel,
-    CreepForceModel,
-    FieldVariable,
-    Forces,
-    LineContactModel,
-    Scale,
-    Solve,
-    Stage,
-)
-from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome, WearLaw
-from wearlaw.models.model import Claim
-from wearlaw.models.reader import Reader
-from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.pipeline.prediction import Prediction
-from wearlaw.plugins.fields import ContactModelField, MaterialField, WearLawField
-from wearlaw.plugins.loader import (
+from wearlaw.kernels import accelerate, accelerated, compiled_loop
+from wearlaw.loader import (
     contact_model,
     contact_models,
     law,
@@ -78,8 +64,22 @@ from wearlaw.plugins.loader import (
     wear_law,
     wear_laws,
 )
-from wearlaw.settings.configuration import Configuration
-from wearlaw.settings.text_files import beside, read_file
+from wearlaw.models.contact_model import (
+    ContactModel,
+    CreepForceModel,
+    FieldVariable,
+    Forces,
+    LineContactModel,
+    Scale,
+    Solve,
+    Stage,
+)
+from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome, WearLaw
+from wearlaw.models.model import Claim
+from wearlaw.models.reader import Reader
+from wearlaw.pipeline.pipeline import Pipeline, Rig
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.text_files import beside, read_file
 from wearlaw.units.quantities import (
     Density,
     Length,
@@ -238,7 +238,6 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from wearlaw.plugins.law_files import read_law
     from wearlaw_archard.coefficients import wear_coefficient
     from wearlaw_contact_files._reading import read_contact
     from wearlaw_explore._page import explore
@@ -262,7 +261,6 @@ if TYPE_CHECKING:
 
 _LATE = {
     "wearlaw_sweeps.inverse": ("creepage_for",),
-    "wearlaw.plugins.law_files": ("read_law",),
     "wearlaw_archard.coefficients": ("wear_coefficient",),
     "wearlaw_contact_files._reading": ("read_contact",),
     "wearlaw_explore._page": ("explore",),
@@ -283,7 +281,7 @@ _LATE = {
     "wearlaw_twin_disc": ("Disc", "TwinDisc"),
     "wearlaw_wheel_rail": ("WheelRail",),
 }
-"""Public names that come from plugins, or that few scripts need, by the module that is imported at their first use."""
+"""Public names that come from plugins, by the module that is imported at their first use."""
 
 
 def __getattr__(name: str) -> object:

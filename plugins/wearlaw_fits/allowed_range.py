@@ -8,7 +8,7 @@ from typing import Any, get_args
 import numpy as np
 from pydantic.fields import FieldInfo
 
-from wearlaw.settings.configuration import Configuration
+from wearlaw.configuration import Configuration
 from wearlaw.units.quantities import Unit
 from wearlaw.units.registry import unit_in_si
 

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw_fits.least_squares import Bounds, Model, Solutions, fit_many
 
 BATCH = 250

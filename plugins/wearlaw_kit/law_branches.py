@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import PATCH_VARIABLES, Contact
 from wearlaw.models.law import BreakpointMap, Law
 from wearlaw_kit.bisection import Indices, find_jumps, find_kinks, lost_digits

@@ -12,12 +12,12 @@ from typing import Any, TypeAlias
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import ConditionsError, InputError, UnitError, WearlawError, described
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import Q, Quantity, parse, scalar_si
 from wearlaw_kit.bisection import lost_digits
 from wearlaw_kit.examples import assert_close

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 
 FigureFormat = Literal["png", "pdf", "svg"]
 """The format of a figure's file."""

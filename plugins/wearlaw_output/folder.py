@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from wearlaw.errors import OutputError, shown
-from wearlaw.settings.text_files import reason_of
+from wearlaw.text_files import reason_of
 
 FILES = ".wearlaw-files"
 """List of the files that a command wrote into a folder; another run replaces no others."""

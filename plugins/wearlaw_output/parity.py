@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw_output.curves import BLACK, Curve, Panel, PlotAxis
 
 MARGIN = 0.05

@@ -13,20 +13,20 @@ from typing import Any, TypeGuard
 import click
 import pint
 
+from wearlaw import loader
+from wearlaw.configuration import Configuration, field_docstrings
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError, PluginWarning, UnknownModelError
 from wearlaw.extras import load
+from wearlaw.fields import is_law_file, read_law
 from wearlaw.hookspecs import Command
+from wearlaw.loader import Preset
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.model import Model
 from wearlaw.models.reader import Reader
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.plugins import loader
-from wearlaw.plugins.law_files import is_law_file, read_law
-from wearlaw.plugins.loader import Preset
-from wearlaw.settings.configuration import Configuration, field_docstrings
 from wearlaw.units.quantities import Q, from_si, text_of
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
@@ -188,7 +188,9 @@ def _example(rig: type[Rig]) -> Iterator[str]:
         return
     yield from ("", "example:", "  import wearlaw as wl")
     yield from _call("rig = wl.rig", json.dumps(rig.name), *_keywords(rig.example_fields))
-    yield '  predict = rig | wl.contact_model("fastsim") | wl.wear_law("kth")'
+    fits = {"line": "exact", None: "fastsim"}  # which solves lines and ellipses
+    model = fits.get(rig.patch_geometry, "strip_theory")
+    yield f'  predict = rig | wl.contact_model("{model}") | wl.wear_law("kth")'
     yield from _call("predict", *_keywords(rig.example))
 
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from wearlaw.plugins import loader
-from wearlaw.settings.text_files import parse_toml
+from wearlaw import loader
+from wearlaw.text_files import parse_toml
 from wearlaw_show import wrapped
 from wearlaw_studies.case import load_case
 

@@ -6,9 +6,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
+from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, Fault
 from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT
-from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import Unit, from_si
 
 OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")

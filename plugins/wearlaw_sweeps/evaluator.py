@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.errors import ResumeWarning
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.variables import outcome_units

@@ -16,7 +16,7 @@ import xarray
 import zarr
 from zarr.codecs import Crc32cCodec
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.errors import OutputError, shown
 from wearlaw_sweeps.provenance import Provenance, check_same
 from wearlaw_sweeps.results import COMPLETE, INCOMPLETE, attributes

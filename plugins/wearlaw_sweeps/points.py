@@ -18,7 +18,7 @@ from typing import IO, TYPE_CHECKING, Any, cast
 import numpy as np
 import pint
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
 from wearlaw.units.quantities import Q, parse, real_array, with_units

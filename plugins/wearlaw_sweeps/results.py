@@ -11,7 +11,7 @@ import numpy as np
 import pint
 import xarray
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.conditions import is_friction_law
 from wearlaw.units.quantities import parse
 from wearlaw.units.registry import symbol

@@ -12,7 +12,7 @@ import xarray
 import zarr
 from pydantic import TypeAdapter
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.errors import OutputError, shown
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_sweeps.folder import CHECKED, Folder

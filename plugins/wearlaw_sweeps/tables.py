@@ -11,7 +11,7 @@ from typing import IO, Any, cast
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.errors import ConditionsError, DataError, UnitError
 from wearlaw.units.quantities import Q
 from wearlaw.units.variables import VARIABLES

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.errors import PROBLEMS, DataError, UnitError, did_you_mean, shown
 from wearlaw.extras import needed_for
 from wearlaw.units.quantities import Q, Quantity

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import Field
 
 import wearlaw as wl
-from wearlaw.settings.configuration import (
+from wearlaw.configuration import (
     field_docstrings,
 )  # private: what `show`, schemas and signatures say of fields
 

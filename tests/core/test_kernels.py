@@ -7,9 +7,11 @@ import sys
 import pytest
 
 import wearlaw as wl
-from wearlaw import accelerated
-from wearlaw.arrays import kernels  # private: the choice between NumPy and numba
-from wearlaw.arrays.kernels import WORTHWHILE  # private: the choice between NumPy and numba
+from wearlaw import (
+    accelerated,
+    kernels,  # private: the choice between NumPy and numba
+)
+from wearlaw.kernels import WORTHWHILE  # private: the choice between NumPy and numba
 
 pytestmark = pytest.mark.usefixtures("by_size_again")
 

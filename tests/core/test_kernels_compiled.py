@@ -15,8 +15,11 @@ import pytest
 
 import wearlaw as wl
 from tests.strategies import EPS
-from wearlaw import Array, Q
-from wearlaw.arrays import kernels  # private: the choice between NumPy and numba
+from wearlaw import (
+    Array,
+    Q,
+    kernels,  # private: the choice between NumPy and numba
+)
 
 pytestmark = pytest.mark.usefixtures("by_size_again")
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from wearlaw.plugins.fields import specification  # private: the table of a model in a file
+from wearlaw.fields import specification  # private: the table of a model in a file
 
 
 class Holder(wl.Configuration):

@@ -12,7 +12,7 @@ import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.numerics.integrate import BLOCK, integrate_laws  # private: integrals at the size of blocks
-from wearlaw.settings.parameters import (  # private: the numbers of a record, for fits
+from wearlaw.parameters import (  # private: the numbers of a record, for fits
     changed,
     number_like,
     numbers,

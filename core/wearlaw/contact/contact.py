@@ -14,7 +14,7 @@ from typing import Any, Literal, Self, TypeAlias, get_args
 
 import numpy as np
 
-from wearlaw.arrays.array import Array, freeze
+from wearlaw.arrays import Array, freeze
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.problem import Body, CreepForces, Problem

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 
 
 def relative_radius(radius_1: float, radius_2: float) -> float:

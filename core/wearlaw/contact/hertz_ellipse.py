@@ -21,7 +21,7 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 
 _ITERATIONS = 10
 """Largest number of iterations; five are enough within the stated range of axis ratios."""

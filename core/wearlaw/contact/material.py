@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from pydantic import Field
 from pydantic_core import core_schema
 
-from wearlaw.settings.configuration import Configuration, known_name
+from wearlaw.configuration import Configuration, known_name
 from wearlaw.units.quantities import Density, QuantityLike, Stress, scalar_si
 
 ALIKE = 0.1

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast,
 
 import numpy as np
 
-from wearlaw.arrays.array import Array, freeze
+from wearlaw.arrays import Array, freeze
 from wearlaw.contact.contact import Contact, LineFields
 from wearlaw.contact.problem import PATCHES, CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import Nodes, Zone, join

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from pydantic import SkipValidation
 
-from wearlaw.arrays.array import Array
+from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError

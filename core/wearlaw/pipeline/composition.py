@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from wearlaw import loader
 from wearlaw.contact.material import dundurs_beta
 from wearlaw.contact.problem import PATCHES, Body, Geometry, Problem
 from wearlaw.errors import (
@@ -22,7 +23,6 @@ from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.models.model import Model
 from wearlaw.numerics.staged import without_stages
-from wearlaw.plugins import loader
 
 PEAKS = (
     "The peak of the traction is 4/π or 3/2 times its mean on a line (elliptic or parabolic bound), but 3/2 or 2 times"
@@ -45,22 +45,9 @@ TAKE_MEANS = 'put wl.patch_mean() between them, or use wl.contact_model("global"
 
 
 def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str | None = None) -> int:
-    """Return the index of the law of an outcome for a body, or raise an error if there is none.
+    """Return the index of the law of an outcome, or raise a `CompositionError` if there is none.
 
-    Parameters
-    ----------
-    laws : sequence of Law
-    model : ContactModel
-        The contact model, with stages or without, for the message.
-    outcome : str
-        Name of the outcome, such as "wear_rate".
-    body : str, optional
-        The body; if it is not given, there must be one law of the outcome.
-
-    Raises
-    ------
-    CompositionError
-        If no law predicts the outcome, or if several laws do and no body is given.
+    Without a body, there must be one law of the outcome. The contact model, with stages or without, is for the message.
     """
     found = [index for index, law in enumerate(laws) if law.outcome.name == outcome]
     if not found:

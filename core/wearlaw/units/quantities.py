@@ -17,7 +17,7 @@ import numpy as np
 import pint
 from pydantic_core import core_schema
 
-from wearlaw.arrays.array import extremes
+from wearlaw.arrays import extremes
 from wearlaw.errors import UnitError, shown
 from wearlaw.units.registry import divided, quantity, si_factor, symbol, unit_in_si
 from wearlaw.units.registry import from_si as from_si

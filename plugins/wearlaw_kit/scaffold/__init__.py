@@ -11,8 +11,8 @@ from pathlib import Path
 from string import Template
 from typing import Literal, TypeAlias
 
+from wearlaw import loader
 from wearlaw.errors import InputError, OutputError, shown
-from wearlaw.plugins import loader
 from wearlaw.version import __version__
 
 Kind: TypeAlias = Literal["wear_law", "contact_model", "rig"]

@@ -10,15 +10,15 @@ import pytest
 from pydantic import Field
 
 import wearlaw as wl
-from tests.core import cases
+from tests import cases
 from tests.core.outcome_laws import Damage as BaseOfDamage
 from tests.core.outcome_laws import Heat
 from tests.plugins.kit.wrong_rigs import Weight
-from wearlaw.models.model import Model  # private: the bound of a quadrature
-from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
-from wearlaw.settings.configuration import (
+from wearlaw import loader  # private: plugins of a test are found as if they were installed
+from wearlaw.configuration import (
     field_docstrings,
 )  # private: what `show`, schemas and signatures say of fields
+from wearlaw.models.model import Model  # private: the bound of a quadrature
 from wearlaw_show import describe
 
 MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}

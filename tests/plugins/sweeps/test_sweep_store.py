@@ -159,7 +159,7 @@ def test_another_law_or_version_is_refused(tmp_path: Path, monkeypatch: pytest.M
         with pytest.raises(wl.OutputError, match="wearlaw: "):
             wl.sweep(predict, **GIVEN, store=store, resume=True)
     monkeypatch.setattr(
-        "wearlaw.plugins.loader.Shelf.distribution", lambda *_: "another 1.2.3"
+        "wearlaw.loader.Shelf.distribution", lambda *_: "another 1.2.3"
     )  # private: what is installed, changed for a test
     with pytest.raises(wl.OutputError, match="wear law held: "):
         wl.sweep(predict, **GIVEN, store=store, resume=True)

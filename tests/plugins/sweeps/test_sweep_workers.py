@@ -11,8 +11,10 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, ending, predictor
-from wearlaw import Q
-from wearlaw.arrays import kernels  # private: which kernels a worker chose
+from wearlaw import (
+    Q,
+    kernels,  # private: which kernels a worker chose
+)
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 

@@ -9,10 +9,10 @@ from typing import IO, Any
 
 import click
 
+from wearlaw import loader
 from wearlaw.errors import WearlawError, described, did_you_mean, shown
 from wearlaw.extras import MissingPackageError, load
 from wearlaw.hookspecs import Command
-from wearlaw.plugins import loader
 from wearlaw.version import __version__
 
 OWN = (

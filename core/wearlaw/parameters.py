@@ -7,8 +7,8 @@ from typing import Any, TypeVar
 
 import pint
 
+from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError, did_you_mean, shown
-from wearlaw.settings.configuration import Configuration
 from wearlaw.units.quantities import Quantity, from_si
 from wearlaw.units.registry import si_factor
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays.array import WRITEABLE
+from wearlaw.arrays import WRITEABLE
 from wearlaw.errors import InputError
 
 SETTING = "WEARLAW_ACCELERATE"

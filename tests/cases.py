@@ -14,11 +14,13 @@ import tomli_w
 from click.testing import CliRunner, Result
 
 import wearlaw as wl
-from wearlaw import Array
+from wearlaw import (
+    Array,
+    loader,  # private: plugins of a test are found as if they were installed
+)
 from wearlaw.cli import main  # private: the program in this process
+from wearlaw.loader import Origin  # private: plugins of a test are found as if they were installed
 from wearlaw.models.model import Model  # private: the bound of a quadrature
-from wearlaw.plugins import loader  # private: plugins of a test are found as if they were installed
-from wearlaw.plugins.loader import Origin  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import Case, load_case  # private: a case without its files
 
 Table = dict[str, Any]

@@ -1,27 +1,58 @@
-"""Fields that hold a model: a name or a table in a file, an instance in Python."""
+"""Fields that hold a model: a name, a table or the file of a law in a file, an instance in Python."""
 
 from __future__ import annotations
 
 import inspect
+import os
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 from pydantic import BeforeValidator, Field, PlainSerializer, WithJsonSchema, create_model
 
+from wearlaw import loader
+from wearlaw.configuration import Configuration, field_docstrings, known_name
 from wearlaw.contact.material import TYPE, Material
-from wearlaw.errors import ConfigurationError, Fault, InputError
+from wearlaw.errors import ConfigurationError, Fault, InputError, shown, with_problems
+from wearlaw.loader import Preset
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, WearLaw
 from wearlaw.models.model import Model
-from wearlaw.plugins import loader
-from wearlaw.plugins.law_files import is_law_file, read_law
-from wearlaw.plugins.loader import Preset
-from wearlaw.settings.configuration import Configuration, field_docstrings, known_name
-from wearlaw.settings.text_files import beside
+from wearlaw.text_files import beside, read_toml
 
 if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler
     from pydantic_core import core_schema
+
+
+def is_law_file(name: str) -> bool:
+    """Return whether the name of a law is the path of a file of a law, such as "fit/law.toml"."""
+    return name.endswith(".toml")
+
+
+def read_law(path: str | os.PathLike[str]) -> Law:
+    """Return the law of the table ``[wear_law]`` or ``[law]`` in a TOML file.
+
+    Parameters
+    ----------
+    path : str or path-like
+        A file such as `Fit.to_toml` writes: ``model`` names the law, and its fields follow.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, is not TOML, or does not describe a law of an installed plugin.
+    """
+    contents = read_toml("law", path)
+    fields = contents.get("wear_law", contents.get("law"))
+    if not isinstance(fields, dict) or not isinstance(fields.get("model"), str):
+        raise InputError(
+            f'law {shown(Path(path))} needs a table [wear_law] with the name of the law, as in model = "usfd"'
+        )
+    try:
+        return loader.law(fields.pop("model"), **fields)
+    except ConfigurationError as error:
+        raise InputError(with_problems(f"law {shown(Path(path))} is wrong in:", error.problems)) from None
 
 
 def specification(model: Model) -> dict[str, Any]:

@@ -1,1 +1,0 @@
-"""Finding installed plugins, and looking up their models and data by name."""

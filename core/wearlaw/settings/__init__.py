@@ -1,1 +1,0 @@
-"""Frozen, checked records of settings, written to files and read again, and the numbers in them."""
