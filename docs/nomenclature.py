@@ -15,7 +15,8 @@ import wearlaw_wheelset as ws
 from wearlaw.configuration import field_docstrings
 from wearlaw.loader import installed
 from wearlaw.parameters import numbers
-from wearlaw.units.variables import UNITS, VARIABLES, label
+from wearlaw.units.variables import UNITS, VARIABLES
+from wearlaw_output.labels import label
 from wearlaw_wheelset._rig import WheelsetProblem
 
 TABLE = Path(__file__).parent / "nomenclature.csv"

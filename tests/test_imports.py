@@ -19,7 +19,7 @@ DEFERRED = {
     ("wearlaw.kernels", "numba"): "is optional, and takes a second to load",
     ("wearlaw_output.plot", "wearlaw_output.drawing"): "matplotlib takes longer to load than all else; few plot",
     ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
-    ("wearlaw.pipeline.datasets", "xarray"): "takes as long to load as the rest of wearlaw; for datasets alone",
+    ("wearlaw_output.datasets", "xarray"): "takes as long to load as the rest of wearlaw; for datasets alone",
     ("wearlaw_sweeps.several", "xarray"): "takes as long to load as the rest of wearlaw; for lists of models alone",
     ("wearlaw.text_files", "tomllib"): "few scripts read a file in TOML",
     ("wearlaw_sweeps.sweep", "wearlaw_sweeps.store"): "zarr takes as long to load as all else",

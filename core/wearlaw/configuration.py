@@ -25,7 +25,7 @@ from wearlaw.errors import (
 from wearlaw.units.quantities import plain_number, text_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Mapping
     from inspect import Signature
 
     from pydantic import GetJsonSchemaHandler, ValidationInfo
@@ -205,18 +205,6 @@ def item_docstrings(cls: type) -> dict[str, str]:
     return found
 
 
-def parts(value: object) -> Iterator[Configuration]:
-    """Yield all configurations in a value: the value itself, and those in its fields at any depth."""
-    inner: Iterable[object] = ()
-    if isinstance(value, Configuration):
-        yield value
-        inner = (getattr(value, name) for name in type(value).model_fields)
-    elif isinstance(value, (list, tuple)):
-        inner = value
-    for one in inner:
-        yield from parts(one)
-
-
 def known_as(name: str, record: ConfigurationT) -> ConfigurationT:
     """Return an equal record that remembers its name in the look-up; changed copies forget the name."""
     found = record.model_copy()
@@ -252,5 +240,7 @@ def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
         return f"unknown field{hint} The fields are: {', '.join(known) or 'none'}"
     if details["type"] == "missing":
         return "is missing"
+    if details["type"] == "tuple_type":
+        return f"must be a list, got {shown(details['input'])}"
     message = details["msg"]
     return f"{message[0].lower()}{message[1:]}, got {shown(details['input'])}"

@@ -10,11 +10,9 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
-from threading import RLock
 
 import numpy as np
 
@@ -193,29 +191,6 @@ def warn(message: str | Warning, category: type[Warning] | None = None) -> None:
     while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith(INSIDE):
         level, frame = level + 1, frame.f_back
     warnings.warn(message, category, stacklevel=level)
-
-
-_CATCHING = RLock()
-
-
-@contextmanager
-def caught_warnings(*kinds: type[Warning]) -> Iterator[list[Warning]]:
-    """Yield a list that holds the warnings of some kinds, by default all of wearlaw's, when the context ends.
-
-    All other warnings are shown as ever. Python's `catch_warnings` changes settings of the process, and two threads
-    that enter it at once leave the changes behind, so one thread at a time enters it here.
-    """
-    kept = kinds or (WearlawWarning,)
-    found: list[Warning] = []
-    with _CATCHING, warnings.catch_warnings(record=True) as caught:
-        for kind in kept:
-            warnings.simplefilter("always", kind)
-        yield found
-    for one in caught:
-        if issubclass(one.category, kept):
-            found.append(one.message)  # type: ignore[arg-type]
-        else:
-            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
 
 
 def described(error: BaseException) -> str:

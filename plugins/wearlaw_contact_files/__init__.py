@@ -126,14 +126,11 @@ class ContactMat(wl.Reader):
                 case.flexibilities,
             )
         if found is None:
-            why = (
-                "its fields are not those of a rigid motion in steady rolling with DQ = DX"
-                if case.steady
-                else "it is a step of transient rolling (T = 2)"
-            )
+            transient = "it is a step of transient rolling (T = 2)"
+            steady = "its fields are not those of a rigid motion in steady rolling with DQ = DX"
             raise wl.DataError(
-                f"'{case.path}': does not determine the creepages, since {why}; give those that CONTACT prints, as in"
-                ' cksi=0.002, ceta=0.001, cphi="0.0003 1/mm"'
+                f"'{case.path}': does not determine the creepages, since {steady if case.steady else transient}; give"
+                ' those that CONTACT prints, as in cksi=0.002, ceta=0.001, cphi="0.0003 1/mm"'
             )
         return found
 
@@ -195,20 +192,9 @@ class ContactMat(wl.Reader):
 class _Fields:
     """The fields of a patch in SI and the signs of wearlaw, over the smallest rectangle of elements that holds it.
 
-    Attributes
-    ----------
-    body : float
-        -1 if body 1 is the rail, otherwise 1.
-    sign : float
-        Sign of wearlaw's creepages over those of CONTACT.
-    x, y : ndarray, (nodes, 1) and (strips,)
-        Positions of the elements, from the leading edge on [m].
-    length, strip_width : ndarray, (nodes, strips) and (strips,)
-        Sizes of the elements [m]; no length outside the contact.
-    state : ndarray, (nodes, strips)
-        State of the elements, 0 outside the contact.
-    pressure, bound, traction, slip, displacement
-        Fields over (nodes, strips), [Pa], [-] and [mm]; the displacement is NaN outside the contact.
+    `sign` is that of wearlaw's creepages over those of CONTACT, and `body` is -1 if body 1 is the rail, otherwise 1.
+    Arrays have the shape (nodes, strips), from the leading edge on; `length` is zero outside the contact, and the
+    displacement [mm] is NaN there.
     """
 
     def __init__(self, case: Case) -> None:

@@ -2,39 +2,33 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
 import click
 import pandas as pd
 
-from wearlaw.contact.contact import Contact
 from wearlaw.fields import specification
-from wearlaw.models.law import Law
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.units.variables import readable
 from wearlaw.version import __version__
 from wearlaw_contact_files._reading import read_contact
 from wearlaw_contact_files._worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
 from wearlaw_output.commands import (
-    echo,
     fields,
     folder_for,
     law_of,
     print_notes,
     print_results,
+    print_table,
 )
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import named, write_files, written_formats
 from wearlaw_output.folder import results_folder
+from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
 
-NUMBER = 10
-"""Most characters of a printed number."""
-
-BLOCKS = 3
-"""Most blocks of columns that are printed."""
+MOST = 12
+"""Most contacts that are printed."""
 
 APART = 0.01
 """Share by which the two powers may differ without a note."""
@@ -93,7 +87,8 @@ def wear(
     labels = _labels(files)
     with results_folder(folder, overwrite, WEAR) as fresh:
         contact = read_contact(files if others else first, reader=reader, **given)
-        found = _predicted(contact.patch_mean() if patch_mean else contact, chosen, notes)
+        with notes.of("wear"):
+            found = Prediction.of(contact.patch_mean() if patch_mean else contact, *chosen)
         if not others and found.problem.batch_shape:
             labels = [f"{labels[0]} {number}" for number in range(1, found.problem.size + 1)]
         with notes.of("wear"):
@@ -113,11 +108,6 @@ def wear(
     print_results(folder, names)
 
 
-def _predicted(contact: Contact, laws: Sequence[Law], notes: Notes) -> Prediction:
-    with notes.of("wear"):
-        return Prediction.of(contact, *laws)
-
-
 def _labels(files: Sequence[str]) -> list[str]:
     """Return the names of the files without their folders, or the paths if names are equal."""
     names = [Path(one).name for one in files]
@@ -135,18 +125,10 @@ def _note_powers(table: pd.DataFrame, notes: Notes) -> None:
 
 
 def _print(table: pd.DataFrame) -> None:
-    """Print a row for each quantity, with a column for each contact: in blocks as wide as the terminal, at most a few.
-
-    The file holds all contacts.
-    """
-    across = table.set_index("contact").T
-    across.columns.name = None
+    """Print a row for each quantity, with a column for each of the first contacts; the file holds all."""
+    across = table.set_index("contact").T.rename_axis(columns=None)
     heads = [head.partition(" [") for head in across.index]
     across.index = pd.Index([name + bracket + readable(unit) for name, bracket, unit in heads])
-    space = shutil.get_terminal_size((80, 24)).columns - max(map(len, across.index))
-    count = max(1, space // (2 + max(NUMBER, *map(len, across.columns))))
-    shown = min(across.shape[1], BLOCKS * count)
-    blocks = [across.iloc[:, start : start + count] for start in range(0, shown, count)]
-    echo("\n\n".join(block.to_string(float_format=lambda number: f"{number + 0.0:.4g}") for block in blocks))
-    if shown < across.shape[1]:
-        echo(f"... and {across.shape[1] - shown} more contacts in wear.csv")
+    print_table(across.iloc[:, :MOST])
+    if across.shape[1] > MOST:
+        click.echo(f"... and {across.shape[1] - MOST} more contacts in wear.csv")

@@ -92,38 +92,30 @@ def _head(path: Path) -> bytes:
 
 def _recognised(path: Path, head: bytes) -> type[Reader]:
     """Return the one reader for the ending and the content of a file."""
-    found = loader.installed()
-    shelf = found["reader"]
-    by_ending: dict[str, list[tuple[type[Reader], Any]]] = {
-        name: [(one, origin) for one, origin in providers if path.suffix.lower() in one.suffixes]
-        for name, providers in shelf.providers.items()
-    }
-    candidates = [(name, one, origin) for name, some in by_ending.items() for one, origin in some]
+    every: dict[str, list[tuple[type[Reader], Any]]] = loader.installed()["reader"].providers
+    candidates = [
+        (one, f"{shown(name)} of {origin}")
+        for name, providers in every.items()
+        for one, origin in providers
+        if path.suffix.lower() in one.suffixes
+    ]
     if not candidates:
-        endings = sorted({suffix for one in shelf.items().values() for suffix in one.suffixes})
-        known = found.unknown("reader", path.suffix or path.name, shelf.items()).partition("Installed: ")[2]
+        endings = sorted({suffix for providers in every.values() for one, _ in providers for suffix in one.suffixes})
         raise DataError(
             f"cannot read {shown(path)}: no reader reads files that end in {shown(path.suffix)}; those of the"
-            f" installed readers end in {', '.join(endings) or 'nothing'}. Installed: {known}. If it is a file of"
-            " theirs, name the reader, as in read_contact(path, reader=...)"
+            f" installed readers end in {', '.join(endings)}. If it is a file of theirs, name the reader, as in"
+            " read_contact(path, reader=...)"
         )
     if len(candidates) == 1:
-        return candidates[0][1]  # whose error says what is wrong with the content
-    fitting = [(name, one, origin) for name, one, origin in candidates if _recognises(one, head)]
+        return candidates[0][0]  # whose error says what is wrong with the content
+    fitting = [(one, name) for one, name in candidates if one.recognises(head)]
     if len(fitting) == 1:
-        return fitting[0][1]
-    names = " and ".join(f"{shown(name)} of {origin}" for name, _, origin in fitting or candidates)
+        return fitting[0][0]
+    names = " and ".join(name for _, name in fitting or candidates)
     which = "several readers recognise it" if fitting else "none of the readers for its ending recognises it"
     raise UnknownModelError(
         f"cannot read {shown(path)}: {which}, {names}; name one, as in read_contact(path, reader=...)"
     )
-
-
-def _recognises(reader: type[Reader], head: bytes) -> bool:
-    try:
-        return bool(reader.recognises(head))
-    except Exception as error:
-        raise ModelError(f"reader '{reader.name}' failed to recognise a file: {error}") from error
 
 
 def _stacked(paths: Sequence[Path], contacts: Sequence[Contact]) -> Contact:

@@ -28,21 +28,13 @@ NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdD]?([+-]\d+)|[eEdD](\d+))
 
 @dataclass(frozen=True)
 class Table:
-    """The rows of a file.
-
-    Attributes
-    ----------
-    path : Path
-        The file, for messages.
-    values : ndarray, (rows, columns)
-        The numbers.
-    lines : ndarray of int, (rows,)
-        The line of each row.
-    """
+    """The rows of a file."""
 
     path: Path
     values: Array
+    """The numbers, (rows, columns)."""
     lines: NDArray[np.intp]
+    """The line of each row."""
 
     def wrong(self, row: int, column: int, name: str, rule: str) -> NoReturn:
         """Raise an error for a number, by its row and column from 0."""

@@ -35,15 +35,7 @@ POWER_OF_CREEPAGES, POWER_OF_SLIP = "power_of_creepages [W]", "power_of_slip [W]
 
 
 def worn_table(found: Prediction, labels: Sequence[str]) -> pd.DataFrame:
-    """Return forces, powers and outcomes of the laws, with a row for each contact.
-
-    Parameters
-    ----------
-    found : Prediction
-        Of one contact, or of a batch of one axis.
-    labels : sequence of str
-        A name for each contact.
-    """
+    """Return forces, powers and outcomes of the laws, with a row for each contact of a batch of one axis."""
     columns: dict[str, Any] = {"contact": list(labels)}
     for name, unit in SHOWN.items():
         full = "longitudinal_creepage" if name == "creepage" else name
@@ -84,17 +76,7 @@ def profile_tables(found: Prediction, labels: Sequence[str]) -> dict[str, pd.Dat
 
 
 def worn_figure(found: Prediction, labels: Sequence[str], law: str) -> FigureData | None:
-    """Return a figure of the depth that each body loses across the patch, or None if the patch is not resolved.
-
-    Parameters
-    ----------
-    found : Prediction
-        As for `worn_table`.
-    labels : sequence of str
-        A name for each contact.
-    law : str
-        Name of the law, for the title.
-    """
+    """Return a figure of the depth that each body loses across the patch, or None if the patch is not resolved."""
     panels = []
     for body in _worn_bodies(found):
         across, strips = _across(found, body)

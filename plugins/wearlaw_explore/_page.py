@@ -1,137 +1,96 @@
-"""The page: its figures, which show new data without being drawn anew, its controls, and the ways to open it."""
+"""The page: its figures, its controls, and the ways to open it."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from html import escape
-from itertools import cycle
 from time import perf_counter
 from typing import Any
 
 import click
 import numpy as np
+import pandas as pd
 import panel as pn
-from bokeh.models import ColorBar, CustomJS, LinearColorMapper
-from bokeh.palettes import Viridis256
-from bokeh.plotting import figure
+from bokeh.models import CustomJS
 
 import wearlaw as wl
-from wearlaw.contact.conditions import Known
 from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.pipeline import expect_pipeline
-from wearlaw.units.variables import VARIABLES, label, name_of
-from wearlaw_explore._models import Subject, by_patch, largest, numbered, numbers
-from wearlaw_output.commands import echo, values
-from wearlaw_output.drawing import PALETTE
+from wearlaw.pipeline.prediction import SHOWN
+from wearlaw.units.variables import VARIABLES, name_of
+from wearlaw_explore._subject import Subject, numbered
+from wearlaw_output.commands import values
+from wearlaw_output.conditions import Known
+from wearlaw_output.curves import BLACK, Map
+from wearlaw_output.labels import in_words, label
 from wearlaw_output.notes import Notes
-from wearlaw_output.pictures import cells, fields_of
+from wearlaw_output.pictures import fields_of, raster
 from wearlaw_studies.case import load_case
+from wearlaw_studies.report.interactive import plotly_figure
+from wearlaw_sweeps.evaluation import expect_pipeline
 
-FIELDS = ("pressure", "slip", "wear_rate")
-"""The fields of a patch."""
+CURVE = 41
+"""Points of a curve of wear over creepage."""
 
-APART = 0.015
-"""Distance by which wheel and rail are drawn apart [m]."""
-
-SLOW = 0.3
-"""Time of a prediction beyond which there is no curve, and figures wait for the release of a slider [s]."""
+SLOW = 0.5
+"""Time beyond which a prediction gets no curve, and figures wait until a slider is released [s]."""
 
 STRETCHED: dict[str, Any] = {"sizing_mode": "stretch_width"}
 
 WIDE: dict[str, Any] = {"flex": "1 1 300px", "min-width": "260px", "max-width": "100%"}
 """Style of an element that stands beside others if there is room, as on no phone."""
 
+TABLE = ":host { overflow-x: auto } th { text-align: left }"
+"""Style of a table, which scrolls on a narrow screen."""
+
 VIEWPORT = """document.head.insertAdjacentHTML("beforeend",
     '<meta name="viewport" content="width=device-width, initial-scale=1">')"""
 """JavaScript that makes the page as wide as the screen of a phone."""
 
 
-def plain(title: str, x: str, y: str, **options: Any) -> Any:
-    """Return an empty figure as wide as its place."""
-    look = {"height": 320, "styles": WIDE, "tools": "pan,wheel_zoom,reset,hover,save", **STRETCHED}
-    drawn = figure(title=title, x_axis_label=x, y_axis_label=y, **look, **options)
-    drawn.toolbar.logo = None
-    drawn.toolbar.active_scroll = None  # the wheel scrolls the page
-    return drawn
+def patch_figures(predictions: Mapping[str, wl.Prediction]) -> list[wl.FigureData]:
+    """Return figures of pressure, slip and wear in a patch, by the first law that sees its cells; [] if none does."""
+    law, prediction = next(((law, one) for law, one in predictions.items() if one.scale == "cells"), ("", None))
+    if prediction is None:
+        return []
+    found = fields_of(prediction)
+    (wear,) = named_outcomes(prediction.laws)  # such as "wear_rate_rail", of a law for the rail alone
+    figures, along = [], wl.PlotAxis(label("x"))
+    for name, of in (("pressure", "pressure"), ("slip", "slip"), ("wear_rate", wear)):
+        if prediction.problem.geometry == "line":
+            panel = wl.Panel(along, wl.PlotAxis(label(name)), (wl.Curve(law, found["x"].values, found[of].values),))
+        else:
+            x, y, cell = raster(prediction)
+            drawn = Map("", x, y, np.where(cell < 0, np.nan, found[of].values.ravel()[cell]))
+            panel = wl.Panel(along, wl.PlotAxis("y [mm]"), (), equal=True, map=drawn)
+        title = f"{label(name)} by {law}" if name == "wear_rate" else label(name)
+        figures.append(wl.FigureData(name, title, (panel,)))
+    return figures
 
 
-class Lines:
-    """A figure of lines by name, with marks."""
-
-    def __init__(self, title: str, x: str, y: str, names: Iterable[str], **options: Any) -> None:
-        self.figure = plain(title, x, y, **options)
-        self.lines = {
-            name: self.figure.line([], [], color=colour, line_width=2, legend_label=name)
-            for name, colour in zip(names, cycle(PALETTE))
-        }
-        self.marks = self.figure.scatter([], [], color="black", size=8)
-        self.figure.legend.update(background_fill_alpha=0.6, visible=len(self.lines) > 1)
-
-    def show(self, lines: Mapping[str, tuple[Any, Any]], marks: Any = ([], [])) -> None:
-        """Show x and y of lines and marks; lines that are not given are left out."""
-        shown = {line: lines.get(name, ([], [])) for name, line in self.lines.items()}
-        for glyphs, (x, y) in [*shown.items(), (self.marks, marks)]:
-            glyphs.data_source.data = {"x": x, "y": y}
-        for name, entry in zip(self.lines, self.figure.legend[0].items, strict=True):
-            entry.visible = name in lines
+def largest(prediction: wl.Prediction) -> Any:
+    """Return the largest wear rate of the patches at each operating point [µg/m/mm²]."""
+    return np.nanmax(prediction.wear_rate.magnitude, axis=tuple(range(-len(prediction.problem.dims), 0)))
 
 
-class Map:
-    """A figure of a field in the cells of a patch, with equal axes."""
-
-    def __init__(self, name: str) -> None:
-        self.name, self.figure = name, plain(name_of(name), label("x"), "y [mm]", match_aspect=True)
-        colours = LinearColorMapper(palette=list(Viridis256))
-        colour = {"field": "value", "transform": colours}
-        look = {"fill_color": colour, "line_color": colour, "line_width": 0.3}  # no seams between cells
-        self.cells = self.figure.patches("x", "y", source={"x": [], "y": [], "value": []}, **look)
-        self.figure.hover.tooltips = [(label(name), "@value")]
-        self.figure.add_layout(ColorBar(color_mapper=colours, title=label(name), height=8), "below")
-
-    def show(self, maps: Mapping[str, tuple[Any, Any]]) -> None:
-        """Show the outlines of the cells and their values, if they are given."""
-        outlines, values = maps.get(self.name, (np.empty((0, 0, 2)), []))
-        x, y = np.moveaxis(outlines, -1, 0)
-        self.cells.data_source.data = {"x": list(x), "y": list(y), "value": values}
-
-
-def fields(predictions: Iterable[wl.Prediction]) -> dict[str, tuple[Any, Any]]:
-    """Return places and values of the fields of a patch by the first law that sees its cells; {} if none does."""
-    for prediction in predictions:
-        if prediction.scale == "cells":
-            found = fields_of(prediction)
-            place = found["x"].values if prediction.problem.geometry == "line" else cells(prediction)
-            (wear,) = named_outcomes(prediction.laws)  # such as "wear_rate_rail", of a law for the rail alone
-            return {name: (place, found[wear if name == "wear_rate" else name].values.ravel()) for name in FIELDS}
+def by_patch(predictions: Mapping[str, wl.Prediction]) -> dict[str, dict[str, wl.Prediction]]:
+    """Return predictions by law for each existing patch, by its label, "" for the only one of a rig."""
+    for first in predictions.values():
+        rows: Any = first.to_dataframe(["wear_rate"])[[*first.problem.dims]].to_dict("records")
+        return {in_words(row): {law: one.sel(**row) for law, one in predictions.items()} for row in rows}
     return {}
 
 
-class OnProfiles:
-    """Figures of a wheel and its rail, drawn apart, with their contacts, and of the wear across the wheel."""
-
-    def __init__(self, profiles: Any, laws: Iterable[str]) -> None:
-        self.profiles, y = profiles, "y in the track [mm]"
-        title = f"wheel and rail, drawn {1e3 * APART:.0f} mm apart"
-        self.both = Lines(title, y, "height [mm]", ("wheel", "rail"), match_aspect=True)
-        self.wear = Lines("wear across the wheel", y, "depth [µm/km]", laws)
-
-    def show(self, predictions: Mapping[str, wl.Prediction]) -> None:
-        """Show the contacts on one side, which the left side has in its mirror, and the wear by each law."""
-        problem = next(iter(predictions.values())).problem
-        lines, marks = {}, []
-        for name, body in problem.bodies.items():
-            arc, y, z = getattr(self.profiles, name)
-            height = (APART if name == "wheel" else 0.0) - z
-            at = np.asarray(body.profile_position)[problem.exists]
-            lines[name] = 1e3 * y, 1e3 * height
-            marks.append([1e3 * np.interp(at, arc, y), 1e3 * np.interp(at, arc, height)])
-        self.both.show(lines, np.concatenate(marks, axis=1))
-        arc, y, _ = self.profiles.wheel
-        resolved = {law: one for law, one in predictions.items() if one.scale == "cells"}
-        depths = {law: one.wear_profile("wheel", at=wl.Q(1e3 * arc, "mm"))["depth"] for law, one in resolved.items()}
-        self.wear.show({law: (1e3 * y, depth.values) for law, depth in depths.items()})
+def numbers(patches: Mapping[str, Mapping[str, wl.Prediction]]) -> str:
+    """Return a table in HTML with a column for each patch."""
+    columns = {}
+    for patch, predictions in patches.items():
+        first = next(iter(predictions.values()))
+        wear = {f"wear rate by {law}": one.wear_rate for law, one in predictions.items()}
+        columns[patch] = wear | {name_of(name): first[name] for name in SHOWN[first.problem.geometry]}
+    return str(pd.DataFrame(columns).map(repr).to_html(border=0, header=len(columns) > 1))
 
 
 def slider(rig: Any, name: str, value: object) -> Any:
@@ -154,24 +113,15 @@ class Page:
     """The page of a rig, which starts from its example conditions and the given ones."""
 
     def __init__(self, subject: Subject, given: Mapping[str, Any]) -> None:
-        rig, self.subject, self.start = subject.rig, subject, subject.conditions(given)
-        sliders = {name: slider(rig, name, value) for name, value in self.start.items()}
+        self.subject, self.start = subject, subject.conditions(given)
+        sliders = {name: slider(subject.rig, name, value) for name, value in self.start.items()}
         self.sliders = {name: one for name, one in sliders.items() if one is not None}
         self.model = pn.widgets.Select(label="Contact model", options=[*subject.models], **STRETCHED)
         self.laws = pn.widgets.CheckBoxGroup(options=[*subject.laws], value=subject.first_laws, inline=True)
         self.patch = pn.widgets.Select(label="Patch", options=[""], visible=False, **STRETCHED)
-        line = rig.patch_geometry == "line"
-        self.fields: Any = [Lines(name_of(one), label("x"), label(one), [one]) if line else Map(one) for one in FIELDS]
-        self.along = self.sliders.get(rig.creepage)
-        along = self.along.label if self.along is not None else ""
-        title = f"wear over {name_of(rig.creepage or 'creepage')}"
-        self.curve = Lines(title, along, label("wear_rate"), subject.laws)
-        self.curves: dict[str, Any] = {}
-        self.curves_of: Any = None
-        self.profiles: Any = (
-            OnProfiles(rig.profiles_in_track(), subject.laws) if hasattr(rig, "profiles_in_track") else None
-        )
-        self.notes, self.numbers, self.python = pn.pane.HTML(**STRETCHED), pn.pane.HTML(), pn.pane.HTML(**STRETCHED)
+        self.panes: dict[str, Any] = {}
+        self.figures = pn.FlexBox(**STRETCHED)
+        self.notes, self.numbers, self.python = (pn.pane.HTML(stylesheets=[TABLE], **STRETCHED) for _ in range(3))
         self._update()
         self._update()  # for its time: the first predictions load and compile
         for one in self.sliders.values():
@@ -183,10 +133,9 @@ class Page:
     def layout(self) -> Any:
         """Return the controls beside the figures, or above them on a phone."""
         laws = pn.Column(pn.pane.HTML("Wear laws"), self.laws)
-        left = pn.Column(*self.sliders.values(), self.model, laws, self.patch, styles={**WIDE, "max-width": "420px"})
-        every = [*self.fields, self.curve, *([self.profiles.both, self.profiles.wear] if self.profiles else [])]
-        figures = pn.FlexBox(*(one.figure for one in every), **STRETCHED)
-        right = pn.Column(self.notes, figures, self.numbers, self.python, styles={**WIDE, "flex": "4 1 600px"})
+        controls = [*self.sliders.values(), self.model, laws, self.patch, self.numbers]
+        left = pn.Column(*controls, styles={**WIDE, "max-width": "420px"})
+        right = pn.Column(self.notes, self.figures, self.python, styles={**WIDE, "flex": "4 1 600px"})
         return pn.FlexBox(left, right, flex_wrap="wrap", **STRETCHED)
 
     def _moved(self, *_: Any) -> None:
@@ -204,35 +153,57 @@ class Page:
         for name, one in self.sliders.items():
             conditions[name] = f"{one.value:.6g} {one.unit}" if one.unit else float(f"{one.value:.6g}")
         predictions = self.subject.predict(model, laws, conditions, notes)
+        curve = self._curve(predictions, conditions) if perf_counter() - started < SLOW else []
         self.seconds = perf_counter() - started
-        self._show_curve(predictions, conditions)
         patches = by_patch(predictions)
         self.patch.param.update(options=[*patches] or [""], visible=len(patches) > 1)
         if patches and self.patch.value not in patches:
             self.patch.value = next(iter(patches))
-        found = fields(patches[self.patch.value].values()) if patches else {}
-        for one in self.fields:
-            one.show(found)
-        if self.profiles and predictions:
-            side = self.patch.value.partition(" ")[0]
-            self.profiles.show({law: one.sel(side=side) for law, one in predictions.items()})
+        patch = patch_figures(patches.get(self.patch.value, {}))
+        self._draw([*patch, *curve, *self._profiles(predictions)])
         self.numbers.object = numbers(patches)
         python = escape(self.subject.python(model, laws, conditions), quote=False)
         self.python.object = f"<p>The same in Python:</p><pre tabindex=0 style='white-space: pre-wrap'>{python}</pre>"
         self.notes.object = "".join(f"<p role=status>{escape(text)}</p>" for text in notes.texts)
 
-    def _show_curve(self, predictions: Mapping[str, wl.Prediction], conditions: dict[str, Any]) -> None:
-        if self.along is None:
-            return
-        creepage, model, laws = self.subject.rig.creepage, self.model.value, self.laws.value
-        key = model, laws, {**conditions, creepage: None}
-        if self.curves_of != key:  # along the curve itself it stays
-            x = np.linspace(self.along.start, self.along.end, 25)
-            there = {**conditions, creepage: wl.Q(x, self.along.unit)}
-            found = self.subject.predict(model, laws, there, Notes()) if self.seconds < SLOW * len(laws) else {}
-            self.curves, self.curves_of = {law: (x, largest(one)) for law, one in found.items()}, key
-        rates = [largest(one) for one in predictions.values()]
-        self.curve.show(self.curves, ([self.along.value] * len(rates), rates))
+    def _curve(self, predictions: Mapping[str, wl.Prediction], conditions: Mapping[str, Any]) -> list[wl.FigureData]:
+        """Return the figure of wear over creepage, with points for the present; none if the creepage has no slider."""
+        creepage = self.subject.rig.creepage
+        if creepage not in self.sliders:
+            return []
+        along = self.sliders[creepage]
+        x = np.linspace(along.start, along.end, CURVE)
+        there = {**conditions, creepage: wl.Q(x, along.unit)}
+        found = self.subject.predict(self.model.value, [*predictions], there, Notes())
+        curves = [wl.Curve(law, x, largest(one), colour=number) for number, (law, one) in enumerate(found.items())]
+        now = np.array([largest(one) for one in predictions.values()])
+        point = wl.Curve("now", np.full(now.shape, along.value), now, colour=BLACK, points=True)
+        panel = wl.Panel(wl.PlotAxis(along.label), wl.PlotAxis(label("wear_rate")), (*curves, point))
+        return [wl.FigureData("curve", f"wear over {name_of(creepage)}", (panel,))]
+
+    def _profiles(self, predictions: Mapping[str, wl.Prediction]) -> Iterable[wl.FigureData]:
+        """Return the figures of a rig with profiles, such as a wheelset."""
+        resolved = {law: one for law, one in predictions.items() if one.scale == "cells"}
+        draw = getattr(self.subject.rig, "profile_figures", None)
+        return draw(resolved) if draw and resolved else ()
+
+    def _draw(self, figures: Iterable[wl.FigureData]) -> None:
+        """Show each panel as a figure of its own, which has room on a phone."""
+        shown = []
+        for figure in figures:
+            for number, panel in enumerate(figure.panels):
+                name = f"{figure.name}_{number}"
+                if name not in self.panes:
+                    look: dict[str, Any] = {"config": {"displayModeBar": False}, "styles": WIDE, **STRETCHED}
+                    self.panes[name] = pn.pane.Plotly(name=name, **look)
+                drawn = plotly_figure(replace(figure, panels=(replace(panel, title=panel.title or figure.title),)))
+                listed = len(panel.curves) > 1
+                margin = {"l": 60, "r": 10, "t": 30, "b": 90 if listed else 50}
+                look = {"height": 280, "margin": margin, "showlegend": listed, "template": "none"}
+                below = {"orientation": "h", "yref": "container", "y": 0, "yanchor": "bottom"}
+                self.panes[name].object = {**drawn, "layout": {**drawn["layout"], **look, "legend": below}}
+                shown.append(self.panes[name])
+        self.figures[:] = shown
 
 
 def explore(predict: Any, /, **conditions: Any) -> Any:
@@ -257,7 +228,7 @@ def explore(predict: Any, /, **conditions: Any) -> Any:
         If `predict` is no pipeline.
     """
     expect_pipeline(predict)
-    pn.extension(inline=True)
+    pn.extension("plotly", inline=True)
     models = {predict.contact_model: "predict.contact_model"}
     laws, stages = numbered("predict.laws", predict.laws), numbered("predict.stages", predict.stages)
     return Page(Subject(predict.rig, "predict.rig", "", models, laws, stages), conditions).layout()
@@ -281,6 +252,7 @@ def command(rig: str, laws: tuple[str, ...], conditions: tuple[str, ...], port: 
     An installed rig has example values. A case brings its own rig, models and laws. The page needs no network; Ctrl-C
     ends it.
     """  # noqa: D301
+    pn.extension("plotly")
     subject, start = named(rig, laws), values("--set", conditions)
 
     def opened() -> Any:
@@ -291,7 +263,7 @@ def command(rig: str, laws: tuple[str, ...], conditions: tuple[str, ...], port: 
     Page(subject, start)  # an error before the server starts
     look: dict[str, Any] = {"show": browser, "verbose": False, "title": f"wearlaw: {subject.rig.name}"}
     server: Any = pn.serve(opened, port=port, address="localhost", start=False, **look)
-    echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
+    click.echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
     server.run_until_shutdown()
 
 

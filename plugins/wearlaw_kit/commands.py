@@ -18,7 +18,7 @@ from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw_kit.kit import Check, checks, validate_expected
 from wearlaw_kit.scaffold import Kind, write_plugin
-from wearlaw_output.commands import echo, fields, values
+from wearlaw_output.commands import fields, values
 from wearlaw_show import accuracies
 
 
@@ -45,10 +45,10 @@ def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
     if kind is None:
         raise click.UsageError("say what the plugin provides: --wear-law, --contact-model or --rig")
     folder = write_plugin(name, kind, output)
-    echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
+    click.echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
     install = 'python -m pip install -e ".[test]"'
     for line in (f"cd {shlex.quote(str(folder))}", install, "pytest", "wearlaw plugins", f"wearlaw check {name}"):
-        echo(f"  {line}")
+        click.echo(f"  {line}")
 
 
 @click.command()
@@ -82,11 +82,11 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
     outcomes = Counter(_outcome(one, reasons.get(one.name)) for one in found)
     if isinstance(model, ContactModel):
         for line in accuracies(model):
-            echo(line)
+            click.echo(line)
     for claim, reason in model.exemptions.items():
-        echo(f"not claimed {claim}: {reason}")
+        click.echo(f"not claimed {claim}: {reason}")
     as_expected = f"{outcomes['failed as expected']} failed as expected, " if outcomes["failed as expected"] else ""
-    echo(f"{outcomes['ok']} ok, {outcomes['failed']} failed, {as_expected}{len(model.exemptions)} not claimed")
+    click.echo(f"{outcomes['ok']} ok, {outcomes['failed']} failed, {as_expected}{len(model.exemptions)} not claimed")
     if outcomes["failed"]:
         click.get_current_context().exit(1)
 
@@ -112,15 +112,15 @@ def _outcome(check: Check, expected: str | None) -> str:
         check()
     except AssertionError as error:
         if expected is not None:
-            echo(f"failed as expected {check.name}: {expected}")
+            click.echo(f"failed as expected {check.name}: {expected}")
             return "failed as expected"
         reason = str(error) or check.doc
-        echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
+        click.echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
         return "failed"
     if expected is not None:
-        echo(f"FAILED {check.name}: it passes, but is expected to fail: {expected}")
+        click.echo(f"FAILED {check.name}: it passes, but is expected to fail: {expected}")
         return "failed"
-    echo(f"ok {check.name}")
+    click.echo(f"ok {check.name}")
     return "ok"
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import described
+from wearlaw.errors import ModelError, described
 
 T = TypeVar("T", Contact, Problem)
 
@@ -54,7 +54,9 @@ def failing(where: str = "") -> Iterator[None]:
         error.args = (f"{where}{error}",)
         raise
     except BaseException as error:
-        failure = ModelRaisedError(f"{where}the model raised {described(error)}")
+        of_a_run = isinstance(error, ModelError)  # what every run checks
+        failure = AssertionError(str(error)) if of_a_run else ModelRaisedError(f"the model raised {described(error)}")
+        failure.args = (f"{where}{failure}",)
         failure.__notes__ = getattr(error, "__notes__", [])
         raise failure from error
 

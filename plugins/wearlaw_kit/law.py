@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact
+from wearlaw.contact.contact import Contact
 from wearlaw.errors import WearlawError
 from wearlaw.models.law import Law, Numbers, WearLaw
 from wearlaw.parameters import changed, number_like, numbers
@@ -120,29 +120,23 @@ def _turned(contact: Contact) -> Iterator[Contact]:
         yield contact.replaced(**turned)
 
 
-@rule(WearLaw)
-def vectors_dissipate_their_product(law: WearLaw) -> None:
+@on_contacts(WearLaw)
+def vectors_dissipate_their_product(law: WearLaw, contact: Contact) -> None:
     """On an ellipse q·s is the product of vectors: slip across the traction adds no wear to a law of the energy.
 
     A law of the energy is one whose rate on a line stays the same, to the bit, if the traction doubles and the slip is
     halved. Other laws may depend on the slip across the traction.
     """
-    of_energy = []
+    if contact.on_strips and _is_of_energy(law):
+        straight, across = (law.rate(_with_slip_across(contact, share), law.numbers) for share in (0.0, 1.0))
+        assert_close(across, straight, "the rate with slip across the traction")
 
-    def compare(contact: Contact) -> None:
-        if not contact.on_strips:
-            double, half = {"traction": 2.0, "traction_bound": 2.0}, {"slip": 0.5}
-            other = contact.replaced(**{name: by * getattr(contact, name) for name, by in (double | half).items()})
-            of_energy.append(np.array_equal(law.rate(contact, law.numbers), law.rate(other, law.numbers)))
 
-    def examine(contact: Contact) -> None:
-        if contact.on_strips:
-            straight, across = (law.rate(_with_slip_across(contact, share), law.numbers) for share in (0.0, 1.0))
-            assert_close(across, straight, "the rate with slip across the traction")
-
-    for_each_contact(law, compare)
-    if all(of_energy):
-        for_each_contact(law, examine)
+def _is_of_energy(law: WearLaw) -> bool:
+    contact = random_contacts(256, law=law)
+    q, bound, s = 2.0 * contact.traction, 2.0 * contact.traction_bound, 0.5 * contact.slip
+    other = contact.replaced(traction=q, traction_bound=bound, slip=s)
+    return np.array_equal(law.rate(contact, law.numbers), law.rate(other, law.numbers))
 
 
 def _with_slip_across(contact: Contact, share: float) -> Contact:
@@ -160,29 +154,27 @@ def _with_slip_across(contact: Contact, share: float) -> Contact:
 def parameters_may_vary(law: Law) -> None:
     """A number that varies from point to point gives the same rate, breakpoints and ramps as a law for each value."""
     law = law.explicit()
-    of_each = {name: _of_values(law, name, number) for name, number in numbers(law).items()}
-
-    def with_values(name: str, node_axes: int) -> Numbers:
-        return {**law.numbers, name: (law.numbers[name] * np.array(STEPS)).reshape(-1, *[1] * node_axes)}
-
-    for name, laws in of_each.items():
+    for name, number in numbers(law).items():
+        laws = _of_values(law, name, number)
         for axes in of_patch(law, (0,), (1, 2)):
-            found = _borders(law, with_values(name, axes))
-            for point, one in laws.items():
+            values = (law.numbers[name] * np.array(STEPS)).reshape(-1, *[1] * axes)
+            found = _borders(law, {**law.numbers, name: values})
+            for step, one in laws.items():
                 message = f"the breakpoints and ramps with {name} for each point"
-                assert_close(_at(found, point), _at(_borders(one, one.numbers), 0), message)
+                assert_close(_at(found, step), _at(_borders(one, one.numbers), 0), message)
+        for_each_contact(law, partial(_compare_varying, law, name, laws))
 
-    def examine(contact: Contact) -> None:
-        for first in range(contact.rolling_speed.size):
-            batch, alone = contact[[first] * len(STEPS)], contact[[first]]
-            due = of_patch(law, batch.pressure.shape[:1], batch.pressure.shape)
-            for name, laws in of_each.items():
-                rate = law.rate(batch, with_values(name, of_patch(law, 0, batch.pressure.ndim - 1)))
-                assert np.shape(rate) == due, f"rates of shape {np.shape(rate)} when {name} varies"
-                for point, one in laws.items():
-                    assert_close(rate[point], one.rate(alone, one.numbers)[0], f"the rate with {name} for each point")
 
-    for_each_contact(law, examine)
+def _compare_varying(law: Law, name: str, laws: Mapping[int, Law], contact: Contact) -> None:
+    """Compare the rate with a number that goes through `STEPS` from point to point with that of the law of each."""
+    steps = np.arange(contact.rolling_speed.size) % len(STEPS)
+    values = law.numbers[name] * np.array(STEPS)[steps]
+    rate = law.rate(contact, {**law.numbers, name: of_patch(law, values, contact.per_node(values))})
+    due = of_patch(law, values.shape, contact.pressure.shape)
+    assert np.shape(rate) == due, f"rates of shape {np.shape(rate)} when {name} varies"
+    for step, one in laws.items():
+        at = steps == step
+        assert_close(rate[at], one.rate(contact[at], one.numbers), f"the rate with {name} for each point")
 
 
 def _of_values(law: Law, name: str, number: Quantity | float) -> dict[int, Law]:
@@ -312,20 +304,13 @@ def declared_names_are_variables(law: Law) -> None:
 
     Every value in `jumps` is a breakpoint too.
     """
-    of_law = (*LAW_VARIABLES, *law.own_variables)
-    declared: dict[str, tuple[Mapping[str, Any], tuple[str, ...]]] = {
-        "breakpoints": (law.breakpoints(law.numbers) or {}, of_law),
-        "jumps": (law.jumps(law.numbers), of_law),
-        "valid_range": (law.valid_range, PATCH_VARIABLES),
-        "monotone_in": (dict.fromkeys(law.monotone_in, ()), LAW_VARIABLES),
-    }
-    for subject, (variables, known) in declared.items():
-        for name, values in variables.items():
-            assert name in known, f"`{subject}` names '{name}'; the variables are: {', '.join(known)}"
-            bad = np.isnan(values).any() or (subject != "valid_range" and not np.isfinite(values).all())
-            assert not bad, f"`{subject}` has {name} = {values}"
-    for name, values in declared["jumps"][0].items():
-        missing = {*values} - {*declared["breakpoints"][0].get(name, ())}
+    law.check_variables()
+    breakpoints, jumps = law.breakpoints(law.numbers) or {}, law.jumps(law.numbers)
+    for subject, declared in (("breakpoints", breakpoints), ("jumps", jumps)):
+        for name, values in declared.items():
+            assert np.isfinite(values).all(), f"`{subject}` has {name} = {values}"
+    for name, values in jumps.items():
+        missing = {*values} - {*breakpoints.get(name, ())}
         assert not missing, f"`jumps` has {name} = {sorted(missing)}, which `breakpoints` lacks"
     for name, (low, high) in law.valid_range.items():
         assert low < high, f"`valid_range` of {name} goes from {low:g} to {high:g}"

@@ -7,7 +7,6 @@ widths and lie in one part or in two, as in a patch that is no ellipse.
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 from collections.abc import Callable
 from typing import Any, TypeAlias
@@ -17,9 +16,10 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import LAW_VARIABLES, Contact, variable_at_nodes
 from wearlaw.contact.material import steel
-from wearlaw.contact.problem import Body, Problem
+from wearlaw.contact.problem import Body
 from wearlaw.models.law import Law
 from wearlaw_kit.examples import failing, for_each
+from wearlaw_kit.reduced import random_lines, wide_ellipses, without_spin
 from wearlaw_kit.rules import rule
 
 NODE_FIELDS = (
@@ -243,39 +243,20 @@ def with_totals(**fields: Any) -> Contact:
 
 
 def with_problem(contact: Contact, law: Law | None = None) -> Contact:
-    """Return the contact with a problem of like size and load, of two bodies of the material to try the law with.
+    """Return the contact with a problem of its shape without spin, of two bodies of the material to try the law with.
 
     The bodies are called "body_1" and "body_2", and one of them as the law's `body`.
     """
-    ellipse, area, force = contact.on_strips, contact.patch_area, contact.normal_force
-    a = np.full_like(area, 1e-3)
+    speed = contact.rolling_speed
     material = STEEL if law is None or law.example_material is None else law.example_material
-    own = [law.body] if law is not None and law.body else []
-    names = [*own, *(name for name in ("body_1", "body_2") if name not in own)][:2]
-    problem = Problem(
-        geometry="ellipse" if ellipse else "line",
-        a=a,
-        b=area / (np.pi * a) if ellipse else 0.25 * area / a,
-        normal_force=force,
-        max_pressure=(1.5 if ellipse else 4.0 / np.pi) * force / area,
-        effective_modulus=np.full_like(area, 1.12e11),
-        poisson_ratio=np.full_like(area, 0.28),
-        friction_coefficient=np.full_like(area, 0.3),
-        longitudinal_creepage=contact.mean_slip,
-        lateral_creepage=np.zeros_like(area),
-        spin=np.zeros_like(area),
-        rolling_speed=contact.rolling_speed,
+    names = dict.fromkeys([*([law.body] if law is not None and law.body else []), "body_1", "body_2"])
+    problem = without_spin((wide_ellipses if contact.on_strips else random_lines)(speed.size)).replaced(
+        rolling_speed=speed,
         density=contact.density,
-        rolled_distance=np.full_like(area, 1e3),
-        bodies={name: Body(material, 0.25) for name in names},
+        rolled_distance=np.full_like(speed, 1e3),
+        bodies={name: Body(material, 0.25) for name in [*names][:2]},
     )
     return contact.replaced(problem=problem)
-
-
-def arrays_of(contact: Contact) -> dict[str, Array]:
-    """Return the fields and totals of a contact by name."""
-    fields = {field.name: getattr(contact, field.name) for field in dataclasses.fields(contact)}
-    return {name: value for name, value in fields.items() if value is not None and name != "problem"}
 
 
 def at_nodes(contact: Contact, variable: str) -> Array:

@@ -9,6 +9,7 @@ bound, where ξ/L1 is the steepest slope of the bound, 4μN/(πa²b).
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from wearlaw.arrays import Array
 from wearlaw.contact import kalker
@@ -19,8 +20,6 @@ SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 
 FULL_SLIP = (1.0, 1.5)
 """Reduced creepages at which Carter's theory and FASTSIM slip everywhere on a line."""
-
-_RIGHT = 0.5 * np.pi
 
 STRIP_AT = np.linspace(-0.95, 0.95, 20)
 """Positions y/b of the strips of a patch."""
@@ -82,11 +81,6 @@ def parts_of_power(problem: Problem, forces: CreepForces) -> Array:
     )
 
 
-def with_creepage(problem: Problem, creepage: Array | float) -> Problem:
-    """Return the problem at another longitudinal creepage."""
-    return problem.replaced(longitudinal_creepage=np.asarray(creepage, dtype=np.float64))
-
-
 def creeping(problem: Problem, *factors: Array | float) -> Problem:
     """Return the problem with ξ, η and φ multiplied by a factor each, or by a single one."""
     longitudinal, lateral, spin = factors * (3 // len(factors))
@@ -95,14 +89,14 @@ def creeping(problem: Problem, *factors: Array | float) -> Problem:
     )
 
 
+def at_factors(problem: Problem, factors: ArrayLike) -> Problem:
+    """Return the problems at their creepages times each factor, (points, factors)."""
+    return creeping(problem[:, None].broadcast_to((problem.size, np.size(factors))), np.asarray(factors))
+
+
 def without_spin(problem: Problem) -> Problem:
     """Return the problem with the same translation and no spin."""
     return creeping(problem, 1.0, 1.0, 0.0)
-
-
-def saturation(problem: Problem) -> Array:
-    """Return μa/R of a line, at which Carter's theory slips everywhere."""
-    return problem.friction_coefficient * problem.half_width / problem.relative_radius
 
 
 def unit_creepages(problem: Problem) -> tuple[Array, Array, Array]:
@@ -112,7 +106,7 @@ def unit_creepages(problem: Problem) -> tuple[Array, Array, Array]:
     """
     if problem.geometry == "line":
         none = np.zeros(problem.batch_shape)
-        return saturation(problem), none, none
+        return problem.friction_coefficient * problem.half_width / problem.relative_radius, none, none
     known = kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
     area = problem.a * problem.b
     unit = friction_limit(problem) / (problem.shear_modulus * area)
@@ -173,45 +167,29 @@ def wide_ellipses(points: int, seed: int = 7) -> Problem:
     next to saturation, along x or y or between. Every other patch spins, by either sign. Nothing slips more than it
     rolls.
     """
-    random = np.random.default_rng(seed)
-    size = _reduced(random, points, (1e-2, 30.0), SATURATION)
-    angle = np.where(
-        random.random(points) < 0.5, random.uniform(-np.pi, np.pi, points), _RIGHT * (np.arange(points) // 2)
-    )
-    spin = 10.0 ** random.uniform(-2, 1, points) * random.choice([-1.0, 1.0], points) * (np.arange(points) % 2)
-    problem = _resting_ellipses(random, points, ratios=(0.05, 20.0))
-    problem = at_reduced(problem, size * np.cos(angle), size * np.sin(angle), spin)
+    problem = _ellipses(points, seed, ratio=20.0, reduced=(1e-2, 30.0), spin=(1e-2, 10.0))
     fastest = translation(problem) + np.abs(problem.spin) * np.maximum(problem.a, problem.b)
     return creeping(problem, 1.0 / np.maximum(fastest, 1.0))
 
 
 def random_ellipses(points: int) -> Problem:
-    """Return patches of many shapes, loads and frictions, the same at every call.
+    """Return patches of many shapes, loads and frictions in partial slip, the same at every call.
 
-    Reduced creepages go from 0.3, where the slip zone is a tenth of the patch, to 3.5, and have random directions.
-    Every other patch spins.
+    Reduced creepages go from 0.3, where the slip zone is a tenth of the patch, to 3.5.
     """
-    random = np.random.default_rng(6)
-    problem = _resting_ellipses(random, points, ratios=(0.1, 10.0))
-    size, angle = _between(random, points, 0.3, 3.5), random.uniform(-np.pi, np.pi, points)
-    spin = _between(random, points, 0.1, 3.0) * random.choice([-1.0, 1.0], points) * (np.arange(points) % 2)
-    return at_reduced(problem, size * np.cos(angle), size * np.sin(angle), spin)
+    return _ellipses(points, 6, ratio=10.0, reduced=(0.3, 3.5), spin=(0.1, 3.0))
 
 
-def _between(random: np.random.Generator, points: int, low: float, high: float) -> Array:
-    value: Array = 10.0 ** random.uniform(np.log10(low), np.log10(high), points)
-    return value
-
-
-def _resting_ellipses(random: np.random.Generator, points: int, ratios: tuple[float, float]) -> Problem:
-    """Return patches without creepage."""
+def _ellipses(points: int, seed: int, ratio: float, reduced: tuple[float, float], spin: tuple[float, float]) -> Problem:
+    """Return patches with axis ratios up to one, and reduced creepages and spins, of every other one, in ranges."""
+    random = np.random.default_rng(seed)
 
     def between(low: float, high: float) -> Array:
         return _between(random, points, low, high)
 
-    size, ratio = between(1e-4, 2e-2), between(*ratios)
-    a, b, shear_modulus = size * np.sqrt(ratio), size / np.sqrt(ratio), between(1e9, 1e12)
-    return Problem.ellipse_from_si(
+    mean, shape, shear_modulus = between(1e-4, 2e-2), between(1.0 / ratio, ratio), between(1e9, 1e12)
+    a, b = mean * np.sqrt(shape), mean / np.sqrt(shape)
+    problem = Problem.ellipse_from_si(
         a=a,
         b=b,
         normal_force=2.0 / 3.0 * np.pi * a * b * between(1e-4, 2e-2) * shear_modulus,
@@ -224,3 +202,14 @@ def _resting_ellipses(random: np.random.Generator, points: int, ratios: tuple[fl
         rolling_speed=between(0.1, 100.0),
         density=random.uniform(1e3, 2e4, points),
     )
+    size = _reduced(random, points, reduced, SATURATION)
+    along_axes = 0.5 * np.pi * (np.arange(points) // 2)
+    angle = np.where(random.random(points) < 0.5, random.uniform(-np.pi, np.pi, points), along_axes)
+    turning = between(*spin) * random.choice([-1.0, 1.0], points) * (np.arange(points) % 2)
+    return at_reduced(problem, size * np.cos(angle), size * np.sin(angle), turning)
+
+
+def _between(random: np.random.Generator, points: int, low: float, high: float) -> Array:
+    """Return numbers that are uniform in their logarithm."""
+    value: Array = 10.0 ** random.uniform(np.log10(low), np.log10(high), points)
+    return value

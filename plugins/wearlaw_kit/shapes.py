@@ -12,8 +12,9 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -25,46 +26,14 @@ from wearlaw.contact.quadrature import join
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel, Stage
 from wearlaw.numerics.staged import staged
 from wearlaw_kit.examples import SAME, assert_close, failing, for_each
-from wearlaw_kit.reduced import (
-    creeping,
-    friction_limit,
-    in_strips,
-    lever,
-    parts_of_power,
-    random_ellipses,
-    random_lines,
-    saturation,
-    sliding_power,
-    wide_ellipses,
-    with_creepage,
-)
+from wearlaw_kit.reduced import friction_limit, in_strips, lever, random_ellipses, random_lines, wide_ellipses
 from wearlaw_kit.rules import Applies, any_model, rule
-
-MANY = 512
-"""Lines to average an error over."""
-
-PATCHES = 8
-"""Ellipses to average an error over."""
 
 PANELS = 64
 """Panels of a zone: on 48 lines, every part of the patch that is longer than a thousandth of it has nodes."""
 
 WORDS = {"longitudinal": "Fx", "lateral": "Fy", "spin_moment": "Mz"}
 """What messages call the forces of `CreepForces`."""
-
-
-class Path(NamedTuple):
-    """Problems at reduced creepages that grow from `low` to `high`, through full slip, to look for jumps.
-
-    The `intervals` are so small that a curved force changes by less than 1/1000 more in one half of them than in the
-    other: Carter's, with its curvature of 2 at full slip, by 2 (3 ln 10/512/2)² = 1e-4, and that of an ellipse, whose
-    logarithmic slope changes by up to 2 per e-fold, by 2 (ln 10/64/2)² = 6e-4.
-    """
-
-    problem: Problem
-    low: float
-    high: float
-    intervals: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,97 +44,37 @@ class Shape:
     ----------
     where : str
         How messages begin.
-    draw : callable
-        Returns a number of problems, from partial to full slip.
-    problems : Problem
-        Many operating points, from nearly full stick to full slip.
-    similar : Problem
-        As many, each with the same forces over μN as that of `problems`.
-    batch : Problem
-        Points with and without slip, and in full slip, that a batch must keep apart.
-    path : Path
-        Where to look for jumps.
-    to_refine : list of Problem
-        Batches to average an error over; patches one at a time, since the nodes may be many.
-    directions : ndarray, (2, n)
-        Directions of reduced creepages ξ and η.
+    uncut : callable
+        Returns a number of problems, from partial to full slip, before `cut`.
+    wide : Problem
+        Many operating points, from nearly full stick to full slip, before `cut`.
+    cut : callable
+        Returns the problem of the shape: a patch of strips is cut from an ellipse.
     """
 
     geometry: Geometry
     where: str
-    draw: Callable[[int], Problem]
-    problems: Problem
-    similar: Problem
-    batch: Problem
-    path: Path
-    to_refine: list[Problem]
-    directions: Array
+    uncut: Callable[[int], Problem]
+    wide: Problem
+    cut: Callable[[Problem], Problem] = lambda problem: problem
+
+    def draw(self, points: int) -> Problem:
+        """Return a number of problems, from partial to full slip."""
+        return self.cut(self.uncut(points))
+
+    @cached_property
+    def problems(self) -> Problem:
+        """Many operating points, from nearly full stick to full slip."""
+        return self.cut(self.wide)
 
 
-def _at_factors(problem: Problem, factors: list[list[float]]) -> Problem:
-    """Return the problem at its creepages times factors, to which its batch broadcasts."""
-    shape = np.broadcast_shapes(problem.batch_shape, np.shape(factors))
-    return creeping(problem.broadcast_to(shape), np.array(factors))
-
-
-def _scaled(problem: Problem) -> Problem:
-    """Return similar problems of other lengths, moduli, frictions, creepages and speeds."""
-    random, shape = np.random.default_rng(8), problem.batch_shape
-    length, modulus, friction, speed = 10.0 ** random.uniform(-1.0, 1.0, (4, *shape))
-    creepage = 10.0 ** random.uniform(-1.0, 0.0, shape)  # it may not grow above 1
-    pressure = creepage * modulus / friction
-    other = problem.replaced(
-        a=length * problem.a,
-        b=length * problem.b,
-        effective_modulus=modulus * problem.effective_modulus,
-        max_pressure=pressure * problem.max_pressure,
-        friction_coefficient=friction * problem.friction_coefficient,
-        normal_force=pressure * length**2 * problem.normal_force,
-        rolling_speed=speed * problem.rolling_speed,
-    )
-    return creeping(other, creepage, creepage, creepage / length)
-
-
-_lines, _ellipses = random_lines(48), wide_ellipses(32)
-
-LINE = Shape(
-    geometry="line",
-    where="on a line: ",
-    draw=random_lines,
-    problems=_lines,
-    similar=_scaled(_lines),
-    batch=_at_factors(_lines[::6, None, None], [[1.0, 0.0, -1.0], [1e-3, 1e3, 1.0 + 1e-9]]),
-    path=Path(random_lines(2), 1e-2, 10.0, 512),
-    # Nearer to zero, the slip zone is shorter than a cell.
-    to_refine=[with_creepage(random_lines(MANY), np.linspace(0.1, 1.2, MANY) * saturation(random_lines(MANY)))],
-    directions=np.array([[1.0], [0.0]]),
-)
+LINE = Shape("line", "on a line: ", random_lines, random_lines(48))
 """Discs with parallel axes: one axis of nodes, one creepage."""
 
-ELLIPSE = Shape(
-    geometry="ellipse",
-    where="on an ellipse: ",
-    draw=random_ellipses,
-    problems=_ellipses,
-    similar=_scaled(_ellipses),
-    batch=_at_factors(random_ellipses(8), [[0.0], [1.0], [1e3]]),
-    path=Path(random_ellipses(4)[[0, 1, 3]], 0.6, 6.0, 64),
-    to_refine=[random_ellipses(PATCHES)[index] for index in range(PATCHES)],
-    directions=np.array([[1.0, 1.0, 0.0, -1.0, -1.0, -1.0, 0.0, 1.0], [0.0, 1.0, 1.0, 1.0, 0.0, -1.0, -1.0, -1.0]]),
-)
+ELLIPSE = Shape("ellipse", "on an ellipse: ", random_ellipses, wide_ellipses(32))
 """A wheel on a rail: nodes on strips, two creepages and a spin."""
 
-PATCH = Shape(
-    geometry="strips",
-    where="on strips: ",
-    draw=lambda points: in_strips(random_ellipses(points)),
-    problems=in_strips(ELLIPSE.problems),
-    similar=in_strips(ELLIPSE.similar),
-    batch=in_strips(ELLIPSE.batch),
-    path=ELLIPSE.path._replace(problem=in_strips(ELLIPSE.path.problem)),
-    to_refine=[in_strips(problem) for problem in ELLIPSE.to_refine],
-    directions=ELLIPSE.directions,
-)
+PATCH = replace(ELLIPSE, geometry="strips", where="on strips: ", cut=in_strips)
 """A patch of strips with a given pressure, fuller on one side than an ellipse and shorter on the other."""
 
 SHAPES = (LINE, ELLIPSE, PATCH)
@@ -217,22 +126,15 @@ def sizes(problem: Problem, forces: CreepForces) -> dict[str, Array]:
     return {"longitudinal": size, "lateral": size, "spin_moment": moment}
 
 
-def size_of_power(problem: Problem, forces: CreepForces) -> Array:
-    """Return the power of full slip, or of the forces where theirs is larger."""
-    size: Array = np.maximum(sliding_power(problem), parts_of_power(problem, forces))
-    return size
-
-
 def assert_same_forces(problem: Problem, found: CreepForces, due: CreepForces, message: str, error: float) -> None:
     """Assert that forces and moment agree to a share of their sizes."""
     for name, size in sizes(problem, due).items():
         assert_close(getattr(found, name), getattr(due, name), f"{WORDS[name]} {message}", 0.0, error * size)
 
 
-def assert_same_power(problem: Problem, found: Contact, due: Contact, message: str, error: float) -> None:
-    """Assert that two contacts have the same Tγ, to a share of its size."""
-    allowed = error * size_of_power(problem, due.forces)
-    assert_close(found.wear_index, due.wear_index, f"the wear index {message}", 0.0, allowed)
+def of_model(model: ContactModel, points: int) -> list[tuple[ContactModel, Problem]]:
+    """Return a model with random problems of each shape that it solves."""
+    return [(model, shape.draw(points)) for shape in SHAPES if shape.geometry in model.geometries()]
 
 
 def of_stage(stage: Stage, points: int) -> list[tuple[ContactModel, Problem]]:

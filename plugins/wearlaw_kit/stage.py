@@ -9,8 +9,8 @@ import numpy as np
 from wearlaw.contact.problem import Problem
 from wearlaw.models.contact_model import Stage
 from wearlaw.numerics.integrate import integrate_forces
-from wearlaw.numerics.solving import Solver
-from wearlaw_kit.contact import assert_digits, assert_finite
+from wearlaw.numerics.solving import Solver, check_finite
+from wearlaw_kit.contact import assert_digits
 from wearlaw_kit.reduced import creeping, parts_of_power
 from wearlaw_kit.rules import rule
 from wearlaw_kit.shapes import assert_same_forces, forces_as, of_stage
@@ -68,7 +68,8 @@ def contact_is_finite(stage: Stage) -> None:
     """Every field and total of the contact is a finite number, also at rest and in full slip."""
     for model, problem in of_stage(stage, POINTS):
         for factor in (0.0, 1e-6, 1.0, 100.0):
-            assert_finite(model.solve(_held(creeping(problem, factor))))
+            held = _held(creeping(problem, factor))
+            check_finite(model, model.solve(held), held)
 
 
 def _held(problem: Problem) -> Problem:

@@ -20,7 +20,7 @@ from wearlaw_kit.examples import assert_close
 from wearlaw_kit.law_contacts import random_contacts
 from wearlaw_kit.rig import PRECISE, values_of, varied
 from wearlaw_kit.rules import rule
-from wearlaw_kit.shapes import LINE, SHAPES, of_stage
+from wearlaw_kit.shapes import LINE, of_model, of_stage
 
 SAME_RESULT = 1e-9
 """Relative difference of results from values in two units, whose conversion rounds, or from two kinds of loops."""
@@ -31,8 +31,8 @@ POINTS = 64
 FEW = 12
 """Operating points for loops that are not compiled."""
 
-TOTALS = ("tangential_force", "moment_z", "wear_index", "mean_slip", "patch_area", "normal_force", "rolling_speed")
-"""Totals of a contact that a stage may change."""
+TOTALS = ("tangential_force", "wear_index", "mean_slip", "patch_area", "normal_force", "rolling_speed")
+"""Totals of a contact, all above zero, among them those that a stage may change."""
 
 
 @rule(Rig, always=True)
@@ -76,16 +76,14 @@ def _computed(model: Model, points: int = POINTS) -> Array:
         return _made(model, {})
     if isinstance(model, Law):
         return model.rate(random_contacts(points, law=model), model.numbers)
-    if isinstance(model, Stage):
-        solved = [staged.solve(problem) for staged, problem in of_stage(model, points)]
-        return np.stack([getattr(contact, name) for contact in solved for name in TOTALS])
-    assert isinstance(model, ContactModel)
+    assert isinstance(model, ContactModel | Stage)
+    models = of_stage(model, points) if isinstance(model, Stage) else of_model(model, points)
+    solved = [one.solve(problem) for one, problem in models]
+    found = [getattr(contact, name) for contact in solved for name in TOTALS]
     if isinstance(model, LineContactModel):
         excess = model.excess_dissipation(LINE.draw(points), 1e6)
-        return np.stack([model.tangential_force(LINE.draw(points)), np.zeros(points) if excess is None else excess])
-    return np.stack(
-        [model.solve(shape.draw(points)).tangential_force for shape in SHAPES if shape.geometry in model.geometries()]
-    )
+        found += [] if excess is None else [excess]
+    return np.stack(found)
 
 
 @rule(Law)

@@ -11,7 +11,7 @@ import pandas as pd
 
 import wearlaw as wl
 from wearlaw_life._life import Life
-from wearlaw_output.commands import echo, folder_for, print_notes, print_results, value, values
+from wearlaw_output.commands import folder_for, print_notes, print_results, value, values
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import write_files, written_formats
 from wearlaw_output.folder import results_folder
@@ -77,7 +77,7 @@ def life(
         names = write_files(fresh, LIFE, record, _tables(found), figures, figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
     print_notes(notes.texts)
-    echo(repr(found))
+    click.echo(repr(found))
     print_results(folder, names)
 
 

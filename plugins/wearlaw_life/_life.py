@@ -10,8 +10,8 @@ import pandas as pd
 import xarray
 
 import wearlaw as wl
-from wearlaw.units.variables import readable
 from wearlaw_life._removal import positions
+from wearlaw_output.labels import readable
 from wearlaw_output.plot import plot
 
 if TYPE_CHECKING:

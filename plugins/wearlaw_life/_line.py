@@ -13,7 +13,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw.errors import caught_warnings
+from wearlaw_output.notes import caught_warnings
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import Points
 from wearlaw_sweeps.provenance import provenance_of

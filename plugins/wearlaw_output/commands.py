@@ -8,7 +8,7 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -20,6 +20,9 @@ from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.text_files import read_toml
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
@@ -128,25 +131,18 @@ def _form(name: str, given: Mapping[str, str | float]) -> str:
 
 def folder_for(path: str, ending: str) -> Path:
     """Return the folder for the results of a file unless the user names one, such as "case-results"."""
-    stem = "".join(letter if letter.isprintable() else "_" for letter in Path(path).stem)
-    return Path(f"{stem}-{ending}")
-
-
-def echo(text: str, err: bool = False) -> None:
-    """Print a text without control characters, which names and labels from outside may have."""
-    click.echo(text, err=err)
-
-
-def _is_terminal() -> bool:
-    return sys.stdout.isatty()
+    return Path(f"{Path(path).stem}-{ending}")
 
 
 def echo_file(text: str) -> None:
-    """Print the text of a file: unchanged into a file or pipe, without control characters on a terminal."""
-    if _is_terminal():
-        echo(text.removesuffix("\n"))
-    else:
-        click.echo(text.encode(), nl=False)  # UTF-8, whatever the terminal speaks
+    """Print the text of a file, in UTF-8 into a file or pipe, whatever the terminal speaks."""
+    click.echo(text if sys.stdout.isatty() else text.encode(), nl=False)
+
+
+def print_table(frame: pd.DataFrame) -> None:
+    """Print a table with four digits, in blocks of columns as wide as the terminal."""
+    width = shutil.get_terminal_size((LINE, 24)).columns
+    click.echo(frame.to_string(line_width=width, na_rep="", float_format=lambda number: f"{number + 0.0:.4g}") + "\n")
 
 
 def verbose(command: CommandT) -> CommandT:

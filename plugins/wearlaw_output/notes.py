@@ -1,12 +1,36 @@
-"""Notes that a reader needs beside the results."""
+"""Warnings that were caught, and the notes for the readers of results that are made of them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import warnings
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from threading import RLock
 
-from wearlaw.errors import caught_warnings
+from wearlaw.errors import WearlawWarning
+
+_CATCHING = RLock()
+
+
+@contextmanager
+def caught_warnings(*kinds: type[Warning]) -> Iterator[list[Warning]]:
+    """Yield a list that holds the warnings of some kinds, by default all of wearlaw's, when the context ends.
+
+    All other warnings are shown as ever. Python's `catch_warnings` changes settings of the process, and two threads
+    that enter it at once leave the changes behind, so one thread at a time enters it here.
+    """
+    kept = kinds or (WearlawWarning,)
+    found: list[Warning] = []
+    with _CATCHING, warnings.catch_warnings(record=True) as caught:
+        for kind in kept:
+            warnings.simplefilter("always", kind)
+        yield found
+    for one in caught:
+        if issubclass(one.category, kept):
+            found.append(one.message)  # type: ignore[arg-type]
+        else:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
 
 
 @dataclass
@@ -27,3 +51,22 @@ class Notes:
             yield
         for warning in caught:
             self.add(f"{subject}: {warning}")
+
+
+def grouped(texts: Iterable[str]) -> list[str]:
+    """Return notes with one in place of those that say the same of several subjects, up to their last semicolon."""
+    groups: dict[str, list[tuple[str, str]]] = {}
+    for text in texts:
+        subject, _, remark = text.partition(": ")
+        head, _, tail = remark.rpartition("; ")
+        groups.setdefault(head or remark or text, []).append((subject, f"; {tail}" if head else ""))
+    found = []
+    for head, members in groups.items():
+        subjects, tails = zip(*members, strict=True)
+        if subjects == (head,):
+            found.append(head)
+        elif len({*tails}) == 1:
+            found.append(f"{', '.join(subjects)}: {head}{tails[0]}")
+        else:
+            found.append(head + "".join(f"; {subject}: {tail[2:]}" for subject, tail in members))
+    return found

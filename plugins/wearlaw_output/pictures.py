@@ -13,16 +13,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
+from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.datasets import Conditions, data_of, dataset, labelled
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.selection import in_words
+from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
-from wearlaw.units.variables import UNITS, label, name_of, readable
+from wearlaw.units.variables import UNITS, name_of
+from wearlaw_output.conditions import Conditions
+from wearlaw_output.curves import OUTSIDE, Curve
+from wearlaw_output.datasets import data_of, dataset, labelled
+from wearlaw_output.drawing import PALE, THIN, plot_curve
+from wearlaw_output.labels import in_words, label, readable
 
 if TYPE_CHECKING:
     import xarray
@@ -34,16 +39,8 @@ SIZE = (6.4, 4.4)
 MOST_CURVES = 8
 """Most curves of a prediction over two conditions; with more it is a map."""
 
-FEW_POINTS = 15
-"""Most operating points of a curve for each to be marked."""
-
 TITLE = 70
 """Characters on a line of the title."""
-
-PALE = 0.35
-"""Opacity of a curve outside the range of its law."""
-
-OUTSIDE = "outside the range of the law"
 
 ALONG = ("pressure", "traction", "traction_bound")
 """Fields along the patch of a line that are shown if none is named."""
@@ -55,9 +52,9 @@ SIDE = 9
 """Corners along each side of a cell."""
 
 
-def draw(prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
+def draw(prediction: Prediction, solution: Solution, name: str | None, x: str | None, ax: Axes | None) -> Axes:
     """Draw a prediction; see `Prediction.plot`."""
-    problem = prediction.problem
+    problem, conditions = prediction.problem, Conditions.of(solution)
     points = problem.batch_shape[: len(problem.batch_shape) - len(problem.dims)]
     if math.prod(points) == 1 and x is None:
         several = math.prod(problem.batch_shape) > 1
@@ -111,33 +108,24 @@ def _curves(
 ) -> Axes:
     """Draw a curve for each value of the other axes and for each patch."""
     apart = [*others, *(dim for dim in problem.dims if dim in found.dims)]
-    look = _look(ax)
-    pale = False
-    drawn: Axes | None = None
+    curves: list[Curve] = []
     for index in np.ndindex(*(found.sizes[dim] for dim in apart)):
         place = dict(zip(apart, index, strict=True))
-        table = found.isel(place).to_dataframe().reset_index()
-        table = table[table[variable].notna() & table[across].notna()]
-        if table.empty:
-            continue
-        named = _series(found, place, problem)
-        marked: dict[str, Any] = {"marker": "o" if len(table) <= FEW_POINTS else "", "markersize": 4, "legend": False}
-        outside = table[OUTSIDE_RANGE] > 0.0 if OUTSIDE_RANGE in table else table[variable].isna()  # none
-        inside = table.assign(**{variable: table[variable].where(~outside)})
-        pale |= bool(outside.any())
-        if outside.any():  # the whole curve is pale, and on it lies the part inside
-            behind: Axes = table.plot(
-                x=across, y=variable, label=named if outside.all() else "_", alpha=PALE, **look, **marked
-            )
-            marked["color"] = behind.get_lines()[-1].get_color()
-            look["ax"] = drawn = behind
-        if not outside.all():
-            drawn = inside.plot(x=across, y=variable, label=named, **look, **marked)
-        look["ax"] = drawn
-    if drawn is None:
+        here = found.isel(place)
+        x, y = (np.atleast_1d(here[name].values) for name in (across, variable))
+        there = np.isfinite(x) & np.isfinite(y)
+        outside = np.atleast_1d(here[OUTSIDE_RANGE].values > 0.0)[there] if OUTSIDE_RANGE in here else None
+        if there.any():
+            label_here = _series(found, place, problem)
+            curves.append(Curve(label_here, x[there], y[there], colour=len(curves), outside=outside))
+    if not curves:
         raise InputError(f"plot: {variable} has no value at these operating points")
+    drawn: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
+    for curve in curves:
+        plot_curve(drawn, curve)
+    pale = any(curve.outside is not None and curve.outside.any() for curve in curves)
     if pale:
-        drawn.plot([], [], color="black", alpha=PALE, label=OUTSIDE)
+        drawn.plot([], [], color="black", linewidth=THIN, alpha=PALE, label=OUTSIDE)
     if apart or pale:
         drawn.legend(fontsize="small")
     drawn.set(xlabel=_label(found[across]), ylabel=_label(found[variable]))
@@ -186,7 +174,7 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
         raise InputError(
             "plot: there is one operating point, and the contact model gives means of its patch; give a condition"
             ' several values, such as creepage=Q([0.5, 1, 2], "%"), or take a contact model that resolves the patch,'
-            ' such as wl.contact_model("fastsim")'
+            ' such as wl.contact_model("exact") for discs and wl.contact_model("strip_theory") for wheels'
         )
     line = prediction.problem.geometry == "line"
     fields = fields_of(prediction)
@@ -239,26 +227,56 @@ def cells(prediction: Prediction) -> Array:
 
     Their sides are bent like the edge: that of an ellipse, or else a smooth one through the ends of the strips.
     """
-    contact, problem = prediction.contact, prediction.problem
-    shape = contact.pressure.shape[-2:]
-    width = contact.strip_width.reshape(shape[1])
-    length = contact.area.reshape(shape) / width
-    left, right = _ends(contact.x.reshape(shape), length)
-    low, high = _ends(np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0], width)
+    nodes, length, strips, width = _strips(prediction)
+    left, right = _ends(nodes, length)
+    low, high = _ends(strips, width)
     bend = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, SIDE))[:, None]
     y = low + (high - low) * bend
-    half_length = 0.5 * length.sum(axis=0)
-    if problem.geometry == "ellipse":
-        edge = problem.a * np.sqrt(np.maximum(1.0 - (y / problem.b) ** 2, 0.0))
-    else:
-        order = np.argsort(low)
-        places = np.concatenate([[low.min()], 0.5 * (low + high)[order], [high.max()]])
-        edge = np.sqrt(np.interp(y, places, np.concatenate([[0.0], half_length[order] ** 2, [0.0]])))
-    stretch = edge / np.maximum(half_length, np.finfo(float).tiny)
+    stretch = _edge(prediction, y) / np.maximum(0.5 * length.sum(axis=0), np.finfo(float).tiny)
     y, stretch = y[:, None], stretch[:, None]  # (places along a side, nodes, strips)
     sides = [np.stack(np.broadcast_arrays(end * stretch, y), axis=-1) for end in (left, right)]
     outlines = np.concatenate([sides[0], sides[1][::-1]])
     return 1e3 * np.moveaxis(outlines, 0, -2).reshape(-1, len(outlines), 2)
+
+
+def raster(prediction: Prediction, columns: int = 81, rows: int = 51) -> tuple[Array, Array, NDArray[np.intp]]:
+    """Return x and y of a grid over a patch [mm], and the index of the cell at each of its points, -1 outside.
+
+    The cells are those of `cells`, whose sides lie here halfway between nodes.
+    """
+    nodes, length, strips, width = _strips(prediction)
+    low, high = _ends(strips, width)
+    y = low.min() + np.ptp([low, high]) * (np.arange(rows) + 0.5) / rows
+    edge = _edge(prediction, y)
+    x = edge.max() * (2.0 * np.arange(columns) + 1.0 - columns) / columns
+    strip = np.abs(y[:, None] - strips).argmin(axis=1)
+    stretch = edge / np.maximum(0.5 * length.sum(axis=0)[strip], np.finfo(float).tiny)
+    node = np.abs(x[:, None] - stretch[:, None, None] * nodes.T[strip, None]).argmin(axis=-1)
+    return 1e3 * x, 1e3 * y, np.where(np.abs(x) <= edge[:, None], node * strips.size + strip[:, None], -1)
+
+
+def _strips(prediction: Prediction) -> tuple[Array, Array, Array, Array]:
+    """Return x of the nodes of a patch and their lengths, (nodes, strips), y of the strips and their widths [m]."""
+    contact = prediction.contact
+    shape = contact.pressure.shape[-2:]
+    width = contact.strip_width.reshape(shape[1])
+    y = np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0]
+    return contact.x.reshape(shape), contact.area.reshape(shape) / width, y, width
+
+
+def _edge(prediction: Prediction, y: Array) -> Array:
+    """Return half the length of a patch at positions across it [m]."""
+    problem = prediction.problem
+    if problem.geometry == "ellipse":
+        squared = problem.a**2 * np.maximum(1.0 - (y / problem.b) ** 2, 0.0)
+    else:
+        _, length, strips, width = _strips(prediction)
+        low, high = _ends(strips, width)
+        order = np.argsort(low)
+        places = np.concatenate([[low.min()], 0.5 * (low + high)[order], [high.max()]])
+        squared = np.interp(y, places, np.concatenate([[0.0], (0.5 * length.sum(axis=0)[order]) ** 2, [0.0]]))
+    half_length: Array = np.sqrt(squared)
+    return half_length
 
 
 def _ends(middle: Array, size: Array) -> tuple[Array, Array]:
@@ -281,7 +299,7 @@ def _series(found: xarray.Dataset, place: Mapping[str, int], problem: Problem) -
     """Return the name of a curve: the value of each other condition, and the patch."""
     of_points = [_value(found[dim].isel({dim: at})) for dim, at in place.items() if dim not in problem.dims]
     patch = in_words({dim: found[dim].values[at] for dim, at in place.items() if dim in problem.dims})
-    return ", ".join([*of_points, *([patch] if patch else [])]) or "_"
+    return ", ".join([*of_points, *([patch] if patch else [])])
 
 
 def _value(one: xarray.DataArray) -> str:

@@ -85,7 +85,8 @@ class StripTheory(wl.ContactModel):
     def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
         """Return the forces of an ellipse or of strips, without the fields that only wear needs."""
         layout = self._layout(problem)
-        found = _forces(layout, self._nodes(problem.flatten(), layout))
+        strips, greatest = self._strips(problem.flatten(), layout)
+        found = _forces(layout, greatest, _strips.sums(strips, *self._nodes_along))
         totals = {name: getattr(found, name) for name in ("longitudinal", "lateral", "spin_moment")}
         return wl.CreepForces(**{name: problem.unflatten(total) for name, total in totals.items()})
 
@@ -103,36 +104,38 @@ class StripTheory(wl.ContactModel):
         angle = step * np.arange(self.strips, 0, -1)
         return _across(flat, np.cos(angle), step * np.sin(angle))
 
-    def _nodes(self, flat: wl.Problem, layout: wl.Strips) -> _strips.Nodes:
-        """Return the nodes of strips, (nodes, strips, points), in SI units."""
+    @property
+    def _nodes_along(self) -> tuple[int, int]:
+        """The numbers of nodes along a strip in stick, and from the first slip on."""
+        stick, slip = (max(round(share * self.strips), least) for share, least in (STICK_NODES, SLIP_NODES))
+        return stick, slip
+
+    def _strips(self, flat: wl.Problem, layout: wl.Strips) -> tuple[_strips.Strips, Array]:
+        """Return strips over their half lengths and greatest bounds, and these bounds [Pa], (strips, points)."""
         c = wl.kalker.coefficients(flat.a / flat.b, flat.poisson_ratio, self.interpolation)
         greatest, half_length = flat.friction_coefficient * layout.max_pressure, layout.half_length
         if flat.strips is None:
             k_x, k_y = (greatest * (0.5 * np.pi**2 / (flat.shear_modulus * one)) for one in (c.c11, c.c22))
         else:
             k_x, k_y = full_slips(flat, layout, greatest, c.c11, c.c22)
-        stick, slip = (max(round(share * self.strips), least) for share, least in (STICK_NODES, SLIP_NODES))
-        nodes = _strips.solve(
-            _strips.Strips(
-                along=flat.longitudinal_creepage - flat.spin * layout.y,
-                across=flat.lateral_creepage,
-                turning=flat.spin * half_length,
-                k_x=k_x,
-                k_y=k_y,
-            ),
-            stick,
-            slip,
+        strips = _strips.Strips(
+            along=flat.longitudinal_creepage - flat.spin * layout.y,
+            across=flat.lateral_creepage,
+            turning=flat.spin * half_length,
+            k_x=k_x,
+            k_y=k_y,
         )
-        for lengths in (nodes.x, nodes.length):
-            np.multiply(half_length, lengths, out=lengths)
-        for tractions in (nodes.bound, nodes.q_x, nodes.q_y):
-            np.multiply(greatest, tractions, out=tractions)
-        return nodes
+        return strips, greatest
 
     def _contact(self, problem: wl.Problem, layout: wl.Strips) -> wl.Contact:
         flat = problem.flatten()
-        nodes = self._nodes(flat, layout)
-        forces = _forces(layout, nodes)
+        strips, greatest = self._strips(flat, layout)
+        nodes = _strips.solve(strips, *self._nodes_along)
+        forces = _forces(layout, greatest, nodes.sums)
+        for lengths in (nodes.x, nodes.length):
+            np.multiply(layout.half_length, lengths, out=lengths)
+        for tractions in (nodes.bound, nodes.q_x, nodes.q_y):
+            np.multiply(greatest, tractions, out=tractions)
         slip_x, slip_y = _slips(layout, nodes, flat.power(forces))
         x, length, bound, q_x, q_y, s_x, s_y = (
             array.transpose(2, 0, 1)
@@ -160,11 +163,10 @@ def _across(flat: wl.Problem, shares: Array, widths: Array) -> wl.Strips:
     return wl.Strips(y=y, width=width, half_length=half_length, max_pressure=max_pressure)
 
 
-def _forces(layout: wl.Strips, nodes: _strips.Nodes) -> wl.CreepForces:
-    """Return the forces and the moment that strips transmit."""
-    length, x, q_x, q_y = nodes.length, nodes.x, nodes.q_x, nodes.q_y
-    along, across = np.einsum("kjp,kjp->jp", length, q_x), np.einsum("kjp,kjp->jp", length, q_y)
-    parts = along, across, np.einsum("kjp,kjp,kjp->jp", length, x, q_y) + layout.y * along
+def _forces(layout: wl.Strips, greatest: Array, sums: Array) -> wl.CreepForces:
+    """Return the forces and the moment that strips transmit, from the `_strips.sums`."""
+    along, across, turning = layout.half_length * greatest * sums
+    parts = along, across, layout.half_length * turning + layout.y * along
     longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in parts)
     return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment)
 

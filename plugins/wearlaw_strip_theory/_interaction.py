@@ -50,7 +50,7 @@ def _curvatures(layout: wl.Strips, greatest: Array) -> Array:
         loops.others_loop(y, half_length, weight, _table(), found)
     else:
         own = np.arange(len(y))
-        for to, one in zip(found, loops.apart(y - y[:, None], half_length, _table()), strict=True):
+        for to, one in zip(found, loops.between(loops.place(y - y[:, None], half_length), _table()), strict=True):
             one[own, own] = 0.0
             to += (weight * one).sum(axis=1)
     return np.asarray(half_length * found)

@@ -20,7 +20,7 @@ TINY = 1e-100
 """Keeps divisors from zero."""
 
 KNOTS = 2048
-"""Steps of the tables of `apart`, between which they are linear."""
+"""Steps of the tables of `between`, between which they are linear."""
 
 Number = TypeVar("Number", float, Array)
 
@@ -93,10 +93,15 @@ def direction(x: Number, y: Number) -> tuple[Number, Number]:
     return (x - y) * (x + y) * over, 2.0 * x * y * over
 
 
-def apart(distance: Number, half_length: Number, table: Array) -> tuple[Number, Number]:
-    """Return G_K and G_E at a distance from a strip."""
-    place: Any = np.abs(distance) * (KNOTS / root(half_length * half_length + distance * distance))
-    at = np.int32(np.minimum(place, KNOTS - 1))
+def place(distance: Number, half_length: Number) -> Number:
+    """Return where the tables of `between` have a distance from a strip."""
+    found: Any = np.abs(distance) * (KNOTS / root(half_length * half_length + distance * distance))
+    return found  # type: ignore[no-any-return]
+
+
+def between(place: Number, table: Array) -> tuple[Number, Number]:
+    """Return G_K and G_E at a place in their table."""
+    at: Any = np.int32(np.minimum(place, KNOTS - 1))
     share, first, second = place - at, table[0], table[1]
     return first[at] + share * (first[at + 1] - first[at]), second[at] + share * (second[at + 1] - second[at])
 
@@ -121,7 +126,7 @@ def stick_loop(strips: Array, table: Array, nodes: Array) -> None:
 
 @wl.compiled_loop(f"void({ROWS}, {ROWS}, {', '.join([ROWS] * 3)})")
 def lag_loop(strips: Array, table: Array, angle: Array, kappa: Array, lagging: Array) -> None:
-    """Fill in κ, and w across where the traction lags behind; the table is that of `slip_loop`."""
+    """Fill in -κ, and w across where the traction lags behind; the table is that of `slip_loop`."""
     along, across, turning, k_x, k_y = strips[0], strips[1], strips[2], strips[3], strips[4]
     v, n_x, n_y = strips[5], strips[6], strips[7]
     rates = np.zeros(v.size)
@@ -134,8 +139,9 @@ def lag_loop(strips: Array, table: Array, angle: Array, kappa: Array, lagging: A
             w_y = across[i] - turning[i] * (1.0 - behind)
             twice = energy(k, p, v[i], behind, angles[i], sine, arc)
             here = rate(along[i], w_y, v[i], behind, sine, twice)
-            to_kappa[i] = 0.5 * step * (rates[i] + here)
-            to_lagging[i] = w_y + turning[i] * (lag(to_kappa[i]) * v[i] * way)
+            turned = 0.5 * step * (rates[i] + here)
+            to_kappa[i] = -turned
+            to_lagging[i] = w_y + turning[i] * (lag(turned) * v[i] * way)
             rates[i] = here
 
 
@@ -168,14 +174,55 @@ def slip_loop(strips: Array, table: Array, half: Array, decay: Array, lagging: A
             to_x[i], to_length[i] = 1.0 - v[i] * (1.0 + cosine), v[i] * length
 
 
+@wl.compiled_loop(f"void({', '.join([ROWS] * 8)})")
+def sum_loop(
+    strips: Array, stick: Array, slip: Array, half: Array, decay: Array, lagging: Array, held: Array, slid: Array
+) -> None:
+    """Add up ∫ q_x, ∫ q_y and ∫ x q_y over zones that stick and zones that slip, and find the least slip there.
+
+    The tables and `half` are those of `stick_loop` and `slip_loop`.
+    """
+    along, across, turning, k_x, k_y = strips[0], strips[1], strips[2], strips[3], strips[4]
+    v, n_x, n_y, half_x, half_y = strips[5], strips[6], strips[7], half[0], half[1]
+    to_x, to_y, to_turning = held[0], held[1], held[2]
+    for at in range(stick.shape[0]):
+        cosine, sine, length = stick[at]
+        for i in range(v.size):
+            x, _, q_x, q_y = stuck(v[i], n_x[i], n_y[i], turning[i] / k_y[i], cosine, sine)
+            share = (1.0 - v[i]) * length
+            to_x[i] += share * q_x
+            to_y[i] += share * q_y
+            to_turning[i] += share * x * q_y
+    to_x, to_y, to_turning, least = slid[0], slid[1], slid[2], slid[3]
+    for at in range(slip.shape[0]):
+        cosine, length, decays, lags = slip[at, 0], slip[at, 2], decay[at], lagging[at]
+        for i in range(v.size):
+            more, less, other = turn(along[i], lags[i], decays[i])
+            next_x, next_y = more * half_x[i] + other * half_y[i], less * half_y[i] + other * half_x[i]
+            half_x[i], half_y[i] = next_x, next_y
+            k, p = shape(k_x[i], k_y[i], turning[i], n_x[i], n_y[i])
+            behind = v[i] * (1.0 + cosine)
+            w_y = across[i] - turning[i] * (1.0 - behind)
+            q_x, q_y = direction(next_x, next_y)
+            slips = along[i] * q_x + w_y * q_y - taken_up(k, p, v[i], behind, cosine)
+            share = v[i] * length * root(behind * (2.0 - behind))
+            to_x[i] += share * q_x
+            to_y[i] += share * q_y
+            to_turning[i] += share * (1.0 - behind) * q_y
+            least[i] = min(least[i], slips)
+
+
 @wl.compiled_loop(f"void({', '.join([ROWS] * 4)}, {NODES})")
 def others_loop(y: Array, half_length: Array, weight: Array, table: Array, found: Array) -> None:
-    """Add to the sums of each strip those over the others."""
+    """Add to the sums of each strip those over the others, in two loops: a place is many at once, a look-up is not."""
+    places = np.empty(y.shape[1])
     for at in range(y.shape[0]):
         first, second = found[0, at], found[1, at]
         for other in range(y.shape[0]):
             if other != at:
                 for i in range(y.shape[1]):
-                    k, e = apart(y[other, i] - y[at, i], half_length[other, i], table)
+                    places[i] = place(y[other, i] - y[at, i], half_length[other, i])
+                for i in range(y.shape[1]):
+                    k, e = between(places[i], table)
                     first[i] += weight[other, i] * k
                     second[i] += weight[other, i] * e

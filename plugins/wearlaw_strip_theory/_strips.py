@@ -66,6 +66,11 @@ class Nodes(NamedTuple):
     q_y: Array
     slip: Array
 
+    @property
+    def sums(self) -> Array:
+        """∫ q_x dx, ∫ q_y dx and ∫ x q_y dx, (3, ...)."""
+        return _add_up(self.x, self.length, self.q_x, self.q_y)
+
 
 def start(strips: Strips) -> Start:
     """Return V and n.
@@ -96,17 +101,48 @@ def start(strips: Strips) -> Start:
 
 def solve(strips: Strips, stick_nodes: int, slip_nodes: int) -> Nodes:
     """Return the nodes of strips, those in stick first."""
-    first = start(strips)
-    shape = first.v.shape
-    rows = np.stack([np.broadcast_to(row, shape).ravel() for row in (*strips, *first)])
-    stick, slip = _stick_table(stick_nodes), _slip_table(slip_nodes)
-    nodes = np.empty((len(Nodes._fields), stick_nodes + slip_nodes, first.v.size))
-    _stick(rows, stick, nodes)
-    _slip(rows, slip, nodes, stick_nodes)
+    rows, stick, slip = _rows(strips), _stick_table(stick_nodes), _slip_table(slip_nodes)
+    nodes = np.empty((len(Nodes._fields), stick_nodes + slip_nodes, rows.shape[1]))
+    if _compiled(strips, nodes.shape[1]):
+        loops.stick_loop(rows, stick, nodes)
+        loops.slip_loop(rows, slip, *_steps(rows, slip), stick_nodes, nodes)
+    else:
+        _stick(rows, stick, nodes)
+        _slip(rows, slip, nodes, stick_nodes)
     again = (nodes[5, stick_nodes:] < 0.0).any(axis=0)
     if again.any():
-        nodes[3:, stick_nodes:, again] = _again(np.ascontiguousarray(rows[:, again]), slip)
-    return Nodes(*nodes.reshape(*nodes.shape[:2], *shape))
+        nodes[3:, stick_nodes:, again] = _again(rows[:, again], slip)
+    return Nodes(*nodes.reshape(*nodes.shape[:2], *strips.k_x.shape))
+
+
+def sums(strips: Strips, stick_nodes: int, slip_nodes: int) -> Array:
+    """Return the sums of the nodes of `solve`, (3, ...); compiled loops leave out the nodes."""
+    if not _compiled(strips, stick_nodes + slip_nodes):
+        return solve(strips, stick_nodes, slip_nodes).sums
+    rows, slip = _rows(strips), _slip_table(slip_nodes)
+    held, slid = np.zeros((3, rows.shape[1])), np.zeros((4, rows.shape[1]))
+    loops.sum_loop(rows, _stick_table(stick_nodes), slip, *_steps(rows, slip), held, slid)
+    again = slid[3] < 0.0
+    if again.any():
+        v, cosine, length = rows[5, again], slip[:, :1], slip[:, 2:3]
+        q_x, q_y, _ = _again(rows[:, again], slip)
+        slid[:3, again] = _add_up(1.0 - v * (1.0 + cosine), v * length, q_x, q_y)
+    return (held + slid[:3]).reshape(3, *strips.k_x.shape)
+
+
+def _add_up(x: Array, length: Array, q_x: Array, q_y: Array) -> Array:
+    along, across = length * q_x, length * q_y
+    return np.stack([along.sum(axis=0), across.sum(axis=0), (x * across).sum(axis=0)])
+
+
+def _rows(strips: Strips) -> Array:
+    """Return strips as rows of an array, as in `_loops`."""
+    shape = strips.k_x.shape
+    return np.stack([np.broadcast_to(row, shape).ravel() for row in (*strips, *start(strips))])
+
+
+def _compiled(strips: Strips, nodes: int) -> bool:
+    return wl.accelerated(strips.k_x.size * nodes // NODES)
 
 
 @cache
@@ -132,15 +168,8 @@ def _slip_table(count: int) -> Array:
     )
 
 
-def _compiled(rows: Array, table: Array) -> bool:
-    return wl.accelerated(rows.shape[1] * len(table) // NODES)
-
-
 def _stick(rows: Array, table: Array, nodes: Array) -> None:
     """Fill the nodes in stick, at x = -V - D cos t."""
-    if _compiled(rows, table):
-        loops.stick_loop(rows, table, nodes)
-        return
     _, _, turning, _, k_y, v, n_x, n_y = rows
     cosine, sine, length = table.T[..., None]
     count = len(table)
@@ -157,11 +186,6 @@ def _slip(rows: Array, table: Array, nodes: Array, stick_nodes: int) -> None:
     behind = v * (1.0 + cosine)
     angle = 2.0 * np.arcsin(np.sqrt(0.5 * behind))
     half = _half_angle(n_x, n_y)
-    if _compiled(rows, table):
-        kappa, lagging = np.empty(angle.shape), np.empty(angle.shape)
-        loops.lag_loop(rows, table, angle, kappa, lagging)
-        loops.slip_loop(rows, table, half, np.exp(-kappa, out=kappa), lagging, stick_nodes, nodes)
-        return
     k, p = loops.shape(k_x, k_y, turning, n_x, n_y)
     x = 1.0 - behind
     w_y = across - turning * x
@@ -179,6 +203,15 @@ def _slip(rows: Array, table: Array, nodes: Array, stick_nodes: int) -> None:
     to[0], to[1], to[2] = x, v * length, np.sqrt(behind * (2.0 - behind))
     to[3], to[4] = to[2] * q_x, to[2] * q_y
     to[5] = along * q_x + w_y * q_y - loops.taken_up(k, p, v, behind, cosine)
+
+
+def _steps(rows: Array, table: Array) -> tuple[Array, Array, Array]:
+    """Return the arguments `half`, `decay` and `lagging` of the compiled loops over zones that slip."""
+    angle = np.multiply.outer(0.5 + 0.5 * table[:, 0], rows[5])
+    angle = np.multiply(2.0, np.arcsin(np.sqrt(angle, out=angle), out=angle), out=angle)
+    decay, lagging = np.empty(angle.shape), np.empty(angle.shape)
+    loops.lag_loop(rows, table, angle, decay, lagging)
+    return _half_angle(rows[6], rows[7]), np.exp(decay, out=decay), lagging
 
 
 def _half_angle(x: Array, y: Array) -> Array:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, version
@@ -19,7 +19,6 @@ import tomli_w
 from packaging.specifiers import InvalidSpecifier, SpecifierSet
 from pydantic import (
     AfterValidator,
-    BeforeValidator,
     Field,
     SerializerFunctionWrapHandler,
     TypeAdapter,
@@ -42,15 +41,16 @@ from wearlaw.errors import (
     shown,
     with_problems,
 )
-from wearlaw.fields import ContactModelField, LawField, StageField, WearLawField, is_law_file, preset_fields
+from wearlaw.fields import ContactModelField, LawField, StageField, preset_fields
 from wearlaw.loader import Shelf
 from wearlaw.models.contact_model import ContactModel
-from wearlaw.models.law import WEAR, Law, Outcome, WearLaw
-from wearlaw.models.model import Model, labelled, labels
+from wearlaw.models.law import WEAR, Law, Outcome
+from wearlaw.models.model import Model
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.text_files import LARGEST, beside, parse_toml, read_text, reading
 from wearlaw.units.variables import UNITS
+from wearlaw_output.labels import labelled, labels
 from wearlaw_studies.figure_spec import FigureSpec
 from wearlaw_studies.grid import Condition, Grid
 from wearlaw_studies.measured import MeasuredTests, check_rig
@@ -63,72 +63,22 @@ CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 """Names of the files that a run writes: its case, and its measured tests if they came from a file."""
 
 
-LISTED = "must be a list of names, or of tables with a name and options"
-"""Error about a list of models."""
+def _some(models: tuple[ContactModel, ...]) -> tuple[ContactModel, ...]:
+    if not models:
+        raise InputError('is empty; give at least one, as in contact_models = ["exact"]')
+    return models
 
 
-def _models(value: Any) -> Any:
-    if not isinstance(value, (list, tuple)):
-        raise InputError(f"{LISTED}; got {shown(value)}")
-    return value
-
-
-def _some_models(value: Any) -> Any:
-    if not _models(value):
-        raise InputError(f"{LISTED}; got {shown(value)}")
-    return value
-
-
-def _name_of(value: Any) -> str:
-    """Return the name of a model in a list, or "" if it is not a name or a table with one."""
-    name = value.get("model") if isinstance(value, dict) else value
-    return name if isinstance(name, str) else ""
-
-
-def _known_law(value: Any) -> Any:
-    """Raise an error for the name of no law, which lists the laws that can stand here."""
-    name = _name_of(value)
-    if name and not is_law_file(name) and name not in {**loader.wear_laws(), **loader.parameter_sets()}:
-        loader.installed().find("law", name)
-    return value
-
-
-def _other_law(law: Law) -> Law:
-    """Raise an error for a wear law."""
-    if law.outcome.name == WEAR:
-        raise InputError(f"{law.name} predicts the wear rate; list it under wear_laws")
+def _wear_law(law: Law) -> Law:
+    if law.outcome.name != WEAR:
+        raise InputError(f"{law.name} predicts {law.outcome.name}, not wear; list it under laws")
     return law
 
 
-OtherLaw = Annotated[LawField, BeforeValidator(_known_law), AfterValidator(_other_law)]
-"""A field that takes a law of another outcome than wear."""
-
-
-def _wear_law(value: Any) -> Any:
-    """Raise an error for a law of another outcome."""
-    found, name = loader.installed(), _name_of(value)
-    law = value if isinstance(value, Law) else None if name in found["wear law"].providers else loader.laws().get(name)
-    if law is not None and law.outcome.name != WEAR:
-        raise InputError(f"{law.name} predicts {law.outcome.name}, not wear; list it under laws")
-    return value
-
-
-def _require(needed: Mapping[str, str]) -> None:
-    """Raise an error unless distributions are installed in the versions asked for.
-
-    Parameters
-    ----------
-    needed : mapping of str to str
-        Names of distributions with version ranges such as ">=1.2,<2"; "" for any version.
-
-    Raises
-    ------
-    ConfigurationError
-        If some are missing, have other versions, or their ranges are not valid.
-    """
-    wrong = [Fault(("plugins", name), fault) for name, versions in needed.items() if (fault := _unmet(name, versions))]
-    if wrong:
-        raise ConfigurationError(Case.subject(), wrong)
+def _other_law(law: Law) -> Law:
+    if law.outcome.name == WEAR:
+        raise InputError(f"{law.name} predicts the wear rate; list it under wear_laws")
+    return law
 
 
 def _unmet(name: str, versions: str) -> str:
@@ -168,14 +118,14 @@ class Case(Configuration):
     rig: RigField
     """The rig: its `type` and fields, or a `preset` such as "suros" with the fields that differ."""
     contact_models: Annotated[
-        tuple[ContactModelField, ...], BeforeValidator(_some_models), Field(json_schema_extra={"minItems": 1})
+        tuple[ContactModelField, ...], AfterValidator(_some), Field(json_schema_extra={"minItems": 1})
     ]
     """The contact models, each a name or a table of its name and options."""
-    stages: Annotated[tuple[StageField, ...], BeforeValidator(_models)] = ()
+    stages: tuple[StageField, ...] = ()
     """Stages around every contact model, such as "patch_mean", likewise; the first one stands next to the model."""
-    laws: Annotated[tuple[OtherLaw, ...], BeforeValidator(_models)] = ()
+    laws: tuple[Annotated[LawField, AfterValidator(_other_law)], ...] = ()
     """Laws of other outcomes than wear, such as damage by fatigue, likewise."""
-    wear_laws: Annotated[tuple[Annotated[WearLawField, BeforeValidator(_wear_law)], ...], BeforeValidator(_models)] = ()
+    wear_laws: tuple[Annotated[LawField, AfterValidator(_wear_law)], ...] = ()
     """The wear laws, likewise; they can be left out if there are `laws`."""
     sweeps: Annotated[dict[str, Grid], Field(min_length=1)]
     """Grids of operating points, each under a name."""
@@ -195,15 +145,15 @@ class Case(Configuration):
     @classmethod
     def _has_its_plugins(cls, fields: Any) -> Any:
         """Check for missing plugins first, before something else fails without them."""
-        if isinstance(fields, dict):
-            needed = fields.get("plugins", {})
-            if isinstance(needed, dict):
-                _require({str(name): str(versions) for name, versions in needed.items()})
+        needed = fields.get("plugins") if isinstance(fields, dict) else None
+        unmet = {name: _unmet(name, str(versions)) for name, versions in (needed or {}).items()}
+        if wrong := [Fault(("plugins", name), fault) for name, fault in unmet.items() if fault]:
+            raise ConfigurationError(cls.subject(), wrong)
         return fields
 
     @field_validator("wear_laws")
     @classmethod
-    def _some_law(cls, laws: tuple[WearLaw, ...], info: ValidationInfo) -> tuple[WearLaw, ...]:
+    def _some_law(cls, laws: tuple[Law, ...], info: ValidationInfo) -> tuple[Law, ...]:
         if not laws and info.data.get("laws") == ():
             raise InputError(
                 'is missing or empty; give at least one, as in wear_laws = ["usfd"], or laws of other outcomes than'
@@ -226,14 +176,6 @@ class Case(Configuration):
         if wrong:
             raise ConfigurationError(cls.subject(), wrong)
         return laws
-
-    @field_validator("sections")
-    @classmethod
-    def _once(cls, sections: tuple[str, ...]) -> tuple[str, ...]:
-        twice = sorted({name for name in sections if sections.count(name) > 1})
-        if twice:
-            raise InputError(f"{' and '.join(map(repr, twice))} is listed twice; leave one out")
-        return sections
 
     @field_validator("sweeps", "profiles", "uncertainty", "figures")
     @classmethod
@@ -262,10 +204,8 @@ class Case(Configuration):
     @cached_property
     def units(self) -> dict[str, str]:
         """The unit in which results show each condition of the sweeps and profiles."""
-        found: dict[str, str] = {}
-        for grid in (*self.sweeps.values(), *self.profiles.values()):
-            found = {**grid.units(), **found}
-        return found
+        grids = (*self.sweeps.values(), *self.profiles.values())
+        return {name: unit for grid in reversed(grids) for name, unit in grid.units().items()}
 
     @cached_property
     def contact_models_by_label(self) -> dict[str, ContactModel]:
@@ -276,8 +216,7 @@ class Case(Configuration):
     @cached_property
     def laws_by_label(self) -> dict[str, Law]:
         """The laws by their labels in results, wear laws first."""
-        every: tuple[Law, ...] = (*self.wear_laws, *self.laws)
-        return labelled(every)
+        return labelled((*self.wear_laws, *self.laws))
 
     @cached_property
     def outcomes(self) -> dict[str, Outcome]:
@@ -307,8 +246,8 @@ class Case(Configuration):
 
     def _wrong_names(self) -> Iterator[Fault]:
         """Yield the lists of models in which one is listed twice."""
-        every: tuple[Law, ...] = (*self.wear_laws, *self.laws)
-        lists: dict[str, tuple[Model, ...]] = {"contact_models": self.contact_models, "stages": self.stages, "": every}
+        laws = (*self.wear_laws, *self.laws)
+        lists: dict[str, tuple[Model, ...]] = {"contact_models": self.contact_models, "stages": self.stages, "": laws}
         for path, models in lists.items():
             try:
                 labels(models)

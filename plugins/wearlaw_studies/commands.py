@@ -8,26 +8,20 @@ from dataclasses import replace
 from pathlib import Path
 
 import click
-from rich import box
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
 from wearlaw.cli import Stopped
 from wearlaw.errors import OutputError, shown
 from wearlaw.version import __version__
-from wearlaw_output.commands import echo, folder_for, print_notes, print_results
+from wearlaw_output.commands import folder_for, print_notes, print_results, print_table
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import written_formats
 from wearlaw_output.folder import results_folder
-from wearlaw_output.notes import Notes
+from wearlaw_output.notes import Notes, grouped
 from wearlaw_studies.case import load_case
-from wearlaw_studies.notes import grouped
-from wearlaw_studies.report.tables import NamedTable, summaries
+from wearlaw_studies.report.tables import summaries
 from wearlaw_studies.study import Study, evaluations, used
 from wearlaw_studies.study import run as run_case
-from wearlaw_studies.uncertainty import uncertainty_of
-from wearlaw_studies.uncertainty_files import UNCERTAINTY, write_uncertainty
+from wearlaw_studies.uncertainty import UNCERTAINTY, uncertainty_of, write_uncertainty
 from wearlaw_studies.written import RESULTS, check_room, without_csv, write
 from wearlaw_sweeps.progress import Bar
 
@@ -83,7 +77,8 @@ def run(
     _discard(partial)
     print_notes(grouped([*study.notes, *notes.texts]))
     for table in summaries(study):
-        Console().print(_summary(table))
+        click.echo(f"{table.title}: {table.frame.columns[0]}")
+        print_table(table.frame.set_index(table.frame.columns[0]).rename_axis(None))
     _print_used(study)
     print_results(folder, names)
 
@@ -120,22 +115,9 @@ def _print_used(study: Study) -> None:
         for name, distribution in names.items():
             provided.setdefault(distribution, []).append(f"{kind} {name}")
     (ours, _), *others = provided.items()
-    echo(f"Computed with {ours}")
+    click.echo(f"Computed with {ours}")
     for distribution, things in others:
-        echo(f"  and {distribution}: {', '.join(things)}")
-
-
-def _summary(summary: NamedTable) -> Table:
-    """Return a short table of an outcome for the screen."""
-    what, *values = summary.frame.columns
-    title = Text(f"{summary.title}: {what}")
-    table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE, pad_edge=False)
-    table.add_column("", overflow="fold")
-    for value in values:
-        table.add_column(value, justify="right", no_wrap=True)
-    for pair, *values_of_pair in summary.frame.itertuples(index=False, name=None):
-        table.add_row(Text(pair), *("" if value != value else f"{value:.4g}" for value in values_of_pair))
-    return table
+        click.echo(f"  and {distribution}: {', '.join(things)}")
 
 
 @click.command()
@@ -172,9 +154,9 @@ def uncertainty(
         with notes.of("figures"):
             names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)
     if found.samples != samples:
-        echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
-    print_notes([*found.notes, *notes.texts])
-    echo(found.wear_rates.to_string(index=False, float_format=lambda number: f"{number:.4g}"))
+        click.echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
+    print_notes(grouped([*found.notes, *notes.texts]))
+    print_table(found.wear_rates.set_index(["point", "pair"]))
     if len(found.indices):
-        echo(found.indices.to_string(index=False, float_format=lambda share: f"{round(share, 3) + 0.0:.3f}"))
+        print_table(found.indices.set_index(["point", "pair"]).round(3))
     print_results(folder, names)

@@ -19,8 +19,9 @@ from wearlaw.errors import ConfigurationError, Fault, UnitError, did_you_mean, s
 from wearlaw.models.law import WEAR
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.quantities import Q
-from wearlaw.units.variables import UNITS, label, name_of, readable
+from wearlaw.units.variables import UNITS, name_of
 from wearlaw_output.curves import BLACK, OUTSIDE, Curve, FigureData, Map, Panel, PlotAxis, Shade
+from wearlaw_output.labels import label, readable
 from wearlaw_studies.figure_spec import ACROSS, COMMON, OF_PROFILE, FigureSpec, Range, Scale, Window, ends
 from wearlaw_studies.measured import known_variables, measured_points
 from wearlaw_studies.results import (

@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 import pint
@@ -67,7 +67,7 @@ class Axis(Configuration):
         InputError
             If the ends have different dimensions, are not finite, or are too far apart, or a log axis touches zero.
         """
-        (first, last), unit = _in_one_unit((self.start, self.stop), ("from", "to"))
+        (first, last), unit = _in_one_unit((self.start, self.stop))
         if not math.isfinite(float(last) - float(first)):
             raise InputError(
                 f"the ends of an axis and their distance must be finite, got '{self.start}' and '{self.stop}'"
@@ -96,15 +96,24 @@ Condition = Annotated[float | str | tuple[float | str, ...] | Axis, BeforeValida
 """A value, a list of values, or an axis."""
 
 
-class Grid(Configuration, extra="allow"):
-    """Conditions of operating points, by the names that the rig gives them. Those with several values are axes."""
-
-    __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
+class Conditions(Configuration, extra="allow"):
+    """Conditions of a rig as a case file writes them, by the names that the rig gives them."""
 
     @property
     def given(self) -> Mapping[str, Any]:
         """The conditions as written in the case."""
-        return self.__pydantic_extra__
+        return self.__pydantic_extra__ or {}
+
+    def ordered(self, rig: Rig) -> Self:
+        """Return the conditions in the order in which the rig names them."""
+        known = [*rig.conditions(), *self.given]
+        return type(self)(**dict(sorted(self, key=lambda item: known.index(item[0]) if item[0] in known else -1)))
+
+
+class Grid(Conditions):
+    """Conditions of operating points; those with several values are axes."""
+
+    __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     @model_validator(mode="after")
     def _has_axes(self) -> Grid:
@@ -135,11 +144,6 @@ class Grid(Configuration, extra="allow"):
     def size(self) -> int:
         """The number of operating points."""
         return math.prod(self.axes().values())
-
-    def ordered(self, rig: Rig) -> Grid:
-        """Return the grid with its conditions in the order in which the rig names them."""
-        known = rig.conditions()
-        return Grid(**{name: self.given[name] for name in known or self.given if name in self.given})
 
     def first(self) -> Grid:
         """Return the grid of the first value of each axis."""
@@ -266,34 +270,21 @@ def _values(value: Any) -> tuple[Array, str | None] | None:
     return None
 
 
-def _in_one_unit(values: tuple[float | str, ...], names: tuple[str, ...] = ()) -> tuple[Array, str | None]:
-    """Return values as numbers in the unit of the first one; errors name a value if it has a name."""
-    if not any(isinstance(value, str) for value in values):
+def _in_one_unit(values: tuple[float | str, ...]) -> tuple[Array, str | None]:
+    """Return values as numbers in the unit of the first one."""
+    texts = [value for value in values if isinstance(value, str)]
+    if not texts:
         return np.array(values, dtype=np.float64), None
-    for value in values:
-        if not isinstance(value, str):
-            with_unit = next(one for one in values if isinstance(one, str))
-            raise UnitError(
-                f"got the bare number {shown(value)}, which has no unit, beside {shown(with_unit)}; give all values one"
-            )
-    quantities = [_parsed(value, number, values, names) for number, value in enumerate(values)]
-    unit = _symbol(quantities[0])
-    for quantity, value in zip(quantities, values, strict=True):
+    if bare := [value for value in values if not isinstance(value, str)]:
+        raise UnitError(
+            f"got the bare number {shown(bare[0])}, which has no unit, beside {shown(texts[0])}; give all values one"
+        )
+    quantities = [parse(text) for text in texts]
+    for quantity, text in zip(quantities, texts, strict=True):
         if not quantity.is_compatible_with(quantities[0]):
-            raise UnitError(f"{shown(values[0])} and {shown(value)} are not of one dimension")
+            raise UnitError(f"{shown(texts[0])} and {shown(text)} are not of one dimension")
     numbers = [quantity.to(quantities[0].units).magnitude for quantity in quantities]
-    return np.array(numbers, dtype=np.float64), unit
-
-
-def _parsed(value: float | str, number: int, values: tuple[float | str, ...], names: tuple[str, ...]) -> Quantity:
-    """Return a value as a quantity; the error shows how to write it with the unit of another value."""
-    try:
-        return parse(str(value))
-    except UnitError as error:
-        units = [_symbol(one) for one in map(_quantity, values) if one is not None]
-        with_unit = shown(f"{value} {units[0] or 'dimensionless'}") if units else ""
-        fixed = f"; write {with_unit}" if with_unit and _quantity(with_unit.strip("'\"")) is not None else ""
-        raise UnitError(f"{f'{names[number]}: ' if names else ''}{error}{fixed}") from None
+    return np.array(numbers, dtype=np.float64), _symbol(quantities[0])
 
 
 def _quantity(value: Any) -> Quantity | None:

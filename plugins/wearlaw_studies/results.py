@@ -12,11 +12,15 @@ import xarray
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import WEAR, Outcome
 from wearlaw.pipeline.composition import fitted_to_other_body
-from wearlaw.pipeline.selection import in_words as in_words
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.variables import UNITS
-from wearlaw_fits.pairs import Pair
+from wearlaw_fits.pairs import Pair, compose
+from wearlaw_output.labels import in_words as in_words
+from wearlaw_output.notes import Notes
 from wearlaw_studies.case import Case
+
+TAKE_MEANS_IN_A_CASE = 'write stages = ["patch_mean"] in the case, or use the contact model "global"'
+"""Remedy in a case for a law of the whole patch on a contact resolved into cells."""
 
 Patch: TypeAlias = Mapping[str, Any]
 """Labels of a patch along the axes of its rig, such as {"side": "left", "patch": 1}; {} if the rig makes one patch."""
@@ -79,6 +83,13 @@ class Results:
     def is_for_other_body(self, label: str, body: str) -> bool:
         """Return whether the parameters of a pair's wear law were fitted to another body than this one."""
         return fitted_to_other_body(self.case.rig.bodies, self.pair(label).pipeline.wear_law, body)
+
+
+def pairs_of(case: Case, notes: Notes) -> list[Pair]:
+    """Compose all pairs of a case, for the first operating point of its first sweep."""
+    problem = next(iter(case.sweeps.values())).problem(case.rig)
+    models, laws = case.contact_models_by_label, case.laws_by_label
+    return compose(case.rig, models, laws, notes, problem, case.stages, TAKE_MEANS_IN_A_CASE)
 
 
 def predicting(results: Results, outcome: str, labels: Sequence[str]) -> list[str]:

@@ -10,14 +10,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 import xarray
 
 from wearlaw import loader
 from wearlaw.arrays import Array, steady
-from wearlaw.configuration import LINE, known_name, parts
+from wearlaw.configuration import LINE, known_name
 from wearlaw.contact.material import Material
 from wearlaw.errors import (
     ConfigurationError,
@@ -40,12 +40,12 @@ from wearlaw_fits.pairs import Pair
 from wearlaw_output.notes import Notes
 from wearlaw_studies.case import Case
 from wearlaw_studies.figures import figures_of, wrong_figures
-from wearlaw_studies.pairs import pairs_of
-from wearlaw_studies.results import PATCH_AXES, Results, axes_of
+from wearlaw_studies.results import LIMITS, PATCH_AXES, Results, axes_of, pairs_of
 from wearlaw_studies.sections import Section
 from wearlaw_sweeps.evaluation import weight
 from wearlaw_sweeps.evaluator import Evaluator
 from wearlaw_sweeps.points import Points
+from wearlaw_sweeps.provenance import parts
 
 if TYPE_CHECKING:
     from wearlaw.loader import Shelf
@@ -54,9 +54,6 @@ if TYPE_CHECKING:
 
 Dims: TypeAlias = Mapping[str, tuple[str | int, ...]]
 """The axes that a rig adds for several patches, with their labels."""
-
-LIMITS = ("max_pressure", "first_yield", "shakedown_limit")
-"""Variables that show whether the contact of a profile stays elastic, if the yield stress of a body is known."""
 
 PROFILE_STRIPS = 101
 """Strips of a profile across the patch, if the contact model can choose them."""
@@ -292,24 +289,15 @@ def _of_pair(pair: Pair, problem: Any) -> tuple[str, ...]:
     return (pair.outcome.name, *error, "outside_range", *mass)
 
 
-@dataclass(frozen=True)
-class _Variables:
-    """Variables of a sweep besides the rates of its pairs.
-
-    Attributes
-    ----------
-    of_contact : dict of str to list of str
-        For each contact model, the variables that its predictions have. If the rig balances its loads with the forces,
-        they include those of the operating points.
-    of_point : list of str
-        Variables of the operating points, which do not depend on the contact model.
-    conditions : dict of str to float
-        Conditions that are the same at all points.
-    """
+class _Variables(NamedTuple):
+    """Variables of a sweep besides the rates of its pairs."""
 
     of_contact: dict[str, list[str]]
+    """For each contact model, those of its predictions; also those of the points if the rig balances its loads."""
     of_point: list[str]
+    """Those of the operating points, which do not depend on the contact model."""
     conditions: dict[str, float]
+    """Conditions that are the same at all points."""
 
 
 def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
@@ -441,7 +429,7 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     The profile of a line runs along the patch, over x. That of an ellipse runs across it, over y, with the wear of
     each body that the law is for.
     """
-    limits = LIMITS if len(offered(prediction, LIMITS)) == len(LIMITS) else ()
+    limits = offered(prediction, ("max_pressure", *LIMITS))  # if the yield stress of a body is known
     whole = {name: ((), getattr(prediction, name).magnitude, {"units": UNITS[name]}) for name in limits}
     of_law = {"outside_range": ((), prediction.outside_range.magnitude, {"units": ""})}
     (law,) = prediction.laws

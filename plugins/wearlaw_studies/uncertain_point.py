@@ -21,7 +21,7 @@ from wearlaw_fits.distributions import (
     uniform,
 )
 from wearlaw_fits.uncertain_inputs import parameter
-from wearlaw_studies.grid import Value, wrong_conditions
+from wearlaw_studies.grid import Conditions, Value, wrong_conditions
 
 
 class Spread(Configuration):
@@ -39,6 +39,7 @@ class Spread(Configuration):
         given = [name for name, value in self if value is not None]
         if len(given) != 1:
             raise ValueError(f"give one of uniform, normal and lognormal; got {' and '.join(given) or 'none of them'}")
+        self.distribution()  # raises if it is impossible
         return self
 
     def distribution(self) -> Distribution:
@@ -66,8 +67,8 @@ Parameter = Annotated[Literal["published_range"] | Spread, BeforeValidator(_unce
 """The distribution of a parameter of a law."""
 
 
-class UncertainPoint(Configuration, extra="allow"):
-    """Conditions of an operating point, by the names that the rig gives them, and parameters of the laws.
+class UncertainPoint(Conditions):
+    """Conditions of an operating point, and parameters of the laws.
 
     Each may be a distribution.
     """
@@ -77,24 +78,11 @@ class UncertainPoint(Configuration, extra="allow"):
     laws: dict[str, dict[str, Parameter]] = Field(default_factory=dict)
     """The distributed parameters of each wear law, by its name in the results."""
 
-    @property
-    def given(self) -> Mapping[str, Any]:
-        """The conditions as written in the case."""
-        return self.__pydantic_extra__
-
-    def ordered(self, rig: Rig) -> UncertainPoint:
-        """Return the point with its conditions in the order in which the rig names them."""
-        known = rig.conditions()
-        ordered = {name: self.given[name] for name in known or self.given if name in self.given}
-        return UncertainPoint(laws=self.laws, **ordered)
-
     def faults(self, rig: Rig) -> list[Fault]:
         """Return what is wrong with the conditions, tried at the first number of each distribution."""
         conditions = self.conditions()
-        spread = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
-        middle = {name: one.first for name, one in spread.items()}
+        middle = {name: value.first for name, value in conditions.items() if isinstance(value, Distribution)}
         found = list(wrong_conditions(rig, {**conditions, **middle}))
-        found += [Fault((name,), fault) for name, one in spread.items() if not found and (fault := one.fault())]
         if not found and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
             found = [Fault((), f"{several}; leave it out")]
         return found

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -11,12 +13,16 @@ import pandas as pd
 from wearlaw.errors import InputError
 from wearlaw.models.law import WEAR
 from wearlaw.units.quantities import WEAR_RATE
-from wearlaw.units.variables import name_of, readable
+from wearlaw.units.variables import name_of
 from wearlaw_fits.pairs import Pair
 from wearlaw_fits.uncertainty import CONFIDENCE, Uncertainty, uncertainty
+from wearlaw_output.curves import FigureFormat
+from wearlaw_output.files import write_files
+from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
-from wearlaw_studies.case import Case
-from wearlaw_studies.pairs import pairs_of
+from wearlaw_studies.case import Case, written
+from wearlaw_studies.results import pairs_of
+from wearlaw_studies.study import provenance
 
 
 @dataclass(frozen=True)
@@ -26,6 +32,9 @@ class UncertainPair:
     point: str
     pair: Pair
     uncertainty: Uncertainty
+
+
+UNCERTAINTY = "uncertainty.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,18 +65,7 @@ class CaseUncertainty:
 def uncertainty_of(
     case: Case, samples: int, seed: int, on_pair: Callable[[int], None] = lambda _: None
 ) -> CaseUncertainty:
-    """Compute the uncertainty of the predictions of a case.
-
-    Parameters
-    ----------
-    case : Case
-        With at least one operating point under `uncertainty`.
-    samples : int
-        Number of samples, rounded up to a power of two.
-    seed : int
-        The same seed gives the same samples.
-    on_pair : callable, optional
-        Called with 1 after each pair, to show progress.
+    """Return the uncertainty of the predictions of a case; `on_pair` is called with 1 after each pair.
 
     Raises
     ------
@@ -84,7 +82,7 @@ def uncertainty_of(
     found: list[UncertainPair] = []
     rates, indices = [], []
     for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
-        subject = f"{name}: {pair.label}"
+        subject = f"{name}, {pair.label}"
         if not point.varies(pair.law):
             notes.add(f"{subject} is left out, since none of its inputs is uncertain")
             on_pair(1)
@@ -111,22 +109,7 @@ def uncertainty_of(
     if only_wear:
         ends = {name: f"{name} [{readable(WEAR_RATE)}]" for name in medians.columns.drop(["point", "pair"])}
         medians = medians.drop(columns=["outcome", "unit"]).rename(columns=ends)
-    return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, _folded(notes.texts, found))
-
-
-def _folded(texts: Sequence[str], pairs: Sequence[UncertainPair]) -> tuple[str, ...]:
-    """Return notes with one in place of those that all pairs of an operating point share."""
-    subjects: dict[str, list[str]] = {}
-    for one in pairs:
-        subjects.setdefault(one.point, []).append(f"{one.point}: {one.pair.label}: ")
-    shared: dict[str, str] = {}
-    for point, heads in subjects.items():
-        every = dict.fromkeys(heads)
-        for text in texts:
-            rest = text.removeprefix(next(iter(every)))
-            if rest != text and all(head + rest in texts for head in every):
-                shared |= {head + rest: f"{point}: {rest}" for head in every}
-    return tuple(dict.fromkeys(shared.get(text, text) for text in texts))
+    return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, tuple(notes.texts))
 
 
 def _interval(one: Uncertainty) -> dict[str, str | float]:
@@ -134,3 +117,35 @@ def _interval(one: Uncertainty) -> dict[str, str | float]:
     ends = {"median": one.median, f"{50 - 50 * CONFIDENCE:g} %": low, f"{50 + 50 * CONFIDENCE:g} %": high}
     values = {name: float(value.to(one.unit or "dimensionless").magnitude) for name, value in ends.items()}
     return {"outcome": one.outcomes[0], "unit": one.unit or "-", **values}
+
+
+def write_uncertainty(
+    case: Case,
+    found: CaseUncertainty,
+    seed: int,
+    folder: Path,
+    figure_formats: Sequence[FigureFormat] = ("png",),
+    latex: bool = False,
+) -> list[str]:
+    """Write the uncertainty of a case, and the case itself, into an empty folder, and return the names of the files."""
+    record = {"samples": found.samples, "seed": seed, "provenance": provenance(case), "notes": list(found.notes)}
+    tables = {"wear_rates": found.wear_rates, **({"sobol_indices": found.indices} if len(found.indices) else {})}
+    figures = {}
+    for file, one in zip(figure_files(found.pairs), found.pairs, strict=True):
+        name = name_of(one.uncertainty.outcomes[0])
+        title = f"{name[:1].upper()}{name[1:]} by {one.pair.label}: {one.point}"
+        figures[file] = replace(one.uncertainty.figure_data(), title=title)
+    return write_files(folder, UNCERTAINTY, record, tables, figures, figure_formats, latex, written(case))
+
+
+def figure_files(pairs: Sequence[UncertainPair]) -> list[str]:
+    """Return a file name for each figure, such as "scatter_usfd_on_exact" for an operating point called "scatter".
+
+    Pairs with several outcomes add the outcome.
+    """
+    labels = [f"{one.point} {one.pair.label}" for one in pairs]
+    names = [
+        label if labels.count(label) == 1 else f"{label} {one.uncertainty.outcomes[0]}"
+        for label, one in zip(labels, pairs, strict=True)
+    ]
+    return [re.sub(r"\W+", "_", name).strip("_") for name in names]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TypeVar
@@ -15,7 +14,7 @@ import xarray
 from wearlaw.errors import OutputError, shown
 from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import disarmed, save_figure, save_table, writing
+from wearlaw_output.files import save_figure, save_table
 from wearlaw_studies.case import CASE_FILE, Case, written
 from wearlaw_studies.report.page import report
 from wearlaw_studies.report.tables import tables
@@ -50,14 +49,7 @@ def rows_of(case: Case) -> int:
 
 
 def without_csv(case: Case, asked: bool | None) -> str | None:
-    """Return a note on why the table of results of a case is left out as CSV, or None if it is written.
-
-    Parameters
-    ----------
-    case : Case
-    asked : bool, optional
-        Whether it was asked for; by default it is written up to `MOST_ROWS`.
-    """
+    """Return a note on why results.csv is left out, or None if it is written: if asked for, or up to `MOST_ROWS`."""
     if asked is False:
         return f"{CSV} is left out, as --no-csv asks; {RESULTS} holds all numbers"
     rows = rows_of(case)
@@ -70,21 +62,7 @@ def without_csv(case: Case, asked: bool | None) -> str | None:
 
 
 def check_room(case: Case, folder: Path, csv: bool = True) -> None:
-    """Raise an error if the results of a case would not fit into memory or on the disk.
-
-    Parameters
-    ----------
-    case : Case
-    folder : Path
-        Where they go to.
-    csv : bool
-        Whether the table of results is written as CSV.
-
-    Raises
-    ------
-    InputError
-        If they would not; the message says how much they need.
-    """
+    """Raise an error if the results of a case would not fit into memory or on the disk of a folder."""
     count, rows = VARIABLES * rows_of(case), rows_of(case) if csv else 0
     check_memory(COPIES * ITEM * count + ROW_IN_MEMORY * rows, "give the sweeps fewer points")
     check_disk(2 * ITEM * count + ROW_ON_DISK * rows, folder)
@@ -100,38 +78,19 @@ def write(
 ) -> list[str]:
     """Write a study's results into an empty folder and return the names of the files, the report first.
 
-    Parameters
-    ----------
-    study : Study
-        What to write.
-    folder : Path
-        Where to.
-    figure_formats : sequence of str
-        The formats in which each figure is written.
-    latex : bool
-        Whether the tables are also written for LaTeX.
-    on_stage : callable, optional
-        Called with a text for each stage, to show progress.
-    csv : bool
-        Whether the table of results is written as CSV.
-
-    Raises
-    ------
-    OutputError
-        If a file cannot be written, or two figures or tables have one name.
+    `on_stage` is called with a text for each stage, to show progress.
     """
     case_files = written(study.case)
-    with writing():
-        on_stage("writing results")
-        write_netcdf(study, folder / RESULTS)
-        if csv:
-            disarmed(table(study)).to_csv(folder / CSV, index=False, encoding="utf-8", errors="replace")
-        for name, text in case_files.items():
-            (folder / name).write_text(text, encoding="utf-8")
-        names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files, *_write_tables(study, folder, latex)]
-        names += write_figures(study, folder, figure_formats, on_stage)
-        on_stage("writing the report")
-        (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
+    on_stage("writing results")
+    write_netcdf(study, folder / RESULTS)
+    if csv:
+        table(study).to_csv(folder / CSV, index=False, encoding="utf-8", errors="replace")
+    for name, text in case_files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files, *_write_tables(study, folder, latex)]
+    names += _write_figures(study, folder, figure_formats, on_stage)
+    on_stage("writing the report")
+    (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
     return names
 
 
@@ -139,20 +98,19 @@ def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:
     names = []
     (folder / TABLES).mkdir()
     for name, one in _by_name("table", ((one.name, one) for one in tables(study))).items():
-        names += save_table(one.frame, folder, os.path.join(TABLES, name), latex, one.footnotes)
+        names += save_table(one.frame, folder, f"{TABLES}/{name}", latex, one.footnotes)
     return names
 
 
-def write_figures(
+def _write_figures(
     study: Study, folder: Path, formats: Sequence[FigureFormat], on_stage: Callable[[str], None]
 ) -> list[str]:
-    """Write all figures of a study and return the names of the files."""
     names = []
     (folder / FIGURES).mkdir()
     every = (*study.figures, *(figure for section in study.sections for figure in section.figures))
     for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
         on_stage(f"drawing {name}")
-        names += save_figure(figure, folder, os.path.join(FIGURES, name), formats)
+        names += save_figure(figure, folder, f"{FIGURES}/{name}", formats)
     return names
 
 
@@ -161,11 +119,7 @@ def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:
     found: dict[str, T] = {}
     for name, thing in named:
         if name in found or not name.isidentifier():
-            fault = (
-                "there are two of that name"
-                if name in found
-                else "its name must be made of letters, digits and underscores"
-            )
+            fault = "another has its name" if name in found else "letters, digits and underscores make a name"
             raise OutputError(f"output: the {kind} {shown(name)} cannot be written: {fault}")
         found[name] = thing
     return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import pint
 
 from wearlaw import loader
 from wearlaw.arrays import Array
-from wearlaw.configuration import parts
+from wearlaw.configuration import Configuration
 from wearlaw.errors import OutputError, shown, with_problems
 from wearlaw.kernels import WORTHWHILE, accelerated
 from wearlaw.models.model import Model
@@ -97,3 +97,15 @@ def _changes(field: str, before: Any, now: Any) -> Iterator[str]:
             yield from _changes(f"{field}.{key}" if field else key, before.get(key, "nothing"), now.get(key, "nothing"))
     elif before != now:
         yield f"{field}: was {before}, is {now}".replace("**2", "²").replace("**3", "³")
+
+
+def parts(value: object) -> Iterator[Configuration]:
+    """Yield all configurations in a value: the value itself, and those in its fields at any depth."""
+    inner: Iterable[object] = ()
+    if isinstance(value, Configuration):
+        yield value
+        inner = (getattr(value, name) for name in type(value).model_fields)
+    elif isinstance(value, (list, tuple)):
+        inner = value
+    for one in inner:
+        yield from parts(one)

@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Generic, ParamSpec
 
 from wearlaw.contact.problem import Geometry
-from wearlaw.errors import CompositionError, WearlawWarning, caught_warnings, shown, warn
+from wearlaw.errors import CompositionError, WearlawWarning, shown, warn
 from wearlaw.extras import needed_for
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, named_outcomes
-from wearlaw.models.model import labelled
 from wearlaw.pipeline.composition import TAKE_MEANS, check_geometry, check_scale
 from wearlaw.pipeline.variables import MASS, OUTSIDE_RANGE
+from wearlaw_output.labels import labelled
+from wearlaw_output.notes import caught_warnings
 
 if TYPE_CHECKING:
     import xarray

@@ -16,26 +16,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray
 
-from wearlaw.configuration import parts
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import (
-    ConditionsError,
-    InputError,
-    ResumeWarning,
-    caught_warnings,
-    shown,
-)
+from wearlaw.errors import ConditionsError, InputError, ResumeWarning, shown
 from wearlaw.pipeline.composition import warn_of_unlike_materials
-from wearlaw.pipeline.datasets import names_in
-from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, expect_pipeline
-from wearlaw.pipeline.prediction import unsolved
+from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline
 from wearlaw.pipeline.variables import default_variables
-from wearlaw.pipeline.worn import POSITION
 from wearlaw.units.variables import VARIABLES
-from wearlaw_sweeps.evaluation import Job, output_units, range_warnings
+from wearlaw_output.datasets import names_in
+from wearlaw_output.notes import caught_warnings
+from wearlaw_output.wear_profile import POSITION
+from wearlaw_sweeps.evaluation import Job, expect_pipeline, output_units, range_warnings, unsolved
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import BLOCK, Points, outer_product
 from wearlaw_sweeps.progress import Bar
+from wearlaw_sweeps.provenance import parts
 from wearlaw_sweeps.results import Memory
 from wearlaw_sweeps.room import writing_to
 from wearlaw_sweeps.tables import from_table

@@ -14,11 +14,12 @@ from pydantic import TypeAdapter
 
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, DataError, caught_warnings, shown
+from wearlaw.errors import ConditionsError, DataError, shown
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.worn import PATCH, POSITION
 from wearlaw.units.quantities import Q, coefficient
+from wearlaw_output.notes import caught_warnings
+from wearlaw_output.wear_profile import PATCH, POSITION
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_sweeps.points import Block, Points
 from wearlaw_sweeps.provenance import digest, provenance_of

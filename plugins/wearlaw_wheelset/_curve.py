@@ -256,16 +256,7 @@ def through_points(y: Array, z: Array, smoothing: float, weights: Array | None, 
     it has the least ∫|r''|² du of all curves r(u) with a root mean square distance from the points of at most
     `smoothing` (C. H. Reinsch, Numerische Mathematik 10 (1967) 177-183).
 
-    Parameters
-    ----------
-    y, z : ndarray of float64, shape (n,)
-        The points in their order [m].
-    smoothing : float
-        Root mean square distance of the points from the curve [m].
-    weights : ndarray of float64, shape (n,), or None
-        Weights of the squared distances; all the same if None.
-    sign : float
-        Sign of dθ/ds where the body is convex.
+    Positions and the distance `smoothing` are in m. `sign` is that of dθ/ds where the body is convex.
     """
     points = np.stack([y, z], axis=1)
     u = np.append(0.0, np.cumsum(np.hypot(np.diff(y), np.diff(z))))
@@ -280,23 +271,9 @@ def through_points(y: Array, z: Array, smoothing: float, weights: Array | None, 
 
 
 def smoothed(u: Array, points: Array, distance: float, weights: Array | None) -> Array:
-    """Return the values at its knots of the smoothing spline with this root mean square distance from points.
+    """Return the values at its knots u of the smoothing spline with this root mean square distance from points (n, k).
 
-    Parameters
-    ----------
-    u : ndarray of float64, shape (n,)
-        Parameters of the points, growing.
-    points : ndarray of float64, shape (n, k)
-        The points.
-    distance : float
-        Largest root mean square distance, positive, in the unit of the points.
-    weights : ndarray of float64, shape (n,), or None
-        Weights of the squared distances; all the same if None.
-
-    Returns
-    -------
-    ndarray of float64, shape (n, k)
-        The values of the natural spline: those of a straight line, but for rounding, if that is near enough.
+    It is the natural spline; a straight line, but for rounding, if that is near enough.
     """
     scale = (u[-1] - u[0]) / (u.size - 1)
     step = np.diff(u) / scale

@@ -52,19 +52,7 @@ class FileError(wl.InputError):
 
 @dataclass(frozen=True)
 class Points:
-    """The points of a file, in metres.
-
-    Attributes
-    ----------
-    y, z : ndarray of float64, shape (n,)
-        Positions, outwards and down [m].
-    weights : ndarray of float64, shape (n,), or None
-        Weights, None if the file gives none.
-    lines : ndarray of int, shape (n,)
-        Line of each point in the file.
-    kind : "wheel", "rail" or None
-        Kind by the file's content; None if that does not say.
-    """
+    """The points of a file [m], outwards and down, each with its line; the kind is that of the content, if any."""
 
     y: Array
     z: Array
@@ -76,18 +64,7 @@ class Points:
 def points_of(
     path: Path, kind: Kind | None, units: str, sep: str | None = None, decimal: str = "."
 ) -> tuple[Points, Kind]:
-    """Return the points of a file, and their kind.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    kind : "wheel", "rail" or None
-        Kind that the user gave.
-    units : str
-        Unit of length, where the file does not give it.
-    sep, decimal : str, optional
-        Of two columns, as in `wearlaw.read_table`.
+    """Return the points of a file, and their kind; `kind` and `units` are for what the file does not say.
 
     Raises
     ------
@@ -132,18 +109,10 @@ def _text_of(path: Path) -> str:
     raise FileError("it is not text in UTF-8; save it in UTF-8")
 
 
-HUGE = 1e12
-"""What no number of a file exceeds in magnitude, and no unit of one."""
-
-
 def _number(text: str, line: int, what: str) -> float:
-    """Return a number of a magnitude that a profile can have."""
+    """Return a number; Fortran writes D for the exponent."""
     if NUMBER.fullmatch(text):
-        value = float(text.translate({ord("d"): "e", ord("D"): "e"}))
-        if abs(value) <= HUGE:
-            return value
-        if math.isfinite(value):
-            raise FileError(f"line {line}: {what} must be at most {HUGE:g} in magnitude, got '{text[:40]}'")
+        return float(text.translate({ord("d"): "e", ord("D"): "e"}))
     comma = "; write decimals with a point" if NUMBER.fullmatch(text.replace(",", ".")) else ""
     raise FileError(f"line {line}: {what} must be a number, got '{text[:40]}'{comma}")
 
@@ -260,8 +229,6 @@ def _positive(values: dict[str, float], key: str, otherwise: float) -> float:
     value = values.get(key, otherwise)
     if value <= 0.0:
         raise FileError(f"{key} must be positive, got {value:g}")
-    if value < 1.0 / HUGE:
-        raise FileError(f"{key} must be at least {1.0 / HUGE:g}, got {value:g}")
     return value
 
 

@@ -231,7 +231,7 @@ def _grid(section: Section, place: Candidates, depth: float, y: Array, dx: float
     """Return the gap on rows at y, of elements dx long [m]; the rest as in `rows`."""
     own = int(np.abs(y).argmin())
     known = np.isfinite(place.between(place.samples, y[None])[0]) & (np.abs(y) < -place.start[0])
-    arc = place.between(place.arcs, y[None])[0]
+    arc = place.arc_at(y[None])[0]
     height, foot, shift = np.full(y.shape, FAR * depth), y.copy(), np.zeros(y.shape)
     if known.sum() > 1:
         shift[known] = gaps(section, place.position, arc[known]).x - gaps(section, place.position, place.arc).x

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+import wearlaw as wl
 from wearlaw import Array
 
 if TYPE_CHECKING:
@@ -15,6 +17,12 @@ if TYPE_CHECKING:
 
 APART = 15.0
 """Distance by which wheel and rail are drawn apart [mm]."""
+
+SHOWN = (-20.0, 16.0)
+"""Heights that a figure of both wheels shows [mm]."""
+
+STEP = 0.25
+"""Distance between positions of wear along a profile [mm]."""
 
 BELOW = 8.0
 """Depth of the rail that is drawn below the lowest point of contact [mm]."""
@@ -136,3 +144,72 @@ def _contact_points(axes: Any, geometry: xarray.Dataset, profiles: Profiles, sha
     axes.set(xlabel="y, to the right [mm]", ylabel="z, down [mm]", aspect="equal")
     axes.set_ylim(float(right.z.max()) + BELOW, wheel_z.min() - 5.0)
     axes.set_title(f"right wheel and rail, drawn {APART:.0f} mm apart; lines join points that touch")
+
+
+def contact_figure(profiles: Profiles, name: str, found: wl.Prediction) -> wl.FigureData:
+    """Return both wheels above their rails, with lines between places that touch."""
+    panels = []
+    for index, side in enumerate(("left", "right")):
+        sign = (-1.0, 1.0)[index]
+        here = found.sel(side=side)
+        wheel, rail = (np.asarray(here.problem.body(body).profile_position) for body in ("wheel", "rail"))
+        ends = []
+        for one, other in zip(np.ravel(wheel), np.ravel(rail), strict=True):
+            if np.isfinite(one):
+                ends.append((*profiles.at("wheel", one), *profiles.at("rail", other)))
+        lines = (
+            np.array([[a, c, np.nan] for a, _, c, _ in ends]).ravel(),
+            np.array([[b - 1e-3 * APART, d, np.nan] for _, b, _, d in ends]).ravel(),
+        )
+        panels.append(
+            wl.Panel(
+                wl.PlotAxis("y, to the right [mm]"),
+                wl.PlotAxis("z, down [mm]", ends=SHOWN, inverted=True),
+                (
+                    wl.Curve("wheel", sign * 1e3 * profiles.wheel_y, 1e3 * profiles.wheel_z - APART, colour=6),
+                    wl.Curve("rail", sign * 1e3 * profiles.rail_y, 1e3 * profiles.rail_z, colour=6, dash=1),
+                    wl.Curve("lines between places that touch", sign * 1e3 * lines[0], 1e3 * lines[1], dash=2),
+                ),
+                f"{side} wheel",
+                equal=True,
+            )
+        )
+    return wl.FigureData(
+        name=f"contact_{name}",
+        title=f"Contact points: {name}",
+        panels=tuple(panels),
+        caption=f"Wheel and rail are drawn {APART:g} mm apart in the middle of the track; lines join the middles of the"
+        " patches.",
+    )
+
+
+def wear_figure(profiles: Profiles, name: str, found: Mapping[str, wl.Prediction]) -> wl.FigureData:
+    """Return the depth that both wheels and rails lose along their profiles."""
+    panels = []
+    for body in ("wheel", "rail"):
+        for side in ("left", "right"):
+            curves, unit = [], ""
+            for number, (label, prediction) in enumerate(found.items()):
+                at = _positions(profiles, body)
+                worn = prediction.sel(side=side).wear_profile(body, at=wl.Q(at, "mm"))["depth"]
+                unit = worn.attrs["units"]
+                curves.append(wl.Curve(label, at, np.ravel(worn.values), colour=number, dash=number))
+            per = "" if body == "wheel" else " per passage"
+            panels.append(
+                wl.Panel(
+                    wl.PlotAxis(f"position along the profile of the {body} [mm]"),
+                    wl.PlotAxis(f"depth{per} [{unit}]".replace("um", "µm")),
+                    tuple(curves),
+                    f"{side} {body}",
+                )
+            )
+    return wl.FigureData(
+        name=f"wear_{name}", title=f"Wear along the profiles: {name}", panels=tuple(panels),
+        caption="The flange of a wheel and the gauge side of a rail are at negative positions.",
+    )  # fmt: skip
+
+
+def _positions(profiles: Profiles, body: str) -> Array:
+    """Return positions along the part of a profile on which contact is looked for [mm]."""
+    arc = profiles.wheel_arc if body == "wheel" else profiles.rail_arc
+    return np.arange(1e3 * arc[0], 1e3 * arc[-1], STEP)

@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 CONVEX = {"wheel": -1.0, "rail": 1.0}
 """Sign of dθ/ds where a body is convex: the wheel lies above its profile, the rail below."""
 
-FILE_FIELDS = ("file", "kind", "units", "sep", "decimal", "mirror_y", "mirror_z", "shift_y", "shift_z", "smoothing")
-"""Fields of a table that names a file of a profile."""
-
 
 class _Coordinates:
     """Makes pydantic accept coordinates: a quantity with one axis, or a table of values and their unit."""
@@ -94,9 +91,11 @@ class Profile(wl.Configuration):
     """Positions of the points outwards [m]."""
     z: Coordinates | None = None
     """Positions of the points down [m]."""
-    weights: tuple[float, ...] | None = None
+    weights: tuple[Annotated[float, Field(gt=0.0)], ...] | None = None
     """Weights of the points for smoothing [-]; all the same if not given."""
-    smoothing: Shift = Field(default="0 mm", validate_default=True)
+    smoothing: Annotated[wl.Quantity, wl.Unit("mm", positive=False, negative=False)] = Field(
+        default="0 mm", validate_default=True
+    )
     """Root mean square distance of the points from the curve, at most [m]; with zero it runs through them."""
     mirror: bool = False
     """Whether y changes its sign."""
@@ -178,9 +177,9 @@ class Profile(wl.Configuration):
     def _of_text(cls, given: Any) -> Any:
         """Take the name of a formula or the path of a file for a table, and add the kind of a formula."""
         if isinstance(given, str | os.PathLike):
-            given = _named(_path(given, "profile"))
+            given = _named(os.fspath(given))
         elif isinstance(given, Mapping) and "file" in given:
-            return _of_file(given)
+            return _File(**given).fields()
         if isinstance(given, Mapping) and given.get("formula") in FORMULAS and "kind" not in given:
             return {**given, "kind": FORMULAS[given["formula"]].kind}
         return given
@@ -201,24 +200,14 @@ class Profile(wl.Configuration):
             raise ValueError("needs the name of a formula, or points with y and z")
         else:
             check_points(_si(self.y), _si(self.z), self._name)
-            self._check_weights(self.y.size)
-        if self.smoothing.magnitude < 0.0:
-            raise ValueError(f"smoothing: must not be negative, got {self.smoothing!r}")
+            if self.weights is not None and len(self.weights) != self.y.size:
+                raise ValueError(f"weights: must be one for each of {self.y.size} points, got {len(self.weights)}")
         check_orientation(self.kind, *self._moved(*self._given), self._name)
         return self
 
     def _name(self, index: int) -> str:
         """Return the name of a point in messages."""
         return f"point {index}"
-
-    def _check_weights(self, count: int) -> None:
-        if self.weights is None:
-            return
-        if len(self.weights) != count:
-            raise ValueError(f"weights: must be one for each of {count} points, got {len(self.weights)}")
-        for index, weight in enumerate(self.weights):
-            if not weight > 0.0:
-                raise ValueError(f"weights: must be positive, got {weight:g} at index {index}; leave that point out")
 
     @property
     def _given(self) -> tuple[Array, Array]:
@@ -445,8 +434,7 @@ class Profile(wl.Configuration):
         table = super().__get_pydantic_json_schema__(schema, handler)
         table.pop("required", None)  # a formula knows its kind
         names = {"type": "string", "description": "the name of a formula, such as s1002, or the path of a file"}
-        file = {"type": "object", "required": ["file"], "properties": {key: {} for key in FILE_FIELDS}}
-        return {"anyOf": [table, {**file, "additionalProperties": False}, names]}
+        return {"anyOf": [table, _File.model_json_schema(), names]}
 
     @cached_property
     def _identity(self) -> tuple[object, ...]:
@@ -494,14 +482,6 @@ def _by_formula(name: str) -> Curve:
     return joined(FORMULAS[name].pieces(), CONVEX[FORMULAS[name].kind])
 
 
-def _path(value: object, name: str) -> str:
-    """Return a path as text, or raise an error that names the argument."""
-    text = os.fspath(value) if isinstance(value, str | os.PathLike) else None
-    if not isinstance(text, str):
-        raise wl.InputError(f"{name}: must be the path of a file, got {value!r}")
-    return text
-
-
 def _named(text: str) -> Any:
     """Return the fields of a formula, or the profile of a file."""
     if text in FORMULAS:
@@ -512,19 +492,27 @@ def _named(text: str) -> Any:
             f"{did_you_mean(text, FORMULAS)} The"
             f" formulas are: {', '.join(FORMULAS)}"
         )
-    return _of_file({"file": text})
+    return _File(file=text).fields()
 
 
-def _of_file(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of the profile of a file, which a table names with the options of `read_profile`."""
-    for name in table:
-        if name not in FILE_FIELDS:
-            near = did_you_mean(name, FILE_FIELDS)
-            raise wl.InputError(f"unknown field {wl.shown(name)}{near} With a file, they are: {', '.join(FILE_FIELDS)}")
-    found = read_profile(
-        wl.beside(_path(table["file"], "file")), **{name: value for name, value in table.items() if name != "file"}
-    )
-    return {name: getattr(found, name) for name in found.model_fields_set}
+class _File(wl.Configuration):
+    """A table that names the file of a profile, with the options of `read_profile`."""
+
+    file: str
+    kind: Kind | None = None
+    units: str = "mm"
+    sep: str | None = None
+    decimal: str = "."
+    mirror_y: Annotated[bool, Field(strict=True)] = False
+    mirror_z: Annotated[bool, Field(strict=True)] = False
+    shift_y: Shift = Field(default="0 mm", validate_default=True)
+    shift_z: Shift = Field(default="0 mm", validate_default=True)
+    smoothing: Shift = Field(default="0 mm", validate_default=True)
+
+    def fields(self) -> dict[str, Any]:
+        """Return the fields of the profile in the file."""
+        found = read_profile(wl.beside(self.file), **{name: value for name, value in self if name != "file"})
+        return {name: getattr(found, name) for name in found.model_fields_set}
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -572,12 +560,8 @@ def read_profile(
     DataError
         If the file cannot be read, or does not hold a profile. The message names the file and the line.
     """
-    file = Path(_path(path, "path"))
     try:
-        for option, value in (("mirror_y", mirror_y), ("mirror_z", mirror_z)):
-            if not isinstance(value, bool):
-                raise wl.InputError(f"{option}: must be true or false, got {value!r}")
-        found, told = points_of(file, kind, units, sep, decimal)
+        found, told = points_of(Path(path), kind, units, sep, decimal)
         length = wl.Unit("mm", positive=False)
         y = (-1.0 if mirror_y else 1.0) * found.y + float(length.si(shift_y, "shift_y"))
         z = (-1.0 if mirror_z else 1.0) * found.z + float(length.si(shift_z, "shift_z"))
@@ -612,13 +596,10 @@ def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
     OutputError
         If the file cannot be written.
     """
-    file = Path(_path(path, "path"))
-    if not isinstance(profile, Profile):
-        raise wl.InputError(f"profile: must be a Profile, as in write_profile('worn.prr', profile); got {profile!r}")
     y, z = (1e-3 * value.magnitude for value in profile.points)
     if profile.smoothing.magnitude:
         y, z = profile.curve.y, profile.curve.z
-    write_points(file, profile.kind, y, z)
+    write_points(Path(path), profile.kind, y, z)
 
 
 DEEP, TOP = 10e-3, 20e-3

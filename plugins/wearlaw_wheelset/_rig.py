@@ -18,7 +18,7 @@ from wearlaw_wheelset._conicity import equivalent_conicity
 from wearlaw_wheelset._geometry import Geometry, geometry, patches, profiles
 from wearlaw_wheelset._guidance import guided
 from wearlaw_wheelset._loads import Balance, Elastic, Friction, Pressure, Task
-from wearlaw_wheelset._pictures import Profiles
+from wearlaw_wheelset._pictures import Profiles, contact_figure, wear_figure
 from wearlaw_wheelset._profile import Profile
 from wearlaw_wheelset._search import Section, Touching, both_sides, searched, section
 from wearlaw_wheelset._search_loops import PATCHES
@@ -33,6 +33,7 @@ HUGE = 1e12
 """Greatest value of a condition in its unit, whatever it is: products of several are floats."""
 
 DISPLACEMENT, ANGLE = (wl.Unit(unit, positive=False, limit=HUGE) for unit in ("mm", "mrad"))
+YAW = wl.Unit("mrad", positive=False, limit=200.0)  # a locomotive in the tightest curve has a tenth of it
 LOAD = wl.Unit("kN", limit=HUGE)
 
 
@@ -52,7 +53,7 @@ class WheelsetConditions(TypedDict, total=False):
     """Vertical load of the right wheel [N]."""
     friction_coefficient: Required[wl.Friction]
     """Friction coefficient, μ [-]."""
-    yaw: Annotated[wl.QuantityLike, ANGLE]
+    yaw: Annotated[wl.QuantityLike, YAW]
     """Yaw, positive clockwise from above, ψ [rad]; zero if not given."""
     roll: Annotated[wl.QuantityLike, ANGLE]
     """Roll, positive if it lowers the right wheel, ρ [rad]. By default the one at which both wheels sink together under
@@ -97,9 +98,6 @@ LARGEST_RADIUS = 0.7
 HIGH_PRESSURE = 3.5e9
 """Maximum pressure that only the noise of points gives [Pa]: new flanges have up to about 3."""
 
-MOST_YAW = 0.2
-"""Greatest yaw [rad]: a locomotive in the tightest curve has a tenth of it."""
-
 IMBALANCE = 1e-3
 """Share of the load that may be left over without a warning; the forces of FASTSIM jump by less than that, as a strip
 begins to stick once more."""
@@ -113,28 +111,15 @@ MARGIN = 1e-3
 CONICITY_POINTS = 801
 """Displacements at which the conicity takes radii."""
 
-RATIO = re.compile(r"\s*1\s*:\s*([0-9]+\.?[0-9]*)\s*")
-
-FRACTION = re.compile(r"\s*1\s*/\s*([0-9]+\.?[0-9]*)\s*")
-
-NUMBER = re.compile(r"\s*[0-9]+\.?[0-9]*\s*")
+RATIO = re.compile(r"\s*1\s*[:/]\s*([0-9]+\.?[0-9]*)\s*")
 
 
 def _cant(value: object) -> object:
     """Return the angle of a cant such as "1:40"; other values stay."""
-    if isinstance(value, str) and (ratio := RATIO.fullmatch(value)):
-        if float(ratio[1]) == 0.0:
-            raise wl.UnitError(f"got {value!r}, a rail on its side; give a ratio such as '1:40'")
-        return wl.Q(float(np.arctan(1.0 / float(ratio[1]))), "rad")
-    if isinstance(value, int | float) and not isinstance(value, bool) and value == 0:
-        return wl.Q(0.0, "rad")
-    if isinstance(value, int | float | str) and not isinstance(value, bool) and NUMBER.fullmatch(str(value)):
-        number = float(value)
-        advised = f"1:{value if number > 1.0 else format(1.0 / number, '.6g')}" if number else "1:40"
-        raise wl.UnitError(f"got {value!r}, which has no unit; give a ratio or an angle, as '{advised}' or '1.4 deg'")
-    if isinstance(value, str) and (fraction := FRACTION.fullmatch(value)):
-        raise wl.UnitError(f"got {value!r}; write a ratio with a colon, as '1:{fraction[1]}'")
-    return value
+    if isinstance(value, int | float):
+        raise wl.UnitError(f"got {value!r}; give a ratio or an angle, such as '1:40' or '1.4 deg'")
+    ratio = RATIO.fullmatch(value) if isinstance(value, str) else None
+    return wl.Q(float(np.arctan2(1.0, float(ratio[1]))), "rad") if ratio else value
 
 
 Cant = Annotated[wl.Quantity, wl.Unit("rad", positive=False, limit=0.2), BeforeValidator(_cant)]
@@ -301,17 +286,10 @@ class Wheelset(wl.Rig):
 
     @model_validator(mode="after")
     def _fits(self) -> Wheelset:
-        for name, kind in (("left_wheel", "wheel"), ("left_rail", "rail")):
-            given = getattr(self, name)
+        for name in ("wheel", "rail", "left_wheel", "left_rail"):
+            given, kind = getattr(self, name), name.removeprefix("left_")
             if given is not None and given.kind != kind:
                 raise ValueError(f"{name} is the profile of a {given.kind}; give that of a {kind}")
-        if self.wheel.kind != "wheel" or self.rail.kind != "rail":
-            swapped = self.wheel.kind != "wheel" and self.rail.kind != "rail"
-            raise ValueError(
-                f"wheel is the profile of a {self.wheel.kind} and rail that of a {self.rail.kind};"
-                f" {'give them the other way round' if swapped else 'give one of each'}, or make the profile with the"
-                " other kind"
-            )
         if wl.scalar_si(self.nominal_radius, "m") > LARGEST_RADIUS:
             warnings.warn(
                 f"nominal_radius: {self.nominal_radius!r} is more than wheels in service have; is it the diameter?",
@@ -333,17 +311,11 @@ class Wheelset(wl.Rig):
             )
         straight = np.zeros(1)
         roll, found = searched(self._section, straight, straight)
-        if np.isnan(found.arc[0, :, 0]).any():
-            raise ValueError(
-                f"gauge: the wheels do not stand on the rails; wheels {self.flange_back_distance!r} apart between their"
-                f" inner faces do not fit rails {self.gauge!r} apart"
-            )
         angle = patches(self._section, both_sides(straight, roll, straight), found)["contact_angle"][0, :, 0]
-        if np.abs(angle).max() > wl.scalar_si(self.flange_angle, "rad"):
+        if not np.abs(angle).max() <= wl.scalar_si(self.flange_angle, "rad"):  # NaN without contact
             raise ValueError(
-                f"gauge: in the middle of the track the wheels stand on their flanges, at a contact angle of"
-                f" {np.degrees(np.abs(angle).max()):.3g} deg; wheels {self.flange_back_distance!r} apart between their"
-                f" inner faces do not fit rails {self.gauge!r} apart"
+                f"gauge: in the middle of the track the wheels stand on their flanges or beside the rails; wheels"
+                f" {self.flange_back_distance!r} apart between their inner faces do not fit rails {self.gauge!r} apart"
             )
         return self
 
@@ -386,7 +358,7 @@ class Wheelset(wl.Rig):
         given = {"lateral_displacement": lateral_displacement, "yaw": yaw}
         arrays = {
             "lateral_displacement": DISPLACEMENT.si(lateral_displacement, "lateral_displacement"),
-            "yaw": ANGLE.si(yaw, "yaw"),
+            "yaw": YAW.si(yaw, "yaw"),
         }
         for name, array in arrays.items():
             if array.ndim > 1:
@@ -394,10 +366,7 @@ class Wheelset(wl.Rig):
         axes = {name: wl.parse(value) for name, value in given.items()}
         displacement, turned = (array.ravel() for array in np.meshgrid(*arrays.values(), indexing="ij"))
         fixed = None if roll is None else np.full(displacement.shape, _one(ANGLE, roll, "roll"))
-        most = _one(wl.Unit("mm", positive=False), within, "within")
-        if most < 0.0:
-            raise wl.UnitError(f"within: must not be negative, got {1e3 * most:.4g} mm")
-        self._check_yaw(turned)
+        most = _one(wl.Unit("mm", positive=False, negative=False), within, "within")
         rolls, found = searched(self._section, displacement, turned, fixed)
         self._check_contact(displacement, found)
         position = both_sides(displacement, rolls, turned)
@@ -411,6 +380,19 @@ class Wheelset(wl.Rig):
     def profiles_in_track(self) -> Profiles:
         """Return the right wheel and its rail in the middle of the track, as SI arrays."""
         return profiles(self._section, wl.scalar_si(self.nominal_radius, "m"))
+
+    def profile_figures(self, found: Mapping[str, wl.Prediction], name: str = "state") -> tuple[wl.FigureData, ...]:
+        """Return figures of the contacts on the profiles, and of the wear along them by each of several laws.
+
+        Parameters
+        ----------
+        found : mapping of str to Prediction
+            Predictions of one operating point, whose contact model resolves the patches, by name of the law.
+        name : str
+            Name of the operating point.
+        """
+        profiles, first = self.profiles_in_track(), next(iter(found.values()))
+        return contact_figure(profiles, name, first), wear_figure(profiles, name, found)
 
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel."""
@@ -448,7 +430,6 @@ class Wheelset(wl.Rig):
         # Laws of friction stay as they are given: each patch has a creep speed of its own.
         friction: Mapping[str, Any] = {**conditions, **flat}
         tread, on_flange = friction["friction_coefficient"], friction.get("flange_friction_coefficient")
-        self._check_yaw(flat["yaw"])
         task = self._task(flat, (tread, tread if on_flange is None else on_flange))
         balance = self._balance(task, flat.get("roll"))
         if task.torque.any():
@@ -587,15 +568,6 @@ class Wheelset(wl.Rig):
             "derailment_quotient": wide((balance.lateral / balance.vertical)[found.point, found.side]),
         }
         return WheelsetProblem(**fields, balance=balance, shape=shape)
-
-    @staticmethod
-    def _check_yaw(yaw: Array) -> None:
-        """Raise an error for a yaw that no wheelset has."""
-        steep = np.abs(yaw) > MOST_YAW
-        if steep.any():
-            raise wl.ConditionsError(
-                f"yaw: must be at most {MOST_YAW:g} rad, got {yaw[steep][0]:.4g} rad; is it in mrad?"
-            )
 
     def _check_contact(self, displacement: Array, found: Touching) -> None:
         """Raise an error where a wheel does not stand on its rail."""

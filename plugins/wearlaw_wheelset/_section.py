@@ -8,15 +8,7 @@ import numpy as np
 import pandas as pd
 
 import wearlaw as wl
-from wearlaw import Array
-from wearlaw_wheelset._pictures import APART
 from wearlaw_wheelset._rig import Wheelset
-
-STEP = 0.25
-"""Distance between positions of wear along a profile [mm]."""
-
-SHOWN = (-20.0, 16.0)
-"""Heights that pictures of contact points show [mm]."""
 
 COLUMNS = {
     "contact_angle": "deg",
@@ -57,7 +49,7 @@ def section(study: wl.Study) -> wl.Section:
             continue
         first = next(iter(found.values()))
         tables[f"patches_{name}"] = _table(first)
-        figures += [_contact(rig, name, first), _wear(rig, name, found)]
+        figures += rig.profile_figures(found, name)
     return wl.Section(
         title="The wheelset on its rails",
         text="Patch 1 of a wheel is the one that touches first. y runs to the right and z down. Forces act from the"
@@ -94,77 +86,6 @@ def _geometry(rig: Wheelset) -> wl.FigureData:
         caption="Rigid wheels and rails, no yaw. The equivalent conicity at 3 mm is"
         f" {conicity.magnitude:.3f}, after Klingel's equation.",
     )
-
-
-def _contact(rig: Wheelset, name: str, found: wl.Prediction) -> wl.FigureData:
-    """Return both wheels above their rails, with lines between places that touch."""
-    profiles = rig.profiles_in_track()
-    panels = []
-    for index, side in enumerate(("left", "right")):
-        sign = (-1.0, 1.0)[index]
-        here = found.sel(side=side)
-        wheel, rail = (np.asarray(here.problem.body(body).profile_position) for body in ("wheel", "rail"))
-        ends = []
-        for one, other in zip(np.ravel(wheel), np.ravel(rail), strict=True):
-            if np.isfinite(one):
-                ends.append((*profiles.at("wheel", one), *profiles.at("rail", other)))
-        lines = (
-            np.array([[a, c, np.nan] for a, _, c, _ in ends]).ravel(),
-            np.array([[b - 1e-3 * APART, d, np.nan] for _, b, _, d in ends]).ravel(),
-        )
-        panels.append(
-            wl.Panel(
-                wl.PlotAxis("y, to the right [mm]"),
-                wl.PlotAxis("z, down [mm]", ends=SHOWN, inverted=True),
-                (
-                    wl.Curve("wheel", sign * 1e3 * profiles.wheel_y, 1e3 * profiles.wheel_z - APART, colour=6),
-                    wl.Curve("rail", sign * 1e3 * profiles.rail_y, 1e3 * profiles.rail_z, colour=6, dash=1),
-                    wl.Curve("lines between places that touch", sign * 1e3 * lines[0], 1e3 * lines[1], dash=2),
-                ),
-                f"{side} wheel",
-                equal=True,
-            )
-        )
-    return wl.FigureData(
-        name=f"contact_{name}",
-        title=f"Contact points: {name}",
-        panels=tuple(panels),
-        caption=f"Wheel and rail are drawn {APART:g} mm apart in the middle of the track; lines join the middles of the"
-        " patches.",
-    )
-
-
-def _wear(rig: Wheelset, name: str, found: dict[str, wl.Prediction]) -> wl.FigureData:
-    """Return the depth that both wheels and rails lose along their profiles."""
-    panels = []
-    for body in ("wheel", "rail"):
-        for side in ("left", "right"):
-            curves, unit = [], ""
-            for number, (label, prediction) in enumerate(found.items()):
-                at = _positions(rig, body)
-                worn = prediction.sel(side=side).wear_profile(body, at=wl.Q(at, "mm"))["depth"]
-                unit = worn.attrs["units"]
-                curves.append(wl.Curve(label, at, np.ravel(worn.values), colour=number, dash=number))
-            per = "" if body == "wheel" else " per passage"
-            panels.append(
-                wl.Panel(
-                    wl.PlotAxis(f"position along the profile of the {body} [mm]"),
-                    wl.PlotAxis(f"depth{per} [{unit}]".replace("um", "µm")),
-                    tuple(curves),
-                    f"{side} {body}",
-                )
-            )
-    return wl.FigureData(
-        name=f"wear_{name}", title=f"Wear along the profiles: {name}", panels=tuple(panels),
-        caption="The flange of a wheel and the gauge side of a rail are at negative positions.",
-    )  # fmt: skip
-
-
-def _positions(rig: Wheelset, body: str) -> Array:
-    """Return positions along the part of a profile on which contact is looked for [mm]."""
-    profiles = rig.profiles_in_track()
-    arc = profiles.wheel_arc if body == "wheel" else profiles.rail_arc
-    return np.arange(1e3 * arc[0], 1e3 * arc[-1], STEP)
 
 
 def _table(found: wl.Prediction) -> pd.DataFrame:

@@ -46,6 +46,7 @@ def main(arguments: list[str]) -> int:
     gates: list[Gate] = []
     for bound in ("parabolic", "elliptic"):
         gates += few_nodes(bound, options.rounds)
+    gates += forces_alone(options.rounds)
     gates += [memory(name, on) for name, on in modes().items()]
     report.print_gates(gates)
     return int(options.strict and not all(gate.met for gate in gates))
@@ -76,6 +77,22 @@ def few_nodes(bound: str, rounds: int) -> list[Gate]:
         Gate(f"rms error of the forces over μN, {bound}", force, 3e-3),
         Gate(f"rms error of the wear rate, {bound}", wear, 5e-3),
         Gate(f"time over the march in NumPy, {bound}", times.best_ratio(default, RIVAL), 0.4),
+    ]
+
+
+def forces_alone(rounds: int) -> list[Gate]:
+    """Return the gates of the forces of `strip_theory`, without fields, beside those of FASTSIM."""
+    problem, models = workload(POINTS), ("strip_theory", "fastsim")
+    works = {
+        f"{model}, {name}": in_mode(on, partial(wl.contact_model(model).creep_forces, problem))
+        for model in models
+        for name, on in modes().items()
+    }
+    times = side_by_side(works, rounds)
+    strips, fastsim = ([f"{model}, {name}" for name in modes()] for model in models)
+    return [
+        Gate(f"time of the forces of {one} over those of FASTSIM", times.best_ratio(one, other), 2.0)
+        for one, other in zip(strips, fastsim, strict=True)
     ]
 
 

@@ -1,19 +1,18 @@
-"""The base class of all models, `Model`, the errors that name a model, and short names for models side by side.
+"""The base class of all models, `Model`, and the errors that name a model.
 
 A model is its configuration: a frozen pydantic record. Its fields carry units, and its methods compute.
 """
 
 import inspect
 from abc import ABC
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar, TypeAlias, TypeVar
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CompositionError, InputError, ModelError, WearlawError, described, did_you_mean
 from wearlaw.extras import load
-from wearlaw.units.quantities import text_of
 
 Claim: TypeAlias = str
 """Name of an invariant that a model keeps unless it declares itself exempt; see `Model.exemptions`.
@@ -82,11 +81,7 @@ class Model(Configuration, ABC):
 def fault(model: Model, what: str) -> ModelError:
     """Return the error for a model that is at fault; it names the model, its class and its distribution.
 
-    Parameters
-    ----------
-    model : Model
-    what : str
-        What the model did, such as "returned values of shape (3,)"; the message begins with kind and name of the model.
+    `what` is what the model did, such as "returned values of shape (3,)".
     """
     return ModelError(with_origin(model, f"{model.kind} '{model.name}' {what}"))
 
@@ -100,14 +95,8 @@ class Blame:
     """A context that turns an exception in a model's code into a `ModelError` that names the model.
 
     Errors of wearlaw pass, because their messages are complete. An `InputError` gets a note that names the model, but
-    not one of a rig or a reader, which is about the conditions or a file. Ctrl-C and a lack of memory pass as well.
-
-    Parameters
-    ----------
-    model : Model
-        The model to name.
-    p : mapping of str to float or ndarray, optional
-        The numbers given to a wear law. If there are arrays among them, the message says how to compute with arrays.
+    not one of a rig or a reader, which is about the conditions or a file. Ctrl-C and a lack of memory pass as well. If
+    there are arrays among the numbers `p` given to a law, the message says how to compute with arrays.
     """
 
     __slots__ = ("_model", "_p")
@@ -141,44 +130,3 @@ def check_scale(model: type[Model], known: tuple[str, ...]) -> None:
     if isinstance(scale, str) and scale not in known:
         words = " or ".join(repr(one) for one in known)
         raise ModelError(f"{model.__name__}.scale: is {scale!r}{did_you_mean(scale, known)} It must be {words}")
-
-
-ModelT = TypeVar("ModelT", bound=Model)
-
-
-def labels(models: Sequence[Model]) -> list[str]:
-    """Return a short name for each model: its own name, and the options that tell it from models of the same name.
-
-    The name of a law for one body has that body, as in "usfd(body=rail)". A law with a label has its label.
-    """
-    found = []
-    for model in models:
-        label = getattr(model, "label", None)
-        if label is not None:
-            found.append(label)
-            continue
-        namesakes = [other for other in models if other.name == model.name and not getattr(other, "label", None)]
-        body = ["body"] if getattr(model, "body", None) is not None else []
-        fields = dict.fromkeys([*_telling_apart(namesakes), *body])
-        options = [f"{field}={text_of(getattr(model, field))}" for field in fields]
-        found.append(f"{model.name}({', '.join(options)})" if options else model.name)
-    for name in found:
-        if found.count(name) > 1:
-            raise InputError(f"the model {name} is listed twice; leave one out, or give it other options or a label")
-    return found
-
-
-def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
-    """Return models by their `labels`."""
-    return dict(zip(labels(models), models, strict=True))
-
-
-def _telling_apart(models: Sequence[Model]) -> list[str]:
-    """Return the fewest fields, in their order, that tell models of one name apart."""
-    fields: list[str] = []
-    kinds: set[tuple[str, ...]] = {()}
-    for field in type(models[0]).model_fields:
-        finer = {tuple(text_of(getattr(model, name)) for name in (*fields, field)) for model in models}
-        if len(finer) > len(kinds):
-            fields, kinds = [*fields, field], finer
-    return fields

@@ -68,10 +68,6 @@ LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index"
 class Solver:
     """Solves contacts by a model, checks them, and counts the blocks.
 
-    Parameters
-    ----------
-    model : ContactModel
-
     Attributes
     ----------
     solved : Contact or None
@@ -149,7 +145,7 @@ class Solver:
 
     def check(self, contact: Contact, problem: Problem, *, totals: bool, areas: bool = True) -> None:
         """Raise a `ModelError` if a contact breaks the contract of contact models."""
-        _check_types(self.model, contact, problem)
+        check_types(self.model, contact, problem)
         _check_values(self.model, contact, problem, areas=areas)
         if totals:
             _check_totals(self.model, contact, problem)
@@ -201,7 +197,8 @@ def check_results(model: ContactModel, problem: Problem, found: Any, name: str =
         raise _error(model, f"gave {_words(name)} that is not finite", problem, ~np.isfinite(found))
 
 
-def _check_types(model: ContactModel, contact: Contact, problem: Problem) -> None:
+def check_types(model: ContactModel, contact: Any, problem: Problem) -> None:
+    """Raise a `ModelError` unless a contact has float64 arrays of the right shapes for its problem."""
     ellipse = problem.geometry != "line"
     if not isinstance(contact, Contact):
         raise fault(model, f"returned {shown(contact)}, not a wearlaw.Contact")

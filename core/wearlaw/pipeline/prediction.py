@@ -5,43 +5,34 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from html import escape
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import pint
 
-from wearlaw.arrays import same, steady
+from wearlaw.arrays import steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
-from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
 from wearlaw.extras import load
-from wearlaw.models.contact_model import ContactModel, LineContactModel, Scale
+from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.models.reader import Solved, flat
 from wearlaw.numerics import integrate
-from wearlaw.numerics.solving import Solver
 from wearlaw.numerics.staged import without_stages
-from wearlaw.numerics.totals import SlipTotals, Totals
-from wearlaw.pipeline import worn
+from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import check_laws, check_scale, other_materials, warn_of_parameters
-from wearlaw.pipeline.datasets import along_patch, dataset, frame
 from wearlaw.pipeline.ranges import RangeWatch, outside_range
 from wearlaw.pipeline.selection import Index, Label, Selection
 from wearlaw.pipeline.solution import Solution
-from wearlaw.pipeline.variables import ERROR, default_variables, long_name, outcome_units
-from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, from_si
-from wearlaw.units.variables import UNITS
+from wearlaw.pipeline.variables import ERROR, default_variables, outcome_units
+from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si
 
 if TYPE_CHECKING:
     import pandas
     import xarray
     from matplotlib.axes import Axes
 
-
-PROFILE_CELLS = 200
-"""Points of a profile along the patch, in the middles of equal cells."""
 
 FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
 
@@ -141,7 +132,7 @@ class Prediction:
         InputError
             If there is no such axis or label; the message lists those that exist.
         """
-        return self._part(Selection.by_label(self.problem, labels))
+        return Prediction(self._solution.part(Selection.by_label(self.problem, labels)))
 
     def isel(self, /, **positions: int | slice | Sequence[int]) -> Prediction:
         """Return the prediction for some operating points or patches, by their positions along the axes.
@@ -160,11 +151,7 @@ class Prediction:
         InputError
             If there is no such axis or position; the message lists those that exist.
         """
-        return self._part(Selection.by_position(self.problem, positions))
-
-    def _part(self, chosen: Selection) -> Prediction:
-        """Return the prediction for some entries along the axes."""
-        return Prediction(self._solution.part(chosen))
+        return Prediction(self._solution.part(Selection.by_position(self.problem, positions)))
 
     @overload
     def __getitem__(self, name: str, /) -> Quantity: ...
@@ -180,7 +167,7 @@ class Prediction:
         does.
         """
         if not isinstance(name, str):
-            return self._part(Selection.by_index(self.problem, name))
+            return Prediction(self._solution.part(Selection.by_index(self.problem, name)))
         named = named_outcomes(self.laws)
         if name in named:
             index = named[name]
@@ -211,15 +198,6 @@ class Prediction:
     def __contains__(self, name: object) -> bool:
         """Return whether there is a variable of this name."""
         return isinstance(name, str) and name in (*outcome_units(self.laws), *default_variables(self))
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether another prediction is one of the same contacts with the same models."""
-        if not isinstance(other, Prediction):
-            return NotImplemented
-        return same(*((one.problem, one.model, one.laws) for one in (self._solution, other._solution)))
-
-    def __hash__(self) -> int:
-        return hash((self.problem.geometry, self.problem.batch_shape))
 
     def outcome(self, name: str, body: str | None = None) -> Quantity:
         """Return the outcome of a law, with its unit.
@@ -259,7 +237,8 @@ class Prediction:
             of that condition; other axes are point_0, point_1 and so on, as in `isel`. A rig's own axes follow, with
             their labels; missing patches are NaN.
         """
-        return dataset(self, self._solution.conditions, names)
+        made: xarray.Dataset = load("wearlaw_output.datasets", "to_dataset", "a dataset")(self, self._solution, names)
+        return made
 
     def to_dataframe(self, names: Sequence[str] | None = None) -> pandas.DataFrame:
         """Return the prediction as a table with a row for each operating point, or for each existing patch.
@@ -275,7 +254,8 @@ class Prediction:
             The conditions, the labels of the patches and the variables. The heads hold the units, as in
             "wear_rate [ug/m/mm^2]"; `wearlaw.sweep` and `wearlaw.read_tests` read such heads.
         """
-        return frame(self, self._solution.conditions, names)
+        made: pandas.DataFrame = load("wearlaw_output.datasets", "to_dataframe", "a table")(self, self._solution, names)
+        return made
 
     def plot(self, name: str | None = None, *, x: str | None = None, ax: Axes | None = None) -> Axes:
         """Draw a variable over the operating points, and return the axes of matplotlib.
@@ -302,7 +282,7 @@ class Prediction:
             If there is nothing to draw, or too many axes.
         """
         draw = load("wearlaw_output.pictures", "draw", "a picture")
-        drawn: Axes = draw(self, self._solution.conditions, name, x, ax)
+        drawn: Axes = draw(self, self._solution, name, x, ax)
         return drawn
 
     @property
@@ -476,29 +456,8 @@ class Prediction:
     @property
     def profile(self) -> xarray.Dataset:
         """Pressure, traction, traction bound, slip and outcomes along the patch of a line, with units."""
-        contact = self._cells()
-        columns = {
-            name: (getattr(contact, name), UNITS[name])
-            for name in ("x", "pressure", "traction", "traction_bound", "slip")
-        }
-        for name, index in named_outcomes(self.laws).items():
-            law = self.laws[index]
-            if law.outcome.of == "area mean":
-                columns[name] = law.checked_rate(contact), law.outcome.unit
-        return along_patch(self.problem, columns)
-
-    def _cells(self) -> Contact:
-        """Return the contact of the existing patches, at equal distances if the model can give them."""
-        model, problem = self._solution.model, self.problem
-        problem.needs("line", "profile")
-        if problem.size == 0:
-            raise InputError("profile: none of these patches exists; select others")
-        if self.scale == "cells" and isinstance(model, LineContactModel):
-            there = problem.existing()
-            share = (2.0 * np.arange(PROFILE_CELLS) + 1.0) / PROFILE_CELLS - 1.0
-            nodes = Nodes.at(share * there.half_width[..., None], there.half_width)
-            return Solver(model).at(there, nodes, totals=False)
-        return self.contact if problem.exists is None else self.contact[problem.exists]
+        fields: xarray.Dataset = load("wearlaw_output.datasets", "profile", "a profile")(self._solution)
+        return fields
 
     def wear_profile(self, body: str, strips: int | None = None, at: QuantityLike | None = None) -> xarray.Dataset:
         """Return the depth lost and the distance slid across an elliptic patch, over y.
@@ -536,7 +495,9 @@ class Prediction:
         CompositionError
             If the contact is a line or is not resolved across the patch.
         """
-        return worn.wear_profile(self._solution, body, strips, at)
+        of_strips = load("wearlaw_output.wear_profile", "wear_profile", "a wear profile")
+        depth: xarray.Dataset = of_strips(self._solution, body, strips, at)
+        return depth
 
     @property
     def wear_rate(self) -> Quantity:
@@ -566,6 +527,7 @@ class Prediction:
         """
         return self._error(self._solution.law())
 
+    @steady
     def depth_per_distance(self, body: str) -> Quantity:
         """Return the depth that a body's surface loses per distance rolled, mean over the patch's width [m/m].
 
@@ -578,22 +540,24 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        return from_si(worn.depth_per_distance(self._solution, body), "um/km")
+        return from_si(0.5 * self._solution.section_per_distance(body) / self.problem.b, "um/km")
 
+    @steady
     def profile_area_rate(self, body: str) -> Quantity:
         """Return the area of a radial section that a body loses per distance rolled [mm²/km].
 
         This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351, after Tassini et al.
         2010, section 4.1): the depth per distance, times the width of the patch.
         """
-        return from_si(worn.section_per_distance(self._solution, body), "mm^2/km")
+        return from_si(self._solution.section_per_distance(body), "mm^2/km")
 
     @property
     @steady
     def mass_per_distance(self) -> Quantity:
         """Mass that a body loses per metre rolled [kg/m]; of body 1, like `wear_rate`."""
-        return from_si(self._solution.value(self._solution.law()) * self._solution.patch_area, "ug/m")
+        return from_si(self._solution.mass_per_distance(), "ug/m")
 
+    @steady
     def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
         """Return the mass that a body loses over a distance rolled [kg]; a rail loses it along the whole distance.
 
@@ -604,24 +568,28 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        return from_si(worn.mass_lost(self._solution, over, body), "mg")
+        distance, mass = Unit("km").si(over, "over"), self._solution.mass_per_distance(body)
+        try:
+            return from_si(mass * distance, "mg")
+        except ValueError:
+            raise InputError(
+                f"over: an array of shape {distance.shape} does not broadcast to the operating points, of shape"
+                f" {mass.shape}; give one distance, or one for each point"
+            ) from None
 
+    @steady
     def mass_per_cycle(self, body: str) -> Quantity:
         """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
-        return from_si(worn.mass_per_cycle(self._solution, body), "ug")
+        solution = self._solution
+        return from_si(solution.mass_per_distance(body) * solution.circumference(body), "ug")
 
     def __repr__(self) -> str:
         return "".join([self._head, *(f"\n  {name:<20} {text}" for name, text in self._summary.items())])
 
     def _repr_html_(self) -> str:
-        models = ", ".join(model.name for model in (self.contact_model, *self.laws))
-        lines = [f"<b>{escape(self._head)}</b>", *map(escape, (models, self._solution.conditions.text()))]
-        rows = "".join(
-            f"<tr><td>{escape(long_name(name, self.laws))}</td><td><code>{escape(name)}</code></td>"
-            f"<td>{escape(text)}</td></tr>"
-            for name, text in self._summary.items()
-        )
-        return f"<div>{'<br>'.join(filter(None, lines))}<table>{rows}</table></div>"
+        of_prediction = load("wearlaw_output.notebook", "of_prediction", "a notebook")
+        html: str = of_prediction(self, self._solution, self._head, self._summary)
+        return html
 
     @property
     def _summary(self) -> dict[str, str]:
@@ -660,15 +628,6 @@ def solved(
         else:
             law.check_not_negative(totals.values[index], partial(solution.error, index))
     return Prediction(solution)
-
-
-def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Prediction:
-    """Return a prediction of zeros, with all names and units of the solved one, at no cost."""
-    none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
-    every = (none,) * len(laws)
-    slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
-    totals = Totals(every, every, none, none, none, patch_area=one, slip=slip, across=(None,) * len(laws))
-    return Prediction(Solution(problem, model, laws, totals))
 
 
 def _brief(quantity: Quantity) -> str:

@@ -13,7 +13,6 @@ from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
-from wearlaw.units.variables import name_of
 
 Label: TypeAlias = str | int
 """A label of an entry along one of a rig's own axes."""
@@ -25,11 +24,6 @@ Position: TypeAlias = int | slice | list[int]
 """Entries along an axis. An integer drops the axis; a slice or a list keeps it."""
 
 
-def in_words(labels: Mapping[str, Label]) -> str:
-    """Return the labels of a patch in words, such as "left, patch 1"; a number stands behind the name of its axis."""
-    return ", ".join(one if isinstance(one, str) else f"{name_of(axis)} {one}" for axis, one in labels.items())
-
-
 def axis_names(problem: Problem) -> list[str]:
     """Return names for the axes of a batch: point_0, point_1, ... for those of the conditions, then the rig's own."""
     of_conditions = len(problem.batch_shape) - len(problem.dims)
@@ -38,25 +32,13 @@ def axis_names(problem: Problem) -> list[str]:
 
 @dataclass(frozen=True)
 class Selection:
-    """Entries along the axes of a batch.
-
-    Attributes
-    ----------
-    positions : tuple
-        The positions along each axis of the batch.
-    """
+    """Entries along the axes of a batch: their positions along each axis."""
 
     positions: tuple[Position, ...]
 
     @classmethod
     def by_label(cls, problem: Problem, labels: Mapping[str, Any]) -> Selection:
-        """Return the selection of labels along the rig's own axes.
-
-        Raises
-        ------
-        InputError
-            If there is no such axis or label.
-        """
+        """Return the selection of labels along the rig's own axes."""
         found: dict[str, Position] = {}
         for name, given in labels.items():
             if name not in problem.dims:
@@ -75,13 +57,7 @@ class Selection:
 
     @classmethod
     def by_position(cls, problem: Problem, positions: Mapping[str, Any]) -> Selection:
-        """Return the selection of positions along any axes.
-
-        Raises
-        ------
-        InputError
-            If there is no such axis or position.
-        """
+        """Return the selection of positions along any axes."""
         sizes = dict(zip(axis_names(problem), problem.batch_shape, strict=True))
         for name in positions:
             if name not in sizes:
@@ -91,25 +67,13 @@ class Selection:
 
     @classmethod
     def by_index(cls, problem: Problem, index: Any) -> Selection:
-        """Return the selection of positions along the axes in their order, as in square brackets.
-
-        Raises
-        ------
-        InputError
-            If there are more positions than axes, or there is no such position.
-        """
+        """Return the selection of positions along the axes in their order, as in square brackets."""
         names = axis_names(problem)
         positions = index if isinstance(index, tuple) else (index,)
         if len(positions) > len(names):
             known = ", ".join(names) or "none: this is one operating point"
             raise InputError(f"{shown(positions)}: are more positions than there are axes. Axes: {known}")
         return cls.by_position(problem, dict(zip(names, positions, strict=False)))
-
-    def of_conditions(self, values: Array) -> Array:
-        """Return the chosen entries of a condition, with an axis for each of the conditions, of full length or 1."""
-        sizes_and_positions = zip(values.shape, self.positions, strict=False)
-        kept = (one if size > 1 else 0 if isinstance(one, int) else slice(None) for size, one in sizes_and_positions)
-        return Selection(tuple(kept)).of(values)
 
     def of(self, array: Array) -> Array:
         """Return the chosen entries of an array whose first axes are those of the batch."""

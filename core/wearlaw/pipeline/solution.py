@@ -11,34 +11,24 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.errors import InputError
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.reader import Solved
 from wearlaw.numerics import integrate
 from wearlaw.numerics.totals import Across, SlipTotals, Totals, each
 from wearlaw.pipeline.composition import law_among, warn_of_body
-from wearlaw.pipeline.datasets import Conditions
 from wearlaw.pipeline.ranges import elastic_limits
 from wearlaw.pipeline.selection import Selection
+from wearlaw.units.quantities import scalar_si
 
 
 class Solution:
     """The contacts of a problem, and the outcomes of laws in them.
 
-    Arrays have the shape of the batch. What the integration did not give is computed when it is first read.
-
-    Parameters
-    ----------
-    problem : Problem
-    model : ContactModel
-        The contact model, with its stages.
-    laws : tuple of Law
-    totals : Totals
-        The outcomes of the laws; of no laws, the forces alone.
-    given : mapping of str to object
-        The conditions, as given to the pipeline.
-    whole : tuple of Solution and Selection, optional
-        The solution that this one is a part of, and which part.
+    Arrays have the shape of the batch. What the integration did not give is computed when it is first read. The model
+    includes its stages, and the totals are the outcomes of the laws or, without laws, the forces alone. `given` are the
+    conditions of the pipeline; `whole` is the solution that this one is a part of, and which part.
     """
 
     def __init__(
@@ -66,15 +56,6 @@ class Solution:
             if isinstance(model, Solved):
                 model = model.model_copy(update={"contact": totals.contact})
         return Solution(chosen.of_problem(self.problem), model, self.laws, totals, whole=(self, chosen))
-
-    @cached_property
-    def conditions(self) -> Conditions:
-        """The conditions, along the axes of the operating points."""
-        if self.whole is not None:
-            whole, chosen = self.whole
-            return whole.conditions.chosen(chosen)
-        shape = self.problem.batch_shape
-        return Conditions(self.given or {}, shape[: len(shape) - len(self.problem.dims)])
 
     @cached_property
     def forces(self) -> CreepForces:
@@ -141,6 +122,22 @@ class Solution:
         if body is None or self._holds_for(index, body):
             return self.totals.values[index]
         return integrate.integrate_laws(self.model, (self._law_of(index, body),), self.problem).values[0]
+
+    def mass_per_distance(self, body: str | None = None) -> Array:
+        """Return the mass that a body loses per metre rolled [kg/m]."""
+        return self.value(self.law(body=body), body) * self.patch_area
+
+    def section_per_distance(self, body: str) -> Array:
+        """Return the area of a radial section that a body loses per distance rolled [m²/m]."""
+        density = scalar_si(self.problem.body(body).material.density, "kg/m^3")
+        return self.mass_per_distance(body) / (density * self.circumference(body))
+
+    def circumference(self, body: str) -> Array:
+        """Return the circumference of a body that turns [m]."""
+        radius = np.asarray(self.problem.body(body).rolling_radius)
+        if np.isinf(radius).any():
+            raise InputError(f"body: {body} is flat and makes no revolutions; name the other body")
+        return 2.0 * np.pi * radius
 
     @cached_property
     def _errors(self) -> dict[int, Array]:

@@ -198,16 +198,6 @@ def meaning_of(variable: str) -> str:
     return known.meaning if known else name_of(variable)
 
 
-def label(*variables: str, units: Mapping[str, str] = UNITS) -> str:
-    """Return the names of variables that share a unit, with the unit, as in "creepage [%]"."""
-    return f"{', '.join(name_of(variable) for variable in variables)} [{readable(units[variables[0]]) or '-'}]"
-
-
-def readable(unit: str) -> str:
-    """Return a unit for a reader, as in "µg/m/mm²"."""
-    return unit.replace("ug", "µg").replace("um", "µm").replace("^2", "²").replace("*", "·")
-
-
 def expected(*names: str) -> dict[str, Unit]:
     """Return the units and bounds of arguments, by name."""
     return {name: VARIABLES[name].expected for name in names}

@@ -196,27 +196,27 @@ def _map(shown: Map, number: str, ends: Ends) -> list[Json]:
     Colours have no logarithmic scale in plotly.js, so they stand for logarithms, and the bar has values at its ticks.
     """
     values = np.asarray(shown.values, dtype=float)
-    colours, (low, high) = values, ends
+    (low, high), value = ends, "z"
     bar: Json = {"title": {"text": literal(shown.label), "side": "right"}}
+    heat: Json = {"z": [_numbers(row) for row in values]}
     if shown.scale == "log":
-        colours = np.log10(values, where=values > 0.0, out=np.full(values.shape, np.nan))
+        logarithms = np.log10(values, where=values > 0.0, out=np.full(values.shape, np.nan))
+        heat, value = {"z": [_numbers(row) for row in logarithms], "customdata": heat["z"]}, "customdata"
         ticks = log_ticks(low, high) if low < high else []
         bar |= {"tickvals": _numbers(np.log10(ticks)), "ticktext": [f"{tick:g}" for tick in ticks]} if ticks else {}
         low, high = np.log10(ends)
     axes: Json = {"xaxis": f"x{number}", "yaxis": f"y{number}", "x": _numbers(shown.x), "y": _numbers(shown.y)}
-    heat: Json = {
+    heat |= {
         **axes,
         "type": "heatmap",
         "name": literal(shown.label),
         "legendgroup": literal(shown.label),
-        "z": [_numbers(row) for row in colours],
-        "customdata": [_numbers(row) for row in values],
         "zmin": float(low),
         "zmax": float(high),
         "colorscale": COLOURS.capitalize(),
         "colorbar": bar,
         "showscale": not number,
-        "hovertemplate": f"%{{x:.4~g}}, %{{y:.4~g}}: %{{customdata:.4~g}}<extra>{literal(shown.label)}</extra>",
+        "hovertemplate": f"%{{x:.4~g}}, %{{y:.4~g}}: %{{{value}:.4~g}}<extra>{literal(shown.label)}</extra>",
         "showlegend": False,
     }
     borders = [

@@ -15,8 +15,8 @@ from plotly.offline import get_plotlyjs
 
 from wearlaw.version import __version__
 from wearlaw_output.curves import FigureData
+from wearlaw_output.notes import grouped
 from wearlaw_output.styled import html_table
-from wearlaw_studies.notes import grouped
 from wearlaw_studies.report.interactive import plotly_figure
 from wearlaw_studies.report.tables import main_table, models, of_section, parameters, profiles, summaries
 from wearlaw_studies.results import axes_of
@@ -25,15 +25,7 @@ from wearlaw_studies.study import Study, used
 
 
 def report(study: Study, case_text: str) -> str:
-    """Return the page; the same study gives the same bytes.
-
-    Parameters
-    ----------
-    study : Study
-        The study to show.
-    case_text : str
-        The case, as TOML.
-    """
+    """Return the page of a study with its case as TOML; the same study gives the same bytes."""
     has_main = bool(axes_of(next(iter(study.sweeps.values()))))
     claims = [claim for section in study.sections for claim in section.claims]
     return _template().render(

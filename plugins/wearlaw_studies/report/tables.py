@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -21,28 +21,28 @@ from numpy.typing import NDArray
 from wearlaw.configuration import Configuration, field_docstrings
 from wearlaw.errors import InputError, WearlawWarning
 from wearlaw.models.law import WEAR, Law
-from wearlaw.models.model import Blame, Model, labelled
+from wearlaw.models.model import Blame, Model
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.quantities import Q, from_si
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import UNITS, name_of, readable
-from wearlaw.units.variables import label as label_of
+from wearlaw.units.variables import UNITS, name_of
 from wearlaw_fits.pairs import Pair
+from wearlaw_output.labels import label as label_of
+from wearlaw_output.labels import labelled, readable
 from wearlaw_output.styled import Marked
 from wearlaw_studies.figures import main_result
 from wearlaw_studies.results import (
     LIMITS,
     SHAKEDOWN,
-    Patch,
     along_main_axis,
     axes_of,
     beyond_limits,
     labelled_by,
     main_axis,
     outcomes_of,
-    patch_axes,
     patches_of,
     predicting,
+    together,
 )
 from wearlaw_studies.sections import Section
 from wearlaw_studies.study import Study, used
@@ -202,10 +202,11 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
     line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
     rows: dict[str, Any] = {}
     low, high = f"{outcome}_low", f"{outcome}_high"
-    parts = [_together(line)] if outcome == MASS else [_of_patch(line, patch) for patch in patches_of(line)]
-    for pair, (patch, here, beyond) in itertools.product(pairs, parts):
+    line = together(line, MASS) if outcome == MASS else line
+    for pair, patch in itertools.product(pairs, patches_of(line)):
+        here = line.sel(patch)
         one, label = here.sel(pair=pair), labelled_by(patch, pair)
-        marks = _marks(one.outside_range.values > 0.0, beyond, one.pair_contact_model.item())
+        marks = _marks(one.outside_range.values > 0.0, beyond_limits(here), one.pair_contact_model.item())
         values = {label: one[outcome]}
         if low in one and (one[high] > one[low]).any():
             values |= {f"{label}, low end": one[low], f"{label}, high end": one[high]}
@@ -215,22 +216,6 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
     what, along = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
     frame.insert(0, f"{what} by {along}", list(rows))
     return frame
-
-
-_Part: TypeAlias = tuple[Patch, xarray.Dataset, dict[str, xarray.DataArray]]
-"""A patch, the results there, and where it is beyond its limits."""
-
-
-def _of_patch(line: xarray.Dataset, patch: Patch) -> _Part:
-    return patch, line.sel(patch), beyond_limits(line.sel(patch))
-
-
-def _together(line: xarray.Dataset) -> _Part:
-    """Return the sum of the mass lost at all patches, marked if any patch is."""
-    axes = patch_axes(line)
-    mass = line[[MASS]].sum(axes, min_count=1, keep_attrs=True)
-    outside = line.outside_range.max(axes)
-    return {}, mass.assign(outside_range=outside), {name: one.any(axes) for name, one in beyond_limits(line).items()}
 
 
 def profiles(study: Study) -> list[NamedTable]:

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import assert_refused, files, wearlaw
+from tests.cases import assert_refused, files, wearlaw
 from tests.plugins.contact_files.files import FILES
 from wearlaw_contact_files._command import _print  # private: one reader, without the look-up
 
@@ -104,7 +104,7 @@ def test_mistakes_are_one_message_and_leave_no_folder(folder: Path) -> None:
     assert_refused(refused, "there is no file 'nowhere.mat'")
     assert "somewhere.py" not in refused.stderr
     assert_refused(wearlaw("wear", TREAD, "--law", "usfd", "--option", "densty=1"), "did you mean 'density'?")
-    assert_refused(wearlaw("wear", TREAD, "--law", "usf"), "no wear law is called 'usf'; did you mean 'usfd'?")
+    assert_refused(wearlaw("wear", TREAD, "--law", "usf"), "no law is called 'usf'; did you mean 'usfd'?")
     assert wearlaw("wear", TREAD).exit_code == 2
     Path("cut.mat").write_text(Path(TREAD).read_text()[:3000])
     assert_refused(wearlaw("wear", "cut.mat", "--law", "usfd"), "the file is cut short there")
@@ -127,6 +127,6 @@ def test_many_files_are_printed_in_blocks_as_wide_as_the_terminal(folder: Path) 
     table, _, _ = result.stdout.partition("Results in")
     lines = table.splitlines()
     assert max(map(len, lines)) <= 100, "the width of the tests' terminal"
-    assert [line.split() for line in lines if "flange" in line] == [names[:4], names[4:8], names[8:12]]
-    assert lines[-1] == "... and 3 more contacts in wear.csv"
+    assert [line.split()[:4] for line in lines if "flange" in line] == [names[:4], names[4:8], names[8:12]]
+    assert "... and 3 more contacts in wear.csv" in lines
     assert len(pd.read_csv("many/wear.csv")) == 15

@@ -23,8 +23,8 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 import wearlaw as wl
 from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, FLAGS, PATIENCE_S
-from wearlaw_explore._models import Subject  # private: a rig that is not installed
-from wearlaw_explore._page import Page, fields, named  # private: the page without a browser
+from wearlaw_explore._page import Page, named, patch_figures  # private: the page without a browser
+from wearlaw_explore._subject import Subject  # private: a rig that is not installed
 from wearlaw_output.notes import Notes  # private: what the page shows as notes
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning")  # the page has them as notes
@@ -89,6 +89,10 @@ def wait(page: webdriver.Chrome, until: Any) -> None:
     WebDriverWait(page, PATIENCE_S, poll_frequency=0.05).until(lambda _: until())
 
 
+def drawn(page: Page) -> dict[str, Any]:
+    return {name: pane.object for name, pane in page.panes.items() if pane in page.figures}
+
+
 def predicted(model: str, *laws: str, rig: str = "wheel_rail", **given: Any) -> tuple[dict[str, wl.Prediction], Notes]:
     notes = Notes()
     subject = named(rig)
@@ -96,14 +100,17 @@ def predicted(model: str, *laws: str, rig: str = "wheel_rail", **given: Any) -> 
 
 
 @pytest.mark.parametrize("model", ["fastsim", "strip_theory"])
-def test_cells_carry_the_wear_of_their_patch(model: str) -> None:
+def test_a_map_carries_the_wear_of_its_patch(model: str) -> None:
     found, _ = predicted(model, "usfd")
-    shown = fields(found.values())
-    outlines, wear = shown["wear_rate"]
-    x, y = np.moveaxis(outlines, -1, 0)
-    areas = 0.5 * np.abs((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum(axis=1))
-    assert (areas * wear).sum() / areas.sum() == pytest.approx(found["usfd"].wear_rate.magnitude, rel=0.01)
-    assert shown["pressure"][1].max() == pytest.approx(found["usfd"].max_pressure.m_as("MPa"), rel=0.02)
+    prediction = found["usfd"]
+    pressure, _, wear = (figure.panels[0].map for figure in patch_figures(found))
+    assert wear is not None
+    inside = np.isfinite(wear.values)
+    pixel = (wear.x[1] - wear.x[0]) * (wear.y[1] - wear.y[0])
+    assert pixel * inside.sum() == pytest.approx(prediction.patch_area.m_as("mm^2"), rel=0.01)
+    assert wear.values[inside].mean() == pytest.approx(prediction.wear_rate.magnitude, rel=0.03)
+    assert pressure is not None
+    assert np.nanmax(pressure.values) == pytest.approx(prediction.max_pressure.m_as("MPa"), rel=0.02)
 
 
 def test_an_ellipse_answers_within_a_fifth_of_a_second() -> None:
@@ -117,7 +124,7 @@ def test_an_ellipse_answers_within_a_fifth_of_a_second() -> None:
 
     assert min(seconds(value) for value in (81.0, 82.0, 83.0)) < 0.2
     assert "normal_force='83 kN'" in page.python.object
-    assert set(page.curves) == {"usfd", "kth"}
+    assert {trace["name"] for trace in drawn(page)["curve_0"]["data"]} == {"usfd", "kth", "now"}
 
 
 def test_a_slow_contact_has_no_curve_and_waits_for_the_release_of_a_slider(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -125,26 +132,27 @@ def test_a_slow_contact_has_no_curve_and_waits_for_the_release_of_a_slider(monke
     predict = subject.predict
 
     def late(*arguments: Any) -> dict[str, wl.Prediction]:
-        sleep(0.4)  # elements on half-spaces take longer
+        sleep(0.6)  # elements on half-spaces take longer
         return predict(*arguments)
 
     monkeypatch.setattr(subject, "predict", late)
     page = Page(subject, {})
-    assert page.curves == {}
+    assert "curve_0" not in drawn(page)
     page.sliders["normal_force"].value = 81.0
     assert "normal_force='80 kN'" in page.python.object
     page._update()
     assert "normal_force='81 kN'" in page.python.object
 
 
-def test_a_wheelset_shows_its_profiles_their_contacts_and_the_wear_across() -> None:
+def test_a_wheelset_shows_its_profiles_their_contacts_and_the_wear_along_them() -> None:
     page = Page(named("wheelset"), {})
-    assert [*page.patch.options] == ["right 1", "left 1"]  # that of most wear first
-    touching = page.profiles.both.marks.data_source.data
-    assert len(touching["x"]) == 2
-    assert touching["y"][0] - touching["y"][1] == pytest.approx(15.0, abs=1.0)
-    across = page.profiles.wear.lines["usfd"].data_source.data
-    assert across["x"][np.argmax(across["y"])] == pytest.approx(touching["x"][0], abs=2.0)
+    assert page.model.value == "strip_theory"
+    assert [*page.patch.options] == ["left, patch 1", "right, patch 1"]
+    *_, lines = drawn(page)["contact_state_1"]["data"]
+    worn = drawn(page)["wear_state_1"]["data"][0]
+    at = wl.rig("wheelset", **wl.rigs()["wheelset"].example_fields).profiles_in_track().wheel
+    y = np.interp(1e-3 * worn["x"][np.nanargmax(np.array(worn["y"], float))], at[0], 1e3 * at[1])
+    assert y == pytest.approx(lines["x"][0], abs=2.0)  # most wear where the right wheel touches
 
 
 @pytest.mark.parametrize(
@@ -188,7 +196,7 @@ def test_a_rig_whose_creepage_no_condition_sets_has_no_curve() -> None:
         creepage: ClassVar[str | None] = None
 
     page = Page(Subject(Speeds(**dict(wl.TwinDisc.suros())), "rig"), {})
-    assert page.curves == {}
+    assert "curve_0" not in drawn(page)
     assert "wear rate by usfd" in page.numbers.object
 
 
@@ -203,7 +211,7 @@ def opened(browser: webdriver.Chrome, address: str, width: int) -> webdriver.Chr
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 640}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     browser.get(address)
-    wait(browser, lambda: "wear rate by usfd" in text(browser) and deep(browser, "canvas"))
+    wait(browser, lambda: "wear rate by usfd" in text(browser) and deep(browser, ".main-svg"))
     return browser
 
 
@@ -235,6 +243,6 @@ def test_arrow_keys_move_a_slider_and_the_numbers_follow(browser: webdriver.Chro
 def test_nothing_is_wider_than_a_phone(browser: webdriver.Chrome, address: str) -> None:
     page = opened(browser, address, 390)
     assert page.execute_script("return document.documentElement.scrollWidth") <= 390
-    wide = [one.rect for one in deep(page, "canvas, .noUi-target, select, pre, table")]
+    wide = [one.rect for one in deep(page, ".main-svg, .noUi-target, select, pre, table")]
     assert wide
     assert all(one["x"] >= 0 and one["x"] + one["width"] <= 390 for one in wide)

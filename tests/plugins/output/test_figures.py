@@ -182,7 +182,7 @@ def test_maps_share_a_scale_of_colours_and_draw_borders_of_regions(scale: Litera
     heats = [trace for trace in shown["data"] if trace["type"] == "heatmap"]
     ends = [0.0, np.log10(700.0)] if scale == "log" else [1.0, 700.0]
     assert all([heat["zmin"], heat["zmax"]] == pytest.approx(ends, rel=1e-15) for heat in heats)
-    assert heats[0]["customdata"] == [[1.0, 10.0, 100.0], [2.0, 20.0, None]]
+    assert heats[0]["customdata" if scale == "log" else "z"] == [[1.0, 10.0, 100.0], [2.0, 20.0, None]]
     assert [heat["showscale"] for heat in heats] == [True, False]
     assert [trace["name"] for trace in shown["data"] if trace["showlegend"]] == ["beyond"]
 

@@ -11,8 +11,8 @@ import wearlaw as wl
 import wearlaw_sheffield
 from tests.plugins.sheffield.paper import HEAT, SPEED, mean_speed
 from wearlaw import loader  # private: what is installed, changed for a test
-from wearlaw.models.model import labels  # private: how laws are labelled in figures and tables
 from wearlaw_fits.read_tests import text_of_tests  # private: one part of a fit, without the whole
+from wearlaw_output.labels import labels  # private: how laws are labelled in figures and tables
 from wearlaw_studies.case import Case, case_text, load_case  # private: a case without its files
 from wearlaw_studies.study import run  # private: a case run without its files
 

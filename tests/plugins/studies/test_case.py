@@ -11,9 +11,9 @@ import pytest
 import tomli_w
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import OWN_TESTS, STEEL, case, changed, load, table
-from wearlaw.models.model import labels  # private: the names of models in results, without running them
+from tests import cases
+from tests.cases import OWN_TESTS, STEEL, case, changed, load, table
+from wearlaw_output.labels import labels  # private: the names of models in results, without running them
 from wearlaw_studies.case import written  # private: a case without its files
 
 
@@ -118,6 +118,7 @@ ACCEPTED = {
 def test_a_case_written_with_all_its_defaults_reads_back_as_the_same_case(
     tmp_path: Path, validator: Any, content: cases.Table
 ) -> None:
+    validator.validate(content)
     read = load(tmp_path, content)
     text = rewritten(read)
     (tmp_path / "again.toml").write_text(text, encoding="utf-8")
@@ -127,11 +128,6 @@ def test_a_case_written_with_all_its_defaults_reads_back_as_the_same_case(
     assert labels(again.wear_laws) == labels(read.wear_laws)
     assert rewritten(again) == text
     validator.validate(tomllib.loads(text))
-
-
-@pytest.mark.parametrize("content", ACCEPTED.values(), ids=ACCEPTED)
-def test_the_schema_accepts_what_the_loader_accepts(validator: Any, content: cases.Table) -> None:
-    validator.validate(content)
 
 
 def test_the_shipped_case_keeps_the_schema_and_reads_back_the_same(tmp_path: Path, validator: Any) -> None:
@@ -174,15 +170,8 @@ def test_the_schema_accepts_each_installed_model_by_name_and_as_a_table(validato
         assert not validator.is_valid(table(**{kind: [{"model": name, **given, "nonsense": 1}]}))
 
 
-@pytest.mark.parametrize(
-    ("needed", "message"),
-    [
-        ({"wearlaw": ">=99"}, "plugins.wearlaw: version .* is installed, but >=99 is needed"),
-        ({"wearlaw-zobory": ">=1"}, "plugins.wearlaw-zobory: is not installed; install it with: pip install "),
-        ({"wearlaw": "new"}, "plugins.wearlaw: 'new' is not a version range; write one such as '>=1.2,<2'"),
-    ],
-)
-def test_a_case_whose_plugins_are_missing_is_refused_for_that_alone(needed: Any, message: str) -> None:
-    with pytest.raises(wl.ConfigurationError, match=message) as caught:
-        case(plugins=needed, wear_laws=["zobory"])
-    assert len(caught.value.problems) == 1
+@pytest.mark.parametrize(("name", "versions"), [("wearlaw", ">=99"), ("wearlaw-zobory", ">=1"), ("wearlaw", "new")])
+def test_a_case_whose_plugins_are_missing_is_refused_for_that_alone(name: str, versions: str) -> None:
+    with pytest.raises(wl.ConfigurationError) as caught:
+        case(plugins={name: versions}, wear_laws=["zobory"])
+    assert [problem.path for problem in caught.value.problems] == [("plugins", name)]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import OWN_TESTS, changed, load, table
+from tests import cases
+from tests.cases import OWN_TESTS, changed, load, table
 
 WRONG: list[tuple[str, Any, str]] = [
     ("title", None, "title"),
@@ -113,32 +114,17 @@ def test_the_first_condition_that_the_rig_refuses_is_named_in_every_sweep_profil
 def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Path) -> None:
     path = tmp_path / "own.csv"
     content = table(measured={"label": "m", "tests": "own.csv"})
-    with pytest.raises(
-        wl.CaseError, match=r"is wrong in:\n  measured: there is no file '.*own.csv'. Shipped tests: lew"
-    ):
-        load(tmp_path, content)
+    assert places(content, tmp_path) == ["measured"]
     path.write_text(OWN_TESTS.replace("7.4,NA", "-1,NA"), encoding="utf-8")
-    with pytest.raises(wl.CaseError) as refusal:
+    with pytest.raises(wl.CaseError, match="line 3, column 'normal_force"):
         load(tmp_path, content)
-    message = str(refusal.value)
-    assert f"  measured: the tests '{path}' are wrong in:" in message
-    assert "line 3, column 'normal_force [kN]'" in message
 
 
 @pytest.mark.parametrize(
-    ("content", "message"),
-    [
-        (b'title = "no end', "is not valid TOML: "),
-        (b"\xff\xfe\x00", "cannot read the case file .*: it is not text in UTF-8; save it in UTF-8"),
-        (b'title = "\xb5"', "cannot read the case file .*: it is not text in UTF-8; save it in UTF-8"),
-        (b"title,rig\n1,2\n", "is not valid TOML: "),
-        (b"", "is wrong in:\n  title: is missing"),
-        (b"#" * (2**20 + 1), "cannot read the case file .*: it has more than 1 MiB, the most that is read; is it the"),
-    ],
+    "content", [b'title = "no end', b"\xff\xfe\x00", b'title = "\xb5"', b"title,rig\n1,2\n", b"", b"#" * (2**20 + 1)]
 )
-def test_a_file_that_is_no_case_is_refused(tmp_path: Path, content: bytes, message: str) -> None:
+def test_a_file_that_is_no_case_is_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "wrong.toml"
     path.write_bytes(content)
-    with pytest.raises(wl.CaseError, match=message) as refusal:
+    with pytest.raises(wl.CaseError, match=re.escape(str(path))):
         wl.load_case(str(path))
-    assert str(path) in str(refusal.value)

@@ -87,58 +87,44 @@ def test_several_axes_make_a_grid_in_the_order_of_the_conditions_whatever_the_or
             )  # rounding of 0.2 + 0.1 i
 
 
-SHAPE = "must be a value, a list of values, or a table with from, to and points; got "
-CREEPAGE_FIX = "give creepage in percent or as a ratio"
+AXIS = {"from": "1 %", "to": "2 %", "points": 3}
 
 
 @pytest.mark.parametrize(
-    ("condition", "value", "message"),
+    ("condition", "value", "named"),
     [
-        ("friction_coefficient", [], "Grid: friction_coefficient: is empty; give at least one value"),
-        ("friction_coefficient", float("nan"), "Grid: friction_coefficient: must be finite, got nan"),
-        ("friction_coefficient", "0.4", "friction_coefficient: '0.4' is not a number with a unit"),
-        ("creepage", ["1 %", 2], "creepage: got the bare number 2.0, which has no unit, beside '1 %'; give all"),
-        ("creepage", ["1 %", "2"], "creepage: '2' is not a number with a unit; write '2 %'"),
-        ("creepage", ["1 %", "2 mm"], "creepage: '1 %' and '2 mm' are not of one dimension"),
-        ("friction_coefficient", None, "Grid: friction_coefficient: is missing"),
-        ("creepage", None, "Grid: creepage: is missing"),
-        ("creepage", 1, f"creepage: got the bare number 1.0, which has no unit; {CREEPAGE_FIX}"),
-        ("creepage", "1 mm", f"creepage: got 1.000 mm, which is not a ratio; {CREEPAGE_FIX}"),
-        ("creepage", "101 %", "creepage: must not exceed 1 in magnitude, got 101.0 %"),
-        ("max_pressure", "1 kN", "max_pressure: got 1.000 kN, which does not have the dimension of 'MPa'"),
-        ("max_pressure", None, "give exactly one of normal_force, normal_force_per_width, max_pressure; got none"),
-        ("normal_force", "1 kN", "give exactly one of normal_force, normal_force_per_width, max_pressure; got norm"),
-        ("max_presure", "1 GPa", "Grid: max_presure: unknown condition; did you mean 'max_pressure'?"),
-        ("max_pressure", ["1 MPa", "1e200 MPa"], "which no contact has; check the units of the load"),
+        ("friction_coefficient", [], "friction_coefficient"),
+        ("friction_coefficient", float("nan"), "friction_coefficient"),
+        ("friction_coefficient", "0.4", "friction_coefficient"),
+        ("friction_coefficient", None, "friction_coefficient"),
+        ("creepage", ["1 %", 2], "creepage"),
+        ("creepage", ["1 %", "2"], "creepage"),
+        ("creepage", ["1 %", "2 mm"], "creepage"),
+        ("creepage", 1, "creepage"),
+        ("creepage", "1 mm", "creepage"),
+        ("creepage", "101 %", "creepage"),
+        ("max_pressure", "1 kN", "max_pressure"),
+        ("max_pressure", None, ""),
+        ("normal_force", "1 kN", ""),
+        ("max_presure", "1 GPa", "max_presure"),
+        ("max_pressure", ["1 MPa", "1e200 MPa"], ""),
+        ("creepage", {**AXIS, "from": "0 %", "spacing": "log"}, "creepage"),
+        ("creepage", {**AXIS, "spacing": "lag"}, "creepage.spacing"),
+        ("creepage", {**AXIS, "points": 1}, "creepage.points"),
+        ("creepage", {**AXIS, "points": MOST_POINTS + 1}, "creepage.points"),
+        ("creepage", {"to": "2 %", "points": 3}, "creepage.from"),
+        ("creepage", {**AXIS, "to": "12"}, "creepage"),
+        ("creepage", {**AXIS, "from": "little"}, "creepage"),
+        ("creepage", {**AXIS, "to": float("nan")}, "creepage.to"),
+        ("creepage", {**AXIS, "to": 2}, "creepage"),
+        ("creepage", {**AXIS, "to": "200 %"}, "creepage"),
+        ("creepage", {**AXIS, "step": 2}, "creepage.step"),
     ],
 )
-def test_a_wrong_condition_is_refused_by_name(condition: str, value: Any, message: str) -> None:
+def test_a_wrong_condition_is_refused_by_name(condition: str, value: Any, named: str) -> None:
     with pytest.raises(wl.ConfigurationError) as refusal:
         grid(**{condition: value})
-    assert message in str(refusal.value)
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"from": "0 %", "spacing": "log"}, "creepage: a log axis cannot touch or cross zero"),
-        ({"spacing": "lag"}, "creepage.spacing: input should be 'log' or 'linear', got 'lag'"),
-        ({"points": 1}, "creepage.points: input should be greater than or equal to 2, got 1"),
-        ({"points": MOST_POINTS + 1}, f"creepage.points: input should be less than or equal to {MOST_POINTS}"),
-        ({"from": None}, "creepage.from: is missing"),
-        ({"to": "12"}, "creepage: to: '12' is not a number with a unit; write '12 %'"),
-        ({"from": "little"}, "creepage: from: 'little' is not a number with a unit"),
-        ({"to": float("nan")}, "creepage.to: must be finite, got nan"),
-        ({"to": 2}, "creepage: got the bare number 2.0, which has no unit"),
-        ({"to": "200 %"}, "creepage: must not exceed 1 in magnitude, got 200.0 %"),
-        ({"step": 2}, "creepage.step: unknown field"),
-    ],
-)
-def test_a_wrong_axis_is_refused_with_its_path(changes: dict[str, Any], message: str) -> None:
-    axis = {"from": "1 %", "to": "2 %", "points": 3, **changes}
-    with pytest.raises(wl.ConfigurationError) as refusal:
-        grid(creepage={name: value for name, value in axis.items() if value is not None})
-    assert f"Grid: {message}" in str(refusal.value)
+    assert [".".join(problem.path) for problem in refusal.value.problems] == [named]
 
 
 def test_a_grid_that_is_larger_than_any_memory_is_refused() -> None:

@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import case
+from tests import cases
+from tests.cases import case
 from tests.plugins.studies.panels import by_label, by_name
 from tests.plugins.studies.report_data import page_of
 from wearlaw import Q
@@ -59,16 +59,6 @@ def test_a_prediction_has_the_limits_of_its_traction(model: str) -> None:
     assert repr(alone) == "1177 MPa"  # k/μ
 
 
-def test_the_limits_are_those_of_the_body_that_yields_first() -> None:
-    weak = wl.steel(shear_yield_stress="300 MPa")
-    rig = wl.TwinDisc.suros(disc_2=wl.Disc(diameter="47 mm", material=weak))
-    conditions: dict[str, Any] = {"max_pressure": "1500 MPa", "creepage": "5 %", "friction_coefficient": 0.46}
-    found = (rig | wl.contact_model("exact"))(**conditions)
-    of_weak = (wl.TwinDisc.suros(material=weak) | wl.contact_model("exact"))(**conditions)
-    assert found.shakedown_limit == of_weak.shakedown_limit
-    assert found.first_yield == of_weak.first_yield
-
-
 def test_without_a_yield_stress_there_is_no_limit() -> None:
     soft = wl.steel(shear_yield_stress=None)
     r = (wl.TwinDisc.suros(material=soft) | wl.contact_model("exact"))(
@@ -76,20 +66,6 @@ def test_without_a_yield_stress_there_is_no_limit() -> None:
     )
     with pytest.raises(wl.CompositionError, match="no body's material has a shear_yield_stress"):
         r.first_yield  # noqa: B018
-
-
-def test_the_limits_of_an_ellipse_depend_on_its_axes() -> None:
-    rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
-    r = (rig | wl.contact_model("polach"))(
-        normal_force=Q([50, 200], "kN"), longitudinal_creepage=Q(0.3, "%"), friction_coefficient=0.3
-    )
-    expected = wl.elastic_limit.shakedown_limit(
-        541.3e6,
-        r.traction_coefficient.magnitude,
-        0.3,
-        axis_ratio=(r.semi_axis_a / r.semi_axis_b).to("").magnitude,
-    )
-    np.testing.assert_allclose(r.shakedown_limit.to("Pa").magnitude, expected, rtol=1e-12)
 
 
 def test_points_outside_are_those_that_the_warning_counts() -> None:

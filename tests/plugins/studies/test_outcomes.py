@@ -13,8 +13,8 @@ import xarray as xr
 from pydantic import Field
 
 import wearlaw as wl
+from tests.cases import POINT, InstallModel, case, load, table, wearlaw
 from tests.core import outcome_laws
-from tests.core.cases import POINT, InstallModel, case, load, table, wearlaw
 from tests.core.outcome_laws import Heat, Volume
 from tests.core.stages import EXACT, KTH, RIG, predicted, silently
 
@@ -56,12 +56,6 @@ def ran(**changes: Any) -> wl.Study:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.WearlawWarning)
         return wl.run(case(**changes))
-
-
-def refused(path: Path, **changes: Any) -> str:
-    with pytest.raises(wl.CaseError) as refusal:
-        load(path, table(**changes))
-    return str(refusal.value)
 
 
 # --- Stages ----------------------------------------------------------------------------------------------------
@@ -175,22 +169,21 @@ def test_a_figure_can_name_outcomes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "named"),
     [
-        ({"wear_laws": []}, "wear_laws: is missing or empty; give at least one, as in wear_laws"),
-        ({"laws": ["damag"]}, "laws.0: no law is called 'damag'; did you mean 'damage'? Installed: damage, "),
-        ({"laws": ["usfd"]}, "laws.0: usfd predicts the wear rate; list it under wear_laws"),
-        ({"wear_laws": ["kth", "damage"]}, "wear_laws.1: damage predicts rcf_damage, not wear; list it under laws"),
-        ({"wear_laws": [{"model": "heat"}]}, "wear_laws.0: heat predicts heat_flux, not wear; list it under laws"),
-        ({"laws": ["damage", "damage"]}, "the model damage is listed twice; leave one out, or give it other options"),
-        (
-            {"wear_laws": ["usfd", {"model": "kth", "body": "disk_2"}]},
-            "wear_laws.1.body: the rig has no body 'disk_2'; did you mean 'disc_2'? Its bodies are disc_1 and disc_2",
-        ),
+        ({"wear_laws": []}, "wear_laws"),
+        ({"laws": ["damag"]}, "laws.0"),
+        ({"laws": ["usfd"]}, "laws.0"),
+        ({"wear_laws": ["kth", "damage"]}, "wear_laws.1"),
+        ({"wear_laws": [{"model": "heat"}]}, "wear_laws.0"),
+        ({"laws": ["damage", "damage"]}, ""),
+        ({"wear_laws": ["usfd", {"model": "kth", "body": "disk_2"}]}, "wear_laws.1.body"),
     ],
-)  # fmt: skip
-def test_a_wrong_law_is_named_by_its_path(tmp_path: Path, changes: Any, said: str) -> None:
-    assert said in refused(tmp_path, **changes)
+)
+def test_a_wrong_law_is_named_by_its_path(changes: Any, named: str) -> None:
+    with pytest.raises(wl.ConfigurationError) as refusal:
+        case(**changes)
+    assert [".".join(problem.path) for problem in refusal.value.problems] == [named]
 
 
 # --- Laws for one body -----------------------------------------------------------------------------------------
@@ -246,9 +239,4 @@ def test_a_run_writes_and_prints_each_outcome(folder: Path) -> None:
     assert "law damage" in result.stdout
     frame = pd.read_csv(folder / "out" / "results.csv")
     assert set(frame.law.dropna()) == {"damage", "heat"}
-    with xr.open_datatree(folder / "out" / "results.nc", engine="h5netcdf") as tree:
-        assert tree["sweeps/creepage"].heat_flux.attrs["units"] == "W/mm^2"
-    again = wearlaw("run", "out/case.toml", "-o", "again")
-    assert again.exit_code == 0, again.output
-    assert (folder / "again" / "results.nc").read_bytes() == (folder / "out" / "results.nc").read_bytes()
     assert wl.load_case("out/case.toml") == wl.load_case("my.toml")

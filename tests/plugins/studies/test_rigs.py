@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
-import tomllib
 import warnings
 from pathlib import Path
 from typing import Any
@@ -13,11 +11,10 @@ import jsonschema  # type: ignore[import-untyped]
 import numpy as np
 import pandas as pd
 import pytest
-import xarray
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import Table, changed, load, wearlaw
+from tests import cases
+from tests.cases import Table, changed, load, wearlaw
 from tests.core.distributions import Install
 from tests.plugins.studies.panels import by_label, by_name
 from tests.strategies import EPS
@@ -216,22 +213,6 @@ def test_its_uncertainty_is_that_of_direct_samples() -> None:
         assert row["median [µg/m/mm²]"] == pytest.approx(direct.median.m_as("ug/m/mm^2"), rel=1e-12)
 
 
-@pytest.mark.usefixtures("folder", "blank_figures")
-def test_the_shipped_study_of_a_wheel_runs_from_the_command_line(validator: Any) -> None:
-    validator.validate(tomllib.loads(wearlaw("case", "wheel_on_rail").stdout))
-    ran = wearlaw("run", "wheel_on_rail", "-o", "out")
-    assert ran.exit_code == 0, ran.output
-    page = Path("out/report.html").read_text(encoding="utf-8")
-    for text in ("Wear across the patch: curve", "rail: greatest depth", "in 1000 km"):
-        assert text in page
-    rows = pd.read_csv("out/results.csv")
-    assert set(rows.contact_model) == {"strip_theory"}
-    with xarray.open_dataset("out/results.nc", group="profiles/curve", engine="h5netcdf") as profile:
-        assert float(profile.wheel_depth.max()) > 0.0
-    shipped, again = wl.load_case("wheel_on_rail"), wl.load_case("out/case.toml")
-    assert again == shipped
-
-
 # Rigs of plugins
 
 
@@ -274,39 +255,25 @@ def test_the_schema_knows_the_rig_of_a_plugin() -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "value", "message"),
+    ("path", "value", "named"),
     [
-        (
-            "rig",
-            {"width": "8 mm"},
-            'rig: needs a type, such as type = "roller". Installed: roller, twin_disc, wheel_rail',
-        ),
-        ("rig", {"preset": "narrow", "widht": "8 mm"}, "rig.widht: unknown field; did you mean 'width'?"),
-        ("rig", {"preset": "narrow", "width": 8}, "rig.width: got the bare number 8"),
-        ("rig", {"preset": "narow"}, "rig.preset: no preset is called 'narow'; did you mean 'narrow'?"),
-        ("sweeps.load.mass", "20 N", "sweeps.load.mass: got 20.00 N, which does not have the dimension of 'kg'"),
-        ("sweeps.load.mass.to", "1 m", "sweeps.load.mass: '200 kg' and '1 m' are not of one dimension"),
-        ("sweeps.load.mas", "20 kg", "sweeps.load.mas: unknown condition; did you mean 'mass'?"),
-        ("sweeps.load.creepage", None, "sweeps.load.creepage: is missing"),
-        ("sweeps.oil.lubricant", "water", "sweeps.oil.lubricant: must be none or oil, got water"),
-        ("sweeps.oil.lubricant", ["none", "oil"], "sweeps.oil.lubricant: 'none' is not a number with a unit"),
+        ("rig", {"width": "8 mm"}, "rig"),
+        ("rig", {"preset": "narrow", "widht": "8 mm"}, "rig.widht"),
+        ("rig", {"preset": "narrow", "width": 8}, "rig.width"),
+        ("rig", {"preset": "narow"}, "rig.preset"),
+        ("sweeps.load.mass", "20 N", "sweeps.load.mass"),
+        ("sweeps.load.mass.to", "1 m", "sweeps.load.mass"),
+        ("sweeps.load.mas", "20 kg", "sweeps.load.mas"),
+        ("sweeps.load.creepage", None, "sweeps.load.creepage"),
+        ("sweeps.oil.lubricant", "water", "sweeps.oil.lubricant"),
+        ("sweeps.oil.lubricant", ["none", "oil"], "sweeps.oil.lubricant"),
     ],
 )
 @pytest.mark.usefixtures("roller")
-def test_what_is_wrong_with_the_case_of_a_plugin_is_named_by_its_path(path: str, value: Any, message: str) -> None:
-    with pytest.raises(wl.ConfigurationError, match=re.escape(message)):
+def test_what_is_wrong_with_the_case_of_a_plugin_is_named_by_its_path(path: str, value: Any, named: str) -> None:
+    with pytest.raises(wl.ConfigurationError) as refusal:
         wl.Case(**changed(path, value, ON_ROLLER))
-
-
-@pytest.mark.usefixtures("roller", "folder", "blank_figures")
-def test_a_case_of_a_plugin_runs_again_from_what_it_wrote() -> None:
-    cases.write(Path("c.toml"), ON_ROLLER)
-    ran = wearlaw("run", "c.toml", "-o", "out")
-    assert ran.exit_code == 0, ran.output
-    assert "rollers 1.0: rig roller" in ran.stdout
-    assert wearlaw("run", "out/case.toml", "-o", "again").exit_code == 0
-    assert Path("out/results.csv").read_bytes() == Path("again/results.csv").read_bytes()
-    assert "roller" in Path("out/report.html").read_text(encoding="utf-8")
+    assert [".".join(problem.path) for problem in refusal.value.problems] == [named]
 
 
 BROKEN = """

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import InstallModel, case
+from tests import cases
+from tests.cases import InstallModel, case
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_studies.notes import grouped  # private: what `wearlaw run` prints of notes
+from wearlaw_output.notes import grouped  # private: what commands print of notes
 
 LOADS = ["1000 MPa", "1500 MPa"]
 FRICTIONS = [0.3, 0.4, 0.5]
@@ -198,28 +198,16 @@ def test_what_is_left_out_and_every_warning_is_noted_once(study: wl.Study) -> No
     assert len(study.notes) == len(set(study.notes)) == 2 + len(beyond)
 
 
-def test_printed_notes_name_all_parts_of_a_case_that_share_a_remark_and_each_source_once() -> None:
-    pressure, speed = (f"wear law 'usfd' has a known range of mean {name} from 1 to 2" for name in ("pressure", "slip"))
-    source, other = " (Lewis (2004), Table 1)", " (Jendel (2002))"
-    law = "wear law 'kth' has a known range of mean slip from 1 to 2"
-    said = grouped([
-        f"sweep 'a': {pressure}{source}; 1 of 3 points lies outside, as far as 4",
-        f"sweep 'a': {speed}{source}; 2 of 3 points lie outside, as far as 5",
-        f"profile 'p': {pressure}{source}; 1 of 1 points lies outside, as far as 6",
-        "profile 'p': check it",
-        "profile 'q': check it",
-        "section 's': check it",
-        f"profile 'p': {law}{other}; 1 of 1 points lies outside, as far as 7",
-        "usfd on exact: was fitted for patch means",
-    ])  # fmt: skip
-    assert said == [
-        "usfd on exact: was fitted for patch means",
-        f"{pressure}{source}; sweep 'a': 1 of 3 points lies outside, as far as 4; profile 'p': 1 of 1 points lies"
-        " outside, as far as 6",
-        f"sweep 'a': {speed} (source above); 2 of 3 points lie outside, as far as 5",
-        "profile 'p', profile 'q' and section 's': check it",
-        f"profile 'p': {law}{other}; 1 of 1 points lies outside, as far as 7",
+def test_printed_notes_name_all_subjects_of_a_remark_once() -> None:
+    notes = [
+        "a: check it",
+        "results.csv is left out",
+        "b: law: too low; 1 of 3",
+        "c: check it",
+        "d: law: too low; 2 of 3",
     ]
+    said = ["a, c: check it", "results.csv is left out", "law: too low; b: 1 of 3; d: 2 of 3"]
+    assert grouped(notes) == said
 
 
 def test_a_profile_that_no_model_resolves_is_left_out_and_noted() -> None:
@@ -256,3 +244,11 @@ def test_a_case_of_which_no_pair_can_be_is_refused_and_says_why() -> None:
     with pytest.raises(wl.InputError, match="no contact model can be used with any of the wear laws") as no:
         wl.run(impossible)
     assert "brr on exact is left out" in str(no.value)
+
+
+def test_a_study_notes_materials_that_the_contact_model_takes_for_alike() -> None:
+    polymer = {"youngs_modulus": "3 GPa", "poisson_ratio": 0.4, "density": "1200 kg/m^3"}
+    rig = {"preset": "suros", "disc_2": {"diameter": "47 mm", "material": polymer}}
+    point = {**cases.POINT, "max_pressure": "50 MPa"}
+    made = case(rig=rig, contact_models=["exact"], wear_laws=["usfd", "kth"], sweeps={"one": point}, profiles={})
+    assert sum("unlike materials" in note for note in wl.run(made).notes) == 1

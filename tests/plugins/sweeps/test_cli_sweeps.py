@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
+from tests.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
 from tests.plugins.sweeps.sweeps import contents, interrupted_after
 from wearlaw_sweeps import room  # private: the memory of the machine
 
@@ -176,5 +176,5 @@ def test_a_full_disk_is_one_clear_error_and_leaves_nothing_of_the_uncertainty(
 ) -> None:
     monkeypatch.setattr("wearlaw_output.files.save_figure", full_disk)  # private: after tables were written
     result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "64", "-o", "out")
-    assert_refused(result, "output: cannot write the results: No space left on device")
+    assert_refused(result, "No space left on device; choose another folder with -o")
     assert [path.name for path in folder.iterdir()] == ["case.toml"]

@@ -33,25 +33,17 @@ def pair(**changed: Any) -> ws.Wheelset:
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"wheel": ws.Profile.uic60()}, "rail and rail that of a rail; give one of each"),
-        ({"wheel": ws.Profile.uic60(), "rail": ws.Profile.s1002()}, "that of a wheel; give them the other way round"),
-        (
-            {"rail": ws.Profile.uic60().turned("-0.025 rad")},
-            r"rail_cant: is 1\.43 deg, but .* leans by 1\.43 deg already",
-        ),
+        ({"wheel": ws.Profile.uic60()}, "wheel is the profile of a rail"),
+        ({"rail": ws.Profile.s1002()}, "rail is the profile of a wheel"),
+        ({"left_wheel": ws.Profile.uic60()}, "left_wheel is the profile of a rail"),
+        ({"rail": ws.Profile.uic60().turned("-0.025 rad")}, r"rail_cant: is 1\.43 deg, but .* leans by 1\.43 deg"),
         ({"rail": ws.Profile.uic60().turned("0.025 rad")}, r"leans by -1\.43 deg already"),
         ({"gauge": "1380 mm"}, r"gauge: rails 1380 mm apart leave the flanges -\d+.* mm on either side"),
         ({"gauge": "1560 mm"}, r"gauge: .* must leave 0 to 40 mm"),
         ({"gauge": "1.435 mm"}, "gauge"),
         ({"gauge_depth": "80 mm"}, "gauge_depth: 80 mm is below the gauge side of the rail"),
-        ({"rail_cant": "1:4"}, "rail_cant"),
-        ({"rail_cant": "steep"}, "rail_cant"),
-        ({"rail_cant": "40"}, "rail_cant.* no unit; .* as '1:40'"),
-        ({"rail_cant": 20}, "rail_cant.* no unit; .* as '1:20'"),
-        ({"rail_cant": 0.025}, "rail_cant.* no unit; .* as '1:40' or"),
-        ({"rail_cant": "1/40"}, "rail_cant: got '1/40'; write a ratio with a colon, as '1:40'"),
-        ({"rail_cant": "1:0"}, "rail_cant.* such as '1:40'"),
-        ({"rail_cant": "1:4.0.0"}, "rail_cant"),
+        *(({"rail_cant": cant}, "rail_cant") for cant in ("1:4", "steep", "40", "1:0", "1:4.0.0")),
+        *(({"rail_cant": cant}, "rail_cant.* such as '1:40'") for cant in (20, 0.025)),
         ({"pressure": "carter"}, "pressure"),
         ({"strips": 2}, "strips"),
         ({"wheel": "s1200"}, "s1200.*did you mean 's1002'"),
@@ -62,13 +54,18 @@ def test_a_wheelset_that_cannot_be_is_refused(changed: dict[str, Any], message: 
         pair(**changed)
 
 
+def test_a_cant_is_a_ratio_or_an_angle() -> None:
+    for cant in ("1:40", "1/40", Q(np.arctan(1.0 / 40.0), "rad")):
+        assert pair(rail_cant=cant).rail_cant.m_as("rad") == pytest.approx(np.arctan(1.0 / 40.0), rel=1e-15)
+
+
 @pytest.mark.parametrize(
     ("changed", "error", "message"),
     [
         ({"lateral_displacement": 3}, wl.UnitError, "lateral_displacement: got the bare number 3"),
         ({"lateral_displacement": "3 kN"}, wl.UnitError, "lateral_displacement"),
         ({"lateral_displacement": "60 mm"}, wl.ConditionsError, "at 60 mm the left wheel does not touch its rail"),
-        ({"yaw": "7 rad"}, wl.ConditionsError, r"yaw: must be at most 0\.2 rad, got 7 rad; is it in mrad"),
+        ({"yaw": "7 rad"}, wl.UnitError, "yaw"),
         ({"vertical_load": "-5 kN"}, wl.UnitError, "vertical_load"),
         ({"friction_coefficient": 0.0}, wl.UnitError, "friction_coefficient: must be a positive finite number"),
         ({"friction_coefficient": "rough"}, wl.UnitError, "friction_coefficient: 'rough' is not a number with a unit"),
@@ -96,20 +93,13 @@ def test_wrong_conditions_are_named(changed: dict[str, Any], error: type[Excepti
 
 
 @pytest.mark.parametrize(
-    ("changed", "message"),
-    [
-        ({"roll": Q([0.0, 1.0], "mrad")}, r"roll: must be one value, got an array of shape \(2,\)"),
-        ({"within": Q([0.1, 0.2], "mm")}, r"within: must be one value, got an array of shape \(2,\)"),
-        ({"within": "-1 mm"}, "within: must not be negative, got -1 mm"),
-    ],
+    ("name", "value"),
+    [("roll", Q([0.0, 1.0], "mrad")), ("within", Q([0.1, 0.2], "mm")), ("within", "-1 mm"), ("yaw", "7 rad")],
 )
-def test_wrong_arguments_of_the_geometry_are_named(changed: dict[str, Any], message: str) -> None:
-    with pytest.raises(wl.UnitError, match=message):
-        pair().geometry(**{"lateral_displacement": "3 mm", **changed})
-
-
-def test_the_conicity_has_one_amplitude() -> None:
-    with pytest.raises(wl.UnitError, match=r"amplitude: must be one value, got an array of shape \(2,\)"):
+def test_wrong_arguments_of_the_geometry_are_named(name: str, value: Any) -> None:
+    with pytest.raises(wl.UnitError, match=f"{name}: must"):
+        pair().geometry(**{"lateral_displacement": "3 mm", name: value})
+    with pytest.raises(wl.UnitError, match="amplitude: must be one value"):
         pair().equivalent_conicity(amplitude=Q([1.0, 2.0], "mm"))
 
 

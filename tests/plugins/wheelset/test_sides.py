@@ -87,8 +87,3 @@ def test_loads_of_swapped_profiles_are_the_mirrored_ones(pressure: Pressure) -> 
     for name in ("normal_force", "max_pressure", "tangential_force", "wear_index"):
         value, mirrored = (each[name].to_base_units().magnitude for each in (one, other))
         assert mirrored[:, ::-1] == pytest.approx(value, rel=1e-5, nan_ok=True), name
-
-
-def test_kind_of_a_left_profile_is_checked() -> None:
-    with pytest.raises(wl.ConfigurationError, match="left_wheel is the profile of a rail"):
-        wheelset(left_wheel=RAIL)

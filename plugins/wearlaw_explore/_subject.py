@@ -7,15 +7,13 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-import pandas as pd
-
 import wearlaw as wl
-from wearlaw.models.model import labelled
-from wearlaw.pipeline.prediction import SHOWN
-from wearlaw.units.variables import name_of
+from wearlaw_output.labels import labelled
 from wearlaw_output.notes import Notes
 from wearlaw_sweeps.several import composed
+
+FIRST = "strip_theory"
+"""The contact model with which a page starts, if it solves the rig's patches and the user has none."""
 
 MEANS: Any = wl.patch_mean()
 """The stage for a law of patch means."""
@@ -33,7 +31,8 @@ class Subject:
     stages: Mapping[Any, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        models = {**self.own_models, **_installed(wl.contact_model, wl.contact_models())}
+        by_use = sorted(wl.contact_models(), key=lambda name: name != FIRST)
+        models = {**self.own_models, **_installed(wl.contact_model, by_use)}
         own = {law: code for law, code in self.own_laws.items() if isinstance(law, wl.WearLaw)}
         laws = {**own, **_installed(wl.wear_law, [*wl.wear_laws(), *wl.parameter_sets()])}
         self.codes = {MEANS: "wl.patch_mean()", **self.stages, **models, **laws}
@@ -62,13 +61,10 @@ class Subject:
     ) -> dict[str, wl.Prediction]:
         """Return a prediction for each law, by its label; there are notes of warnings and errors."""
         found: dict[str, wl.Prediction] = {}
-        problem = None
         for law in laws:
             try:
                 with notes.of(law):
-                    pipeline = self.pipeline(model, law)
-                    problem = pipeline.posed(conditions) if problem is None else problem
-                    found[law] = pipeline.predict(problem)
+                    found[law] = self.pipeline(model, law)(**conditions)
             except wl.WearlawError as error:
                 notes.add(f"{law}: {error}")
         return found
@@ -95,28 +91,3 @@ def _installed(make: Callable[[str], Any], names: Iterable[str]) -> dict[Any, st
         with suppress(wl.ConfigurationError):
             found[make(name)] = f'wl.{make.__name__}("{name}")'
     return found
-
-
-def by_patch(predictions: Mapping[str, wl.Prediction]) -> dict[str, dict[str, wl.Prediction]]:
-    """Return predictions by law for each existing patch, by its label; the first is that of most wear."""
-    if not predictions:
-        return {}
-    first = next(iter(predictions.values()))
-    table = first.to_dataframe(["wear_rate"])
-    rows: Any = table.sort_values(table.columns[-1], ascending=False)[[*first.problem.dims]].to_dict("records")
-    return {" ".join(map(str, row.values())): {law: one.sel(**row) for law, one in predictions.items()} for row in rows}
-
-
-def numbers(patches: Mapping[str, Mapping[str, wl.Prediction]]) -> str:
-    """Return a table in HTML with a column for each patch."""
-    columns = {}
-    for patch, predictions in patches.items():
-        first = next(iter(predictions.values()))
-        wear = {f"wear rate by {law}": one.wear_rate for law, one in predictions.items()}
-        columns[patch] = wear | {name_of(name): first[name] for name in SHOWN[first.problem.geometry]}
-    return str(pd.DataFrame(columns).map(repr).to_html(border=0, header=len(columns) > 1))
-
-
-def largest(prediction: wl.Prediction) -> Any:
-    """Return the largest wear rate of the patches at each operating point [µg/m/mm²]."""
-    return np.nanmax(prediction.wear_rate.magnitude, axis=tuple(range(-len(prediction.problem.dims), 0)))

@@ -1,4 +1,4 @@
-"""What a body loses: mass, depth, and wear profiles across a patch or along a body's own profile."""
+"""Wear profiles: the depth that a body loses across a patch, or along its own profile."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from wearlaw.arrays import Array, steady
 from wearlaw.contact.problem import Body, Problem
 from wearlaw.errors import CompositionError, InputError, shown
 from wearlaw.numerics.totals import blocks
-from wearlaw.pipeline.datasets import Columns, data_of, labelled
 from wearlaw.pipeline.selection import axis_names
 from wearlaw.pipeline.solution import Solution
-from wearlaw.units.quantities import QuantityLike, Unit, scalar_si
+from wearlaw.units.quantities import QuantityLike, scalar_si
 from wearlaw.units.variables import VARIABLES
+from wearlaw_output.datasets import Columns, data_of, labelled
 
 if TYPE_CHECKING:
     import xarray
@@ -36,63 +36,6 @@ BLOCK = 2**18
 
 
 @steady
-def mass_per_distance(solution: Solution, body: str) -> Array:
-    """Return the mass that a body loses per metre rolled [kg/m]."""
-    return solution.value(solution.law(body=body), body) * solution.patch_area
-
-
-@steady
-def volume_rate(solution: Solution, body: str) -> Array:
-    """Return the volume that a body loses per metre rolled and contact area [m³/m/m²]."""
-    return solution.value(solution.law(body=body), body) / _density(solution.problem, body)
-
-
-@steady
-def depth_per_distance(solution: Solution, body: str) -> Array:
-    """Return the depth that the surface of a body loses per distance rolled [m/m]."""
-    length = 0.5 * solution.patch_area / solution.problem.b
-    return volume_rate(solution, body) * (length / _circumference(solution.problem, body))
-
-
-@steady
-def section_per_distance(solution: Solution, body: str) -> Array:
-    """Return the area of a radial section that a body loses per distance rolled [m²/m]."""
-    return volume_rate(solution, body) * solution.patch_area / _circumference(solution.problem, body)
-
-
-@steady
-def mass_per_cycle(solution: Solution, body: str) -> Array:
-    """Return the mass that a body loses in one of its revolutions [kg]."""
-    return mass_per_distance(solution, body) * _circumference(solution.problem, body)
-
-
-@steady
-def mass_lost(solution: Solution, over: QuantityLike, body: str) -> Array:
-    """Return the mass that a body loses over a distance rolled [kg]."""
-    distance, mass = Unit("km").si(over, "over"), mass_per_distance(solution, body)
-    try:
-        lost: Array = mass * distance
-    except ValueError:
-        raise InputError(
-            f"over: an array of shape {distance.shape} does not broadcast to the operating points, of shape"
-            f" {mass.shape}; give one distance, or one for each point"
-        ) from None
-    return lost
-
-
-def _circumference(problem: Problem, body: str) -> Array:
-    """Return the circumference of a body that turns [m]."""
-    radius = np.asarray(problem.body(body).rolling_radius)
-    if np.isinf(radius).any():
-        raise InputError(f"body: {body} is flat and makes no revolutions; name the other body")
-    return 2.0 * np.pi * radius
-
-
-def _density(problem: Problem, body: str) -> float:
-    return scalar_si(problem.body(body).material.density, "kg/m^3")
-
-
-@steady
 def wear_profile(solution: Solution, body: str, strips: int | None, at: QuantityLike | None) -> xarray.Dataset:
     """Return the depth lost and the distance slid across patches; see `Prediction.wear_profile`."""
     problem, worn = solution.problem, solution.problem.body(body)
@@ -101,7 +44,7 @@ def wear_profile(solution: Solution, body: str, strips: int | None, at: Quantity
     if solution.model.scale == "patch":
         raise CompositionError(
             f"wear_profile: {solution.model!r} gives means of the whole patch; take a contact model that resolves it,"
-            ' such as wl.contact_model("fastsim")'
+            ' such as wl.contact_model("strip_theory")'
         )
     if strips is not None and (
         isinstance(strips, bool) or not isinstance(strips, int) or not 2 <= strips <= MOST_STRIPS
@@ -112,7 +55,7 @@ def wear_profile(solution: Solution, body: str, strips: int | None, at: Quantity
     turns = bool(np.isfinite(radius).any())
     once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
     units = ("um/km", "mm/m") if turns else ("nm", "um")
-    depth = across.wear / (_density(problem, body) * once)
+    depth = across.wear / (scalar_si(worn.material.density, "kg/m^3") * once)
     columns = {"depth": (depth, units[0]), "sliding_distance": (across.slid / once, units[1])}
     if problem.contact_angle is not None:
         angle = problem.contact_angle[..., None]

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.core.cases import assert_refused, files, full_disk, wearlaw
-from tests.core.cli_data import COMPARE, FIT, HEAD, rates, rows, write_tests
+from tests.cases import assert_refused, files, full_disk, wearlaw
+from tests.plugins.fits.cli_data import COMPARE, FIT, HEAD, rates, rows, write_tests
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
 
@@ -50,7 +50,7 @@ def test_a_full_disk_is_one_clear_error_and_leaves_earlier_results_as_they_were(
         "wearlaw_output.files.save_figure", full_disk
     )  # private: a disk that is full after tables were written
     result = wearlaw(*command, "-o", "out", "--overwrite")
-    assert_refused(result, "output: cannot write the results: No space left on device")
+    assert_refused(result, "No space left on device; choose another folder with -o")
     assert {name: (folder / name).read_bytes() for name in files(folder)} == before
     assert {path.name for path in folder.iterdir()} == {"tests.csv", "out"}
 

@@ -1,0 +1,67 @@
+"""Words for readers of tables and figures: names of models side by side, of variables with units, and of patches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TypeVar
+
+from wearlaw.errors import InputError
+from wearlaw.models.model import Model
+from wearlaw.pipeline.selection import Label
+from wearlaw.units.quantities import text_of
+from wearlaw.units.variables import UNITS, name_of
+
+ModelT = TypeVar("ModelT", bound=Model)
+
+
+def labels(models: Sequence[Model]) -> list[str]:
+    """Return a short name for each model: its own name, and the options that tell it from models of the same name.
+
+    The name of a law for one body has that body, as in "usfd(body=rail)". A law with a label has its label.
+    """
+    found = []
+    for model in models:
+        label = getattr(model, "label", None)
+        if label is not None:
+            found.append(label)
+            continue
+        namesakes = [other for other in models if other.name == model.name and not getattr(other, "label", None)]
+        body = ["body"] if getattr(model, "body", None) is not None else []
+        fields = dict.fromkeys([*_telling_apart(namesakes), *body])
+        options = [f"{field}={text_of(getattr(model, field))}" for field in fields]
+        found.append(f"{model.name}({', '.join(options)})" if options else model.name)
+    for name in found:
+        if found.count(name) > 1:
+            raise InputError(f"the model {name} is listed twice; leave one out, or give it other options or a label")
+    return found
+
+
+def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
+    """Return models by their `labels`."""
+    return dict(zip(labels(models), models, strict=True))
+
+
+def _telling_apart(models: Sequence[Model]) -> list[str]:
+    """Return the fewest fields, in their order, that tell models of one name apart."""
+    fields: list[str] = []
+    kinds: set[tuple[str, ...]] = {()}
+    for field in type(models[0]).model_fields:
+        finer = {tuple(text_of(getattr(model, name)) for name in (*fields, field)) for model in models}
+        if len(finer) > len(kinds):
+            fields, kinds = [*fields, field], finer
+    return fields
+
+
+def label(*variables: str, units: Mapping[str, str] = UNITS) -> str:
+    """Return the names of variables that share a unit, with the unit, as in "creepage [%]"."""
+    return f"{', '.join(name_of(variable) for variable in variables)} [{readable(units[variables[0]]) or '-'}]"
+
+
+def readable(unit: str) -> str:
+    """Return a unit for a reader, as in "µg/m/mm²"."""
+    return unit.replace("ug", "µg").replace("um", "µm").replace("^2", "²").replace("*", "·")
+
+
+def in_words(labels: Mapping[str, Label]) -> str:
+    """Return the labels of a patch in words, such as "left, patch 1"; a number stands behind the name of its axis."""
+    return ", ".join(one if isinstance(one, str) else f"{name_of(axis)} {one}" for axis, one in labels.items())
