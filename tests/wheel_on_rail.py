@@ -1,8 +1,8 @@
-"""The gap between an S1002 wheel and a canted UIC 60 rail, surface against surface, as a reference.
+"""The gap between an S1002 wheel and a canted 60E1 rail, surface against surface, as a reference.
 
 The wheel is a surface of revolution, moved, rolled and yawed in space; no contact is searched for. Lengths are in mm.
 The track's axes are x forwards, y to the right, z down, and the wheel is the right one. Formulas of the profiles: UIC
-510-2 and 861-3.
+510-2 and EN 13674-1.
 """
 
 from __future__ import annotations
@@ -70,14 +70,13 @@ def wheel(s: Array) -> Array:
     )
 
 
-def rail() -> tuple[Array, Array]:
-    """Return points of the right rail, y and z, from the gauge side outwards."""
+UIC_60 = 25.98802
+"""Where the arcs of 80 and 13 mm of UIC 60 meet, from the middle of its head, which is 72 mm wide; 26 if rounded."""
+
+
+def rail(border: float = 26.0) -> tuple[Array, Array]:
+    """Return points of the right rail, y and z, from the gauge side outwards; arcs of 80 and 13 mm meet at a border."""
     y, z, begin, centre = [], [], 0.0, (0.0, 300.0)
-    middle, side = (
-        10.5 * (1.0 - 80.0 / 300.0),
-        13.0 * np.cos(np.arctan(0.05)),
-    )  # sides lean by 1:20, and the head is 72 mm wide
-    border = middle + 80.0 * (36.0 - side - middle) / (80.0 - 13.0)
     for radius, end, smaller in ((300.0, np.arcsin(10.5 / 300.0), 80.0), (80.0, None, 13.0), (13.0, 1.5, 13.0)):
         end = np.arcsin((border - centre[0]) / radius) if end is None else end
         angle = np.linspace(begin, end, 10000)
@@ -104,9 +103,10 @@ def gap(
     half_width: float = 8.0,
     half_length: float = 8.0,
     step: float = 0.1,
+    border: float = 26.0,
 ) -> Gap:
     """Return the gap of a wheelset at y and z, in a plane at an angle to the track around the rail's point at y."""
-    y_rail, z_rail = rail()
+    y_rail, z_rail = rail(border)
     origin = np.array([at, np.interp(at, y_rail, z_rail)])
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     t_rail, n_rail = turn @ (np.stack([y_rail, z_rail]) - origin[:, None])

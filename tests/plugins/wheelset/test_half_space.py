@@ -89,7 +89,7 @@ def pressed_in_space(
     gap = wheel_on_rail.gap(
         displacement, 1e3 * (balance.height[0, 1] + R0 + balance.penetration[1]), problem.roll[1, 0], 1e-3 * yaw,
         angle=float(place.angle[0]), at=float(1e3 * place.y[0] + displacement),
-        half_width=half_width, half_length=half_length, step=0.05,
+        half_width=half_width, half_length=half_length, step=0.05, border=wheel_on_rail.UIC_60,
     )  # fmt: skip
     found = normal_half_space.pressed(1e-3 * gap.height[::6], 3e-4, 5e-5, MODULUS, problem.normal_force[1, 0])
     return place, gap.t, found.pressure
