@@ -253,8 +253,8 @@ class Uncertainty:
     def __getitem__(self, outcome: str) -> Quantity:
         """Return the samples of an outcome by its name in results, along the last axis."""
         if outcome not in self.values:
-            hint = did_you_mean(outcome, self.values) if isinstance(outcome, str) else "."
-            raise InputError(f"no law predicts {shown(outcome)}{hint} The outcomes are: {', '.join(self.values)}")
+            known = f"{did_you_mean(outcome, self.values)} The outcomes are: {', '.join(self.values)}"
+            raise InputError(f"no law predicts {shown(outcome)}{known}")
         return self.values[outcome]
 
     @property

@@ -143,7 +143,6 @@ class WearTests:
         others, measured = dict(other_conditions or {}), dict(outcomes or {})
         wrong = [f"{name} is unknown{did_you_mean(name, COLUMNS)}" for name in columns if name not in COLUMNS]
         wrong += [f"{name}: is an argument of its own" for name in (*others, *measured) if name in COLUMNS]
-        wrong += [f"{name}: is among conditions and outcomes" for name in others if name in measured]
         given: dict[str, Values] = {}
         for name, value in {**columns, **others, **measured}.items():
             try:
