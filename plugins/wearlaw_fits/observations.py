@@ -75,7 +75,7 @@ class Observations:
         return label(self.observable, units={self.observable: self.unit})
 
     def predicted(self, values: Mapping[str, Array], problem: Problem | None = None) -> Array:
-        """Return the predictions (sets, n) for all free parameters in SI, (sets,) each, at the tests or at other points."""
+        """Return the predictions (sets, n) for all free parameters in SI, (sets,) each, at tests or other points."""
         problem = self.problem if problem is None else problem
         sets, points = len(next(iter(values.values()))), problem.size
         problem = problem[np.tile(np.arange(points), sets)]

@@ -241,7 +241,7 @@ class WearTests:
         """Return a digest of each test: of its conditions and one measurement as in `measured`."""
         in_si = {column: self.columns[column] for column in NEEDED if column in self.columns}
         for condition, value in self.other_conditions.items():
-            in_si[condition] = plain(value.to_base_units() if isinstance(value, pint.Quantity) else value)
+            in_si[condition] = value.to_base_units().magnitude if isinstance(value, pint.Quantity) else value
         in_si = dict(sorted(in_si.items())) | {"measured": self.measured(name, unit)}
         texts = (
             # Nine digits, so that the rounding of units does not matter.
@@ -308,8 +308,10 @@ class WearTests:
         index = np.atleast_1d(np.arange(len(self))[key])
         if not index.size:
             raise DataError(f"none of the {len(self)} tests is selected")
-        names: Any = ("columns", "other_conditions", "outcomes")
-        chosen = {which: {name: values[index] for name, values in getattr(self, which).items()} for which in names}
+        chosen: dict[str, Any] = {
+            kind: {name: values[index] for name, values in getattr(self, kind).items()}
+            for kind in ("columns", "other_conditions", "outcomes")
+        }
         return replace(self, labels=tuple(self.labels[i] for i in index), **chosen)
 
     def __iter__(self) -> Iterator[Self]:
