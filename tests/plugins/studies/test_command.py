@@ -12,8 +12,8 @@ import pytest
 import xarray
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import assert_refused, files, table, wearlaw, write
+from tests import cases
+from tests.cases import assert_refused, files, table, wearlaw, write
 
 LATTICE = {**cases.SWEEP, "friction_coefficient": [0.3, 0.4]}
 MEASURED = {**cases.POINT, "traction_coefficient": [0.1, 0.2]}
@@ -187,13 +187,6 @@ def test_the_csv_holds_the_numbers_of_the_datasets(study: wl.Study, results: Pat
         here = here.sel(pair=f"{row.wear_law} on {row.contact_model}", contact_model=row.contact_model)
         for column in rows.columns[3:]:
             assert row[column] == here[column].item(), column  # CSV holds all digits of a float64
-
-
-def test_results_of_models_that_share_a_name_keep_their_labels_when_run_again() -> None:
-    laws = ["usfd", {"model": "usfd", "fitted_for": "exact"}, {"model": "kth", "coefficient": "low"}, "kth"]
-    first = wl.run(wl.Case(**table(wear_laws=laws, contact_models=["exact"])))
-    dumped = first.case.model_dump(mode="json", by_alias=True, exclude_none=True)
-    xarray.testing.assert_identical(wl.run(wl.Case(**dumped)).sweeps["creepage"], first.sweeps["creepage"])
 
 
 @pytest.mark.usefixtures("blank_figures")
