@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import mmap
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -86,16 +85,12 @@ class OnDisk:
 
     def __getitem__(self, part: slice) -> Array:
         """Return some of the numbers."""
-        with mmap.mmap(self._file.fileno(), self.size * ITEM, access=mmap.ACCESS_READ) as mapped:
-            every = np.frombuffer(mapped, dtype=np.float64)
-            found = every[part].copy()
-            del every  # a mapping in use cannot be closed
-        return found
+        return np.array(np.memmap(self._file, np.float64, "r")[part])
 
 
 @dataclass(frozen=True)
 class Block:
-    """A rectangle of operating points that are contiguous in the results.
+    """A rectangle of operating points.
 
     Attributes
     ----------
@@ -103,19 +98,24 @@ class Block:
         Index of the block.
     slices : tuple of slice
         Range along each dimension.
-    flat : slice
-        Range among all points, with the last dimension fastest.
     """
 
     number: int
     slices: tuple[slice, ...]
-    flat: slice
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values along each dimension."""
+        return tuple(one.stop - one.start for one in self.slices)
 
     @property
     def size(self) -> int:
         """Number of operating points."""
-        size: int = self.flat.stop - self.flat.start
-        return size
+        return math.prod(self.shape)
+
+    def laid_out(self, values: Array) -> Array:
+        """Return values of the points, the first axis, along the dimensions."""
+        return values.reshape(self.shape + values.shape[1:])
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,17 +181,11 @@ class Points:
 
     def blocks(self) -> list[Block]:
         """Return all blocks, in the order of the results."""
-        along = [range(0, size, step) for size, step in zip(self.shape, self.block_shape, strict=True)]
-        found, first = [], 0
-        for number, corner in enumerate(itertools.product(*along)):
-            slices = tuple(
-                slice(start, min(start + step, size))
-                for start, step, size in zip(corner, self.block_shape, self.shape, strict=True)
-            )
-            points = math.prod(one.stop - one.start for one in slices)
-            found.append(Block(number, slices, slice(first, first + points)))
-            first += points
-        return found
+        along = [
+            [slice(start, min(start + step, size)) for start in range(0, size, step)]
+            for size, step in zip(self.shape, self.block_shape, strict=True)
+        ]
+        return [Block(number, slices) for number, slices in enumerate(itertools.product(*along))]
 
     def part(self, slices: Iterable[slice]) -> Points:
         """Return the points of a block."""

@@ -30,7 +30,7 @@ from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import BLOCK, Points, outer_product
 from wearlaw_sweeps.progress import Bar
 from wearlaw_sweeps.provenance import parts
-from wearlaw_sweeps.results import Memory
+from wearlaw_sweeps.results import Memory, Target
 from wearlaw_sweeps.room import writing_to
 from wearlaw_sweeps.tables import from_table
 from wearlaw_sweeps.wear_profile import SHARE, WEAR_PROFILE, ProfileJob, Sum, check_shares
@@ -158,12 +158,9 @@ def sweep(
         points = dataclasses.replace(points, weight=job.weight(first))
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
-        target: Memory | Sum | Store
         folder = None if store is None else Path(store)
-        if isinstance(job, ProfileJob) and job.summed:
-            target = Sum(job, points, folder, resume)
-        else:
-            target = target_of(job, points, folder, resume)
+        summed_up = isinstance(job, ProfileJob) and job.summed
+        target = (Sum if summed_up else target_of)(job, points, folder, resume)
         blocks = len(points.blocks())
         if folder is not None and target.resumed and len(target.done) < blocks:
             warnings.warn(kept(len(target.done), blocks, folder), ResumeWarning, stacklevel=2)
@@ -307,15 +304,13 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
     return there
 
 
-def run(
-    target: Memory | Sum | Store, on_block: Callable[[int], None], workers: int = 1, client: Any = None
-) -> list[Warning]:
+def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
     """Evaluate the remaining blocks and return the warnings that belong to the results.
 
     Parameters
     ----------
-    target : Memory, Sum or Store
-        Target of the results. It keeps the finished blocks after an interrupt.
+    target : Target
+        Where the results go. It keeps the finished blocks after an interrupt.
     on_block : callable
         Called with the number of points in each finished block, and first with those finished earlier.
     workers, client

@@ -23,7 +23,7 @@ from wearlaw_output.wear_profile import PATCH, POSITION
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_sweeps.points import Block, Points
 from wearlaw_sweeps.provenance import digest, provenance_of
-from wearlaw_sweeps.results import COMPLETE, attributes, labels_of
+from wearlaw_sweeps.results import COMPLETE, Target, attributes, labels_of
 
 if TYPE_CHECKING:
     from wearlaw_sweeps.folder import Parts
@@ -134,7 +134,7 @@ def _any(problem: Problem) -> Any:
     return np.asarray(problem.exists).any(axis=list(problem.dims).index(PATCH) - len(problem.dims))
 
 
-class Sum:
+class Sum(Target):
     """The sum of the outputs of all blocks, in their order, so that it is the same from any number of processes.
 
     Parameters
@@ -148,34 +148,24 @@ class Sum:
 
     Attributes
     ----------
-    store : None
-        Evaluating processes write nothing.
-    resumed : bool
-        Whether the folder held the sum before.
-    job : ProfileJob
-    points : Points
-    done : dict of int to BlockRecord
-        Records of the finished blocks, by number.
     totals : dict of str to ndarray
         The sums, in the units of the job.
     """
 
-    store = None
-
     def __init__(self, job: ProfileJob, points: Points, folder: Path | None = None, resume: bool = False) -> None:
-        self.job, self.points = job, points
-        self.done: dict[int, BlockRecord] = {}
+        super().__init__(job, points)
         self.totals: Outputs = {}
         self._waiting: dict[int, Outputs] = {}
         self._next = 0
         self._parts: Parts | None = None
-        if folder is not None:
-            from wearlaw_sweeps.folder import Parts  # zarr takes half a second
+        if folder is None:
+            return
+        from wearlaw_sweeps.folder import Parts  # zarr takes half a second
 
-            self._parts = Parts(folder, provenance_of(job, points), resume)
-        self.resumed = self._parts is not None and self._parts.resumed
+        self._parts = Parts(folder, provenance_of(job, points), resume)
+        self.resumed = self._parts.resumed
         for block in points.blocks() if self.resumed else ():
-            if self._parts is not None and (part := self._parts[block.number]) is not None:
+            if (part := self._parts[block.number]) is not None:
                 self._take(block, part.arrays, TypeAdapter(BlockRecord).validate_python(part.record))
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
