@@ -22,7 +22,6 @@ from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
 from wearlaw.units.quantities import Q, parse, real_array, with_units
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
     from wearlaw_tables import Table
@@ -240,7 +239,9 @@ def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Vary
         if np.ndim(values) == 0:
             fixed[name] = value
         elif np.ndim(values) == 1:
-            varying[name] = axis(name, name, values, unit)
+            if not np.size(values):
+                raise ConditionsError(f"{name}: the axis is empty; give at least one value")
+            varying[name] = Varying(name, np.ascontiguousarray(values), unit)
         else:
             raise ConditionsError(
                 f"{name}: must be one value or an axis of values, got an array of shape {np.shape(values)};"
@@ -258,24 +259,4 @@ def _plain(name: str, value: Any) -> tuple[Any, str | None]:
         quantity = isinstance(value, pint.Quantity)
         return real_array(value.magnitude if quantity else value), symbol(value.units, "~C") if quantity else None
     except UnitError as error:
-        raise UnitError(f"{name}: {error}; give one value, or several as in {name}={_several(name)}") from None
-
-
-def _several(name: str) -> str:
-    """Return an example of several values of a condition, in Python."""
-    unit = VARIABLES[name].unit if name in VARIABLES else ""
-    return f'Q([1, 2], "{unit}")' if unit else "[0.3, 0.4]"
-
-
-def axis(name: str, dim: str, values: object, unit: str | None) -> Varying:
-    """Return a condition that varies along a dimension.
-
-    Raises
-    ------
-    ConditionsError
-        If there are no values.
-    """
-    array = real_array(values)
-    if array.size == 0:
-        raise ConditionsError(f"{name}: the axis is empty; give at least one value")
-    return Varying(dim, np.ascontiguousarray(array), unit)
+        raise UnitError(f'{name}: {error}; give one value, or several as in Q([1, 2], "kN") or [0.3, 0.4]') from None

@@ -58,6 +58,10 @@ class Target(ABC):
         """Take over a finished block."""
 
     @abstractmethod
+    def arrays(self) -> dict[str, Array]:
+        """Return the outputs in the shape of the points, or their sums over the points."""
+
+    @abstractmethod
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Return the results as a labelled dataset, with remarks for the reader."""
 

@@ -139,22 +139,17 @@ class Sum(Target):
 
     Parameters
     ----------
-    job : ProfileJob
+    job : Job
     points : Points
     folder : path, optional
         Where to keep the outputs of each block.
     resume : bool
         Whether to go on with the blocks that are there.
-
-    Attributes
-    ----------
-    totals : dict of str to ndarray
-        The sums, in the units of the job.
     """
 
-    def __init__(self, job: ProfileJob, points: Points, folder: Path | None = None, resume: bool = False) -> None:
+    def __init__(self, job: Job, points: Points, folder: Path | None = None, resume: bool = False) -> None:
         super().__init__(job, points)
-        self.totals: Outputs = {}
+        self._totals: Outputs = {}
         self._waiting: dict[int, Outputs] = {}
         self._next = 0
         self._parts: Parts | None = None
@@ -179,15 +174,19 @@ class Sum(Target):
         self._waiting[block.number] = outputs
         while self._next in self._waiting:
             for name, values in self._waiting.pop(self._next).items():
-                self.totals[name] = self.totals.get(name, 0.0) + values
+                self._totals[name] = self._totals.get(name, 0.0) + values
             self._next += 1
+
+    def arrays(self) -> dict[str, Array]:
+        """Return the sums."""
+        return self._totals
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Return the sums as a labelled dataset, and write them."""
         coordinates = labels_of(self.job)
         data = {
             name: (tuple(coordinates)[: values.ndim], values, self.job.attributes(name))
-            for name, values in self.totals.items()
+            for name, values in self._totals.items()
         }
         found = xarray.Dataset(data, coordinates)
         found = found.assign_attrs(attributes(COMPLETE, provenance_of(self.job, self.points), notes))
