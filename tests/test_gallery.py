@@ -118,7 +118,7 @@ def test_the_three_laws_end_where_their_formulas_put_them() -> None:
 
 def test_wear_and_fatigue_have_their_closed_forms_in_full_slip() -> None:
     names = run("wear_and_fatigue")
-    accuracy = wl.contact_model("fastsim").elliptic_accuracy  # of sums over the nodes, as a share of full slip
+    accuracy = wl.contact_model("strip_theory").elliptic_accuracy  # of sums over the nodes, as a share of full slip
     axes = (names[one].get_lines() for one in ("above", "below"))
     wear, damage = ([line.get_xydata() for line in lines[:2]] for lines in axes)
     problem = names["rig"].problem(normal_force="80 kN", longitudinal_creepage="1 %", friction_coefficient=0.3)
@@ -230,7 +230,7 @@ def test_the_shaded_interval_leaves_out_a_fortieth_on_each_side() -> None:
 @pytest.mark.validates(
     "elliptic-contact",
     "The wear profile of a tread without spin",
-    source="each strip in closed form (Kalker 1982)",
+    source="each strip in closed form (Carter), with Kalker's stiffness",
     held_to="`elliptic_accuracy`, what the model declares",
 )
 def test_the_profile_without_spin_has_the_closed_form_of_its_strips() -> None:
@@ -239,12 +239,12 @@ def test_the_profile_without_spin_has_the_closed_form_of_its_strips() -> None:
     creepage, load = 0.002, 80e3
     problem = names["rig"].problem(normal_force=f"{load} N", longitudinal_creepage="0.2 %", friction_coefficient=0.3)
     a, b = float(problem.a), float(problem.b)
-    # A strip is a line contact with a parabolic bound: ξ times its force, without spin, is what it dissipates.
-    flexibility = 8.0 * a / (3.0 * wl.kalker.coefficients(problem.a / problem.b, 0.28).c11 * problem.shear_modulus)
+    # A strip is Carter's line contact: ξ times its force, without spin, is what it dissipates.
+    stiffness = 2.0 / math.pi**2 * wl.kalker.coefficients(problem.a / problem.b, 0.28).c11 * problem.shear_modulus
     root = np.sqrt(1.0 - (y / (1e3 * b)) ** 2)
-    peak, half = 0.3 * 2.0 * load / (math.pi * a * b) * root**2, a * root
-    share = 1.0 - (1.0 - np.minimum(creepage * half / (2.0 * peak * flexibility), 1.0)) ** 3
-    dissipated = creepage * 4.0 / 3.0 * peak * half * share
+    peak, half = 0.3 * 1.5 * load / (math.pi * a * b) * root, a * root
+    share = 1.0 - (1.0 - np.minimum(creepage * stiffness / peak, 1.0)) ** 2
+    dissipated = creepage * 0.5 * math.pi * peak * half * share
     expected = 5.3e-9 * dissipated / (7850.0 * 2.0 * math.pi * 0.46) * 1e9  # in µm/km
-    accuracy = wl.contact_model("fastsim").elliptic_accuracy  # of sums over the nodes, as a share of full slip
+    accuracy = wl.contact_model("strip_theory").elliptic_accuracy  # of sums over the nodes, as a share of full slip
     assert depth == pytest.approx(expected, abs=accuracy * depth.max())

@@ -12,7 +12,7 @@ warnings.simplefilter("ignore", wl.CalibrationWarning)  # USFD was fitted to lin
 rig = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="13 m/s")
 points = {"threshold": "20 N", "peak": "65 N", "balance": "175 N", "peak_damage": 1e-5}
 fatigue = wl.law("wlrm", **points, beyond="falls", traction="driving")
-predict = rig | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim") | fatigue
+predict = rig | wl.contact_model("strip_theory") | wl.wear_law("usfd", fitted_for="exact") | fatigue
 
 figure, (above, below) = plt.subplots(2, 1, figsize=(6.4, 5.6), sharex=True, layout="constrained")
 creepage = np.linspace(0.0, 1.5, 301)

@@ -10,7 +10,7 @@ from wearlaw import Q
 wheel, sizes = ws.Profile.s1002(), {"nominal_radius": "460 mm", "flange_back_distance": "1360 mm", "gauge": "1435 mm"}
 sizes |= {"rail": ws.Profile.uic60(), "rail_cant": "1:40", "material": wl.steel()}
 pair = ws.Wheelset(wheel=wheel, **sizes, rolling_speed="20 m/s")
-predict = pair | wl.contact_model("fastsim") | wl.wear_law("energy", mass_per_energy="5.3 ug/J")
+predict = pair | wl.contact_model("strip_theory") | wl.wear_law("energy", mass_per_energy="5.3 ug/J")
 form = {"figsize": (6.4, 5.0), "layout": "constrained", "gridspec_kw": {"height_ratios": (2, 3)}}
 figure, (shape, loss) = plt.subplots(2, 1, sharex=True, **form)
 places = np.arange(-60.0, 45.0, 0.25)

@@ -58,11 +58,6 @@ def compose(
         The stages around every contact model.
     remedy : str, optional
         What to do about a law of the whole patch on a contact resolved into cells.
-
-    Raises
-    ------
-    InputError
-        If there is no pair.
     """
     geometry = None if problem is None else problem.geometry
     pairs = []

@@ -15,7 +15,6 @@ import numpy as np
 import pint
 
 from wearlaw.arrays import Array
-from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import ConditionsError, DataError, InputError, UnitError, did_you_mean, shown
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, parse, real_array
 from wearlaw.units.registry import si_factor, symbol
@@ -27,6 +26,9 @@ if TYPE_CHECKING:
 
     from wearlaw.models.contact_model import ContactModel
     from wearlaw.pipeline.pipeline import Rig
+
+LOADS = ("normal_force", "normal_force_per_width", "max_pressure")
+"""Columns that give the load."""
 
 MEASURED_FORCES = ("tangential_force", "frictional_heat")
 """Columns from which a traction coefficient follows."""
@@ -168,14 +170,7 @@ class WearTests:
         subject: str,
         place: Callable[[str, int], str],
     ) -> Self:
-        """Return tests from columns of one length, with the names of those that are outcomes.
-
-        Raises
-        ------
-        DataError
-            If columns are missing or exclude each other, or a value has the wrong unit, sign or size; the message names
-            the `subject`, and the `place` of each value.
-        """
+        """Return tests from columns of one length, with the names of those that are outcomes."""
         wrong = faulty_names(given, outcomes)
         columns: dict[str, Array] = {}
         for name in COLUMNS:

@@ -148,7 +148,7 @@ def _fill(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: An
         for low, high in shade.spans:
             axes.axvspan(low, high, 0.0, STRIP if shade.strip else 1.0, color=_grey(shade), lw=0, zorder=0)
     for curve in panel.curves:
-        _plot(axes, curve, styles.get((curve.colour, curve.dash), 0))
+        plot_curve(axes, curve, styles.get((curve.colour, curve.dash), 0))
     axes.set_title(_literal("\n".join(textwrap.wrap(panel.title, letters))))
     axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label))
     axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
@@ -198,7 +198,7 @@ def plain(value: float) -> str:
     return f"${factor}10^{{{int(power)}}}$"
 
 
-def _plot(axes: Axes, curve: Curve, style: int) -> None:
+def plot_curve(axes: Axes, curve: Curve, style: int = 0) -> None:
     """Draw a curve with its band, or points with their error bars."""
     number = curve.colour % len(PALETTE)
     colour = PALETTE[number]

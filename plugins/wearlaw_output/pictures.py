@@ -20,10 +20,13 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.selection import Conditions
+from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
 from wearlaw.units.variables import UNITS, name_of
+from wearlaw_output.conditions import Conditions
+from wearlaw_output.curves import OUTSIDE, Curve
 from wearlaw_output.datasets import data_of, dataset, labelled
+from wearlaw_output.drawing import PALE, THIN, plot_curve
 from wearlaw_output.labels import in_words, label, readable
 
 if TYPE_CHECKING:
@@ -36,16 +39,8 @@ SIZE = (6.4, 4.4)
 MOST_CURVES = 8
 """Most curves of a prediction over two conditions; with more it is a map."""
 
-FEW_POINTS = 15
-"""Most operating points of a curve for each to be marked."""
-
 TITLE = 70
 """Characters on a line of the title."""
-
-PALE = 0.35
-"""Opacity of a curve outside the range of its law."""
-
-OUTSIDE = "outside the range of the law"
 
 ALONG = ("pressure", "traction", "traction_bound")
 """Fields along the patch of a line that are shown if none is named."""
@@ -57,9 +52,9 @@ SIDE = 9
 """Corners along each side of a cell."""
 
 
-def draw(prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
+def draw(prediction: Prediction, solution: Solution, name: str | None, x: str | None, ax: Axes | None) -> Axes:
     """Draw a prediction; see `Prediction.plot`."""
-    problem = prediction.problem
+    problem, conditions = prediction.problem, Conditions.of(solution)
     points = problem.batch_shape[: len(problem.batch_shape) - len(problem.dims)]
     if math.prod(points) == 1 and x is None:
         several = math.prod(problem.batch_shape) > 1
@@ -113,33 +108,24 @@ def _curves(
 ) -> Axes:
     """Draw a curve for each value of the other axes and for each patch."""
     apart = [*others, *(dim for dim in problem.dims if dim in found.dims)]
-    look = _look(ax)
-    pale = False
-    drawn: Axes | None = None
+    curves: list[Curve] = []
     for index in np.ndindex(*(found.sizes[dim] for dim in apart)):
         place = dict(zip(apart, index, strict=True))
-        table = found.isel(place).to_dataframe().reset_index()
-        table = table[table[variable].notna() & table[across].notna()]
-        if table.empty:
-            continue
-        named = _series(found, place, problem)
-        marked: dict[str, Any] = {"marker": "o" if len(table) <= FEW_POINTS else "", "markersize": 4, "legend": False}
-        outside = table[OUTSIDE_RANGE] > 0.0 if OUTSIDE_RANGE in table else table[variable].isna()  # none
-        inside = table.assign(**{variable: table[variable].where(~outside)})
-        pale |= bool(outside.any())
-        if outside.any():  # the whole curve is pale, and on it lies the part inside
-            behind: Axes = table.plot(
-                x=across, y=variable, label=named if outside.all() else "_", alpha=PALE, **look, **marked
-            )
-            marked["color"] = behind.get_lines()[-1].get_color()
-            look["ax"] = drawn = behind
-        if not outside.all():
-            drawn = inside.plot(x=across, y=variable, label=named, **look, **marked)
-        look["ax"] = drawn
-    if drawn is None:
+        here = found.isel(place)
+        x, y = (np.atleast_1d(here[name].values) for name in (across, variable))
+        there = np.isfinite(x) & np.isfinite(y)
+        outside = np.atleast_1d(here[OUTSIDE_RANGE].values > 0.0)[there] if OUTSIDE_RANGE in here else None
+        if there.any():
+            label_here = _series(found, place, problem)
+            curves.append(Curve(label_here, x[there], y[there], colour=len(curves), outside=outside))
+    if not curves:
         raise InputError(f"plot: {variable} has no value at these operating points")
+    drawn: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
+    for curve in curves:
+        plot_curve(drawn, curve)
+    pale = any(curve.outside is not None and curve.outside.any() for curve in curves)
     if pale:
-        drawn.plot([], [], color="black", alpha=PALE, label=OUTSIDE)
+        drawn.plot([], [], color="black", linewidth=THIN, alpha=PALE, label=OUTSIDE)
     if apart or pale:
         drawn.legend(fontsize="small")
     drawn.set(xlabel=_label(found[across]), ylabel=_label(found[variable]))
@@ -188,7 +174,7 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
         raise InputError(
             "plot: there is one operating point, and the contact model gives means of its patch; give a condition"
             ' several values, such as creepage=Q([0.5, 1, 2], "%"), or take a contact model that resolves the patch,'
-            ' such as wl.contact_model("fastsim")'
+            ' such as wl.contact_model("exact") for discs and wl.contact_model("strip_theory") for wheels'
         )
     line = prediction.problem.geometry == "line"
     fields = fields_of(prediction)
@@ -313,7 +299,7 @@ def _series(found: xarray.Dataset, place: Mapping[str, int], problem: Problem) -
     """Return the name of a curve: the value of each other condition, and the patch."""
     of_points = [_value(found[dim].isel({dim: at})) for dim, at in place.items() if dim not in problem.dims]
     patch = in_words({dim: found[dim].values[at] for dim, at in place.items() if dim in problem.dims})
-    return ", ".join([*of_points, *([patch] if patch else [])]) or "_"
+    return ", ".join([*of_points, *([patch] if patch else [])])
 
 
 def _value(one: xarray.DataArray) -> str:

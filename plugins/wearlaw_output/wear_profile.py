@@ -44,7 +44,7 @@ def wear_profile(solution: Solution, body: str, strips: int | None, at: Quantity
     if solution.model.scale == "patch":
         raise CompositionError(
             f"wear_profile: {solution.model!r} gives means of the whole patch; take a contact model that resolves it,"
-            ' such as wl.contact_model("fastsim")'
+            ' such as wl.contact_model("strip_theory")'
         )
     if strips is not None and (
         isinstance(strips, bool) or not isinstance(strips, int) or not 2 <= strips <= MOST_STRIPS

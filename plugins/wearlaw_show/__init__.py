@@ -188,7 +188,9 @@ def _example(rig: type[Rig]) -> Iterator[str]:
         return
     yield from ("", "example:", "  import wearlaw as wl")
     yield from _call("rig = wl.rig", json.dumps(rig.name), *_keywords(rig.example_fields))
-    yield '  predict = rig | wl.contact_model("fastsim") | wl.wear_law("kth")'
+    fits = {"line": "exact", None: "fastsim"}  # which solves lines and ellipses
+    model = fits.get(rig.patch_geometry, "strip_theory")
+    yield f'  predict = rig | wl.contact_model("{model}") | wl.wear_law("kth")'
     yield from _call("predict", *_keywords(rig.example))
 
 

@@ -13,8 +13,9 @@ from wearlaw.contact.conditions import is_friction_law
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, ConditionsError
 from wearlaw.numerics.integrate import integrate_forces
-from wearlaw.pipeline.pipeline import Rig, expect_pipeline
+from wearlaw.pipeline.pipeline import Rig
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, coefficient, from_si
+from wearlaw_sweeps.evaluation import expect_pipeline
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -19,13 +19,13 @@ import xarray
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConditionsError, InputError, ResumeWarning, shown
 from wearlaw.pipeline.composition import warn_of_unlike_materials
-from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline, expect_pipeline
+from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.units.variables import VARIABLES
 from wearlaw_output.datasets import names_in
 from wearlaw_output.notes import caught_warnings
 from wearlaw_output.wear_profile import POSITION
-from wearlaw_sweeps.evaluation import Job, output_units, range_warnings, unsolved
+from wearlaw_sweeps.evaluation import Job, expect_pipeline, output_units, range_warnings, unsolved
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import BLOCK, Points, outer_product
 from wearlaw_sweeps.progress import Bar

@@ -14,7 +14,7 @@ cells of a plot does not matter here.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, NamedTuple, TypeAlias
 
@@ -151,19 +151,11 @@ def integrate_laws(
 
     Parameters
     ----------
-    model : ContactModel
-    laws : sequence of Law
-    problem : Problem
     on_block : callable, optional
         Called with each block of operating points and its totals, which include the forces.
     numbers : sequence of mapping of str to float or ndarray, optional
         The numbers of each law in SI, by default its own. Arrays of shape (points, 1) need a batch of one axis,
         (points,).
-
-    Raises
-    ------
-    ModelError
-        If the model or a law breaks its contract.
     """
     model, problem = prepared(model, problem)
     if not laws:
@@ -171,7 +163,8 @@ def integrate_laws(
         if on_block is not None:
             on_block(problem, forces)
         return forces
-    numbered = list(zip(laws, map(_frozen, numbers) if numbers else [law.numbers for law in laws], strict=True))
+    frozen = [_arrays(p, read_only) for p in numbers] if numbers else [law.numbers for law in laws]
+    numbered = list(zip(laws, frozen, strict=True))
     solver = Solver(model)
     over = _over_line if problem.geometry == "line" else _over_ellipse
     totals = over(solver, numbered, problem, on_block)
@@ -191,7 +184,8 @@ def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: On
                 values.append(solver.rate(law, seen, part, _of_patches(own)))
                 kept.append(None)
                 continue
-            wear = seen.over_strip(split_rates(solver, law, seen, part, _of_nodes(own, seen)))
+            of_nodes = _arrays(own, lambda values: values[..., None])  # an axis for the nodes and one for the strips
+            wear = seen.over_strip(split_rates(solver, law, seen, part, of_nodes))
             values.append((wear * seen.strip_width).sum(axis=-1) / area)
             kept.append(Across.of(seen, wear) if keeps else None)
         return Totals(
@@ -321,9 +315,6 @@ def integrate_across(
 
     Parameters
     ----------
-    model : ContactModel
-    law : Law
-    problem : Problem
     strips : int, optional
         Number of strips of equal width. By default, and if the model cannot choose strips, the model's own strips.
     solved_before : Contact, optional
@@ -430,26 +421,19 @@ def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Array | N
     return ratio
 
 
-def _frozen(p: Numbers) -> Numbers:
-    """Return the numbers of a law with arrays that the law cannot change."""
-    return {name: read_only(value) if isinstance(value, np.ndarray) else value for name, value in p.items()}
+def _arrays(p: Numbers, function: Callable[[Array], Array]) -> Numbers:
+    """Return the numbers of a law with a function applied to those that are arrays."""
+    return {name: function(value) if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
 
 def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
     """Return the numbers of a law at some operating points."""
-    return {name: value[points] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+    return _arrays(p, lambda values: values[points])
 
 
 def _of_patches(p: Numbers) -> Numbers:
     """Return the numbers of a law without the axis of the nodes, for an outcome of the patch."""
-    return {name: value[..., 0] if isinstance(value, np.ndarray) else value for name, value in p.items()}
-
-
-def _of_nodes(p: Numbers, contact: Contact) -> Numbers:
-    """Return the numbers of a law with an axis of length one for each axis of the nodes."""
-    if not contact.on_strips:
-        return p
-    return {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+    return _arrays(p, lambda values: values[..., 0])
 
 
 def _on_own_nodes(solver: Solver, law: Law, p: Numbers, problem: Problem, contact: Contact) -> Mean:

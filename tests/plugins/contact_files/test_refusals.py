@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.contact_files.files import FILES, HEAD, SUBSURFACE, changed, of_version, rows_of, write_rows
+from tests.plugins.contact_files.files import FILES, SUBSURFACE, changed, of_version, rows_of, write_rows
 from wearlaw import Array
 from wearlaw_contact_files.subsurface import read_subsurface  # private: one reader, without the look-up
 
 TREAD = FILES["tread"]
-LINES = TREAD.read_text(encoding="ascii").splitlines()
 FIRST_ELEMENT = 14
 """Line of the first element, from 1."""
 
@@ -138,9 +137,3 @@ def test_few_columns_of_stresses_are_read(tmp_path: Path) -> None:
     four = read_subsurface(below(lambda _: rows[:, [0, 1, 2, 7]], tmp_path))
     assert list(four) == ["sigma_von_mises"]
     assert four.equals(whole[["sigma_von_mises"]])
-
-
-def test_the_head_is_where_the_tests_take_it_to_be() -> None:
-    assert LINES[FIRST_ELEMENT - 2].split()[:3] == ["%", "I", "IGS"]
-    assert len(LINES) == len(rows_of(TREAD)) + 7
-    assert len(rows_of(TREAD)) == HEAD + 130

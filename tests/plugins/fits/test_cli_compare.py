@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import files, wearlaw
-from tests.core.cli_data import COMPARE, FIT, LAW, listed, rates
+from tests.plugins.fits.cli_data import COMPARE, FIT, LAW, listed, rates
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
 

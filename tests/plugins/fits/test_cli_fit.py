@@ -12,9 +12,9 @@ import pytest
 
 import wearlaw as wl
 from tests.core.cases import files, wearlaw
-from tests.core.cli_data import CREEPAGE, FIT, HEAD, listed, rates, rows, write_tests
 from tests.core.distributions import Install
 from tests.core.test_stages import PLUGIN
+from tests.plugins.fits.cli_data import CREEPAGE, FIT, HEAD, listed, rates, rows, write_tests
 from wearlaw import Q
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")

@@ -188,7 +188,7 @@ def test_a_law_of_your_own_may_have_negative_parameters() -> None:
     assert fit.parameters["slope"].magnitude == pytest.approx(slope, rel=1e-6)
     line: Any = stats.linregress(density, in_microgram(tests.wear_rate))
     assert fit.standard_errors["offset"].magnitude == pytest.approx(line.intercept_stderr, rel=1e-5)
-    assert fit.provenance["wear_law"] == "not installed"
+    assert fit.provenance["laws"] == {"sloping": "not installed"}
 
 
 def test_the_law_that_made_the_tests_has_the_better_information_criterion() -> None:

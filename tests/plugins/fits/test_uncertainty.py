@@ -74,7 +74,7 @@ def test_each_sample_is_the_prediction_with_its_values() -> None:
 
 def test_a_lognormal_value_has_its_median_and_its_factor() -> None:
     u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.lognormal(0.3, 1.1)}, samples=8)
-    values = u.inputs[0].conditions(np.array([0.5, 0.9]))["friction_coefficient"]
+    values = u.sampler.inputs[0].at(np.array([0.5, 0.9]))["friction_coefficient"]
     assert values == pytest.approx(stats.lognorm(np.log(1.1), scale=0.3).ppf([0.5, 0.9]), rel=16 * EPS)
 
 

@@ -189,13 +189,6 @@ def test_the_csv_holds_the_numbers_of_the_datasets(study: wl.Study, results: Pat
             assert row[column] == here[column].item(), column  # CSV holds all digits of a float64
 
 
-def test_results_of_models_that_share_a_name_keep_their_labels_when_run_again() -> None:
-    laws = ["usfd", {"model": "usfd", "fitted_for": "exact"}, {"model": "kth", "coefficient": "low"}, "kth"]
-    first = wl.run(wl.Case(**table(wear_laws=laws, contact_models=["exact"])))
-    dumped = first.case.model_dump(mode="json", by_alias=True, exclude_none=True)
-    xarray.testing.assert_identical(wl.run(wl.Case(**dumped)).sweeps["creepage"], first.sweeps["creepage"])
-
-
 @pytest.mark.usefixtures("blank_figures")
 def test_the_shipped_study_and_a_copy_of_its_file_give_equal_results(folder: Path) -> None:
     (folder / "my case.toml").write_bytes(wearlaw("case", "tassini2010").stdout_bytes)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 import warnings
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,6 @@ import jsonschema  # type: ignore[import-untyped]
 import numpy as np
 import pandas as pd
 import pytest
-import xarray
 
 import wearlaw as wl
 from tests.core import cases
@@ -213,22 +211,6 @@ def test_its_uncertainty_is_that_of_direct_samples() -> None:
                 **{**CURVE, "spin": wl.normal("1 1/m", "0.1 1/m")},
             )
         assert row["median [µg/m/mm²]"] == pytest.approx(direct.median.m_as("ug/m/mm^2"), rel=1e-12)
-
-
-@pytest.mark.usefixtures("folder", "blank_figures")
-def test_the_shipped_study_of_a_wheel_runs_from_the_command_line(validator: Any) -> None:
-    validator.validate(tomllib.loads(wearlaw("case", "wheel_on_rail").stdout))
-    ran = wearlaw("run", "wheel_on_rail", "-o", "out")
-    assert ran.exit_code == 0, ran.output
-    page = Path("out/report.html").read_text(encoding="utf-8")
-    for text in ("Wear across the patch: curve", "rail: greatest depth", "in 1000 km"):
-        assert text in page
-    rows = pd.read_csv("out/results.csv")
-    assert set(rows.contact_model) == {"strip_theory"}
-    with xarray.open_dataset("out/results.nc", group="profiles/curve", engine="h5netcdf") as profile:
-        assert float(profile.wheel_depth.max()) > 0.0
-    shipped, again = wl.load_case("wheel_on_rail"), wl.load_case("out/case.toml")
-    assert again == shipped
 
 
 # Rigs of plugins

@@ -199,8 +199,15 @@ def test_what_is_left_out_and_every_warning_is_noted_once(study: wl.Study) -> No
 
 
 def test_printed_notes_name_all_subjects_of_a_remark_once() -> None:
-    said = grouped(["a: check it: now", "results.csv is left out", "b: check it", "c: check it: now"])
-    assert said == ["a, c: check it: now", "results.csv is left out", "b: check it"]
+    notes = [
+        "a: check it",
+        "results.csv is left out",
+        "b: law: too low; 1 of 3",
+        "c: check it",
+        "d: law: too low; 2 of 3",
+    ]
+    said = ["a, c: check it", "results.csv is left out", "law: too low; b: 1 of 3; d: 2 of 3"]
+    assert grouped(notes) == said
 
 
 def test_a_profile_that_no_model_resolves_is_left_out_and_noted() -> None:

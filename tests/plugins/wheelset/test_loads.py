@@ -182,11 +182,6 @@ def test_a_torque_beyond_friction_is_an_error() -> None:
     predicted(CONES, lateral_displacement="0 mm", axle_torque="16 kN*m")
 
 
-def test_torque_and_speed_of_rotation_exclude_each_other() -> None:
-    with pytest.raises(wl.ConditionsError, match="give axle_torque or angular_speed, not both"):
-        predicted(CONES, lateral_displacement="0 mm", axle_torque="0 N*m", angular_speed="43 rad/s")
-
-
 # ---------------------------------------------------------------------------------------------------- several patches
 
 

@@ -82,7 +82,7 @@ class Roller(wl.Rig):
         return rig.problem(max_pressure="1 GPa", creepage=creepage, friction_coefficient=0.4)
 
 
-rolled = Roller() | wl.contact_model("fastsim") | wl.wear_law("kth")
+rolled = Roller() | wl.contact_model("exact") | wl.wear_law("kth")
 assert_type(rolled(mass="20 kg", creepage="1 %"), wl.Prediction)
 
 

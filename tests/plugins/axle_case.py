@@ -68,7 +68,7 @@ def wearlaw_models() -> list[type[wl.Rig]]:
     return [Axle]
 
 
-AXLES = ("axles", "from tests.core.axle_case import wearlaw_models")
+AXLES = ("axles", "from tests.plugins.axle_case import wearlaw_models")
 """Name and source of the plugin."""
 
 MOVED = np.array([-7.0, -3.0, 0.0, 3.0, 7.0])
