@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import wearlaw
+from tests.cases import wearlaw
 from tests.environments import ROOT
 from tests.plugins.fits.cli_data import rates, rows, write_tests
 from wearlaw import (

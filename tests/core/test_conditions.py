@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
+from tests import cases
 from wearlaw import Q
 from wearlaw_kit import Check, conformance
 from wearlaw_studies.case import Case  # private: a case without its files

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import Linear
+from tests.cases import Linear
 from wearlaw import Configuration, Q
 
 STEEL = wl.steel()

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import following_line
+from tests.cases import following_line
 from tests.core.stages import (
     AS_PRINTED,
     BRR,

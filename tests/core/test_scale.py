@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import Coarse
+from tests.cases import Coarse
 
 RIG = wl.TwinDisc.suros()
 

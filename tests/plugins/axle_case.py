@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import wearlaw as wl
-from tests.core.cases import Table
+from tests.cases import Table
 
 RADIUS, CONICITY, FLANGE = 0.46, 0.05, 6e-3
 LEFT_OR_RIGHT = np.array([[-1.0], [1.0]])

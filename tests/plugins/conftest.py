@@ -11,7 +11,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import wearlaw as wl
-from tests.core.cases import POINT, case
+from tests.cases import POINT, case
 from tests.plugins.fits import cli_data
 from wearlaw_studies.case import case_schema  # private: a case without its files
 from wearlaw_studies.study import Study, run  # private: a case run without its files

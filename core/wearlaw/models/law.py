@@ -1,7 +1,6 @@
 """The base class of laws of any outcome, `Law`, its `Outcome`, and the record of the fit of its parameters."""
 
 import math
-import warnings
 from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,6 +28,7 @@ from wearlaw.errors import (
     UnitError,
     did_you_mean,
     shown,
+    warn,
 )
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.model import Blame, Model, check_scale, fault
@@ -363,11 +363,10 @@ class Law(Model):
             held += ", of an ellipse"
         elif fitted_for.scale in ("any", scale):
             return
-        warnings.warn(
+        warn(
             f"the parameters of {self.kind} '{self.name}' were fitted for {fitted_for}, but the contact holds {held};"
             " check them against data",
             CalibrationWarning,
-            stacklevel=3,
         )
 
     def breakpoints(self, p: Numbers) -> BreakpointMap | None:  # noqa: ARG002

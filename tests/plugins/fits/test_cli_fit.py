@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import files, wearlaw
+from tests.cases import files, wearlaw
 from tests.core.distributions import Install
 from tests.core.test_stages import PLUGIN
 from tests.plugins.fits.cli_data import CREEPAGE, FIT, HEAD, listed, rates, rows, write_tests

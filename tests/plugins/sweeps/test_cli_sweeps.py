@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
+from tests.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
 from tests.plugins.sweeps.sweeps import contents, interrupted_after
 from wearlaw_sweeps import room  # private: the memory of the machine
 
