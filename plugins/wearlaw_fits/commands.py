@@ -273,21 +273,19 @@ def compare(
 
 def _freed(settings: tuple[str, ...], laws: Mapping[str, Law]) -> dict[str, list[str]]:
     """Return the fields to fit by law, as --laws writes it; the name alone will do if only one law has it."""
-    names = [law.name for law in laws.values()]
-    texts = {law.name: text for text, law in laws.items() if names.count(law.name) == 1} | {text: text for text in laws}
     found: dict[str, list[str]] = {}
     for setting in settings:
         name, _, freed = setting.rpartition("=")
-        text = texts.get(name)
-        if text is None:
+        texts = [name] if name in laws else [text for text, law in laws.items() if law.name == name]
+        if len(texts) != 1:
             raise click.UsageError(
                 f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got {shown(setting)}"
             )
-        if text in found:
+        if texts[0] in found:
             raise click.UsageError(
                 f"--free: {shown(name)} is given twice; write all its fields behind one, between commas"
             )
-        found[text] = listed("--free", freed)
+        found[texts[0]] = listed("--free", freed)
     return found
 
 
