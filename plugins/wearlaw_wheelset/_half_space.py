@@ -50,9 +50,6 @@ TARGET = 0.02
 FINEST = 8
 """Greatest number of rows in place of one."""
 
-ONE_ROW = 0.25
-"""Estimated error of the maximum pressure on a hump of one row."""
-
 FLOOR = 1e-6
 """Pressure and length of strips that do not touch, over the greatest ones."""
 
@@ -121,8 +118,11 @@ def rows(
         y = dy * np.arange(np.floor(low / dy) - count // 2, np.ceil(high / dy) + count // 2)
         grid = _grid(section, place, depth, y, dx)
         guess = None if start is None else _moved(start, grid)
-        pressure, left = _pressed_near(grid, dx, dy, modulus, depth, guess)
-        error = _error(pressure.max(axis=0), left)
+        near, pressure = grid.height < depth, np.zeros(grid.gap.shape)
+        inside = slice(near.argmax(), near.size - near[::-1].argmax())
+        first = None if guess is None or not guess[:, inside].any() else guess[:, inside]
+        pressure[:, inside] = pressed(grid.gap[:, inside], dx, dy, modulus, depth, first)
+        error = _error(pressure.max(axis=0))
         if error <= TARGET or finer == FINEST:
             break
         finer, start = 2 * finer, None
@@ -130,10 +130,10 @@ def rows(
     share = force / force.sum()
     # The pressed wheel overlaps the rail, and on a slope the surfaces' points on a normal then differ in y.
     rail_y = float(np.interp(share @ y, y, grid.foot))
-    kept, first = _joined(most, grid.height, count)
-    size = np.diff(np.append(first, kept.size))
-    y, force = (np.add.reduceat(one[kept], first) / size for one in (y, force))
-    most = np.maximum(np.maximum.reduceat(most[kept], first), FLOOR * most.max())
+    kept, begin = _joined(most, grid.height, count)
+    size = np.diff(np.append(begin, kept.size))
+    y, force = (np.add.reduceat(one[kept], begin) / size for one in (y, force))
+    most = np.maximum(np.maximum.reduceat(most[kept], begin), FLOOR * most.max())
     half_length = 2.0 / np.pi * force / most
     half_length = np.maximum(half_length, FLOOR * half_length.max())
     return Rows(
@@ -155,25 +155,15 @@ def _overlap(section: Section, place: Candidates, depth: float) -> tuple[float, 
     return low - step, high + step, step * float((within / (within + beyond)).sum())
 
 
-def _error(most: Array, left: Array) -> float:
-    """Return an estimate of the error of the maximum pressure, as a share of it.
+def _error(most: Array) -> float:
+    """Return an estimate of the error of the maximum pressure, as a share of it, from those of rows.
 
-    It is an eighth of the second difference of the pressure from row to row at a peak. Peaks with less than half the
-    greatest pressure do not count. A hump that touches between two rows counts as one with a row.
-
-    Parameters
-    ----------
-    most, left : ndarray
-        Maximum pressure [Pa] and least gap [m] of each row; the gap is infinite far from the patch.
+    It is an eighth of the second difference from row to row at a peak. Peaks with less than half the greatest pressure
+    do not count.
     """
     before, here, after = most[:-2], most[1:-1], most[2:]
     peak = (here >= before) & (here >= after) & (here >= 0.5 * most.max())
-    error = ((2.0 * here - before - after)[peak] / (8.0 * here[peak])).max()
-    with np.errstate(invalid="ignore"):  # far from the patch
-        rise, curved = left[2:] - left[:-2], left[2:] + left[:-2] - 2.0 * left[1:-1]
-        between = left[1:-1] - rise**2 / (8.0 * curved)
-    lowest = (left[1:-1] < left[:-2]) & (left[1:-1] <= left[2:]) & (here == 0.0)
-    return max(float(error), ONE_ROW if (lowest & (between < 0.0)).any() else 0.0)
+    return float(((2.0 * here - before - after)[peak] / (8.0 * here[peak])).max())
 
 
 def _humps(most: Array) -> NDArray[np.intp]:
@@ -250,19 +240,6 @@ def _grid(section: Section, place: Candidates, depth: float, y: Array, dx: float
     return _Grid(gap, height, foot, there.angle, middle, own)
 
 
-def _pressed_near(
-    grid: _Grid, dx: float, dy: float, modulus: float, depth: float, guess: Array | None
-) -> tuple[Array, Array]:
-    """Return the pressure of all elements [Pa], and the least gap that is left in each row [m]."""
-    near = grid.height < depth
-    inside = slice(near.argmax(), near.size - near[::-1].argmax())
-    start = None if guess is None or not guess[:, inside].any() else guess[:, inside]
-    pressure, least = np.zeros(grid.gap.shape), np.full(near.shape, np.inf)
-    pressure[:, inside], left = pressed(grid.gap[:, inside], dx, dy, modulus, depth, start)
-    least[inside] = left.min(axis=0)
-    return pressure, np.where(near, least, np.inf)
-
-
 def _above(
     section: Section, place: Candidates, depth: float, x: Array, y: Array, arc: Array
 ) -> tuple[Array, Array, Array]:
@@ -329,10 +306,8 @@ def _moved(start: Rows, grid: _Grid) -> Array:
     return found
 
 
-def pressed(
-    gap: Array, dx: float, dy: float, modulus: float, approach: float, start: Array | None = None
-) -> tuple[Array, Array]:
-    """Return the pressure of half-spaces on the elements of a grid [Pa], and the gap that they leave [m].
+def pressed(gap: Array, dx: float, dy: float, modulus: float, approach: float, start: Array | None = None) -> Array:
+    """Return the pressure of half-spaces on the elements of a grid, (along x, along y) [Pa].
 
     Parameters
     ----------
@@ -380,7 +355,7 @@ def pressed(
     for _ in range(ITERATIONS):
         touches = pressure > 0.0
         if np.abs(rest[touches]).max() < small and rest[~touches].min(initial=0.0) > -small:
-            return pressure, rest
+            return pressure
         norm = float(np.square(rest[touches]).sum())
         step = np.where(touches, rest + norm / before * step, 0.0)
         moved = displaced(step)

@@ -124,7 +124,7 @@ def in_space(case: Case, row: float) -> tuple[Any, Rows]:
     height, cell = 1e-3 * np.ascontiguousarray(gap.height[::4, ::every]), 0.4e-3 * 1e-3 * row
 
     def solved(depth: float) -> Any:
-        return pressed(height, 0.4e-3, 1e-3 * row, MODULUS, depth)[0]
+        return pressed(height, 0.4e-3, 1e-3 * row, MODULUS, depth)
 
     pressure = solved(brentq(lambda depth: solved(depth).sum() * cell - contact.fn, 1e-4, 2e-4, xtol=1e-10))
     cosine, force = np.cos(contact.delta), 1e-3 * 0.4e-3 * pressure.sum(axis=0)
