@@ -98,7 +98,7 @@ stages_option = click.option(
     metavar="FIELDS",
     help="Parameters to fit: fields of the law or of a stage, or friction_coefficient.",
 )
-@click.option("--label", help="The name of the fitted law in tables and figures.")
+@click.option("--label", help="Name of the fitted law in tables and figures [default: LAW fitted to TESTS].")
 @click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
 @common
 @bounds_option
@@ -156,7 +156,9 @@ def _fit(
 ) -> Fit:
     """Return the fit for these options."""
     names, given = listed("--free", free), values("--fixed", fixed)
-    given |= {"label": label} if label else {}
+    if law is not None:
+        name = law.partition(":")[0]
+        given["label"] = label or f"{Path(name).stem} fitted to {Path(path).stem}"
     both = [name for name in names if name in given]
     if both:
         raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")

@@ -134,17 +134,21 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
 def _faulty_heads(table: Table, known: Collection[str]) -> Iterator[str]:
     """Yield what is wrong with single columns of tests."""
     missing = [name for name in (*COLUMNS, *TEXTS) if name not in table.columns]
+    unknown = []
     for column in table.columns.values():
         where = f"column '{column.head}'"
         if column.name in COLUMNS:
             if COLUMNS[column.name].unit and column.unit is None:
                 yield f"{where}: has no unit; write it as '{head(column.name)}'"
         elif column.name not in TEXTS and not _is_other(column, missing, known):
-            yield (
-                f"{where}: unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])} The columns are"
-                f" {', '.join([*COLUMNS, *TEXTS])}; another condition of a rig has its unit in square brackets, as in"
-                " 'mass [kg]'"
-            )
+            unknown.append(column)
+            yield f"{where}: unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])}"
+    if unknown:
+        heads = ", ".join(map(head, COLUMNS))
+        yield (
+            f"the columns are {heads}, {', '.join(TEXTS)}, in any unit; another condition of a rig has its unit in"
+            " square brackets, as in 'mass [kg]'"
+        )
 
 
 def _is_other(column: Column, missing: Collection[str], known: Collection[str]) -> bool:
