@@ -14,7 +14,7 @@ import pytest
 from hypothesis import settings
 
 from docs.validation import numbers
-from tests.core.cases import InstallModel, installer
+from tests.cases import InstallModel, installer
 from tests.core.distributions import Install, write_distribution
 from wearlaw import loader  # private: a distribution of a test is found as if it were installed
 

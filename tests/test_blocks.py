@@ -24,7 +24,7 @@ import tomli_w
 import xarray as xr
 
 from conftest import PAGES
-from tests.core.cases import table
+from tests.cases import table
 from tests.environments import ROOT
 from wearlaw.cli import main  # private: the program, in this process
 

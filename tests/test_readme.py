@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import wearlaw
-from tests.core.cli_data import rates, rows, write_tests
+from tests.cases import wearlaw
 from tests.environments import ROOT
+from tests.plugins.fits.cli_data import rates, rows, write_tests
 from wearlaw import (
     hookspecs,  # private: hooks are an interface by name
     loader,  # private: all that is installed, by kind

@@ -44,7 +44,7 @@ from wearlaw.errors import (
     shown,
 )
 from wearlaw.extras import load as _load
-from wearlaw.fields import ContactModelField, MaterialField, WearLawField
+from wearlaw.fields import ContactModelField, MaterialField, WearLawField, read_law
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
 from wearlaw.kernels import accelerate, accelerated, compiled_loop
 from wearlaw.loader import (
@@ -238,7 +238,6 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from wearlaw.fields import read_law
     from wearlaw_archard.coefficients import wear_coefficient
     from wearlaw_contact_files._reading import read_contact
     from wearlaw_explore._page import explore
@@ -262,7 +261,6 @@ if TYPE_CHECKING:
 
 _LATE = {
     "wearlaw_sweeps.inverse": ("creepage_for",),
-    "wearlaw.fields": ("read_law",),
     "wearlaw_archard.coefficients": ("wear_coefficient",),
     "wearlaw_contact_files._reading": ("read_contact",),
     "wearlaw_explore._page": ("explore",),
@@ -283,7 +281,7 @@ _LATE = {
     "wearlaw_twin_disc": ("Disc", "TwinDisc"),
     "wearlaw_wheel_rail": ("WheelRail",),
 }
-"""Public names that come from plugins, or that few scripts need, by the module that is imported at their first use."""
+"""Public names that come from plugins, by the module that is imported at their first use."""
 
 
 def __getattr__(name: str) -> object:

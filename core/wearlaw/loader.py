@@ -216,17 +216,6 @@ def _entry_points() -> list[tuple[EntryPoint, Origin]]:
     return sorted(chain.from_iterable(found.values()), key=lambda pair: (pair[1].distribution, pair[1].entry_point))
 
 
-class _Manager(pluggy.PluginManager):
-    """A plugin manager that inspects marked names only; inspecting all names takes most of pluggy's time."""
-
-    def parse_hookspec_opts(self, module_or_class: Any, name: str) -> Any:
-        return getattr(getattr(module_or_class, name), f"{hookspecs.PROJECT}_spec", None)
-
-    def parse_hookimpl_opts(self, plugin: Any, name: str) -> Any:
-        marked = hasattr(getattr(plugin, name, None), f"{hookspecs.PROJECT}_impl")
-        return super().parse_hookimpl_opts(plugin, name) if marked else None
-
-
 def _hooks(entry_point: EntryPoint, origin: Origin) -> pluggy.HookRelay:
     """Return the hooks of a plugin alone, or raise an error if it is broken."""
     plugin = entry_point.load()
@@ -236,7 +225,7 @@ def _hooks(entry_point: EntryPoint, origin: Origin) -> pluggy.HookRelay:
             f"it is built for version {shown(needed)} of the plugin interface, but this wearlaw has version"
             f" {hookspecs.INTERFACE_VERSION}; upgrade the older of the two"
         )
-    manager = _Manager(hookspecs.PROJECT)
+    manager = pluggy.PluginManager(hookspecs.PROJECT)
     manager.add_hookspecs(hookspecs)
     manager.register(plugin, str(origin))
     manager.check_pending()

@@ -16,20 +16,20 @@ import panel as pn
 from bokeh.models import CustomJS
 
 import wearlaw as wl
-from wearlaw.contact.conditions import Known
 from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.prediction import SHOWN
 from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_explore._subject import Subject, numbered
 from wearlaw_output.commands import values
+from wearlaw_output.conditions import Known
 from wearlaw_output.curves import BLACK, Map
 from wearlaw_output.labels import in_words, label
 from wearlaw_output.notes import Notes
 from wearlaw_output.pictures import fields_of, raster
 from wearlaw_studies.case import load_case
 from wearlaw_studies.report.interactive import plotly_figure
+from wearlaw_sweeps.evaluation import expect_pipeline
 
 CURVE = 41
 """Points of a curve of wear over creepage."""

@@ -55,40 +55,8 @@ class Agreement:
         return self.without_ratio, float(f"{factor:.6g}"), float(f"{self.rms_error:.6g}")
 
 
-@dataclass(frozen=True)
-class Information:
-    """Akaike's information criterion of a fitted law, which weighs its agreement against its number of parameters.
-
-    Of laws fitted to the same tests, the one with the least AIC is expected to predict other tests best. Only
-    differences matter.
-
-    Attributes
-    ----------
-    parameters : int
-        Number of fitted parameters. If the scatter is estimated too, k counts it as one more.
-    aic : float
-        n ln(Σ rᵢ²/n) + 2k, rᵢ being the residuals of the fit; Σ rᵢ² + 2k where the tests state their uncertainty.
-    aicc : float or None
-        AIC + 2k(k + 1)/(n - k - 1), for few tests; None if there are too few.
-
-    Notes
-    -----
-    K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2nd ed., Springer, 2002.
-    """
-
-    parameters: int
-    aic: float
-    aicc: float | None
-
-
 def agreement(predicted: Array, measured: Array) -> Agreement:
-    """Return the errors of predicted values against measured ones.
-
-    Parameters
-    ----------
-    predicted, measured : ndarray, (tests,)
-        Values in SI; at least one.
-    """
+    """Return the errors of predicted values (tests,) in SI against measured ones; at least one."""
     both = (predicted > 0) & (measured > 0)
     logs = np.log(predicted[both]) - np.log(measured[both])
     return Agreement(

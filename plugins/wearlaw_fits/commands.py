@@ -18,6 +18,7 @@ from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named
 from wearlaw_fits.fit import fit as fit_parameters
+from wearlaw_fits.named_numbers import FRICTION
 from wearlaw_fits.pairs import Pair, compose
 from wearlaw_fits.read_tests import read_tests
 from wearlaw_fits.result import Fit
@@ -108,11 +109,23 @@ stages_option = click.option(
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-fit].")
 def fit(
     tests: str,
+    contact: str,
+    stages: tuple[str, ...],
+    law: str | None,
+    free: str,
+    label: str | None,
+    fixed: tuple[str, ...],
+    bounds: tuple[str, ...],
+    rig: Path | None,
+    friction: float | None,
+    sep: str | None,
+    decimal: str,
+    bootstrap: int,
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
-    **options: Any,
+    **settings: Any,
 ) -> None:
     """Fit parameters of a wear law to tests: TESTS is a CSV file with units in its header, such as creepage [%].
 
@@ -128,59 +141,29 @@ def fit(
     folder = output if output is not None else folder_for(tests, "fit")
     notes = Notes()
     with results_folder(folder, overwrite, FIT) as fresh:
-        fitted = _fit(tests, notes, **options)
+        names, given = listed("--free", free), values("--fixed", fixed)
+        if law is not None:
+            name = Path(law.partition(":")[0]).stem
+            given["label"] = label or f"{name} fitted to {Path(tests).stem}"
+        if both := [name for name in names if name in given]:
+            raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
+        measured = read_tests(tests, sep=sep, decimal=decimal)
+        if FRICTION not in names:
+            _note_friction(measured, friction, notes)
+        predict = _rig(rig, notes) | contact_model(contact)
+        for text in stages:
+            predict = predict | stage(text)
+        if law is not None:
+            predict = _with_law(predict, law_of(law, given), names, notes)
+        with notes.of("fit"), Bar(bootstrap) as bar:
+            bar.stage("fitting")
+            settings |= {"friction_coefficient": friction, "bounds": _bounds(bounds), "bootstrap": bootstrap}
+            fitted = fit_parameters(predict, measured, names, on_progress=bar, **settings)
         with notes.of("figure"):
-            names = _write_fit(fitted, notes.texts, fresh, figure_formats, latex)
+            files = _write_fit(fitted, notes.texts, fresh, figure_formats, latex)
     print_notes(notes.texts)
     click.echo(repr(fitted))
-    print_results(folder, names)
-
-
-def _fit(
-    path: str,
-    notes: Notes,
-    *,
-    contact: str,
-    stages: tuple[str, ...],
-    law: str | None,
-    free: str,
-    label: str | None,
-    fixed: tuple[str, ...],
-    bounds: tuple[str, ...],
-    rig: Path | None,
-    friction: float | None,
-    sep: str | None,
-    decimal: str,
-    bootstrap: int,
-    **settings: Any,
-) -> Fit:
-    """Return the fit for these options."""
-    names, given = listed("--free", free), values("--fixed", fixed)
-    if law is not None:
-        name = law.partition(":")[0]
-        given["label"] = label or f"{Path(name).stem} fitted to {Path(path).stem}"
-    both = [name for name in names if name in given]
-    if both:
-        raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
-    tests = read_tests(path, sep=sep, decimal=decimal)
-    if "friction_coefficient" not in names:
-        _note_friction(tests, friction, notes)
-    around = _rig(rig, notes) | contact_model(contact)
-    for text in stages:
-        around = around | stage(text)
-    predict = around if law is None else _with_law(around, law, given, names, notes)
-    with notes.of("fit"), Bar(bootstrap) as bar:
-        bar.stage("fitting")
-        return fit_parameters(
-            predict,
-            tests,
-            names,
-            friction_coefficient=friction,
-            bounds=_bounds(bounds),
-            bootstrap=bootstrap,
-            on_progress=bar,
-            **settings,
-        )
+    print_results(folder, files)
 
 
 def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | float]]:
@@ -194,11 +177,8 @@ def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | flo
     return found
 
 
-def _with_law(
-    contact: Pipeline[...], text: str, given: Mapping[str, str | float], free: list[str], notes: Notes
-) -> Pipeline[...]:
+def _with_law(contact: Pipeline[...], law: Law, free: list[str], notes: Notes) -> Pipeline[...]:
     """Return the pipeline with the law to fit, and note the values of its fixed parameters."""
-    law = law_of(text, given)
     kept = [
         f"{name} = {value!r}"
         for name, value in numbers(law.explicit()).items()
@@ -229,11 +209,21 @@ def _with_law(
 )
 def compare(
     tests: str,
+    contacts: str,
+    stages: tuple[str, ...],
+    laws: str,
+    free: tuple[str, ...],
+    cross_validate: str | None,
+    bounds: tuple[str, ...],
+    scatter: str,
+    rig: Path | None,
+    friction: float | None,
+    sep: str | None,
+    decimal: str,
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
-    **options: Any,
 ) -> None:
     """Rank contact models and wear laws by how well they predict tests.
 
@@ -251,101 +241,73 @@ def compare(
     predicted wear rates; and comparison.json with all models.
     """  # noqa: D301
     folder = output if output is not None else folder_for(tests, "comparison")
-    notes = Notes()
-    with results_folder(folder, overwrite, COMPARISON) as fresh:
-        comparison = _compare(tests, notes, **options)
-        with notes.of("figure"):
-            names = _write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
-    print_notes(notes.texts)
-    click.echo(repr(comparison))
-    print_results(folder, names)
-
-
-def _compare(
-    path: str,
-    notes: Notes,
-    *,
-    contacts: str,
-    stages: tuple[str, ...],
-    laws: str,
-    free: tuple[str, ...],
-    rig: Path | None,
-    friction: float | None,
-    sep: str | None,
-    decimal: str,
-    bounds: tuple[str, ...],
-    scatter: str,
-    cross_validate: str | None,
-) -> Comparison:
-    """Return the comparison for these options."""
     parts: Any = int(cross_validate) if cross_validate and cross_validate.isdecimal() else cross_validate
     if parts and not free:
         raise click.UsageError("--cross-validate: say which parameters are free, as in --free usfd=q_s,m_c")
-    tests = read_tests(path, sep=sep, decimal=decimal)
-    _note_friction(tests, friction, notes)
-    given = {text: law_of(text) for text in listed("--laws", laws)}
-    named = {law.label or text: law for text, law in given.items()}
-    around = [stage(text) for text in stages]
-    suffix = f" with {' and '.join(stages)}" if stages else ""
-    models = {f"{text}{suffix}": contact_model(text) for text in listed("--contacts", contacts)}
-    pairs = compose(_rig(rig, notes), models, named, notes, stages=around, remedy="add --stage patch_mean")
-    predictors: list[tuple[Names, Predictor]] = [
-        (Names(pair.label, pair.law, pair.contact_model), pair.pipeline) for pair in pairs
-    ]
-    freed, ends = _freed(free, named), _bounds(bounds)
-    for field in ends.keys() - {field for fields_of_law in freed.values() for field in fields_of_law}:
-        raise click.UsageError(f"--bounds: {shown(field)} is not free; add it to --free, as in --free LAW={field}")
-    for law, fields_of_law in freed.items():
-        of_law = [pair for pair in pairs if pair.law == law]
-        own = {field: ends[field] for field in fields_of_law if field in ends}
-        fits = _fits(of_law, fields_of_law, tests, notes, friction_coefficient=friction, scatter=scatter, bounds=own)
-        predictors += [(Names(f"{law} fitted on {contact}", f"{law} fitted", contact), one) for contact, one in fits]
-    comparison = compare_named(predictors, tests, friction, cross_validate=parts, progress=True)
-    for note in comparison.notes:
-        notes.add(note)
-    return comparison
+    notes = Notes()
+    with results_folder(folder, overwrite, COMPARISON) as fresh:
+        measured = read_tests(tests, sep=sep, decimal=decimal)
+        _note_friction(measured, friction, notes)
+        given = {text: law_of(text) for text in listed("--laws", laws)}
+        named = {law.label or text: law for text, law in given.items()}
+        suffix = f" with {' and '.join(stages)}" if stages else ""
+        models = {f"{text}{suffix}": contact_model(text) for text in listed("--contacts", contacts)}
+        around = [stage(text) for text in stages]
+        pairs = compose(_rig(rig, notes), models, named, notes, stages=around, remedy="add --stage patch_mean")
+        predictors: list[tuple[Names, Predictor]] = [
+            (Names(pair.label, pair.law, pair.contact_model), pair.pipeline) for pair in pairs
+        ]
+        freed, ends = _freed(free, named), _bounds(bounds)
+        for field in ends.keys() - {field for fields_of_law in freed.values() for field in fields_of_law}:
+            raise click.UsageError(f"--bounds: {shown(field)} is not free; add it to --free, as in --free LAW={field}")
+        settings: Any = {"friction_coefficient": friction, "scatter": scatter}
+        for law, names in freed.items():
+            settings["bounds"] = {field: ends[field] for field in names if field in ends}
+            predictors += _fits([pair for pair in pairs if pair.law == law], names, measured, notes, settings)
+        comparison = compare_named(predictors, measured, friction, cross_validate=parts, progress=True)
+        for note in comparison.notes:
+            notes.add(note)
+        with notes.of("figure"):
+            files = _write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
+    print_notes(notes.texts)
+    click.echo(repr(comparison))
+    print_results(folder, files)
 
 
 def _freed(settings: tuple[str, ...], laws: Mapping[str, Law]) -> dict[str, list[str]]:
     """Return the fields to fit by law, as --laws writes it; the name alone will do if only one law has it."""
-    names = [law.name for law in laws.values()]
-    texts = {law.name: text for text, law in laws.items() if names.count(law.name) == 1} | {text: text for text in laws}
     found: dict[str, list[str]] = {}
     for setting in settings:
         name, _, freed = setting.rpartition("=")
-        text = texts.get(name)
-        if text is None:
+        texts = [name] if name in laws else [text for text, law in laws.items() if law.name == name]
+        if len(texts) != 1:
             raise click.UsageError(
                 f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got {shown(setting)}"
             )
-        if text in found:
+        if texts[0] in found:
             raise click.UsageError(
                 f"--free: {shown(name)} is given twice; write all its fields behind one, between commas"
             )
-        found[text] = listed("--free", freed)
+        found[texts[0]] = listed("--free", freed)
     return found
 
 
-def _fits(pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, **settings: Any) -> list[tuple[str, Fit]]:
-    """Return the fits of a law by contact model, without those that the tests do not determine.
-
-    Raises
-    ------
-    FitError
-        If there is no fit on any contact.
-    """
-    found, refused = [], []
+def _fits(
+    pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, settings: Mapping[str, Any]
+) -> list[tuple[Names, Predictor]]:
+    """Return the fits of a law on each contact, without those that the tests do not determine."""
+    found: list[tuple[Names, Predictor]] = []
+    refused = []
     with Bar(len(pairs)) as bar:
         bar.stage("fitting")
         for pair in pairs:
-            name = f"{pair.law} fitted on {pair.contact_model}"
+            names = Names(f"{pair.law} fitted on {pair.contact_model}", f"{pair.law} fitted", pair.contact_model)
             try:
-                with notes.of(name), warnings.catch_warnings():
+                with notes.of(names.label), warnings.catch_warnings():
                     warnings.simplefilter("ignore", PlasticityWarning)  # the comparison says it once, of the tests
-                    fitted = fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)
-                found.append((pair.contact_model, fitted))
+                    found.append((names, fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)))
             except FitError as error:
-                refused.append(f"{name} is left out: {error}")
+                refused.append(f"{names.label} is left out: {error}")
             bar(1)
     if not found:
         raise FitError(refused[0])

@@ -26,15 +26,15 @@ from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
 from wearlaw.units.variables import name_of
-from wearlaw_fits.agreement import Agreement, Information, agreement
+from wearlaw_fits.agreement import Agreement, agreement
 from wearlaw_fits.fit import fit as refit
-from wearlaw_fits.free_parameters import FRICTION
 from wearlaw_fits.lack_of_fit import repeats
-from wearlaw_fits.observations import test_names
+from wearlaw_fits.named_numbers import FRICTION
+from wearlaw_fits.observations import TRACTION, test_names
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests, expect_tests
 from wearlaw_output.curves import BLACK, Curve, FigureData
-from wearlaw_output.labels import label, labels
+from wearlaw_output.labels import label, labels, readable
 from wearlaw_output.notes import Notes, caught_warnings
 from wearlaw_output.parity import parity_panels
 from wearlaw_output.plot import plot
@@ -56,17 +56,9 @@ SEED = 0
 
 COLUMNS = {
     "predictor": "object",
-    "rms_factor": "Float64",
-    "bias": "Float64",
-    "geometric_sd": "Float64",
-    "largest_factor": "Float64",
-    "rms_error": "Float64",
-    "tests": "Int64",
-    "in_sample": "Int64",
-    "without_ratio": "Int64",
-    "fitted": "Int64",
-    "aic": "Float64",
-    "aicc": "Float64",
+    **dict.fromkeys(("rms_factor", "bias", "geometric_sd", "largest_factor", "rms_error"), "Float64"),
+    **dict.fromkeys(("tests", "in_sample", "without_ratio", "fitted"), "Int64"),
+    **dict.fromkeys(("aic", "aicc"), "Float64"),
 }
 """Columns of a ranking with their types."""
 
@@ -95,8 +87,18 @@ class Compared:
         Their errors against the measured ones.
     in_sample : int
         Number of the tests to which its law was fitted.
-    information : Information or None
-        Akaike's criterion, if it was fitted to these tests.
+    fitted : int or None
+        Number k of parameters fitted to exactly these n tests; the scatter counts as one more if it is estimated.
+    aic : float or None
+        Akaike's information criterion of that fit, n ln(Σ rᵢ²/n) + 2k, rᵢ being its residuals, or Σ rᵢ² + 2k where the
+        tests state their uncertainty. Of laws fitted to the same tests, the one with the least AIC is expected to
+        predict other tests best. Only differences matter.
+    aicc : float or None
+        AIC + 2k(k + 1)/(n - k - 1), for few tests; None if there are too few.
+
+    Notes
+    -----
+    K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2nd ed., Springer, 2002.
     """
 
     names: Names
@@ -104,7 +106,9 @@ class Compared:
     predicted: Array
     agreement: Agreement
     in_sample: int = 0
-    information: Information | None = None
+    fitted: int | None = None
+    aic: float | None = None
+    aicc: float | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -140,24 +144,16 @@ class Comparison:
         return self.tests.measured(self.outcome, self.unit)
 
     def table(self) -> pd.DataFrame:
-        """Return the ranking, a row for each predictor, best first.
+        """Return the ranking, a row for each predictor, best first, with the measures of `Agreement` and `Compared`.
 
-        The measures are those of `Agreement`, with AIC and AICc of `Information`. A measure that does not exist is
-        blank (NA), never infinite. `in_sample` is the number of these tests to which the law was fitted, and `fitted`
-        the number of parameters fitted to them here.
+        A measure that does not exist is blank (NA), never infinite.
         """
-        frame = self._ranking()
-        return frame.rename(columns={"rms_error": f"rms_error [{self.unit or '-'}]"})
+        return self._ranking().rename(columns={"rms_error": f"rms_error [{self.unit or '-'}]"})
 
     def _ranking(self) -> pd.DataFrame:
-        rows = []
-        for one in self.compared:
-            row = {"predictor": one.names.label, **vars(one.agreement), "in_sample": one.in_sample}
-            if one.information is not None:
-                row |= {"fitted": one.information.parameters, "aic": one.information.aic, "aicc": one.information.aicc}
-            row["rms_error"] = float(in_unit(np.asarray(one.agreement.rms_error), self.unit))
-            rows.append(row)
-        return pd.DataFrame(rows, columns=list(COLUMNS)).astype(COLUMNS)
+        rows = [{**vars(one), **vars(one.agreement), "predictor": one.names.label} for one in self.compared]
+        frame = pd.DataFrame(rows, columns=list(COLUMNS)).astype(COLUMNS)
+        return frame.assign(rms_error=in_unit(frame["rms_error"].to_numpy(float), self.unit)).astype(COLUMNS)
 
     def predictions(self) -> pd.DataFrame:
         """Return the tests with the values of each predictor; the heads of the columns hold the units."""
@@ -215,11 +211,10 @@ class Comparison:
 
     def _head(self) -> str:
         count = f"{len(self.compared)} predictor{'s' if len(self.compared) > 1 else ''} on {len(self.tests)} tests"
-        unit = label(self.outcome, units={self.outcome: self.unit}).rpartition(" [")[2].removesuffix("]")
         of = "" if self.outcome == WEAR else f" of {name_of(self.outcome)}"
-        head = f"; rms_error in {unit}" if unit != "-" else ""
+        unit = f"; rms_error in {readable(self.unit)}" if self.unit else ""
         validated = f", fits cross-validated ({self.cross_validated})" if self.cross_validated else ""
-        return f"{count}{of}, best first{validated}{head}"
+        return f"{count}{of}, best first{validated}{unit}"
 
 
 def _cell(value: Any) -> str:
@@ -274,21 +269,16 @@ def compare(
     Notes
     -----
     A law fitted to these tests follows their scatter too: the more parameters it has, the better it agrees. AIC (see
-    `Information`) weighs one against the other. It is blank unless a law was fitted to the wear rates of exactly these
+    `Compared`) weighs one against the other. It is blank unless a law was fitted to the wear rates of exactly these
     tests, and if fits assume different kinds of scatter. A note names the laws that were fitted to these tests, and
     `in_sample` counts the tests; cross-validation ranks fits by tests that they have not seen.
     """
-    if not isinstance(predictors, Mapping | Sequence):
-        raise InputError(
-            f"predictors: must be a list of pipelines and fits, or a table of these; got {shown(predictors)}"
-        )
     expect_tests(tests)
     given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
     if not given:
         raise InputError("give at least one predictor, such as rig | contact_model | law")
     for one in given:
-        pipeline = one.predict if isinstance(one, Fit) else one
-        if not isinstance(pipeline, Pipeline) or not pipeline.laws:
+        if not isinstance(one, Pipeline | Fit) or not _pipeline(one).laws:
             raise InputError(
                 f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {shown(one)}"
             )
@@ -315,12 +305,10 @@ def compare_named(
         raise InputError(f"two predictors are called {shown(twice[0])}; give a mapping from names of your own to them")
     given = [predictor for _, predictor in named]
     outcome = _outcome(given, tests, outcome)
-    units = [_law(one, outcome).outcome.unit for one in given]
+    unit = _law(given[0], outcome).outcome.unit
     tests = tests.measuring([name for one in given for name in named_outcomes(_pipeline(one).laws)])
-    for unit in units[1:]:
-        tests.measured(outcome, unit)  # an error if the predictors give it in units of other dimensions
     notes = Notes()
-    there, name = ~np.isnan(tests.measured(outcome, units[0])), name_of(outcome)
+    there, name = ~np.isnan(tests.measured(outcome, unit)), name_of(outcome)
     if not there.any():
         raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
     if not there.all():
@@ -338,7 +326,7 @@ def compare_named(
             ]
     if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
         notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
-        compared = [replace(one, information=None) for one in compared]
+        compared = [replace(one, fitted=None, aic=None, aicc=None) for one in compared]
     seen = [f"{one.names.label} ({one.in_sample} of {len(task.tests)})" for one in compared if one.in_sample]
     if seen:
         notes.add(
@@ -346,18 +334,12 @@ def compare_named(
             " cross-validate"
         )
     ranked = sorted(compared, key=lambda one: one.agreement.rank)
-    return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, units[0], how)
+    return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, unit, how)
 
 
 def _outcome(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:
-    """Return the outcome to compare.
-
-    Raises
-    ------
-    InputError
-        If a predictor does not predict it, or if it is not given and the predictors share none or several.
-    """
-    predicted = [list(named_outcomes(_pipeline(one).laws)) for one in given]
+    """Return the outcome to compare: the given one, or the only one that all predict and the tests measure."""
+    predicted = [named_outcomes(_pipeline(one).laws) for one in given]
     every = list(dict.fromkeys(name for names in predicted for name in names))
     shared = [name for name in every if all(name in names for names in predicted)]
     if outcome is not None:
@@ -436,17 +418,13 @@ class _Task:
                 f" {errors.without_ratio} of {len(self.tests)} tests, which no factor can express; these count first in"
                 " the ranking"
             )
-        information = self._information(names.label, predictor) if isinstance(predictor, Fit) else None
-        return Compared(names, _pipeline(predictor), predicted, errors, self._in_sample(law), information)
+        known = set(law.calibration.tests if law.calibration else ())
+        seen = sum(digest in known for digest in self.tests.digests(self.outcome, law.outcome.unit)) if known else 0
+        found = Compared(names, _pipeline(predictor), predicted, errors, seen)
+        return self._with_aic(found, predictor) if isinstance(predictor, Fit) else found
 
     def unseen(self, old: Compared, fit: Fit, parts: Sequence[NDArray[np.intp]], bar: Bar) -> Compared:
-        """Return a fit with its predictions of each test by fits to the tests of other folds.
-
-        Raises
-        ------
-        FitError
-            If the tests outside a fold do not determine the parameters.
-        """
+        """Return a fit with its predictions of each test by fits to the tests of other folds."""
         name, predicted = old.names.label, np.empty(len(self.tests))
         for held in parts:
             there = np.isin(np.arange(len(self.tests)), held)
@@ -480,7 +458,7 @@ class _Task:
                 ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
             )
         conditions = self._conditions(given[0], self.tests, self.friction)
-        conditions.pop("traction_coefficient", None)  # measured tractions of repeated tests scatter
+        conditions.pop(TRACTION, None)  # measured tractions of repeated tests scatter
         points = repeats(conditions, len(self.tests))
         count = int(points.max()) + 1
         if count < len(self.tests):
@@ -489,7 +467,7 @@ class _Task:
                 " tests together"
             )
         number: Any = count if how == "leave-one-out" else how
-        if isinstance(number, bool) or not isinstance(number, int) or not 2 <= number <= count:
+        if not isinstance(number, int) or not 2 <= number <= count:
             raise InputError(
                 f'cross_validate: give "leave-one-out" or a number of folds from 2 to {count}, the number of operating'
                 f" points; got {shown(how)}"
@@ -507,11 +485,11 @@ class _Task:
         pipeline, law = _pipeline(predictor), _law(predictor, self.outcome)
         conditions = self._conditions(predictor, tests, friction)
         if isinstance(predictor, Fit) and predictor.contact_parameters:
-            conditions.pop("traction_coefficient", None)
+            conditions.pop(TRACTION, None)
             if FRICTION in predictor.parameters:
                 conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
                 notes.add(f"{name}: takes the friction coefficient that was fitted, {conditions[FRICTION]:.4g}")
-        if "traction_coefficient" in conditions:
+        if TRACTION in conditions:
             notes.add(f"{name}: takes the traction that was measured in the tests")
         with notes.of(name):
             pipeline = pipeline.without_law() | law  # warns if the parameters were fitted for another contact
@@ -519,25 +497,15 @@ class _Task:
             prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
         return np.asarray(prediction[law.outcome.name].to_base_units().magnitude)
 
-    def _in_sample(self, law: Law) -> int:
-        """Return the number of tests to which a law was fitted, by their digests.
-
-        A law without digests counts as fitted to all tests if its calibration names their source.
-        """
-        calibration, source = law.calibration, self.tests.source
-        if calibration is not None and calibration.tests:
-            known = set(calibration.tests)
-            return sum(digest in known for digest in self.tests.digests(self.outcome, law.outcome.unit))
-        return len(self.tests) if calibration is not None and source and source in calibration.source else 0
-
-    def _information(self, name: str, fit: Fit) -> Information | None:
-        """Return Akaike's criterion of a fit, or None with a note if it was not fitted to exactly these tests."""
+    def _with_aic(self, found: Compared, fit: Fit) -> Compared:
+        """Return a predictor with the AIC of its fit; add a note if it was not fitted to exactly these tests."""
         fitted_to = fit.tests.measuring([self.outcome])
         there = ~np.isnan(fitted_to.measured(self.outcome, _law(fit, self.outcome).outcome.unit))
         if [one.observable for one in fit.observations] != [self.outcome] or fitted_to[there] != self.tests:
-            self.notes.add(f"{name}: was fitted to other tests or measurements, so its AIC is left blank")
-            return None
+            self.notes.add(f"{found.names.label}: was fitted to other tests or measurements, so its AIC is left blank")
+            return found
         free = len(fit.parameters)
         k = free + (fit.scatter != "uncertainty")
         spare = len(self.tests) - k - 1
-        return Information(free, fit.aic, fit.aic + 2.0 * k * (k + 1) / spare if spare > 0 else None)
+        aicc = fit.aic + 2.0 * k * (k + 1) / spare if spare > 0 else None
+        return replace(found, fitted=free, aic=fit.aic, aicc=aicc)

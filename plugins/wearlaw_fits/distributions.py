@@ -43,18 +43,17 @@ class Distribution:
         values: Array = first * np.exp(np.log(second) * deviates)
         return values
 
-    def fault(self) -> str:
-        """Return what is wrong with the two numbers, or "" if they are possible for some quantity."""
-        first, second = (one.magnitude if isinstance(one, pint.Quantity) else one for one in (self.first, self.second))
+    def __post_init__(self) -> None:
+        first, second = (one if isinstance(one, pint.Quantity) else Q(one, "") for one in (self.first, self.second))
         if self.kind == "lognormal":
-            return "" if first > 0.0 else f"the median of {self} must be positive"
-        units = [one.units if isinstance(one, pint.Quantity) else Q(1.0, "").units for one in (self.first, self.second)]
-        if not units[0].is_compatible_with(units[1]):
-            return f"the two numbers of {self} are not of one dimension"
-        second = Q(second, str(units[1])).to(units[0]).magnitude
-        if self.kind == "uniform":
-            return "" if second > first else f"the upper end of {self} must lie above the lower one"
-        return "" if second > 0.0 else f"the standard deviation of {self} must be positive"
+            if not first.magnitude > 0.0:
+                raise InputError(f"{self}: the median must be positive")
+        elif not first.is_compatible_with(second):
+            raise InputError(f"{self}: the two numbers are not of one dimension")
+        elif self.kind == "uniform" and not second.m_as(first.units) > first.magnitude:
+            raise InputError(f"{self}: the upper end must lie above the lower one")
+        elif self.kind == "normal" and not second.magnitude > 0.0:
+            raise InputError(f"{self}: the standard deviation must be positive")
 
     def __str__(self) -> str:
         return f"{self.kind}({_shown(self.first)}, {_shown(self.second)})"
@@ -63,6 +62,9 @@ class Distribution:
 @dataclass(frozen=True)
 class PublishedRange:
     """The published range of a law's parameters, as in `WearLaw.band`; see `published_range`."""
+
+    def __str__(self) -> str:
+        return "published_range()"
 
 
 def uniform(low: QuantityLike | float, high: QuantityLike | float) -> Distribution:

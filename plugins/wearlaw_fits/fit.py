@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw import loader
 from wearlaw.arrays import Array, steadily
 from wearlaw.configuration import known_name
-from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown
-from wearlaw.fields import specification
+from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown, warn
 from wearlaw.models.law import Calibration, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.numerics.totals import Totals
@@ -24,9 +22,8 @@ from wearlaw.pipeline.composition import warn_of_parameters
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.ranges import overload_of
 from wearlaw.units.quantities import Quantity, QuantityLike, coefficient, in_unit
-from wearlaw.units.variables import UNITS
-from wearlaw.version import __version__
-from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
+from wearlaw.units.variables import UNITS, name_of
+from wearlaw_fits.free_parameters import FreeParameters, give_bounds
 from wearlaw_fits.intervals import (
     Replicates,
     covariance,
@@ -37,8 +34,8 @@ from wearlaw_fits.intervals import (
     undetermined,
 )
 from wearlaw_fits.lack_of_fit import LackOfFit, lack_of_fit, repeats
-from wearlaw_fits.least_squares import Bounds, Solutions, refine, search
-from wearlaw_fits.named_numbers import changed_parts, staged_models
+from wearlaw_fits.least_squares import Bounds, Solutions, fit_many, search
+from wearlaw_fits.named_numbers import FRICTION, changed_parts
 from wearlaw_fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
 from wearlaw_fits.result import Fit
 from wearlaw_fits.wear_tests import WearTests, expect_tests
@@ -162,12 +159,13 @@ def fit(
         if bootstrap:
             replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
         found = _result(task, best, replicates, confidence, settings)
-    overload = task.overload(best)
+    problem = found.observations[0].problem
+    overload = overload_of(problem, integrate_forces(found.predict.staged_model, problem).tangential)
     if overload:
         overload.warn()
     poor = (one.warning for one in found.lack_of_fit if one.poor)
     for text in (*poor, *_at_bounds(task, best), *_unreliable(task, replicates)):
-        warnings.warn(text, FitWarning, stacklevel=2)
+        warn(text, FitWarning)
     _warn_of_kept(task)
     return found
 
@@ -230,23 +228,16 @@ class _Task:
         return found
 
     def solve(self, starts: int, seed: int) -> Solutions:
-        """Return the best fit.
-
-        Raises
-        ------
-        FitError
-            If the fit has not converged, or the tests do not determine it.
-        """
+        """Return the best fit."""
         bounds, first = self.free.bounds, np.zeros(len(self.free.names))
         target = np.zeros(self.weights.size)
         reach = np.where(self.free.positive, math.log(NEAR), NEAR)
         near = Bounds(bounds.clip(-reach), bounds.clip(reach))
-        fits = search(self.model, target, first, bounds, near, starts, seed)
-        best = min(fits, key=lambda one: float(one.cost[0]))
+        best = search(self.model, target, first, bounds, near, starts, seed)
         if len(self.observations) > 1:
             for _ in range(ROUNDS):
                 self._weigh(best)
-                best = refine(self.model, target, best.theta[0], bounds)
+                best = fit_many(self.model, target[None], best.theta, bounds)
         if not best.converged[0]:
             advice = give_bounds(self.free.names[0])
             raise FitError(f"the fit has not converged; {advice}, or a law whose parameters are nearer to the tests")
@@ -258,15 +249,6 @@ class _Task:
                 " add tests in other regimes"
             )
         return best
-
-    def overload(self, best: Solutions) -> Any:
-        """Return the test that is furthest beyond first yield, with the traction that the best fit predicts."""
-        problem, values = self.observations[0].problem, self.free.columns(best.theta[:1])
-        if FRICTION in values:
-            problem = problem.replaced(friction_coefficient=np.full(problem.batch_shape, values[FRICTION][0]))
-        at_places = {place: values[name] for name, place in self.free.places.items()}
-        ((model, _),) = staged_models(self.predict, at_places, 1)
-        return overload_of(problem, integrate_forces(model, problem).tangential)
 
     def _weigh(self, best: Solutions) -> None:
         """Weigh each kind of measurement by its scatter about the fit."""
@@ -296,16 +278,9 @@ def _first_friction(tests: WearTests, given: float | None) -> float:
 def _result(
     task: _Task, best: Solutions, replicates: Replicates | None, confidence: float, settings: Mapping[str, Any]
 ) -> Fit:
-    """Return the result of a fit.
-
-    Raises
-    ------
-    FitError
-        If the fitted parameters are not valid for the law, or predict no wear where some was measured.
-    """
+    """Return the result of a fit."""
     free, values = task.free, task.free.columns(best.theta)
     observations = tuple(_with_friction(one, values) for one in task.observations)
-    predict = _fitted_pipeline(task, values, observations)
     by_student = student_intervals(best, confidence)
     ends = by_student if replicates is None else studentised_intervals(best, replicates, confidence)
     samples = {} if replicates is None else free.columns(replicates.theta)
@@ -315,17 +290,14 @@ def _result(
         parameters={name: free.quantity(name, float(value[0])) for name, value in values.items()},
         intervals=_pairs(free, ends),
         covariance_intervals=_pairs(free, by_student),
-        interval_method="Student's t" if replicates is None else "studentised bootstrap",
         confidence=confidence,
         covariance=covariance(best)[0] * np.outer(slopes, slopes),
-        law=predict.laws[0] if len(predict.laws) == 1 else None,
-        predict=predict,
+        predict=_fitted_pipeline(task, values, observations),
         tests=task.tests,
         scatter=task.scatter,
         chi2=chi2,
         aic=aic,
         samples={name: free.quantity(name, one) for name, one in samples.items()},
-        provenance=_provenance(task, predict, replicates, settings["seed"], chi2, confidence),
         observations=observations,
         lack_of_fit=tuple(_lack_of_fit(task, best, confidence)),
         settings=settings,
@@ -354,8 +326,9 @@ def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Q
 def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observations:
     if FRICTION not in values:
         return one
-    friction = np.broadcast_to(values[FRICTION], one.measured.shape)
-    return dataclasses.replace(one, problem=one.problem.replaced(friction_coefficient=friction))
+    friction = float(values[FRICTION][0])
+    problem = one.problem.replaced(friction_coefficient=np.full(one.measured.shape, friction))
+    return dataclasses.replace(one, conditions={**one.conditions, FRICTION: friction}, problem=problem)
 
 
 def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:
@@ -366,7 +339,8 @@ def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Seq
         nothing = one.predicted(values)[0] <= FLOOR
         if one.law is not None and one.scatter == "relative" and nothing.any():
             raise FitError(
-                f"the best fit predicts no {one.name} in {test_names(one.tests, nothing)}; leave these tests out"
+                f"the best fit predicts no {name_of(one.observable)} in {test_names(one.tests, nothing)}; leave these"
+                " tests out"
             )
     try:
         stages = changed_parts(given.stages, "stage", at_places)
@@ -408,16 +382,11 @@ def _ends(variable: str, values: Array) -> tuple[str, str]:
     """Return the least and the greatest value with the unit, rounded outwards."""
     unit = UNITS[variable]
     shown = in_unit(values, unit)
-    low, high = _rounded(float(shown.min()), math.floor), _rounded(float(shown.max()), math.ceil)
+    low, high = (
+        float(Context(DIGITS, rounding).create_decimal_from_float(float(end)))
+        for end, rounding in ((shown.min(), ROUND_FLOOR), (shown.max(), ROUND_CEILING))
+    )
     return f"{low!r} {unit}", f"{high!r} {unit}"
-
-
-def _rounded(value: float, rounding: Callable[[float], int]) -> float:
-    """Return a value with few significant digits, rounded up or down."""
-    if value == 0.0:
-        return 0.0
-    place = DIGITS - 1 - math.floor(math.log10(abs(value)))
-    return float(f"{rounding(value * 10.0**place)}e{-place}")
 
 
 def _materials(rig: Rig) -> str:
@@ -437,33 +406,6 @@ def _sums(task: _Task, best: Solutions) -> tuple[float, float]:
     tiny = float(np.finfo(np.float64).tiny)
     likelihood = sum(kind.size * math.log(max(float(kind.mean()), tiny)) for kind in kinds)
     return float(squares.sum()), likelihood + 2.0 * (parameters + len(kinds))
-
-
-def _provenance(
-    task: _Task, predict: Pipeline[...], replicates: Replicates | None, seed: int, chi2: float, confidence: float
-) -> dict[str, Any]:
-    """Return the provenance of a fit, as a TOML table; it holds the stages with their fitted numbers."""
-    model = predict.contact_model
-    found = loader.installed()
-    origins = [(law, found[law.kind].distribution(law.name, type(law))) for law in predict.laws]
-    origin: dict[str, Any] = {law.kind.replace(" ", "_"): where for law, where in origins[:1]}
-    if len(origins) > 1:
-        origin = {"laws": {law.name: where for law, where in origins}}
-    stages = [specification(stage) for stage in predict.stages]
-    return {
-        "wearlaw": __version__,
-        **origin,
-        "contact_model": found["contact model"].distribution(model.name, type(model)),
-        **({"stages": stages} if stages else {}),
-        "tests": task.tests.source,
-        "measurements": {one.observable: one.measured.size for one in task.observations},
-        "free": list(task.free.names),
-        "scatter": task.scatter,
-        "chi2": chi2,
-        "seed": seed,
-        "bootstrap": 0 if replicates is None else len(replicates.theta),
-        "confidence": confidence,
-    }
 
 
 def _at_bounds(task: _Task, best: Solutions) -> Iterator[str]:

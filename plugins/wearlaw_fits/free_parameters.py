@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, Self, get_args
 
 import numpy as np
 import pint
 from numpy.typing import NDArray
+from pydantic.fields import FieldInfo
 
 from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
 from wearlaw.errors import FitError, InputError, UnitError, did_you_mean, shown
 from wearlaw.parameters import number_in_si, number_like, numbers
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
-from wearlaw.units.registry import symbol
-from wearlaw_fits.allowed_range import allowed_range
+from wearlaw.units.registry import symbol, unit_in_si
 from wearlaw_fits.least_squares import Bounds
-from wearlaw_fits.named_numbers import NamedNumbers, Place, part_at
-
-FRICTION = "friction_coefficient"
-"""The only parameter that is a condition, not a number of a law or stage."""
+from wearlaw_fits.named_numbers import FRICTION, Place, known_names, part_at, place_of
 
 FACTOR = 100.0
 """Default bounds of a parameter: this factor up and down from its first value."""
@@ -32,23 +30,9 @@ ROUNDINGS = 16.0 * float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FreeParameters:
-    """The free parameters of a fit.
+    """The free parameters of a fit: their names, places and first values, and the least and the greatest values in SI.
 
     Positive parameters are fitted by θ = ln(x/x₀), others by θ = (x - x₀)/|x₀|, with their first values x₀.
-
-    Attributes
-    ----------
-    names : tuple of str
-    places : dict of str to Place
-        Where each number stands in the pipeline, by name; without the friction coefficient.
-    like : tuple of Quantity or float
-        The first values, with the units of the parameters.
-    first : ndarray, (p,)
-        The first values in SI.
-    positive : ndarray of bool, (p,)
-        Whether each must be greater than zero.
-    bounds : Bounds
-        Of θ.
     """
 
     names: tuple[str, ...]
@@ -56,7 +40,7 @@ class FreeParameters:
     like: tuple[Quantity | float, ...]
     first: Array
     positive: NDArray[np.bool_]
-    bounds: Bounds
+    ends: tuple[Array, Array]
 
     @classmethod
     def of(
@@ -66,41 +50,44 @@ class FreeParameters:
         friction: float | None,
         bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]],
     ) -> Self:
-        """Return the free parameters among the numbers of laws and stages and the friction coefficient.
-
-        Raises
-        ------
-        FitError
-            If a name is unknown, ambiguous or given twice, or its bounds are invalid.
-        """
+        """Return the free parameters among the numbers of laws and stages and the friction coefficient."""
         places = _places(predict, tuple(free))
         like: dict[str, Quantity | float] = {}
         ranges: dict[str, tuple[float, float, bool]] = {}
         for name, place in places.items():
+            if place.kind == "condition":
+                assert friction is not None
+                like[name], ranges[name] = float(friction), (-np.inf, np.inf, True)
+                continue
             part = part_at(predict, place)
             like[name] = numbers(part)[place.field]
             least, most, positive = allowed_range(part, place.field)
             if place.kind == "stage" and name not in bounds:  # a share or a factor keeps its sign unless bounds differ
                 positive = positive or number_in_si(like[name]) > 0.0
             ranges[name] = least, most, positive
-        if friction is not None:
-            like[FRICTION], ranges[FRICTION] = float(friction), (-np.inf, np.inf, True)
         for name in bounds:
             if name not in free:
                 raise FitError(
                     f"bounds: {shown(name)} is not free{did_you_mean(name, free)} Free are: {', '.join(free)}"
                 )
-        first = np.array([number_in_si(like[name]) for name in free])
-        ends = [_ends(name, like[name], ranges[name], bounds.get(name)) for name in free]
-        flags = np.array([ranges[name][2] for name in free])
-        chosen = cls(tuple(free), places, tuple(like[name] for name in free), first, flags, Bounds(first, first))
-        low, high = (chosen.theta(np.array(end)) for end in zip(*ends, strict=True))
-        return cls(chosen.names, places, chosen.like, first, flags, Bounds(low, high))
+        return cls(
+            names=tuple(free),
+            places=places,
+            like=tuple(like[name] for name in free),
+            first=np.array([number_in_si(like[name]) for name in free]),
+            positive=np.array([ranges[name][2] for name in free]),
+            ends=tuple(np.array([_ends(name, like[name], ranges[name], bounds.get(name)) for name in free]).T),
+        )
+
+    @property
+    def bounds(self) -> Bounds:
+        """The bounds of θ."""
+        return Bounds(*map(self.theta, self.ends))
 
     @property
     def of_contact(self) -> list[str]:
         """The names of the parameters that change the contact: the friction coefficient and numbers of stages."""
-        return [name for name in self.names if name not in self.places or self.places[name].kind == "stage"]
+        return [name for name, place in self.places.items() if place.kind != "law"]
 
     @property
     def freed_laws(self) -> set[int]:
@@ -115,7 +102,9 @@ class FreeParameters:
 
     def values(self, theta: Array) -> Array:
         """Return the values in SI of scaled parameters, (..., p)."""
-        return np.where(self.positive, self.first * np.exp(np.where(self.positive, theta, 0.0)), self._linear(theta))
+        return np.where(
+            self.positive, self.first * np.exp(np.where(self.positive, theta, 0.0)), self.first + self._size * theta
+        )
 
     def slopes(self, theta: Array) -> Array:
         """Return the derivatives of the values in SI by the scaled parameters, (..., p)."""
@@ -135,27 +124,26 @@ class FreeParameters:
     def _size(self) -> Array:
         return np.where(self.first != 0.0, np.abs(self.first), 1.0)
 
-    def _linear(self, theta: Array) -> Array:
-        return self.first + self._size * theta
-
 
 def _places(predict: Pipeline[...], free: tuple[str, ...]) -> dict[str, Place]:
     """Return the places of the free numbers of laws and stages by name."""
-    named = NamedNumbers(predict)
-    known = [*named.known, FRICTION]
     places: dict[str, Place] = {}
-    for name in (one for one in free if one != FRICTION):
+    for name in free:
+        if name == FRICTION:
+            places[name] = Place("condition", 0, name)
+            continue
         try:
-            place = named.place(name)
+            place = place_of(predict, name, others=[FRICTION])
         except InputError as error:
             raise FitError(f"free: {error}") from None
-        if place is None or place.field not in numbers(part_at(predict, place)):
-            raise FitError(
-                f"free: no number is called {shown(name)}{did_you_mean(name, known)} There are: {', '.join(known)}"
-            )
+        own = numbers(part_at(predict, place))
+        if place.field not in own:
+            inner = [one for one in own if one.startswith(f"{place.field}.")]
+            raise FitError(f"free: {shown(name)} is several numbers; name some of {', '.join(inner)}")
         places[name] = place
-    if not free or len(set(places.values())) + (FRICTION in free) < len(free):
-        raise FitError(f"free: name each parameter once, at least one of {', '.join(known)}; got {shown(free)}")
+    if not free or len(set(places.values())) < len(free):
+        known = ", ".join([*known_names(predict), FRICTION])
+        raise FitError(f"free: name each parameter once, at least one of {known}; got {shown(free)}")
     return places
 
 
@@ -201,3 +189,32 @@ def _ends(
     if np.isfinite(most):
         high = min(high, most - ROUNDINGS * abs(most))
     return low, high
+
+
+def allowed_range(record: Configuration, name: str) -> tuple[float, float, bool]:
+    """Return the least and the greatest value in SI that one of `numbers` may have, and whether it must be positive.
+
+    These are the bounds in the annotation of the field, infinite where it has none.
+    """
+    outer, _, inner = name.partition(".")
+    if inner:
+        return allowed_range(getattr(record, outer), inner)
+    low, high, positive = -np.inf, np.inf, False
+    field = type(record).model_fields[outer]
+    for rule in (*field.metadata, *_rules_within(field.annotation)):
+        if isinstance(rule, Unit):
+            limit = rule.limit * unit_in_si(rule.unit) if rule.limit < np.inf else np.inf
+            low, high, positive = max(low, -limit), min(high, limit), positive or rule.positive
+            continue
+        above = getattr(rule, "gt", None)
+        positive = positive or (above is not None and above >= 0.0)
+        low = max([low, *(float(end) for end in (above, getattr(rule, "ge", None)) if end is not None)])
+        high = min([high, *(float(getattr(rule, end)) for end in ("lt", "le") if getattr(rule, end, None) is not None)])
+    return (max(low, 0.0) if positive else low), high, positive
+
+
+def _rules_within(annotation: Any) -> Iterator[Any]:
+    """Yield the rules of the types in a union, such as those of `Annotated[float, Field(ge=1)] | None`."""
+    for one in get_args(annotation):
+        for rule in getattr(one, "__metadata__", ()):
+            yield from rule.metadata if isinstance(rule, FieldInfo) else (rule,)

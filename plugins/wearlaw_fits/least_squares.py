@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import scipy
@@ -31,8 +31,8 @@ LEAST_GAIN = float(np.finfo(np.float64).eps)
 ITERATIONS = 100
 """Most iterations of a fit; smooth problems take about ten."""
 
-REFINED = 4
-"""Number of starting points that `search` refines, besides the given one."""
+FITTED = 8
+"""Number of starting points from which `search` fits, besides the given one."""
 
 SOFTEST, STIFFEST = 1e-12, 1e12
 """Least and greatest damping. At the greatest one, a step is as small as rounding. A fit that it does not improve has
@@ -55,15 +55,8 @@ class Bounds:
 class Solutions:
     """The best fits to many sets of data.
 
-    Attributes
-    ----------
-    theta : ndarray, (sets, p)
-        Parameters.
-    residuals : ndarray, (sets, n)
-        Prediction minus target.
-    jacobian : ndarray, (sets, n, p)
-        Derivatives of the predictions.
-    converged : ndarray of bool, (sets,)
+    Parameters (sets, p), residuals (sets, n), which are prediction minus target, and derivatives of the predictions
+    (sets, n, p).
     """
 
     theta: Array
@@ -76,24 +69,14 @@ class Solutions:
         """Sum of the squares of the residuals, (sets,)."""
         return _squares(self.residuals)
 
+    def __getitem__(self, index: int) -> Solutions:
+        """Return one of the fits, still with the axis of sets."""
+        one = slice(index, index + 1)
+        return Solutions(self.theta[one], self.residuals[one], self.jacobian[one], self.converged[one])
+
 
 def jacobian(model: Model, theta: Array, predicted: Array, bounds: Bounds) -> Array:
-    """Return the derivatives of the predictions by difference quotients within the bounds, in one batch.
-
-    Parameters
-    ----------
-    model : callable
-        The model.
-    theta : ndarray, (sets, p)
-        Parameters.
-    predicted : ndarray, (sets, n)
-        Predictions of the model there.
-    bounds : Bounds
-
-    Returns
-    -------
-    ndarray, (sets, n, p)
-    """
+    """Return the derivatives of the predictions (sets, n, p), by difference quotients within the bounds."""
     sets, count = theta.shape
     step = STEP * np.maximum(np.abs(theta), 1.0)
     step = np.where(theta + step > bounds.high, -step, step)
@@ -105,162 +88,79 @@ def jacobian(model: Model, theta: Array, predicted: Array, bounds: Bounds) -> Ar
 
 
 def fit_many(model: Model, targets: Array, start: Array, bounds: Bounds) -> Solutions:
-    """Fit many sets of data at once by the Levenberg-Marquardt method, projected to the bounds.
-
-    Parameters
-    ----------
-    model : callable
-        The model.
-    targets : ndarray, (sets, n)
-        The data to fit.
-    start : ndarray, (sets, p)
-        First parameters, within the bounds.
-    bounds : Bounds
+    """Fit many sets of data (sets, n) at once by the Levenberg-Marquardt method, projected to the bounds.
 
     Notes
     -----
     Nocedal and Wright, Numerical Optimization, 2nd edition 2006; the damping follows Nielsen's rule (H. B. Nielsen,
     Damping parameter in Marquardt's method, IMM-REP-1999-05).
     """
-    state = _State(model, targets, bounds.clip(start), bounds)
+    theta = bounds.clip(start)
+    predicted = model(theta)
+    residuals, slopes = predicted - targets, jacobian(model, theta, predicted, bounds)
+    damping, growth, scale = np.full(len(theta), 1e-3), np.full(len(theta), 2.0), np.zeros(theta.shape)
+    active = np.arange(len(theta))
     for _ in range(ITERATIONS):
-        if not state.active.size:
+        if not active.size:
             break
-        state.advance()
-    return Solutions(state.theta, state.residuals, state.jacobian, state.converged)
+        normal = slopes[active].swapaxes(1, 2) @ slopes[active]
+        gradient = np.einsum("mnp,mn->mp", slopes[active], residuals[active])
+        scale[active] = np.maximum(scale[active], np.einsum("mpp->mp", normal))
+        step = _step(theta[active], normal, gradient, damping[active], scale[active], bounds)
+        moved = bounds.clip(theta[active] + step)
+        step = moved - theta[active]
+        predicted = model(moved)
+        tried = predicted - targets[active]
+        linear = residuals[active] + np.einsum("mnp,mp->mn", slopes[active], step)
+        before = _squares(residuals[active])
+        with np.errstate(invalid="ignore"):  # a step that overflows is no improvement
+            gain, hoped = before - _squares(tried), before - _squares(linear)
+            better = gain > 0.0
+        ratio = np.divide(gain, hoped, out=np.zeros_like(gain), where=better & (hoped > 0.0))
+        softer = np.maximum(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
+        damping[active] = np.clip(damping[active] * np.where(better, softer, growth[active]), SOFTEST, STIFFEST)
+        growth[active] = np.where(better, 2.0, 2.0 * growth[active])
+        still, little = np.abs(step).max(axis=-1) <= TOLERANCE, better & (gain <= LEAST_GAIN * before)
+        stiff = ~better & (damping[active] >= STIFFEST)
+        accepted = active[better]
+        if accepted.size:
+            theta[accepted], residuals[accepted] = moved[better], tried[better]
+            slopes[accepted] = jacobian(model, moved[better], predicted[better], bounds)
+        active = active[~(still | little | stiff)]
+    converged = np.ones(len(theta), dtype=bool)
+    converged[active] = False
+    return Solutions(theta, residuals, slopes, converged)
 
 
-def refine(model: Model, target: Array, start: Array, bounds: Bounds) -> Solutions:
-    """Fit one set of data by the trust-region method of scipy; `target` is of shape (n,), `start` of shape (p,)."""
-
-    def predicted(theta: Array) -> Array:
-        one: Array = model(theta[None])[0]
-        return one
-
-    def slopes(theta: Array) -> Array:
-        one: Array = jacobian(model, theta[None], model(theta[None]), bounds)[0]
-        return one
-
-    least_squares: Any = scipy.optimize.least_squares
-    found = least_squares(
-        lambda theta: predicted(theta) - target,
-        start,
-        jac=slopes,
-        bounds=(bounds.low, bounds.high),
-        method="trf",
-        x_scale="jac",
-        xtol=TOLERANCE,
-        ftol=1e-15,
-        gtol=1e-15,
-        max_nfev=ITERATIONS * 10,
-    )
-    theta = bounds.clip(found.x)
-    converged = np.array([found.status > 0])
-    return Solutions(theta[None], (predicted(theta) - target)[None], slopes(theta)[None], converged)
+def _step(theta: Array, normal: Array, gradient: Array, damping: Array, scale: Array, bounds: Bounds) -> Array:
+    """Return the damped steps; parameters pressed against a bound do not move."""
+    pressed = ((theta <= bounds.low) & (gradient > 0.0)) | ((theta >= bounds.high) & (gradient < 0.0))
+    scale = np.maximum(scale, STEP * scale.max(axis=-1, keepdims=True))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    damped = np.where(pressed[:, :, None] | pressed[:, None, :], 0.0, normal)
+    diagonal = np.where(pressed, 1.0, np.einsum("mpp->mp", damped) + damping[:, None] * scale)
+    index = np.arange(theta.shape[1])
+    damped[:, index, index] = diagonal
+    solved: Array = np.linalg.solve(damped, np.where(pressed, 0.0, gradient)[..., None])
+    return -solved[..., 0]
 
 
 def search(
     model: Model, target: Array, start: Array, bounds: Bounds, near: Bounds, starts: int, seed: int
-) -> list[Solutions]:
-    """Fit one set of data from several starting points.
+) -> Solutions:
+    """Return the best of fits to one set of data (n,) from `start` (p,) and from other points in the range `near`.
 
-    Parameters
-    ----------
-    model : callable
-        The model.
-    target : ndarray, (n,)
-        The data to fit.
-    start : ndarray, (p,)
-        The first starting point.
-    bounds : Bounds
-        Bounds of the parameters.
-    near : Bounds
-        Range of the other starting points, a Latin hypercube.
-    starts : int
-        Number of other starting points. They are evaluated in one batch, and the best few refined.
-    seed : int
-        Seed of the Latin hypercube.
-
-    Returns
-    -------
-    list of Solutions
-        The refined fits, the one from `start` first.
+    The other points, a Latin hypercube, are evaluated in one batch, and the best few fitted in another.
     """
-    chosen = [bounds.clip(start)]
+    chosen = bounds.clip(start)[None]
     if starts:
         shares = scipy.stats.qmc.LatinHypercube(start.size, rng=np.random.default_rng(seed)).random(starts)
         points = bounds.clip(near.low + shares * (near.high - near.low))
         with np.errstate(over="ignore"):
             cost = _squares(model(points) - target)
-        chosen += list(points[np.argsort(cost, kind="stable")[:REFINED]])
-    return [refine(model, target, point, bounds) for point in chosen]
-
-
-class _State:
-    """The state of many fits; `active` lists those that have not ended."""
-
-    def __init__(self, model: Model, targets: Array, theta: Array, bounds: Bounds) -> None:
-        self.model, self.targets, self.bounds = model, targets, bounds
-        self.theta = theta.copy()
-        predicted = model(self.theta)
-        self.residuals = predicted - targets
-        self.jacobian = jacobian(model, self.theta, predicted, bounds)
-        sets, count = theta.shape
-        self.damping, self.growth = np.full(sets, 1e-3), np.full(sets, 2.0)
-        self.scale = np.zeros((sets, count))
-        self.converged = np.zeros(sets, dtype=bool)
-        self.active = np.arange(sets)
-
-    def advance(self) -> None:
-        """Try one step of every active fit."""
-        who = self.active
-        theta, slopes, residuals = self.theta[who], self.jacobian[who], self.residuals[who]
-        moved = self.bounds.clip(theta + self._step(who, theta, slopes, residuals))
-        step = moved - theta
-        predicted = self.model(moved)
-        tried = predicted - self.targets[who]
-        linear = residuals + np.einsum("mnp,mp->mn", slopes, step)
-        before = _squares(residuals)
-        with np.errstate(invalid="ignore"):  # a step that overflows is no improvement
-            gain, hoped = before - _squares(tried), before - _squares(linear)
-            better = gain > 0.0
-        self._set_damping(who, better, gain, hoped)
-        still = np.abs(step).max(axis=-1) <= TOLERANCE
-        little = better & (gain <= LEAST_GAIN * before)
-        stiff = ~better & (self.damping[who] >= STIFFEST)
-        self._accept(who[better], moved[better], tried[better], predicted[better])
-        ended = still | little | stiff
-        self.converged[who[ended]] = True
-        self.active = who[~ended]
-
-    def _step(self, who: NDArray[np.intp], theta: Array, slopes: Array, residuals: Array) -> Array:
-        """Return the damped steps; parameters pressed against a bound do not move."""
-        normal = slopes.swapaxes(1, 2) @ slopes
-        gradient = np.einsum("mnp,mn->mp", slopes, residuals)
-        pressed = ((theta <= self.bounds.low) & (gradient > 0.0)) | ((theta >= self.bounds.high) & (gradient < 0.0))
-        self.scale[who] = np.maximum(self.scale[who], np.einsum("mpp->mp", normal))
-        scale = self.scale[who]
-        scale = np.maximum(scale, STEP * scale.max(axis=-1, keepdims=True))
-        scale = np.where(scale > 0.0, scale, 1.0)
-        held = pressed[:, :, None] | pressed[:, None, :]
-        damped = np.where(held, 0.0, normal)
-        diagonal = np.where(pressed, 1.0, np.einsum("mpp->mp", damped) + self.damping[who, None] * scale)
-        index = np.arange(theta.shape[1])
-        damped[:, index, index] = diagonal
-        solved = np.linalg.solve(damped, np.where(pressed, 0.0, gradient)[..., None])
-        return -solved[..., 0]
-
-    def _set_damping(self, who: NDArray[np.intp], better: NDArray[np.bool_], gain: Array, hoped: Array) -> None:
-        ratio = np.divide(gain, hoped, out=np.zeros_like(gain), where=better & (hoped > 0.0))
-        softer = np.maximum(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
-        factor = np.where(better, softer, self.growth[who])
-        self.damping[who] = np.clip(self.damping[who] * factor, SOFTEST, STIFFEST)
-        self.growth[who] = np.where(better, 2.0, 2.0 * self.growth[who])
-
-    def _accept(self, who: NDArray[np.intp], theta: Array, residuals: Array, predicted: Array) -> None:
-        if who.size:
-            self.theta[who], self.residuals[who] = theta, residuals
-            self.jacobian[who] = jacobian(self.model, theta, predicted, self.bounds)
+        chosen = np.concatenate([chosen, points[np.argsort(cost, kind="stable")[:FITTED]]])
+    fits = fit_many(model, np.broadcast_to(target, (len(chosen), target.size)), chosen, bounds)
+    return fits[int(np.argmin(fits.cost))]
 
 
 def _squares(values: Array) -> Array:

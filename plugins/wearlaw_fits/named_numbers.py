@@ -1,39 +1,37 @@
-"""The numbers of a pipeline's stages and laws, by names that tell them apart, and the stages with other numbers."""
+"""The numbers of a pipeline's stages and laws, by names that tell them apart, and predictions with other numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.errors import CompositionError, InputError, shown
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
+from wearlaw.numerics.integrate import integrate_forces, integrate_laws
 from wearlaw.numerics.staged import staged
+from wearlaw.numerics.totals import OnBlock, Totals
 from wearlaw.parameters import changed, number_like, numbers
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 
 PartT = TypeVar("PartT", bound=Stage | Law)
 
-Kind: TypeAlias = Literal["stage", "law"]
+Kind: TypeAlias = Literal["stage", "law", "condition"]
+
+FRICTION = "friction_coefficient"
+"""The only number of a fit that is a condition, not a number of a law or stage."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """The place of a number in a pipeline.
+    """The place of a number in a pipeline: a stage or a law by its index, and the number by its name there.
 
-    Attributes
-    ----------
-    kind : {"stage", "law"}
-        Whether a stage or a law has it.
-    index : int
-        Index of that stage or law.
-    field : str
-        Name of the number there, as in `settings.parameters.numbers`.
+    The friction coefficient is a condition, of index 0.
     """
 
     kind: Kind
@@ -41,77 +39,47 @@ class Place:
     field: str
 
 
-@dataclass(frozen=True, slots=True)
-class _Part:
-    kind: Kind
-    index: int
-    label: str
-    model: Stage | Law
-    numbers: tuple[str, ...]
+def _parts(predict: Pipeline[...], kinds: Sequence[Kind]) -> Iterator[tuple[str, Place, list[str]]]:
+    """Yield stages and laws by labels that tell them apart, each with its place and the names of its numbers."""
+    parts = [*(Place("stage", i, "") for i in range(len(predict.stages)))]
+    parts += [Place("law", i, "") for i in range(len(predict.laws))]
+    models = [part_at(predict, place) for place in parts]
+    for place, model in zip(parts, models, strict=True):
+        alike = [other for other, one in zip(parts, models, strict=True) if one.name == model.name]
+        suffix = f"_{getattr(model, 'body', None) or alike.index(place) + 1}" if len(alike) > 1 else ""
+        if place.kind in (kinds or ("stage", "law")):
+            yield f"{model.name}{suffix}", place, list(numbers(model))
 
-    def holds(self, name: str) -> bool:
-        """Return whether the name is one of the numbers, or of a record with numbers."""
-        return any(number == name or number.startswith(f"{name}.") for number in self.numbers)
+
+def known_names(predict: Pipeline[...], *kinds: Kind) -> list[str]:
+    """Return the names of all numbers, each as short as it can be."""
+    parts = list(_parts(predict, kinds))
+    every = [name for *_, names in parts for name in names]
+    return [name if every.count(name) == 1 else f"{label}.{name}" for label, _, names in parts for name in names]
 
 
-class NamedNumbers:
-    """The numbers of a pipeline's stages and laws, found by name.
+def place_of(predict: Pipeline[...], name: str, *kinds: Kind, others: Sequence[str] = ()) -> Place:
+    """Return the place of a number, or of a record with numbers; an error suggests `others` too.
 
     A number that one part alone has is found by its name, such as "m_m". Any number is found by the name of its part
     and its own, such as "usfd.m_m". The body follows the name of laws of one name for different bodies, as in
     "usfd_rail.m_m", and its place follows the name of other parts of one name, as in "third_body_2.reduction".
-
-    Parameters
-    ----------
-    predict : Pipeline
-    *kinds : {"stage", "law"}
-        The parts to look at, by default both kinds.
     """
-
-    def __init__(self, predict: Pipeline[...], *kinds: Kind) -> None:
-        every: list[tuple[Kind, int, Stage | Law]] = [
-            *(("stage", index, stage) for index, stage in enumerate(predict.stages)),
-            *(("law", index, law) for index, law in enumerate(predict.laws)),
-        ]
-        labels = _labels([model for _, _, model in every])
-        self.parts = [
-            _Part(kind, index, label, model, tuple(numbers(model.explicit() if isinstance(model, Law) else model)))
-            for (kind, index, model), label in zip(every, labels, strict=True)
-            if kind in (kinds or ("stage", "law"))
-        ]
-
-    @property
-    def known(self) -> list[str]:
-        """The names of all numbers, each as short as it can be."""
-        names = [name for part in self.parts for name in part.numbers]
-        return [
-            name if names.count(name) == 1 else f"{part.label}.{name}" for part in self.parts for name in part.numbers
-        ]
-
-    def place(self, name: str) -> Place | None:
-        """Return the place of a number, or of a record with numbers; None if there is none of this name.
-
-        Raises
-        ------
-        InputError
-            If several parts have it.
-        """
-        found = [part for part in self.parts if part.holds(name)]
-        if len(found) > 1:
-            full = " or ".join(f"'{part.label}.{name}'" for part in found)
-            raise InputError(f"{shown(name)} is a number of {' and '.join(part.label for part in found)}; write {full}")
-        if found:
-            return Place(found[0].kind, found[0].index, name)
-        for part in self.parts:
-            own = name.removeprefix(f"{part.label}.")
-            if own != name and part.holds(own):
-                return Place(part.kind, part.index, own)
-        return None
-
-    def owners(self) -> str:
-        """Return the parts in words, such as "wear law 'usfd'"."""
-        named = [f"{part.model.kind} '{part.label}'" for part in self.parts if part.numbers]
-        return ", ".join(named[:-1]) + f" and {named[-1]}" if len(named) > 1 else "".join(named)
+    found = [
+        (label, replace(place, field=own))
+        for label, place, names in _parts(predict, kinds)
+        for own in dict.fromkeys((name, name.removeprefix(f"{label}.")))
+        if any(number == own or number.startswith(f"{own}.") for number in names)
+    ]
+    if len(found) > 1:
+        full = " or ".join(f"'{label}.{name}'" for label, _ in found)
+        raise InputError(f"{shown(name)} is a number of {' and '.join(label for label, _ in found)}; write {full}")
+    if not found:
+        known = [*known_names(predict, *kinds), *others]
+        raise InputError(
+            f"no number is called {shown(name)}{did_you_mean(name, known)} There are: {', '.join(known) or 'none'}"
+        )
+    return found[0][1]
 
 
 def part_at(predict: Pipeline[...], place: Place) -> Stage | Law:
@@ -119,45 +87,56 @@ def part_at(predict: Pipeline[...], place: Place) -> Stage | Law:
     return predict.stages[place.index] if place.kind == "stage" else predict.laws[place.index].explicit()
 
 
-def changed_parts(parts: Sequence[PartT], kind: Kind, values: Mapping[Place, Any]) -> tuple[PartT, ...]:
-    """Return stages or laws with some of their numbers changed, given as floats in SI.
+def of_part(values: Mapping[Place, Any], kind: Kind, index: int) -> dict[str, Any]:
+    """Return the values of one stage or law by the names of its numbers, from values by their places."""
+    return {place.field: value for place, value in values.items() if (place.kind, place.index) == (kind, index)}
 
-    Raises
-    ------
-    ConfigurationError
-        If a stage or law does not accept its numbers.
-    """
+
+def changed_parts(parts: Sequence[PartT], kind: Kind, values: Mapping[Place, Any]) -> tuple[PartT, ...]:
+    """Return stages or laws with some of their numbers changed, given as floats in SI."""
     found = []
     for index, part in enumerate(parts):
-        own = {place.field: si for place, si in values.items() if (place.kind, place.index) == (kind, index)}
-        like = numbers(part) if own else {}
-        found.append(
-            changed(part, {name: number_like(like[name], float(si)) for name, si in own.items()}) if own else part
-        )
+        own, like = of_part(values, kind, index), numbers(part)
+        new = {name: number_like(like[name], float(si)) for name, si in own.items()}
+        found.append(changed(part, new) if new else part)
     return tuple(found)
 
 
-def staged_models(
-    predict: Pipeline[...], values: Mapping[Place, Array], sets: int
-) -> Iterator[tuple[ContactModel, NDArray[np.intp]]]:
-    """Yield the contact model with the stages of each set of their numbers, and the sets that share it.
+def outcomes_at(
+    predict: Pipeline[...],
+    problem: Problem,
+    values: Mapping[Place, Array],
+    indices: Sequence[int],
+    on_block: OnBlock[Totals] | None = None,
+) -> Array:
+    """Return outcomes of laws in SI, (laws, points), at operating points (points,) with numbers of their own in SI."""
+    laws = [predict.laws[index] for index in indices]
+    problem = problem.replaced(**of_part(values, "condition", 0))
+    found = np.empty((len(laws), problem.size))
+    for model, members in _staged_models(predict, values):
+        p = [
+            {**law.numbers, **{name: one[members][:, None] for name, one in of_part(values, "law", index).items()}}
+            for index, law in zip(indices, laws, strict=True)
+        ]
+        found[:, members] = integrate_laws(model, laws, problem[members], on_block, p).values
+    return found
 
-    Parameters
-    ----------
-    predict : Pipeline
-    values : mapping of Place to ndarray, (sets,)
-        Numbers of stages in SI; other places are ignored.
-    sets : int
-        Number of sets.
 
-    Raises
-    ------
-    ConfigurationError
-        If a stage does not accept its numbers.
-    """
-    of_stages = {place: numbers for place, numbers in values.items() if place.kind == "stage"}
+def traction_at(predict: Pipeline[...], problem: Problem, values: Mapping[Place, Array]) -> Array:
+    """Return T/N, (points,), at operating points with numbers of their own; see `outcomes_at`."""
+    problem = problem.replaced(**of_part(values, "condition", 0))
+    found = np.empty(problem.size)
+    for model, members in _staged_models(predict, values):
+        part = problem[members]
+        found[members] = integrate_forces(model, part).tangential / part.normal_force
+    return found
+
+
+def _staged_models(predict: Pipeline[...], values: Mapping[Place, Array]) -> Iterator[tuple[ContactModel, Any]]:
+    """Yield the contact model with the stages of each set of their numbers, and the points that share it."""
+    of_stages = {place: one for place, one in values.items() if place.kind == "stage"}
     if not of_stages:
-        yield predict.staged_model, np.arange(sets)
+        yield predict.staged_model, slice(None)
         return
     rows, which, counts = np.unique(
         np.stack(list(of_stages.values()), axis=-1), axis=0, return_inverse=True, return_counts=True
@@ -175,13 +154,3 @@ def check_loads_stay(predict: Pipeline[...], application: str, names: Sequence[s
             f"{application}: rig '{predict.rig.name}' balances its loads with the forces, which change with"
             f" {' and '.join(names)}; this takes a rig whose loads stay"
         )
-
-
-def _labels(models: Sequence[Stage | Law]) -> list[str]:
-    found = []
-    for index, model in enumerate(models):
-        alike = [other for other, one in enumerate(models) if one.name == model.name]
-        body = getattr(model, "body", None)
-        suffix = "" if len(alike) == 1 else f"_{body or alike.index(index) + 1}"
-        found.append(f"{model.name}{suffix}")
-    return found

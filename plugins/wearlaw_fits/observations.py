@@ -14,12 +14,12 @@ from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConfigurationError, FitError, ModelError
 from wearlaw.models.law import WEAR, named_outcomes
-from wearlaw.numerics.integrate import integrate_forces, integrate_laws, patch_area
+from wearlaw.numerics.integrate import integrate_forces, patch_area
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, name_of
-from wearlaw_fits.free_parameters import FRICTION, FreeParameters, give_bounds
-from wearlaw_fits.named_numbers import Place, check_loads_stay, staged_models
+from wearlaw_fits.free_parameters import FreeParameters, give_bounds
+from wearlaw_fits.named_numbers import FRICTION, Place, check_loads_stay, outcomes_at, traction_at
 from wearlaw_fits.wear_tests import WearTests
 from wearlaw_output.labels import label
 
@@ -43,20 +43,12 @@ class Observations:
         "traction_coefficient" [-], or the name of a law's outcome, such as "wear_rate".
     law : int or None
         Index of the law that predicts it; None for the traction.
-    pipeline : Pipeline
-        The pipeline that predicts it.
-    places : mapping of str to Place
-        Where the free numbers stand in the pipeline.
-    tests : WearTests
-        The tests with this measurement, each with a label.
     measured : ndarray, (n,)
         The measurements in SI.
     conditions : mapping of str to Quantity or array_like, (n,) or a single value
         The conditions of the tests, which the rig takes.
     problem : Problem
         The contact problems of the tests, with batch shape (n,).
-    scatter : str
-        Kind of scatter.
     divisor : ndarray, (n,)
         Divisor of the residuals; 1 for relative scatter.
     """
@@ -78,60 +70,21 @@ class Observations:
         return UNITS[TRACTION] if self.law is None else self.pipeline.laws[self.law].outcome.unit
 
     @property
-    def name(self) -> str:
-        """Name of the measurement in words, such as "wear rate"."""
-        return self.observable.replace("_", " ")
-
-    @property
-    def plural(self) -> str:
-        """The measurements in words, such as "wear rates"."""
-        return f"{self.name}s" if self.observable in (WEAR, TRACTION) else f"values of {self.name}"
-
-    @property
-    def head(self) -> str:
-        """Head of a column of the measurement, as in "wear_rate [ug/m/mm^2]"."""
-        return f"{self.observable} [{self.unit}]" if self.unit else self.observable
-
-    @property
     def label(self) -> str:
         """Name of the measurement with its unit, for the axis of a figure."""
         return label(self.observable, units={self.observable: self.unit})
 
     def predicted(self, values: Mapping[str, Array], problem: Problem | None = None) -> Array:
-        """Return the predictions (sets, n) for parameters in SI, (sets,) each.
-
-        Parameters
-        ----------
-        values : mapping of str to ndarray, (sets,)
-            All free parameters.
-        problem : Problem, optional
-            Other operating points than those of the tests, with batch shape (n,).
-
-        Raises
-        ------
-        FitError
-            If a stage does not accept its numbers.
-        """
+        """Return the predictions (sets, n) for all free parameters in SI, (sets,) each, at tests or other points."""
         problem = self.problem if problem is None else problem
         sets, points = len(next(iter(values.values()))), problem.size
-        found = np.empty((sets, points))
-        at_places = {place: values[name] for name, place in self.places.items()}
+        problem = problem[np.tile(np.arange(points), sets)]
+        at_points = {place: np.repeat(values[name], points) for name, place in self.places.items()}
         try:
-            for model, members in staged_models(self.pipeline, at_places, sets):
-                part = problem[np.tile(np.arange(points), members.size)]
-                if FRICTION in values:
-                    part = part.replaced(friction_coefficient=np.repeat(values[FRICTION][members], points))
-                if self.law is None:
-                    one = integrate_forces(model, part).tangential / part.normal_force
-                else:
-                    own = {
-                        place.field: np.repeat(value[members], points)[:, None]
-                        for place, value in at_places.items()
-                        if (place.kind, place.index) == ("law", self.law)
-                    }
-                    law = self.pipeline.laws[self.law]
-                    one = integrate_laws(model, (law,), part, numbers=[{**law.numbers, **own}]).values[0]
-                found[members] = one.reshape(members.size, points)
+            if self.law is None:
+                found = traction_at(self.pipeline, problem, at_points)
+            else:
+                found = outcomes_at(self.pipeline, problem, at_points, [self.law])
         except (ConfigurationError, ModelError) as error:
             names = [name for name, place in self.places.items() if place.kind == "stage"]
             if not names:
@@ -140,7 +93,7 @@ class Observations:
                 f"the search for the best fit has met values of {' and '.join(names)} that the stage or the contact"
                 f" model does not accept; {give_bounds(names[0])}: {error}"
             ) from error
-        return found
+        return found.reshape(sets, points)
 
     def residuals(self, values: Mapping[str, Array]) -> Array:
         """Return the residuals (sets, n) for parameters in SI, (sets,) each."""
@@ -177,11 +130,6 @@ def observe(
     """Return the measurements that depend on the free parameters: outcomes of laws, and tractions.
 
     An outcome depends on the numbers of its law and on all that changes the contact, the traction on the latter only.
-
-    Raises
-    ------
-    FitError
-        If the tests lack a measurement or condition.
     """
     of_contact = free.of_contact
     check_loads_stay(pipeline, "fit", of_contact)

@@ -13,9 +13,9 @@ import wearlaw as wl
 from wearlaw import loader
 from wearlaw.errors import DataError, InputError, UnitError, did_you_mean, shown
 from wearlaw.text_files import read_text
-from wearlaw_fits.wear_tests import COLUMNS, Values, WearTests, head
+from wearlaw_fits.wear_tests import COLUMNS, Values, WearTests
 from wearlaw_output.datasets import names_in
-from wearlaw_tables import Column, Table
+from wearlaw_tables import Table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,13 +61,7 @@ def read_tests(
 
 
 def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
-    """Return the text of a CSV file, or of shipped tests by their name.
-
-    Raises
-    ------
-    DataError
-        If there is no such file and no such tests, or the file is not text.
-    """
+    """Return the text of a CSV file, or of shipped tests by their name."""
     found = loader.installed()
     if path_or_name in found["test set"].providers:
         text: str = found.find("test set", str(path_or_name))
@@ -87,13 +81,7 @@ def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
 def parse_tests(
     text: str, name: str, outcomes: Collection[str] = (), sep: str | None = None, decimal: str = "."
 ) -> WearTests:
-    """Return the tests of a CSV text; its `name` stands in errors, and for the source of tests that state none.
-
-    Raises
-    ------
-    DataError
-        If the contents are wrong. The message names all faults.
-    """
+    """Return the tests of a CSV text; its `name` stands in errors, and for the source of tests that state none."""
     return _checked(wl.read_table(io.StringIO(text), sep=sep, decimal=decimal), name, outcomes)
 
 
@@ -102,7 +90,7 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     table.label = f"the tests {shown(Path(name))}"
     conditions = {name for rig in loader.rigs().values() for name in rig.conditions()}
     measured = {*outcomes, *(law.outcome.name for law in loader.laws().values())}
-    wrong = list(_faulty_heads(table, {*conditions, *measured}))
+    wrong = list(_unknown(table, {*conditions, *measured}))
     if wrong:
         raise DataError(f"{table.label} are wrong in:", wrong)
     given: dict[str, Values] = {}
@@ -131,35 +119,27 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     )
 
 
-def _faulty_heads(table: Table, known: Collection[str]) -> Iterator[str]:
-    """Yield what is wrong with single columns of tests."""
+def _unknown(table: Table, known: Collection[str]) -> Iterator[str]:
+    """Yield what is wrong with columns that are neither of tests nor conditions or outcomes of installed rigs or laws.
+
+    Another condition of a rig has a unit, and a name unlike those of missing columns.
+    """
     missing = [name for name in (*COLUMNS, *TEXTS) if name not in table.columns]
     unknown = []
     for column in table.columns.values():
-        where = f"column '{column.head}'"
-        if column.name in COLUMNS:
-            if COLUMNS[column.name].unit and column.unit is None:
-                yield f"{where}: has no unit; write it as '{head(column.name)}'"
-        elif column.name not in TEXTS and not _is_other(column, missing, known):
+        if column.name in (*COLUMNS, *TEXTS, *known):
+            continue
+        of_body = column.name.startswith("wear_rate_")  # the wear rate of one body
+        alike = [name for name in missing if not (of_body and name == "wear_rate")]
+        if column.unit is None or get_close_matches(column.name, alike, n=1):
             unknown.append(column)
-            yield f"{where}: unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])}"
+            yield f"column '{column.head}': unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])}"
     if unknown:
-        heads = ", ".join(map(head, COLUMNS))
+        heads = ", ".join(f"{name} [{one.unit}]" if one.unit else name for name, one in COLUMNS.items())
         yield (
             f"the columns are {heads}, {', '.join(TEXTS)}, in any unit; another condition of a rig has its unit in"
             " square brackets, as in 'mass [kg]'"
         )
-
-
-def _is_other(column: Column, missing: Collection[str], known: Collection[str]) -> bool:
-    """Return whether a column is a condition or an outcome that is not in the table of columns.
-
-    It belongs to an installed rig or law, or has a unit and a name unlike those of missing columns.
-    """
-    if column.name.startswith("wear_rate_"):  # the wear rate of one body
-        missing = [name for name in missing if name != "wear_rate"]
-    unlike = column.unit is not None and not get_close_matches(column.name, missing, n=1)
-    return column.name.isidentifier() and (column.name in known or unlike)
 
 
 def explain_tests(name: str, text: str) -> Iterator[str]:

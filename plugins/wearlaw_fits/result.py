@@ -15,16 +15,17 @@ import pandas as pd
 import pint
 import tomli_w
 
+from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import FitError, OutputError, shown
 from wearlaw.fields import specification
-from wearlaw.models.law import Law
+from wearlaw.models.law import WEAR, Law
 from wearlaw.text_files import reason_of
 from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor, symbol
 from wearlaw.units.variables import UNITS, name_of
-from wearlaw_fits.free_parameters import FRICTION
+from wearlaw.version import __version__
 from wearlaw_fits.lack_of_fit import SAME, LackOfFit
 from wearlaw_fits.observations import TRACTION, Observations, Scatter, wear_index_density
 from wearlaw_fits.wear_tests import WearTests
@@ -58,14 +59,10 @@ class Fit:
         Ends of the intervals, by `interval_method`.
     covariance_intervals : dict of str to (Quantity, Quantity)
         Ends of the intervals by Student's t from the covariance.
-    interval_method : str
-        "studentised bootstrap", or "Student's t" without a bootstrap.
     confidence : float
         Confidence level of the intervals.
     covariance : ndarray, (p, p)
         Of the values in SI, in the order of `parameters`, from the linearised model.
-    law : Law or None
-        The law with the fitted parameters; None if the pipeline has no law, or several, which are `predict.laws`.
     predict : Pipeline
         The pipeline with the fitted laws and stages.
     tests : WearTests
@@ -79,8 +76,6 @@ class Fit:
         Akaike's information criterion; only differences between laws fitted to the same tests matter.
     samples : dict of str to Quantity, (replicates,)
         The parameters of the bootstrap replicates.
-    provenance : dict
-        Versions, tests, settings and sums.
     observations : tuple of Observations
         The measurements with their pipeline, and the fitted friction coefficient.
     lack_of_fit : tuple of LackOfFit
@@ -92,20 +87,46 @@ class Fit:
     parameters: dict[str, Quantity]
     intervals: dict[str, tuple[Quantity, Quantity]]
     covariance_intervals: dict[str, tuple[Quantity, Quantity]]
-    interval_method: str
     confidence: float
     covariance: Array
-    law: Law | None
     predict: Pipeline[...]
     tests: WearTests
     scatter: Scatter
     chi2: float
     aic: float
     samples: dict[str, Quantity]
-    provenance: Mapping[str, Any]
     observations: tuple[Observations, ...]
     lack_of_fit: tuple[LackOfFit, ...]
     settings: Mapping[str, Any]
+
+    @property
+    def law(self) -> Law | None:
+        """The law with the fitted parameters; None if the pipeline has no law, or several, which are `predict.laws`."""
+        return self.predict.laws[0] if len(self.predict.laws) == 1 else None
+
+    @property
+    def interval_method(self) -> str:
+        """How `intervals` were made: "studentised bootstrap", or "Student's t" without a bootstrap."""
+        return "studentised bootstrap" if self.samples else "Student's t"
+
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """Versions, stages with their fitted numbers, tests, settings and sums, as a TOML table."""
+        found, model = loader.installed(), self.predict.contact_model
+        return {
+            "wearlaw": __version__,
+            "laws": {law.name: found[law.kind].distribution(law.name, type(law)) for law in self.predict.laws},
+            "contact_model": found["contact model"].distribution(model.name, type(model)),
+            "stages": [specification(stage) for stage in self.predict.stages],
+            "tests": self.tests.source,
+            "measurements": {one.observable: one.measured.size for one in self.observations},
+            "free": list(self.parameters),
+            "scatter": self.scatter,
+            "chi2": self.chi2,
+            "seed": self.settings["seed"],
+            "bootstrap": len(next(iter(self.samples.values()), ())),
+            "confidence": self.confidence,
+        }
 
     @property
     def standard_errors(self) -> dict[str, Quantity]:
@@ -142,43 +163,35 @@ class Fit:
 
         The ratio is NaN unless both values are positive.
         """
-        rows = []
+        frames = []
         for one in self.observations:
             predicted = self.fitted(one)
-            shown = one.unit
             ratio = np.full(predicted.shape, np.nan)
             np.divide(predicted, one.measured, out=ratio, where=(predicted > 0.0) & (one.measured > 0.0))
-            rows.append(
-                pd.DataFrame(
-                    {
-                        "label": one.tests.labels,
-                        "observable": one.head,
-                        "creepage [%]": from_si(one.problem.creepage, UNITS["creepage"]).magnitude,
-                        "measured": from_si(one.measured, shown).magnitude,
-                        "predicted": from_si(predicted, shown).magnitude,
-                        "residual": one.in_shown_unit(predicted),
-                        "predicted/measured": ratio,
-                    }
-                )
-            )
-        return pd.concat(rows, ignore_index=True)
+            columns = {
+                "label": one.tests.labels,
+                "observable": f"{one.observable} [{one.unit}]" if one.unit else one.observable,
+                "creepage [%]": in_unit(one.problem.creepage, UNITS["creepage"]),
+                "measured": in_unit(one.measured, one.unit),
+                "predicted": in_unit(predicted, one.unit),
+                "residual": one.in_shown_unit(predicted),
+                "predicted/measured": ratio,
+            }
+            frames.append(pd.DataFrame(columns))
+        return pd.concat(frames, ignore_index=True)
 
     def table(self) -> pd.DataFrame:
         """Return the parameters with their intervals, a row for each."""
-        rows = []
-        for name, value in self.parameters.items():
-            low, high = self.intervals[name]
-            rows.append(
-                {
-                    "parameter": name,
-                    "value": value.magnitude,
-                    "low": low.magnitude,
-                    "high": high.magnitude,
-                    "standard_error": self.standard_errors[name].magnitude,
-                    "unit": symbol(value.units, "~C"),
-                }
-            )
-        return pd.DataFrame(rows)
+        values = self.parameters.values()
+        columns = {
+            "parameter": list(self.parameters),
+            "value": [value.magnitude for value in values],
+            "low": [low.magnitude for low, _ in self.intervals.values()],
+            "high": [high.magnitude for _, high in self.intervals.values()],
+            "standard_error": [error.magnitude for error in self.standard_errors.values()],
+            "unit": [symbol(value.units, "~C") for value in values],
+        }
+        return pd.DataFrame(columns)
 
     def to_toml(self, path: str | os.PathLike[str]) -> None:
         """Write the fitted law and its provenance to a file that `read_law` reads.
@@ -192,20 +205,19 @@ class Fit:
         OutputError
             If the file cannot be written.
         """
-        if self.law is None and self.predict.laws:
-            raise FitError("a file holds one law, and this fit has several; they are in fit.predict.laws")
         if self.law is None:
-            raise FitError("a fit without a wear law has no law to write; its parameters are in fit.parameters")
+            raise FitError(
+                f"a file holds one law, and this fit has {len(self.predict.laws)}; what it found is in fit.predict.laws"
+                " and fit.parameters"
+            )
         target, law = Path(path), self.law
         text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": self.provenance})
         temporary = target.with_name(f".{uuid4().hex}")  # short, since the name may be as long as names can be
         try:
-            try:
-                temporary.write_text(text, encoding="utf-8", newline="\n")
-                os.replace(temporary, target)
-            finally:
-                temporary.unlink(missing_ok=True)
-        except (OSError, ValueError) as error:
+            temporary.write_text(text, encoding="utf-8", newline="\n")
+            os.replace(temporary, target)
+        except OSError as error:
+            temporary.unlink(missing_ok=True)
             raise OutputError(f"cannot write {shown(target)}: {reason_of(error)}") from None
 
     def figure_data(self) -> FigureData:
@@ -226,7 +238,7 @@ class Fit:
     def contact_parameters(self) -> tuple[str, ...]:
         """The fitted parameters that change the contact: the friction coefficient and numbers of stages."""
         places = self.observations[0].places
-        return tuple(name for name in self.parameters if name not in places or places[name].kind == "stage")
+        return tuple(name for name in self.parameters if places[name].kind != "law")
 
     def values_in_si(self, which: Mapping[str, Quantity] | None = None) -> dict[str, Array]:
         """Return the fitted parameters, or others, as SI arrays of one axis."""
@@ -249,7 +261,7 @@ class Fit:
 
     def _head(self) -> str:
         degrees = sum(one.measured.size for one in self.observations) - len(self.parameters)
-        counts = " and ".join(f"{one.measured.size} {one.plural}" for one in self.observations)
+        counts = " and ".join(f"{one.measured.size} {_plural(one.observable)}" for one in self.observations)
         return f"Fit to {counts}, {degrees} degrees of freedom, {self.scatter} scatter"
 
     def _lines(self) -> Iterator[tuple[str, str]]:
@@ -266,6 +278,10 @@ class Fit:
         yield "intervals", f"{self.confidence:.0%}, {self.interval_method}"
 
 
+def _plural(observable: str) -> str:
+    return f"{observable.replace('_', ' ')}s" if observable in (WEAR, TRACTION) else f"values of {name_of(observable)}"
+
+
 def _panel(fit: Fit, one: Observations) -> Panel:
     """Return measured and fitted values: along the one condition that varies, with a band, or else side by side."""
     numbers = {name: _numbers(value) for name, value in one.conditions.items() if name != TRACTION}
@@ -274,12 +290,8 @@ def _panel(fit: Fit, one: Observations) -> Panel:
         return _parity(one, fit.fitted(one))
     name, values = varied[0], numbers[varied[0]]
     order = np.argsort(values, kind="stable")
-    problem = one.pipeline.posed(
-        {other: _between_tests(value, order) for other, value in one.conditions.items()}, of_one_patch="fit"
-    )
-    if FRICTION in fit.parameters:
-        friction = np.full(problem.batch_shape, one.problem.friction_coefficient[0])
-        problem = problem.replaced(friction_coefficient=friction)
+    conditions = {other: _finer(value, order) for other, value in one.conditions.items()}
+    problem = one.pipeline.posed(conditions, of_one_patch="fit")
     if "creepage" in name and one.law is not None and (abs(np.sign(values).sum()) == values.size):
         axis = "wear_index_density"
         at_tests, along = (
@@ -289,10 +301,14 @@ def _panel(fit: Fit, one: Observations) -> Panel:
     else:
         given = one.conditions[name]
         unit = f"{given.units:~P}" if isinstance(given, pint.Quantity) else ""
-        at_tests, along = values, _finer(values[order])
+        at_tests, along = values, _numbers(conditions[name])
         x = PlotAxis(label(name, units={name: unit}))
     measured = Curve("measured", at_tests, in_unit(one.measured, one.unit), colour=BLACK, points=True)
-    return Panel(x, PlotAxis(one.label, x.scale), (_curve(fit, one, problem, along), measured))
+    return Panel(
+        x,
+        PlotAxis(one.label, x.scale),
+        (_curve(fit, one, problem, along), measured),
+    )
 
 
 def _parity(one: Observations, fitted: Array) -> Panel:
@@ -308,19 +324,14 @@ def _numbers(value: Any) -> Array:
     return real_array(value.magnitude if isinstance(value, pint.Quantity) else value)
 
 
-def _between_tests(value: Any, order: NDArray[np.intp]) -> Any:
-    """Return a condition of the tests in some order and of points between them; a single value stays."""
+def _finer(value: Any, order: NDArray[np.intp]) -> Any:
+    """Return a condition of the tests in some order, and of points between them; a single value stays."""
     numbers = _numbers(value)
     if numbers.ndim == 0:
         return value
-    finer = _finer(numbers[order])
+    places = np.linspace(0.0, order.size - 1.0, BETWEEN * (order.size - 1) + 1)
+    finer = np.interp(places, np.arange(order.size), numbers[order])
     return Q(finer, str(value.units)) if isinstance(value, pint.Quantity) else finer
-
-
-def _finer(values: Array) -> Array:
-    """Return values and further ones between them."""
-    places = np.arange(values.size, dtype=np.float64)
-    return np.interp(np.linspace(0.0, places[-1], BETWEEN * (values.size - 1) + 1), places, values)
 
 
 def _curve(fit: Fit, one: Observations, problem: Problem, along: Array) -> Curve:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from copy import copy
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -13,23 +13,30 @@ import pandas as pd
 import scipy
 
 from wearlaw.arrays import Array, steadily
-from wearlaw.contact.conditions import Known, broadcast
-from wearlaw.contact.problem import Problem
+from wearlaw.contact.conditions import broadcast
 from wearlaw.errors import InputError, did_you_mean, shown
-from wearlaw.models.law import WEAR, Numbers, named_outcomes
-from wearlaw.numerics.integrate import integrate_laws
+from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
-from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
 from wearlaw.units.variables import UNITS, name_of
 from wearlaw_fits.distributions import Distribution, PublishedRange
-from wearlaw_fits.named_numbers import Kind, Place, check_loads_stay, part_at, staged_models
+from wearlaw_fits.named_numbers import Place, check_loads_stay, of_part, outcomes_at, part_at
 from wearlaw_fits.result import Fit
-from wearlaw_fits.uncertain_inputs import OTHERS, Uncertain, UncertainCondition, check_samples, numbers_of, of_fit
+from wearlaw_fits.uncertain_inputs import (
+    OTHERS,
+    Sampled,
+    Uncertain,
+    check_samples,
+    of_condition,
+    of_fit,
+    of_numbers,
+)
+from wearlaw_output.conditions import Known
 from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis, Shade
 from wearlaw_output.labels import label
 from wearlaw_output.plot import plot
+from wearlaw_sweeps.evaluation import expect_pipeline
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -90,28 +97,105 @@ def uncertainty(
     InputError
         If nothing is distributed, or a distribution is impossible for its condition or parameter.
     """
-    of = [of_fit(predict, conditions)] if isinstance(predict, Fit) else []
+    if not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
+        raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {shown(samples)}")
+    if not isinstance(seed, int) or seed < 0:
+        raise InputError(f"seed: must be a whole number, zero or positive; got {shown(seed)}")
+    inputs: list[Uncertain] = [of_fit(predict, conditions)] if isinstance(predict, Fit) else []
     pipeline = predict.predict if isinstance(predict, Fit) else predict
     expect_pipeline(pipeline)
-    pipeline.rig.check_names({**conditions, **(of[0].conditions(np.array(0.5)) if of else {})})
-    given = {name: value for name, value in conditions.items() if value is not None}
-    of_conditions = [UncertainCondition.of(name, one) for name, one in given.items() if isinstance(one, Distribution)]
-    of_stages = numbers_of(pipeline, "stage", stage or {})
+    if not pipeline.laws:
+        pipeline.wear_law  # noqa: B018  raises
+    of_fits = {name: value for one in inputs for name, value in one.at(np.array(0.5)).items() if isinstance(name, str)}
+    pipeline.rig.check_names({**conditions, **of_fits})
+    of_stages = of_numbers(pipeline, "stage", stage or {})
     check_loads_stay(pipeline, "uncertainty", [one.name for one in of_stages])
-    inputs: list[Uncertain] = [*of_conditions, *numbers_of(pipeline, "law", law or {}), *of_stages, *of]
+    distributed = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
+    of_conditions = [of_condition(name, value) for name, value in distributed.items()]
+    inputs = [*of_conditions, *of_numbers(pipeline, "law", law or {}), *of_stages, *inputs]
     if not inputs:
         raise InputError(
             'nothing is uncertain; give a condition as a distribution, such as creepage=wl.uniform("0.5 %", "1 %"),'
             " or a parameter by law={...} or stage={...}"
         )
-    places = [place for one in inputs for place in one.numbers(np.array(0.5))]
+    places = [place for one in inputs for place in one.at(np.array(0.5)) if isinstance(place, Place)]
     twice = [place.field for place in places if places.count(place) > 1]
     if twice:
         raise InputError(f"{' and '.join(one.name for one in inputs)}: {twice[0]} is given twice")
-    known = {name: value for name, value in given.items() if not isinstance(value, Distribution)}
-    return Uncertainty(pipeline, known, inputs, samples, seed)
+    given = {name: one for name, one in conditions.items() if one is not None and name not in distributed}
+    explicit = pipeline.with_law(*(one.explicit() for one in pipeline.laws))
+    sampler = Sampler(explicit, given, tuple(inputs))
+    count = 1 << (samples - 1).bit_length()
+    sequence = scipy.stats.qmc.Sobol(len(inputs), rng=np.random.default_rng(seed))
+    values = sampler.sampled(sequence.random_base2(count.bit_length() - 1).T, range(len(pipeline.laws)), warns=True)
+    outcomes = zip(named_outcomes(pipeline.laws), pipeline.laws, values, strict=True)
+    return Uncertainty(sampler, {name: from_si(one, law.outcome.unit) for name, law, one in outcomes}, count, seed)
 
 
+@dataclass(frozen=True, eq=False)
+class Sampler:
+    """A pipeline whose laws predict at probabilities of the uncertain inputs, with the conditions that are given."""
+
+    predict: Pipeline[...]
+    given: Mapping[str, Any]
+    inputs: tuple[Uncertain, ...]
+
+    @cached_property
+    def known(self) -> dict[str, Known]:
+        """The numeric conditions that are not distributed."""
+        found = {name: Known.of(value) for name, value in self.given.items()}
+        return {name: one for name, one in found.items() if one is not None}
+
+    @cached_property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the conditions that are not distributed."""
+        broadcast({name: one.values for name, one in self.known.items()})  # an error names shapes that do not fit
+        # An error here is one of the conditions, not of single samples.
+        conditions, _ = self._at(np.full(len(self.inputs), 0.5))
+        shape: tuple[int, ...] = self.predict.posed(
+            {**self.given, **conditions}, of_one_patch="uncertainty"
+        ).batch_shape
+        return shape
+
+    def sampled(self, probability: Array, indices: Sequence[int], warns: bool = False) -> tuple[Array, ...]:
+        """Return outcomes of laws in SI at probabilities (inputs, samples), samples along the last axis.
+
+        With `warns`, warn of samples outside the range of the laws or of elastic contact.
+        """
+        shape = (*self.shape, probability.shape[-1])
+        conditions, numbers = self._at(np.clip(probability, INSIDE, 1.0 - INSIDE))
+        for place in numbers:
+            check_samples(part_at(self.predict, place), of_part(numbers, place.kind, place.index))
+        known = {
+            name: one.values[..., None] if one.unit is None else Q(one.values[..., None], one.unit)
+            for name, one in self.known.items()
+        }
+        with steadily():
+            try:
+                problem = self.predict.posed({**self.given, **known, **conditions})
+            except InputError as error:
+                raise InputError(f"{error}{OTHERS}") from None
+            flat = problem.broadcast_to(shape).flatten()
+            check_traction(self.predict.contact_model, flat)
+            watch = RangeWatch(*(self.predict.laws[index] for index in indices))
+            at_points = {place: np.broadcast_to(values, shape).reshape(-1) for place, values in numbers.items()}
+            found = outcomes_at(self.predict, flat, at_points, indices, watch.see if warns else None)
+        if warns:
+            self.predict.warn_of_problem(flat)
+            warn_of_unlike_materials(self.predict.contact_model, flat)
+            watch.warn()
+        return tuple(values.reshape(shape) for values in found)
+
+    def _at(self, probability: Array) -> tuple[dict[str, Any], dict[Place, Array]]:
+        """Return the sampled conditions, and the sampled numbers of laws and stages."""
+        found: Sampled = {}
+        for one, row in zip(self.inputs, probability, strict=True):
+            found |= one.at(row)
+        numbers = {key: value for key, value in found.items() if isinstance(key, Place)}
+        return {key: value for key, value in found.items() if isinstance(key, str)}, numbers
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Uncertainty:
     """The outcomes of laws with distributed conditions and parameters, made by `uncertainty`.
 
@@ -120,66 +204,47 @@ class Uncertainty:
 
     Attributes
     ----------
-    outcomes : tuple of str
-        The names of the outcomes.
+    sampler : Sampler
+        The pipeline with its known conditions and uncertain inputs.
+    values : dict of str to Quantity
+        The samples of each outcome by its name in results, along the last axis.
     samples : int
         Number of samples, a power of two as Sobol sequences need.
-    inputs : tuple of Uncertain
-        The distributed conditions and parameters.
+    seed : int
+        Seed of the samples.
     """
 
-    def __init__(
-        self,
-        predict: Pipeline[...],
-        conditions: Mapping[str, Any],
-        inputs: Sequence[Uncertain],
-        samples: int,
-        seed: int,
-    ) -> None:
-        if not isinstance(samples, int) or not 2 <= samples <= MOST_SAMPLES:
-            raise InputError(f"samples: must be a whole number from 2 to {MOST_SAMPLES}, got {shown(samples)}")
-        if not isinstance(seed, int) or seed < 0:
-            raise InputError(f"seed: must be a whole number, zero or positive; got {shown(seed)}")
-        if not predict.laws:
-            predict.wear_law  # noqa: B018  raises
-        self._predict = predict
-        self._laws = tuple(law.explicit() for law in predict.laws)
-        self.outcomes: tuple[str, ...] = tuple(named_outcomes(predict.laws))
-        self._given = conditions
-        self.inputs: tuple[Uncertain, ...] = tuple(inputs)
-        self.samples = 1 << (samples - 1).bit_length()
-        self._seed = seed
-        self._whole = self
-        self._found: tuple[Array, ...] | None = None
+    sampler: Sampler
+    values: Mapping[str, Quantity]
+    samples: int
+    seed: int
+
+    @property
+    def outcomes(self) -> tuple[str, ...]:
+        """The names of the outcomes."""
+        return tuple(self.values)
 
     def of(self, outcome: str) -> Uncertainty:
-        """Return the uncertainty of one of the outcomes, with the same samples.
-
-        Parameters
-        ----------
-        outcome : str
-            Its name in results, such as "rcf_damage" or "wear_rate_rail".
+        """Return the uncertainty of one of the outcomes, such as "rcf_damage" or "wear_rate_rail", by the same samples.
 
         Raises
         ------
         InputError
             If no law predicts it.
         """
-        self._index(outcome)
-        found = copy(self)
-        found.outcomes = (outcome,)
-        return found
+        return replace(self, values={outcome: self[outcome]})
 
     def __getitem__(self, outcome: str) -> Quantity:
         """Return the samples of an outcome by its name in results, along the last axis."""
-        return self._samples_of(outcome)
+        if outcome not in self.values:
+            known = f"{did_you_mean(outcome, self.values)} The outcomes are: {', '.join(self.values)}"
+            raise InputError(f"no law predicts {shown(outcome)}{known}")
+        return self.values[outcome]
 
     @property
     def wear_rate(self) -> Quantity:
         """Samples of the wear rate [kg/m/m²], along the last axis."""
-        if WEAR not in self._whole.outcomes:
-            self._predict.wear_law  # noqa: B018  raises
-        return self._samples_of(WEAR)
+        return self[WEAR]
 
     @property
     def median(self) -> Quantity:
@@ -205,9 +270,9 @@ class Uncertainty:
         ends of its interval under "wear_rate_low" and "wear_rate_high".
         """
         columns = {}
-        for name, known in self.known.items():
+        for name, known in self.sampler.known.items():
             head = f"{name} [{known.unit}]" if known.unit else name
-            columns[head] = np.broadcast_to(known.values, self.shape).reshape(-1)
+            columns[head] = np.broadcast_to(known.values, self.sampler.shape).reshape(-1)
         for one in map(self.of, self.outcomes):
             unit = f" [{one.unit}]" if one.unit else ""
             for ending, value in zip(("", "_low", "_high"), (one.median, *one.interval()), strict=True):
@@ -230,25 +295,28 @@ class Uncertainty:
             If there are several outcomes, the known conditions are more than one operating point, or the outcome does
             not vary.
         """
-        index = self._index(self._only)
-        if self.shape:
+        outcome, inputs = self._only, self.sampler.inputs
+        if self.sampler.shape:
             raise InputError("sobol: needs one operating point; give each condition that is not distributed one value")
-        if np.ptp(self._samples_of(self._only).magnitude) == 0.0:
-            name = self._only.replace("_", " ")
-            raise InputError(f"sobol: the {name} is the same in all samples, so there is no variance to explain")
-        rows = pd.Index([one.name for one in self.inputs], name="input")
-        if len(self.inputs) == 1:  # scipy takes no fewer than two
+        if np.ptp(self[outcome].magnitude) == 0.0:
+            raise InputError(
+                f"sobol: the {name_of(outcome)} is the same in all samples, so there is no variance to explain"
+            )
+        rows = pd.Index([one.name for one in inputs], name="input")
+        if len(inputs) == 1:  # scipy takes no fewer than two
             alone = {"first_order": 1.0, "first_order_error": 0.0, "total_order": 1.0, "total_order_error": 0.0}
             return pd.DataFrame(alone, index=rows)
-        every: list[Any] = [scipy.stats.uniform()] * len(self.inputs)
-        size = max(self.samples // SEQUENCES, 2)
-        with steadily():
-            found = [
-                scipy.stats.sobol_indices(
-                    func=lambda x: self._sampled(x, (index,))[0][None, :], n=size, dists=every, rng=rng
-                )
-                for rng in np.random.default_rng(self._seed).spawn(SEQUENCES)
-            ]
+        every: list[Any] = [scipy.stats.uniform()] * len(inputs)
+        index = named_outcomes(self.sampler.predict.laws)[outcome]
+        found = [
+            scipy.stats.sobol_indices(
+                func=lambda x: self.sampler.sampled(x, (index,))[0][None, :],
+                n=max(self.samples // SEQUENCES, 2),
+                dists=every,
+                rng=rng,
+            )
+            for rng in np.random.default_rng(self.seed).spawn(SEQUENCES)
+        ]
         table: dict[str, Array] = {}
         for order in ("first_order", "total_order"):
             shares = np.array([np.ravel(getattr(one, order)) for one in found])
@@ -256,34 +324,26 @@ class Uncertainty:
         return pd.DataFrame(table, index=rows)
 
     def figure_data(self) -> FigureData:
-        """Return the data of `plot`.
+        """Return the cumulative distribution of one operating point, or the 95 % band along the axis of several.
 
         Raises
         ------
         InputError
-            If the operating points differ in more than one condition.
+            If the operating points differ in more than one condition, or there are several outcomes.
         """
-        return _figure_data(self)
+        inputs = ", ".join(f"{one.name} {one.shown}" for one in self.sampler.inputs)
+        outcome = PlotAxis(label(self._only, units={self._only: self.unit}))
+        panel = (_cumulative if math.prod(self.sampler.shape) == 1 else _along_axis)(self, outcome)
+        samples, band = f"{self.samples} samples of {inputs}", f"{CONFIDENCE:.0%} of the samples"
+        return FigureData("uncertainty", self.title, (panel,), f"{samples}.", band, samples)
 
     def plot(self) -> Figure:
-        """Draw the cumulative distribution, or the 95 % band along the one axis of the conditions."""
+        """Return a drawing of `figure_data`."""
         return plot(self.figure_data())
 
     def _quantile(self, probability: float) -> Quantity:
-        samples = self._samples_of(self._only)
+        samples = self[self._only]
         return Q(np.quantile(samples.magnitude, probability, axis=-1), str(samples.units))
-
-    def _samples_of(self, outcome: str) -> Quantity:
-        index = self._index(outcome)
-        return from_si(self._whole._values()[index], self._laws[index].outcome.unit)
-
-    def _index(self, outcome: str) -> int:
-        """Return the index of the law of an outcome."""
-        known = named_outcomes(self._laws)
-        if outcome not in known:
-            hint = did_you_mean(outcome, known) if isinstance(outcome, str) else "."
-            raise InputError(f"no law predicts {shown(outcome)}{hint} The outcomes are: {', '.join(known)}")
-        return known[outcome]
 
     @property
     def _only(self) -> str:
@@ -295,96 +355,20 @@ class Uncertainty:
         return self.outcomes[0]
 
     @property
+    def _law(self) -> Law:
+        laws = self.sampler.predict.laws
+        return laws[named_outcomes(laws)[self._only]]
+
+    @property
     def unit(self) -> str:
         """Unit of the outcome."""
-        return self._laws[self._index(self._only)].outcome.unit
+        return self._law.outcome.unit
 
     @property
     def title(self) -> str:
         """Title of the prediction."""
-        outcome = self._only
-        name, law = name_of(outcome), self._laws[self._index(outcome)]
-        return f"{name[0].upper()}{name[1:]} by {law.label or law.name} on {self._predict.contact_model.name}"
-
-    @cached_property
-    def known(self) -> dict[str, Known]:
-        """The numeric conditions that are not distributed."""
-        found = {name: Known.of(value) for name, value in self._given.items()}
-        return {name: one for name, one in found.items() if one is not None}
-
-    @cached_property
-    def shape(self) -> tuple[int, ...]:
-        """The shape of the conditions that are not distributed."""
-        broadcast({name: one.values for name, one in self.known.items()})  # an error names shapes that do not fit
-        # An error here is one of the conditions, not of single samples.
-        medians = {name: value for one in self.inputs for name, value in one.conditions(np.array(0.5)).items()}
-        shape: tuple[int, ...] = self._predict.posed({**self._given, **medians}, of_one_patch="uncertainty").batch_shape
-        return shape
-
-    def _problem(self, sampled: Mapping[str, Any]) -> Problem:
-        """Return the contact problems of all operating points and samples, samples along the last axis."""
-        known = {
-            name: one.values[..., None] if one.unit is None else Q(one.values[..., None], one.unit)
-            for name, one in self.known.items()
-        }
-        try:
-            return self._predict.posed({**self._given, **known, **sampled})
-        except InputError as error:
-            raise InputError(f"{error}{OTHERS}") from None
-
-    def _values(self) -> tuple[Array, ...]:
-        """Return the samples of all outcomes in SI; warn the first time."""
-        if self._found is None:
-            with steadily():
-                sequence = scipy.stats.qmc.Sobol(len(self.inputs), rng=np.random.default_rng(self._seed))
-                probability = sequence.random_base2(self.samples.bit_length() - 1).T
-                self._found = self._sampled(probability, range(len(self._laws)), warns=True)
-        return self._found
-
-    def _sampled(self, probability: Array, indices: Sequence[int], warns: bool = False) -> tuple[Array, ...]:
-        """Return outcomes of laws in SI at probabilities (inputs, samples), samples along the last axis.
-
-        Parameters
-        ----------
-        probability : ndarray, (inputs, samples)
-        indices : sequence of int
-            The laws.
-        warns : bool, optional
-            Whether to warn of samples outside the range of the laws or of elastic contact.
-        """
-        count = probability.shape[-1]
-        shape = (*self.shape, count)
-        inside = np.clip(probability, INSIDE, 1.0 - INSIDE)
-        conditions: dict[str, Any] = {}
-        numbers: dict[Place, Array] = {}
-        for one, row in zip(self.inputs, inside, strict=True):
-            conditions |= one.conditions(row)
-            numbers |= one.numbers(row)
-        predict, laws = self._predict, tuple(self._laws[index] for index in indices)
-        for place in numbers:
-            check_samples(part_at(predict, place), _of_part(numbers, place.kind, place.index))
-        flat = self._problem(conditions).broadcast_to(shape).flatten()
-        watch = RangeWatch(*laws)
-        check_traction(predict.contact_model, flat)
-        watching = watch.see if warns else None
-        points = np.arange(math.prod(shape)).reshape(-1, count)
-        found = np.empty((len(laws), flat.size))
-        for model, members in staged_models(predict, numbers, count):
-            chosen = points[:, members].reshape(-1) if members.size < count else slice(None)
-            p: list[Numbers] = []
-            for index, law in zip(indices, laws, strict=True):
-                varied = {
-                    name: np.broadcast_to(values, shape).reshape(-1, 1)[chosen]
-                    for name, values in _of_part(numbers, "law", index).items()
-                }
-                p.append({**law.numbers, **varied})
-            part = flat[chosen] if members.size < count else flat
-            found[:, chosen] = integrate_laws(model, laws, part, watching, p).values
-        if warns:
-            predict.warn_of_problem(flat)
-            warn_of_unlike_materials(predict.contact_model, flat)
-            watch.warn()
-        return tuple(values.reshape(shape) for values in found)
+        name, law = name_of(self._only), self._law
+        return f"{name[0].upper()}{name[1:]} by {law.label or law.name} on {self.sampler.predict.contact_model.name}"
 
     def __repr__(self) -> str:
         first, *others = self.outcomes
@@ -393,25 +377,11 @@ class Uncertainty:
         for one in map(self.of, self.outcomes):
             median, (low, high) = one.median, one.interval()
             spread = f"{median!r}, {100 * CONFIDENCE:g} % of the samples {low!r} to {high!r}"
+            several = bool(self.sampler.shape)
             lines.append(
-                f"{one.outcomes[0]:20} {f'medians {median.min()!r} to {median.max()!r}' if self.shape else spread}"
+                f"{one.outcomes[0]:20} {f'medians {median.min()!r} to {median.max()!r}' if several else spread}"
             )
-        return "\n  ".join([*lines, *(f"{one.name:20} {one.shown}" for one in self.inputs)])
-
-
-def _of_part(numbers: Mapping[Place, Array], kind: Kind, index: int) -> dict[str, Array]:
-    """Return the numbers of one law or stage by their fields."""
-    return {place.field: values for place, values in numbers.items() if (place.kind, place.index) == (kind, index)}
-
-
-def _figure_data(uncertainty: Uncertainty) -> FigureData:
-    """Return the cumulative distribution of one operating point, or the band along the axis of several."""
-    inputs = ", ".join(f"{one.name} {one.shown}" for one in uncertainty.inputs)
-    name, band = uncertainty.outcomes[0], f"{CONFIDENCE:.0%} of the samples"
-    outcome = PlotAxis(label(name, units={name: uncertainty.unit}))
-    panel = (_cumulative if math.prod(uncertainty.shape) == 1 else _along_axis)(uncertainty, outcome)
-    samples = f"{uncertainty.samples} samples of {inputs}"
-    return FigureData("uncertainty", uncertainty.title, (panel,), f"{samples}.", band, samples)
+        return "\n  ".join([*lines, *(f"{one.name:20} {one.shown}" for one in self.sampler.inputs)])
 
 
 def _cumulative(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
@@ -428,7 +398,7 @@ def _cumulative(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
 
 
 def _along_axis(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
-    axes = {name: one for name, one in uncertainty.known.items() if np.size(one.values) > 1}
+    axes = {name: one for name, one in uncertainty.sampler.known.items() if np.size(one.values) > 1}
     if len(axes) != 1:
         raise InputError(f"plot: needs one condition with several values, or none; there are {', '.join(axes)}")
     ((name, one),) = axes.items()

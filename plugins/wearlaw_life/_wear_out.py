@@ -12,11 +12,11 @@ import numpy as np
 import pandas as pd
 
 import wearlaw as wl
-from wearlaw.pipeline.pipeline import expect_pipeline
 from wearlaw_life._life import Life
 from wearlaw_life._line import Line
 from wearlaw_life._removal import even, positions
 from wearlaw_life._steps import Limits, Steps
+from wearlaw_sweeps.evaluation import expect_pipeline
 from wearlaw_sweeps.progress import Bar
 from wearlaw_sweeps.sweep import operating_points
 from wearlaw_sweeps.wear_profile import SHARE

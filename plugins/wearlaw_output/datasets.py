@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.contact.conditions import Known
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes
@@ -18,11 +17,12 @@ from wearlaw.models.contact_model import LineContactModel
 from wearlaw.models.law import named_outcomes
 from wearlaw.numerics.solving import Solver
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.selection import Conditions, axis_names
+from wearlaw.pipeline.selection import axis_names
 from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import default_variables, long_name, unit_of
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, name_of
+from wearlaw_output.conditions import Conditions, Known
 
 if TYPE_CHECKING:
     import pandas
@@ -45,8 +45,13 @@ def names_in(names: Iterable[str], argument: str) -> list[str]:
     return list(dict.fromkeys(names))
 
 
+def to_dataset(prediction: Prediction, solution: Solution, names: Sequence[str] | None) -> xarray.Dataset:
+    """Return a prediction as a dataset; see `Prediction.to_dataset`."""
+    return dataset(prediction, Conditions.of(solution), names)
+
+
 def dataset(prediction: Prediction, conditions: Conditions, names: Sequence[str] | None) -> xarray.Dataset:
-    """Return a prediction as a dataset with its conditions as coordinates; see `Prediction.to_dataset`."""
+    """Return a prediction as a dataset with its conditions as coordinates."""
     problem = prediction.problem
     every = axis_names(problem)
     count = len(every) - len(problem.dims)
@@ -72,8 +77,9 @@ def _coordinate(name: str, one: Known, dims: Sequence[str]) -> tuple[list[str], 
     return [dims[axis] for axis in kept], values, {"units": one.unit or "", "long_name": name_of(name)}
 
 
-def frame(prediction: Prediction, conditions: Conditions, names: Sequence[str] | None) -> pandas.DataFrame:
+def to_dataframe(prediction: Prediction, solution: Solution, names: Sequence[str] | None) -> pandas.DataFrame:
     """Return a prediction as a table; see `Prediction.to_dataframe`."""
+    conditions = Conditions.of(solution)
     found = dataset(prediction, conditions, names)
     units = {str(name): one.attrs.get("units", "") for name, one in found.variables.items()}
     problem = prediction.problem

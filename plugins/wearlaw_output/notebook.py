@@ -1,4 +1,4 @@
-"""HTML of models for notebooks: the fields of each, with a drawing of a rig and the curve of a law.
+"""HTML for notebooks: the fields of models, with a drawing of a rig and the curve of a law, and predictions.
 
 Drawings are SVG in the colour of the text, written by hand, so that nothing else is loaded.
 """
@@ -6,6 +6,7 @@ Drawings are SVG in the colour of the text, written by hand, so that nothing els
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from html import escape
 
 import numpy as np
@@ -15,8 +16,12 @@ from wearlaw.errors import WearlawError, WearlawWarning
 from wearlaw.models.law import Law
 from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Pipeline, Rig
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.solution import Solution
+from wearlaw.pipeline.variables import long_name
 from wearlaw.units.quantities import Q
 from wearlaw.units.variables import name_of
+from wearlaw_output.conditions import Conditions
 from wearlaw_output.labels import readable
 
 WIDTH, HEIGHT = 280, 160
@@ -36,6 +41,18 @@ def html(model: Model) -> str:
         if value is not None
     )
     return f"<div><b>{escape(model.name)}</b><br>{drawing}<table>{rows}</table></div>"
+
+
+def of_prediction(prediction: Prediction, solution: Solution, head: str, summary: Mapping[str, str]) -> str:
+    """Return a prediction for a notebook: its models, its conditions and a table of its variables."""
+    models = ", ".join(model.name for model in (prediction.contact_model, *prediction.laws))
+    lines = [f"<b>{escape(head)}</b>", *map(escape, (models, Conditions.of(solution).text()))]
+    rows = "".join(
+        f"<tr><td>{escape(long_name(name, prediction.laws))}</td><td><code>{escape(name)}</code></td>"
+        f"<td>{escape(text)}</td></tr>"
+        for name, text in summary.items()
+    )
+    return f"<div>{'<br>'.join(filter(None, lines))}<table>{rows}</table></div>"
 
 
 def _svg(inside: str) -> str:

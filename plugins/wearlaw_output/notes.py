@@ -54,9 +54,19 @@ class Notes:
 
 
 def grouped(texts: Iterable[str]) -> list[str]:
-    """Return notes with one in place of those that say the same of several subjects."""
-    subjects: dict[str, list[str]] = {}
+    """Return notes with one in place of those that say the same of several subjects, up to their last semicolon."""
+    groups: dict[str, list[tuple[str, str]]] = {}
     for text in texts:
         subject, _, remark = text.partition(": ")
-        subjects.setdefault(f": {remark}" if remark else subject, []).append(subject if remark else "")
-    return [", ".join(those) + remark for remark, those in subjects.items()]
+        head, _, tail = remark.rpartition("; ")
+        groups.setdefault(head or remark or text, []).append((subject, f"; {tail}" if head else ""))
+    found = []
+    for head, members in groups.items():
+        subjects, tails = zip(*members, strict=True)
+        if subjects == (head,):
+            found.append(head)
+        elif len({*tails}) == 1:
+            found.append(f"{', '.join(subjects)}: {head}{tails[0]}")
+        else:
+            found.append(head + "".join(f"; {subject}: {tail[2:]}" for subject, tail in members))
+    return found

@@ -20,9 +20,10 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.selection import Conditions
+from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
 from wearlaw.units.variables import UNITS, name_of
+from wearlaw_output.conditions import Conditions
 from wearlaw_output.curves import OUTSIDE, Curve
 from wearlaw_output.datasets import data_of, dataset, labelled
 from wearlaw_output.drawing import PALE, THIN, plot_curve
@@ -51,9 +52,9 @@ SIDE = 9
 """Corners along each side of a cell."""
 
 
-def draw(prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
+def draw(prediction: Prediction, solution: Solution, name: str | None, x: str | None, ax: Axes | None) -> Axes:
     """Draw a prediction; see `Prediction.plot`."""
-    problem = prediction.problem
+    problem, conditions = prediction.problem, Conditions.of(solution)
     points = problem.batch_shape[: len(problem.batch_shape) - len(problem.dims)]
     if math.prod(points) == 1 and x is None:
         several = math.prod(problem.batch_shape) > 1

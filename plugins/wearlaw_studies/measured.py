@@ -11,13 +11,12 @@ from pydantic import model_validator
 from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
-from wearlaw.contact.conditions import LOADS
 from wearlaw.errors import InputError
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.units.quantities import from_si, in_unit
 from wearlaw.units.variables import UNITS
 from wearlaw_fits.read_tests import parse_tests, text_of_tests
-from wearlaw_fits.wear_tests import COLUMNS, WearTests
+from wearlaw_fits.wear_tests import COLUMNS, LOADS, WearTests
 
 OF_TESTS = ("half_width", "max_pressure", "normal_force", "normal_force_per_width", "creepage", "friction_coefficient")
 """Variables of the conditions of tests, on a rig with line contact."""

@@ -39,6 +39,7 @@ class Spread(Configuration):
         given = [name for name, value in self if value is not None]
         if len(given) != 1:
             raise ValueError(f"give one of uniform, normal and lognormal; got {' and '.join(given) or 'none of them'}")
+        self.distribution()  # raises if it is impossible
         return self
 
     def distribution(self) -> Distribution:
@@ -80,10 +81,8 @@ class UncertainPoint(Conditions):
     def faults(self, rig: Rig) -> list[Fault]:
         """Return what is wrong with the conditions, tried at the first number of each distribution."""
         conditions = self.conditions()
-        spread = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
-        middle = {name: one.first for name, one in spread.items()}
+        middle = {name: value.first for name, value in conditions.items() if isinstance(value, Distribution)}
         found = list(wrong_conditions(rig, {**conditions, **middle}))
-        found += [Fault((name,), fault) for name, one in spread.items() if not found and (fault := one.fault())]
         if not found and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
             found = [Fault((), f"{several}; leave it out")]
         return found

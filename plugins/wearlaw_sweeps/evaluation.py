@@ -22,7 +22,7 @@ from wearlaw.numerics.totals import SlipTotals, Totals
 from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.ranges import Seen
+from wearlaw.pipeline.ranges import RangeWatch, Seen
 from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import long_name, outcome_units, unit_of
 from wearlaw.units.quantities import Quantity
@@ -129,7 +129,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     if job.dims or problem.dims:
         _check_axes(job, problem, part)
         on_block = on_block and _in_points(on_block, part.size, problem.size)
-    watch = job.pipeline.range_watch(on_block)
+    watch = RangeWatch(*job.pipeline.laws, on_block=on_block)
     if problem.size:
         prediction = job.pipeline.watched(problem, watch)
         outputs = job.outputs(prediction, part)
@@ -165,7 +165,7 @@ def _in_points(on_block: Callable[[int], None], points: int, patches: int) -> Ca
 def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
     """Return the warnings of a prediction at the points of all blocks together, and the first one of the rig."""
     every = list(blocks)
-    watch = job.pipeline.range_watch()
+    watch = RangeWatch(*job.pipeline.laws)
     if job.dims:
         watch.counted = "patches"
     watch.points = sum(one.points for one in every)
@@ -242,3 +242,9 @@ def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Pr
     slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
     totals = Totals(every, every, none, none, none, patch_area=one, slip=slip, across=(None,) * len(laws))
     return Prediction(Solution(problem, model, laws, totals))
+
+
+def expect_pipeline(predict: object) -> None:
+    """Raise an `InputError` unless the argument `predict` of an application is a pipeline."""
+    if not isinstance(predict, Pipeline):
+        raise InputError(f"predict: must be a pipeline, as in rig | contact model | wear law; got {shown(predict)}")

@@ -57,6 +57,9 @@ other as the speed of rotation changes."""
 SLIGHT = 1e-9
 """Change of the roll that leaves all but the heights of the wheels as it is [rad]."""
 
+BEND = 1e-12
+"""Product of the changes of the roll since the last two searches up to which places change in proportion [rad²]."""
+
 SMALL = 1e-5
 """Change that does so before there are creep forces, which change the roll by about 1e-6 [rad]."""
 
@@ -264,6 +267,8 @@ class Balance:
     """All places where wheels come near their rails, at the roll of `placed`."""
     sampled: Array
     """Roll at which the gaps around them were found [rad]."""
+    apart: Array
+    """Change of the roll between the last two times if they gave the rates of the places, otherwise infinite [rad]."""
     searched: Array
     """Roll at which they were last looked for all along the profiles [rad]."""
     power: Array
@@ -314,9 +319,9 @@ class Balance:
         wheels, pairs, none = np.zeros(2 * count), np.zeros((count, 2)), np.zeros(count)
         balance = cls(
             section, elastic, task, pressure, strips, roll.copy(), wheels, none, wheels, touching, roll.copy(),
-            roll.copy(), np.full(2 * count, 1.5), pairs, pairs.copy(), none.copy(), np.ones(count, dtype=np.bool_),
-            none.copy(), np.full(count, SEPARATE), np.ones(2 * count), pairs.copy(), pairs.copy(),
-            np.zeros((count, 4, 4)),
+            np.full(count, np.inf), roll.copy(), np.full(2 * count, 1.5), pairs, pairs.copy(), none.copy(),
+            np.ones(count, dtype=np.bool_), none.copy(), np.full(count, SEPARATE), np.ones(2 * count), pairs.copy(),
+            pairs.copy(), np.zeros((count, 4, 4)),
         )  # fmt: skip
         balance.whole, sunk = balance._guessed()
         if task.free:
@@ -367,16 +372,20 @@ class Balance:
             self.whole[places.wheel[first]] = self._alone(places, first)
         joins = self.pressure == "half_space"
         kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point], joins)
+        change = np.zeros(self.roll.shape)
+        change[rows] = roll - self.sampled[rows]
         self.roll[rows], self.sampled[rows], self.height[rows] = roll, roll, touching.least
         lowest = places.part(first)
         place = Place(*(array.reshape(-1, 2) for array in placed(self.section, lowest.position, lowest.arc)))
         self.lever[rows] = lowest.lever.reshape(-1, 2)
         if task.free:
             self.roll_rate[rows] = roll_rate(place, task.lateral_velocity[rows], task.yaw_velocity[rows])
-        if rows.size == self.roll.size:
+        if not known:
             self.found = kept
             return
         stay = ~self._chosen(rows)[self.found.point]
+        learnt = kept.learn(self.found.part(~stay), change)
+        self.apart[rows] = np.where(learnt, np.abs(change), np.inf)[rows]
         if np.array_equal(self.found.wheel[~stay], kept.wheel):  # as many as before
             self.found.put(np.flatnonzero(~stay), kept)
             return
@@ -399,14 +408,17 @@ class Balance:
     def _turn(self, rows: NDArray[np.intp], roll: Array, slight: float = SLIGHT) -> None:
         """Roll some positions, in place; those whose wheels would leave the rails stay.
 
-        After changes below `slight`, only the heights of the wheels and the gaps of further places are new.
+        After changes below `slight`, only the heights of the wheels and the gaps of further places are new. After
+        changes that are small beside those before, all else follows in proportion.
         """
-        near, by, found = np.abs(roll - self.sampled[rows]) < slight, np.zeros(self.roll.size), self.found
+        ahead, by, found = np.abs(roll - self.sampled[rows]), np.zeros(self.roll.size), self.found
+        near = (ahead < slight) | (ahead < BEND / (ahead + self.apart[rows]))
         by[rows[near]] = (roll - self.roll[rows])[near]
         self.roll += by
         self.height += self.lever * by[:, None] * (1.0, -1.0)
         tilt = found.lever - self.lever[found.point, found.side]
         found.gap[:] += np.where(found.side == 0, 1.0, -1.0) * tilt * by[found.point]
+        found.turn(np.where(self.apart < np.inf, by, 0.0)[found.point])
         rows, roll, task = rows[~near], roll[~near], self.task
         if not rows.size:
             return
@@ -458,7 +470,7 @@ class Balance:
     def _penetrated(self, part: Candidates, depth: Array, strips: int) -> _normal.StripPatch:
         """Return strips at penetrations normal to the surface [m]."""
         return _normal.penetrated(
-            part.start, part.step, part.samples, part.curvature_x, self.elastic.modulus, depth, strips, self.roll.size,
+            part.start, part.step, part.gaps, part.curvature_x, self.elastic.modulus, depth, strips, self.roll.size,
         )  # fmt: skip
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, bounds: bool = True) -> Balance:
@@ -488,7 +500,7 @@ class Balance:
                 left &= found.imbalance > ROUGH
             if left.any():  # one of two humps of a patch takes over from the other; let them share the load
                 rows = np.flatnonzero(left)
-                found.share[rows], found.correction[rows] = 0.0, 0.0
+                found.share[rows], found.correction[rows], found.apart[rows] = 0.0, 0.0, np.inf
                 found._turn(rows, found.roll[rows], 0.0)
                 found._newton(forces, left, rolls)
                 left &= found.imbalance > ROUGH
@@ -749,7 +761,7 @@ class Balance:
     def _posed(self, part: Candidates, shapes: Mapping[str, Array]) -> tuple[wl.Problem, Patches]:
         task, elastic = self.task, self.elastic
         side = np.where(part.side == 1, 1.0, -1.0)
-        arc = part.between(part.arcs, shapes["centre"][:, None])[:, 0]
+        arc = part.arc_at(shapes["centre"][:, None])[:, 0]
         place = placed(self.section, part.position, arc)
         if "angle" in shapes:  # of two humps the middle may lie between them
             place = place._replace(angle=shapes["angle"], rail_arc=self.section.rail_position.at(shapes["rail_y"])[0])
@@ -789,8 +801,9 @@ class Balance:
     def humps(self) -> NDArray[np.bool_]:
         """Return which places have a second hump that bears: the gap bulges over a line from its least to another."""
         middle, half = SAMPLES // 2, 0.5 * self._depth(self.found)[:, None]
+        gaps = self.found.gaps
         number, humps = np.arange(1, middle + 1), np.zeros(half.size, dtype=np.bool_)
-        for samples in (self.found.samples[:, middle + 1 :], self.found.samples[:, middle - 1 :: -1]):
+        for samples in (gaps[:, middle + 1 :], gaps[:, middle - 1 :: -1]):
             slope = np.where(samples < half, samples / number, np.inf)
             least = np.minimum.accumulate(slope[:, ::-1], axis=-1)[:, ::-1]
             with np.errstate(invalid="ignore"):  # beyond the patch

@@ -1,51 +1,13 @@
-"""Fixtures that several test files share."""
+"""Fixtures that the tests of the core share."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
-import jsonschema  # type: ignore[import-untyped]
 import pytest
-from matplotlib.figure import Figure
 
 import wearlaw as wl
-from tests.core import cli_data
-from tests.core.cases import POINT, case
 from wearlaw import kernels  # private: the choice between NumPy and numba
-from wearlaw_studies.case import case_schema  # private: a case without its files
-from wearlaw_studies.study import Study, run  # private: a case run without its files
-from wearlaw_sweeps import points  # private: small blocks
-
-
-@pytest.fixture
-def folder_with_tests(folder: Path) -> None:  # noqa: ARG001
-    """Work in a folder with a file of tests."""
-    cli_data.write_tests(cli_data.rows(cli_data.rates() * cli_data.SCATTER))
-
-
-@pytest.fixture(scope="module")
-def point() -> Study:
-    """Run a case of one operating point, one law and one contact model."""
-    return run(case(contact_models=["exact"], wear_laws=["kth"], sweeps={"point": POINT}, profiles={}))
-
-
-@pytest.fixture
-def blank_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave figures empty, whose drawing takes most of the time of a small run."""
-    monkeypatch.setattr(
-        "wearlaw_output.files.draw", lambda _: Figure(figsize=(1.0, 1.0))
-    )  # private: no figure is drawn
-
-
-@pytest.fixture
-def small_blocks(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Blocks of 24 points: 10 of them; without numba, which would be loaded in each worker."""
-    monkeypatch.setattr(points, "BLOCK", 30)
-    wl.accelerate(False)
-    yield
-    wl.accelerate(None)
 
 
 @pytest.fixture
@@ -55,11 +17,3 @@ def by_size_again(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     wl.accelerate(None)
     yield
     wl.accelerate(None)
-
-
-@pytest.fixture(scope="session")
-def validator() -> Any:
-    """Give what checks a case against the schema."""
-    schema = case_schema()
-    jsonschema.Draft202012Validator.check_schema(schema)
-    return jsonschema.Draft202012Validator(schema)

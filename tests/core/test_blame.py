@@ -39,18 +39,6 @@ PLUGIN = """
             writing(contact.pressure)
             return super().rate(contact, p)
 
-    class LawOnArea(Law):
-        name = "law_on_area"
-        def rate(self, contact, p):
-            writing(contact.area)
-            return super().rate(contact, p)
-
-    class LawOnBody(Law):
-        name = "law_on_body"
-        def rate(self, contact, p):
-            writing(contact.problem.b)
-            return super().rate(contact, p)
-
     class LawOnNumbers(Law):
         name = "law_on_numbers"
         def rate(self, contact, p):
@@ -69,13 +57,6 @@ PLUGIN = """
         def fields(self, problem, nodes):
             writing(nodes.from_trailing)
             return super().fields(problem, nodes)
-
-    class StageOnProblem(wl.Stage):
-        name = "stage_on_problem"
-        source = "the tests"
-        def altered(self, problem, forces):
-            writing(problem.friction_coefficient)
-            return problem
 
     class RigOnCondition(wl.WheelRail):
         name = "rig_on_condition"
@@ -126,8 +107,8 @@ PLUGIN = """
 
     @wl.hookimpl
     def wearlaw_models():
-        laws = [LawOnPressure, LawOnArea, LawOnBody, LawOnNumbers, FloatBreakpoint, FloatRamp, OwnVariable, NoSuchBody]
-        stages = [StageOnProblem, StageWithoutFriction, SolvingWithoutFriction]
+        laws = [LawOnPressure, LawOnNumbers, FloatBreakpoint, FloatRamp, OwnVariable, NoSuchBody]
+        stages = [StageWithoutFriction, SolvingWithoutFriction]
         return [*laws, *stages, ModelOnProblem, FieldsOnNodes, RigOnCondition, RigWithoutFriction]
 """
 
@@ -141,12 +122,9 @@ def with_numbers(law: wl.Law) -> object:
 
 WRITING: dict[str, Any] = {
     "LawOnPressure": lambda: silently(RAILS, FASTSIM, wl.wear_law("law_on_pressure"))(**ON_RAILS),
-    "LawOnArea": lambda: silently(RAILS, FASTSIM, wl.wear_law("law_on_area"))(**ON_RAILS),
-    "LawOnBody": lambda: silently(RIG, EXACT, wl.wear_law("law_on_body"))(**{**CONDITIONS, "creepage": Q([1, 2], "%")}),
     "LawOnNumbers": lambda: with_numbers(wl.wear_law("law_on_numbers")),
     "ModelOnProblem": lambda: silently(RAILS, wl.contact_model("model_on_problem"), KTH)(**ON_LOADS),
     "FieldsOnNodes": lambda: silently(RIG, wl.contact_model("fields_on_nodes"), KTH)(**CONDITIONS),
-    "StageOnProblem": lambda: (RAILS | FASTSIM | wl.stage("stage_on_problem"))(**ON_LOADS),
     "RigOnCondition": lambda: (wl.rig("rig_on_condition", **dict(RAILS)) | FASTSIM)(**ON_LOADS),
 }
 """Pipelines of models that write into arrays which they were given, by the class at fault."""

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import following_line
+from tests.cases import following_line
 from tests.core.stages import AS_PRINTED, BRR, CONDITIONS, ELLIPTIC, EXACT, FASTSIM, FITTED, GLOBAL, KTH, RIG
 
 

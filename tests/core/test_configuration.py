@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import copy
-import functools
 import inspect
 import pickle
-import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Annotated, Any
 
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import Linear
+from tests.cases import Linear
 from wearlaw import Configuration, Q
 
 STEEL = wl.steel()
@@ -135,17 +132,6 @@ def test_a_changed_copy_is_checked_and_keeps_nothing_computed_before() -> None:
         law.model_copy(update={"tr_sc": 100})
 
 
-def test_a_copy_of_a_model_that_keeps_what_it_computed_computes_it_anew() -> None:
-    class Keeps(Linear):
-        @functools.cached_property
-        def doubled(self) -> float:
-            return 2.0 * wl.scalar_si(self.slope, "m")
-
-    law = Keeps(slope="1 m")  # type: ignore[arg-type]
-    assert law.doubled == 2.0
-    assert law.model_copy(update={"slope": "3 m"}).doubled == 6.0
-
-
 def test_a_class_shows_its_fields_as_signature_before_and_after_it_is_used() -> None:
     class First(wl.Configuration):
         a: float
@@ -158,21 +144,6 @@ def test_a_class_shows_its_fields_as_signature_before_and_after_it_is_used() -> 
         assert list(inspect.signature(Second).parameters) == ["a", "b"]
         assert Second(a=1.0).b == 1.0
     assert list(inspect.signature(First).parameters) == ["a"]
-
-
-def test_many_threads_may_use_a_class_first() -> None:
-    class Shared(wl.Configuration):
-        disc: wl.Disc
-        rig: wl.TwinDisc | None = None
-
-    start = threading.Barrier(8)
-
-    def make(number: int) -> str:
-        start.wait()
-        return repr(Shared(disc=disc(diameter=Q(number + 1, "mm"))).disc.diameter)
-
-    with ThreadPoolExecutor(8) as pool:
-        assert list(pool.map(make, range(8))) == [f"{n + 1}.000 mm" for n in range(8)]
 
 
 class Sized(Configuration):

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import pickle
 import re
 from typing import Any
 
@@ -56,15 +54,6 @@ def test_it_starts_at_the_static_coefficient_and_halves_its_fall_in_ln_2_over_b(
     speeds = np.array([0.0, math.log(2.0) / 0.6, 2.0 * math.log(2.0) / 0.6, 1e3])
     found = FRICTION.coefficient(speeds)
     assert found == pytest.approx([0.55, 0.55 * 0.7, 0.55 * 0.55, 0.22], rel=8 * EPS)
-
-
-def test_it_is_a_configuration_that_pickles_compares_and_serialises() -> None:
-    assert pickle.loads(pickle.dumps(FRICTION)) == FRICTION
-    assert wl.FallingFriction.model_validate_json(FRICTION.model_dump_json()) == FRICTION
-    assert json.loads(FRICTION.model_dump_json())["static_coefficient"] == 0.55
-    assert hash(FRICTION) == hash(wl.FallingFriction(**DRY))
-    with pytest.raises(wl.FrozenError):
-        FRICTION.limit_ratio = 0.5
 
 
 def falling(speed: Array) -> Array:
@@ -126,17 +115,6 @@ def test_with_polachs_model_the_traction_rises_to_a_maximum_and_falls() -> None:
     assert 0.22 < found[-1] < found[top] < 0.55
     # With constant friction it only rises.
     assert (np.diff(solve(friction_coefficient=0.55, **conditions).traction_coefficient.magnitude) > 0.0).all()
-
-
-def test_faster_rolling_means_less_traction_at_the_same_creepage() -> None:
-    conditions: dict[str, Any] = {"normal_force": Q(80, "kN"), "longitudinal_creepage": Q(2, "%")}
-    tractions = [
-        float((WHEEL_RAIL.model_copy(update={"rolling_speed": Q(speed, "m/s")}) | wl.contact_model("polach"))(
-            friction_coefficient=FRICTION, **conditions
-        ).traction_coefficient.magnitude)
-        for speed in (5.0, 30.0, 80.0)
-    ]  # fmt: skip
-    assert tractions[0] > tractions[1] > tractions[2]
 
 
 WRONG: list[tuple[dict[str, Any], str]] = [

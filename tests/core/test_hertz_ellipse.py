@@ -180,12 +180,6 @@ def test_the_pressure_carries_the_load() -> None:
     assert load == pytest.approx(2.0 / 3.0 * math.pi * float(a * b * p0), rel=1e-12)
 
 
-def test_the_pressure_is_zero_outside_the_ellipse() -> None:
-    a, b, p0 = np.array(1.0), np.array(2.0), np.array(5.0)
-    x, y = np.array([1.0, -1.0, 0.0, 1.2, 0.8]), np.array([0.0, 0.0, -2.0, 0.0, 1.7])
-    assert (hertz_ellipse.pressure(x, y, a, b, p0) == 0.0).all()
-
-
 def test_a_curvature_adds_flat_and_concave_bodies() -> None:
     assert number(hertz_ellipse.curvature, 0.46, math.inf) == pytest.approx(0.5 / 0.46, rel=EPS)
     assert number(hertz_ellipse.curvature, 0.3, -0.5) == pytest.approx(0.5 * (1 / 0.3 - 1 / 0.5), rel=4 * EPS)

@@ -181,18 +181,6 @@ def test_each_block_is_told_with_its_forces() -> None:
     assert forces == pytest.approx(integrate_forces(LINE_MODELS["exact"], problem).longitudinal, rel=4 * EPS)
 
 
-def test_the_batch_keeps_its_shape() -> None:
-    conditions: dict[str, Any] = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}
-    creepage = np.geomspace(1e-4, 0.2, 24).reshape(2, 3, 4)
-    problem = RIG.problem(creepage=Q(creepage, ""), **conditions)
-    wear = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), problem)
-    assert wear.wear_rate.shape == wear.wear_rate_error.shape == (2, 3, 4)
-    alone = RIG.problem(creepage=Q(float(creepage[1, 2, 0]), ""), **conditions)
-    single = integrate_wear(LINE_MODELS["exact"], wl.wear_law("usfd"), alone)
-    assert single.wear_rate.shape == ()
-    assert float(single.wear_rate) == pytest.approx(float(wear.wear_rate[1, 2, 0]), rel=64 * EPS)
-
-
 class CountedExact(type(wl.contact_model("exact"))):  # type: ignore[misc]
     """The exact theory that counts how often its fields are computed."""
 
@@ -216,38 +204,6 @@ def test_a_line_contact_is_solved_once_whatever_is_read_of_it(creepage: wl.Quant
     afresh = (RIG | wl.contact_model("exact"))(max_pressure="1500 MPa", creepage=creepage, friction_coefficient=0.46)
     for name, value in zip(("mean_slip", "stick_ratio", "cell_wear_index"), read[1:], strict=True):
         assert value.magnitude == pytest.approx(getattr(afresh, name).magnitude, rel=1e-12), name
-
-
-class Undeclared(wl.WearLaw):
-    """A smooth law that declares no breakpoints."""
-
-    name: ClassVar[str] = "undeclared"
-    source: ClassVar[str] = "none"
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        rate: Array = 1e-12 * contact.wear_index_density**1.5
-        return rate
-
-
-@pytest.mark.parametrize("law", [wl.wear_law("usfd"), wl.wear_law("kth"), Undeclared()], ids=lambda law: law.name)
-@pytest.mark.parametrize("name", LINE_MODELS)
-def test_one_point_is_the_same_alone_and_in_an_array(name: str, law: wl.WearLaw) -> None:
-    points = Points(seed=8, size=10)
-    predict = RIG | LINE_MODELS[name] | law
-    together = predict(
-        creepage=Q(points.creepage, ""), max_pressure=Q(points.pressure, "Pa"), friction_coefficient=points.friction
-    )
-    for i in range(points.size):
-        alone = predict(
-            creepage=Q(points.creepage[i], ""),
-            max_pressure=Q(points.pressure[i], "Pa"),
-            friction_coefficient=points.friction[i],
-        )
-        error = together.wear_rate_error[i].magnitude
-        # both lie within their error estimate of the truth
-        assert abs(alone.wear_rate - together.wear_rate[i]).magnitude <= 2.0 * error, i
-        assert alone.contact.pressure.ndim == 1
-        assert alone.stick_ratio.magnitude == pytest.approx(together.stick_ratio[i].magnitude, rel=1e-12)
 
 
 @pytest.mark.validates(

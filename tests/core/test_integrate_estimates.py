@@ -53,15 +53,6 @@ class Jumping(Kinked):
         return np.where(w < p["threshold"], 0.1 * w, w)
 
 
-class Sticking(Kinked):
-    """Wears by traction, also where nothing slips."""
-
-    name: ClassVar[str] = "sticking"
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        return np.abs(contact.traction)
-
-
 RATES: dict[type[Smooth], Callable[[Array, float], Array]] = {
     Smooth: lambda w, _: w**2,
     Kinked: lambda w, threshold: np.maximum(w - threshold, 0.0),
@@ -103,14 +94,6 @@ def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(
     assert np.median(wear.wear_rate_error / np.maximum(want, 1e-30)) < useful
     if law_type is Smooth:
         assert (error <= 1e-6 * np.array(want)).all()
-
-
-@pytest.mark.parametrize("name", ["exact", "fastsim-elliptic-line"])
-def test_a_law_that_wears_where_the_bodies_stick_is_refused(name: str) -> None:
-    points = Points(seed=7, size=5)
-    points.creepage = 0.5 * points.saturation
-    with pytest.raises(wl.ModelError, match="wear law 'sticking' gives values where the bodies stick"):
-        integrate_wear(LINE_MODELS[name], Sticking(), points.problem)
 
 
 def test_breakpoints_that_are_declared_bring_the_error_down() -> None:
@@ -191,49 +174,3 @@ def test_patch_means_have_no_integration_error() -> None:
     for model in (wl.contact_model("global"), *means):
         wear = integrate_wear(model, wl.wear_law("usfd"), points.problem)
         assert (wear.wear_rate_error <= 2.0 * EPS * wear.wear_rate).all()
-
-
-# --- Broken models ---------------------------------------------------------------------------------------------
-
-
-class Broken(Smooth):
-    """Returns what it is told to."""
-
-    name: ClassVar[str] = "broken"
-    fault: str
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        rate = np.abs(contact.slip)
-        if self.fault == "shape":
-            return np.zeros(rate.shape[:-1])
-        rate[..., -1] = {"nan": np.nan, "infinite": np.inf}[self.fault]
-        return rate
-
-
-@pytest.mark.parametrize(
-    ("fault", "message"),
-    [
-        ("shape", r"wear law 'broken' returned values of shape \(5,\); it must return one a node, of shape \(5, \d+\)"),
-        ("nan", r"wear law 'broken' returned a value that is not finite"),
-        ("infinite", r"wear law 'broken' returned a value that is not finite"),
-    ],
-)
-def test_a_law_that_breaks_its_contract_is_named(fault: str, message: str) -> None:
-    with pytest.raises(wl.ModelError, match=message):
-        integrate_wear(LINE_MODELS["exact"], Broken(fault=fault), Points(seed=13, size=5).problem)
-
-
-class Nan(Celled):
-    name: ClassVar[str] = "nan"
-    field: str
-
-    def solve_line(self, problem: wl.Problem) -> wl.Contact:
-        contact = super().solve_line(problem)
-        return contact.replaced(**{self.field: np.nan * getattr(contact, self.field)})
-
-
-@pytest.mark.parametrize("field", ["pressure", "traction", "slip", "area", "tangential_force"])
-def test_a_contact_model_that_is_not_finite_is_named(field: str) -> None:
-    problem = Points(seed=14, size=5).problem
-    with pytest.raises(wl.ModelError, match=f"'nan' gave an? {field.replace('_', ' ')} that is not finite, first for"):
-        integrate_wear(Nan(field=field), wl.wear_law("usfd"), problem)

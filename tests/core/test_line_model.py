@@ -57,14 +57,6 @@ class Bare(wl.LineContactModel):
 # --- What the class gives ----------------------------------------------------------------------------------------
 
 
-def test_what_is_optional_is_not_known_by_default() -> None:
-    problem = sweep(np.array([0.01, 0.1]))
-    assert Bare().crossings(problem, "wear_index_density", np.full(2, 1e6)) is None
-    assert Bare().excess_dissipation(problem, 1e6) is None
-    assert Bare().square_roots_at == "slip_zone"
-    assert Bare().exemptions == {}
-
-
 def test_a_model_with_nothing_but_the_required_methods_predicts_wear() -> None:
     predict = RIG | Bare() | wl.wear_law("usfd")
     found = predict(max_pressure="1500 MPa", creepage=Q([-0.01, 0.0, 0.2], ""), friction_coefficient=0.46)
@@ -242,6 +234,3 @@ def test_where_slip_or_pressure_crosses_a_value_is_where_a_search_finds_it(name:
     )
     # what all means are held to; next to a border that the slip just reaches, rounding of where is enlarged most
     np.testing.assert_allclose(closed, searched, rtol=1e-9)
-
-
-# --- Cells are a matter of output ------------------------------------------------------------------------------

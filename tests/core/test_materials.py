@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import POINT, case, load, table
+from tests.cases import POINT, case, load, table
 from tests.core.distributions import Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import case_schema, load_case, written  # private: a case without its files

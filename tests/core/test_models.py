@@ -100,19 +100,6 @@ def test_what_a_model_or_law_does_not_declare_has_a_cautious_default() -> None:
     assert law.monotone_in == ()
 
 
-def test_models_of_equal_settings_are_equal() -> None:
-    assert Ramp(steepness=2.0) == Ramp(steepness=2.0)
-    assert hash(Ramp(steepness=2.0)) == hash(Ramp(steepness=2.0))
-    assert Ramp(steepness=2.0) != Ramp()
-    with pytest.raises(wl.FrozenError, match="frozen"):
-        Ramp().steepness = 3.0
-
-
-def test_messages_call_a_model_by_its_name() -> None:
-    with pytest.raises(wl.ConfigurationError, match=r"^ramp: steepnes: unknown field; did you mean 'steepness'\?"):
-        Ramp(steepnes=2.0)  # type: ignore[call-arg]
-
-
 def calibration(**fields: Any) -> wl.Calibration:
     return wl.Calibration(**{"contact_model": "fastsim", "scale": "cells", "materials": "-", "source": "-", **fields})
 
@@ -192,16 +179,3 @@ def test_what_a_model_knows_of_its_force_without_nodes_is_used() -> None:
 
     contact = (RIG | Knows())(normal_force="7 kN", creepage=Q([1.0, 2.0], "%"), friction_coefficient=0.4)
     assert contact.tangential_force.to("N").magnitude.tolist() == [70.0, 140.0]
-
-
-def test_a_contact_model_that_breaks_its_contract_is_named_with_the_conditions() -> None:
-    class Wrong(Ramp):
-        name = "wrong"
-
-        def tangential_force_per_width(self, problem: wl.Problem) -> Array:
-            return problem.creepage * np.inf
-
-    with pytest.raises(
-        wl.ModelError, match=r"'wrong' gave a tangential force that is not finite, first for creepage 1\.000 %"
-    ):
-        (RIG | Wrong())(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)

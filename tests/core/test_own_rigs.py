@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import ArrayLike
 
 import wearlaw as wl
-from tests.core.cases import wearlaw
+from tests.cases import wearlaw
 from tests.core.distributions import Install
 from wearlaw import Q
 

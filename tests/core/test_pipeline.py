@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import following_line
+from tests.cases import following_line
 from tests.core.stages import (
     AS_PRINTED,
     BRR,
@@ -23,8 +23,6 @@ from tests.core.stages import (
     FITTED,
     GLOBAL,
     KTH,
-    ON_RAILS,
-    RAILS,
     RIG,
 )
 from wearlaw import Q
@@ -92,26 +90,6 @@ def test_warnings_about_a_problem_of_the_rig_are_at_the_users_line_too() -> None
         assert f"wear law 'usfd' has a known range of mean {variable} from" in str(warning.message)
 
 
-@pytest.mark.parametrize("rig", [RIG, RAILS], ids=lambda rig: type(rig).__name__)
-def test_a_contact_beyond_first_yield_is_warned_of_at_the_users_line(rig: Any) -> None:
-    conditions = {**(CONDITIONS if rig is RIG else ON_RAILS), "normal_force": Q(500, "kN")}
-    contact = rig | FASTSIM
-    line = following_line()
-    with pytest.warns(wl.RangeWarning, match="is beyond (first yield|the shakedown limit), ") as caught:
-        contact(**conditions)
-    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, line)]
-
-
-def test_a_problem_of_the_other_kind_of_rig_is_refused() -> None:
-    ellipse = RAILS.problem(**ON_RAILS)
-    on_discs: Any = RIG | FASTSIM | KTH
-    on_rails: Any = RAILS | FASTSIM | KTH
-    with pytest.raises(wl.WearlawError, match="'ellipse', but a TwinDisc makes problems with the geometry 'line'"):
-        on_discs.predict(ellipse)
-    with pytest.raises(wl.WearlawError, match="'line', but a WheelRail makes problems with the geometry 'ellipse'"):
-        on_rails.predict(RIG.problem(**CONDITIONS))
-
-
 def test_the_range_warning_counts_the_points_outside() -> None:
     predict = RIG | GLOBAL | FITTED["global"]
     with pytest.warns(wl.RangeWarning, match=r"2 of 4 operating points lie outside, as far as 135\.5"):
@@ -167,27 +145,6 @@ def test_a_pipeline_prints_its_stages_in_order() -> None:
     assert str(RIG | EXACT | KTH) == repr(RIG | EXACT | KTH)
 
 
-class Plain(wl.Rig):
-    """A rig whose repr makes it again, as those of models without quantities do."""
-
-    name = "plain"
-    source = "a test"
-    text: str = "short"
-
-    def problem(self, **conditions: Any) -> wl.Problem:
-        raise NotImplementedError
-
-
-def test_a_pipeline_prints_on_one_line_or_if_that_is_long_a_line_for_each_part() -> None:
-    short = Plain() | EXACT
-    assert repr(short) == f"{Plain()!r} | {EXACT!r}"
-    long = Plain(text="x" * 100) | EXACT | wl.patch_mean()
-    assert repr(long) == f"({long.rig!r}\n | {EXACT!r}\n | patch_mean())"
-    names = {"Plain": Plain, "Exact": type(EXACT), "patch_mean": wl.patch_mean}
-    for predict in (short, long):
-        assert eval(repr(predict), names) == predict
-
-
 @pytest.mark.parametrize("predict", [RIG | EXACT, RIG | EXACT | KTH], ids=["contact", "wear"])
 def test_a_pipeline_is_frozen(predict: Any) -> None:
     for name in type(predict).model_fields:
@@ -206,11 +163,6 @@ def test_a_law_is_taken_off_and_put_on_again() -> None:
         contact.wear_law  # noqa: B018
     with pytest.raises(wl.CompositionError, match="kth and kth both predict 'wear_rate'; keep one of them"):
         wl.Pipeline(rig=RIG, contact_model=FASTSIM, laws=(KTH, KTH))
-
-
-def test_a_contact_pipeline_survives_json_too() -> None:
-    contact = RIG | FASTSIM | wl.patch_mean()
-    assert wl.Pipeline.model_validate_json(contact.model_dump_json()) == contact
 
 
 def test_wrong_json_is_an_error_of_the_package_with_the_path() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 import textwrap
 import warnings
@@ -25,11 +24,6 @@ BROKEN = {
     "import_that_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named"),
     "syntax_error": ("def", "SyntaxError"),
     "exit_on_import": ("raise SystemExit(0)", "SystemExit: 0"),
-    "thing_that_cannot_be_shown": (
-        "import wearlaw\nclass Mute:\n    def __repr__(self): raise SystemExit(0)\n"
-        "@wearlaw.hookimpl\ndef wearlaw_resources():\n    return {'section': {'mute': Mute()}}",
-        "SystemExit: 0",
-    ),
     "misspelt_hook": (
         "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_model():\n    return []",
         "unknown hook 'wearlaw_model'",
@@ -49,11 +43,6 @@ BROKEN = {
     "built_for_a_newer_interface": (
         "wearlaw_interface = 99",
         "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version 3;"
-        " upgrade the older of the two",
-    ),
-    "built_for_an_older_interface": (
-        textwrap.dedent(LAW).format(name="outside") + "\nwearlaw_interface = 1",
-        "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version 3;"
         " upgrade the older of the two",
     ),
     "abstract_model": (
@@ -136,16 +125,8 @@ def test_a_broken_plugin_is_warned_of_once_and_then_left_alone(install: Install)
         wl.contact_model("exact")
 
 
-@pytest.mark.parametrize(
-    "source",
-    ["import signal\nsignal.raise_signal(signal.SIGINT)", "raise KeyboardInterrupt"],
-    ids=["by a person", "by the plugin"],
-)
-def test_ctrl_c_while_a_plugin_is_loading_ends_the_program(
-    source: str, install: Install, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    install("slow_plugin", source)
-    monkeypatch.setattr(signal, "raise_signal", lambda number: signal.default_int_handler(number, None))  # in any shell
+def test_ctrl_c_while_a_plugin_is_loading_ends_the_program(install: Install) -> None:
+    install("slow_plugin", "raise KeyboardInterrupt")
     with pytest.raises(KeyboardInterrupt):
         wl.wear_laws()
 
@@ -167,14 +148,6 @@ def test_one_name_of_two_distributions_is_an_error_that_names_both(install: Inst
     )
     assert "twin" not in wl.wear_laws()
     assert wl.wear_law("usfd").name == "usfd"
-
-
-def test_one_module_of_two_distributions_is_an_error_that_names_both(install: Install, tmp_path: Path) -> None:
-    install("one_plugin", LAW.format(name="twin"), version="1.5")
-    install("other_plugin", "", version="2.5")
-    (tmp_path / "other_plugin-2.5.dist-info" / "entry_points.txt").write_text("[wearlaw]\nother = one_plugin\n")
-    with pytest.raises(wl.UnknownModelError, match=r"by one_plugin 1\.5 .* and other_plugin 2\.5 \(plugin 'other'\)"):
-        wl.wear_law("twin")
 
 
 def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_return_nothing(install: Install) -> None:
@@ -206,30 +179,9 @@ def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
     assert wl.wear_law("doubled").name == "doubled"
 
 
-@pytest.mark.parametrize(
-    ("name", "hint"),
-    [
-        ("exakt", "did you mean 'exact'?"),
-        ("fastim", "did you mean 'fastsim'?"),
-        ("Global", "did you mean 'global'?"),
-    ],
-)
-def test_an_unknown_contact_model_gets_a_suggestion_and_the_list(name: str, hint: str) -> None:
-    with pytest.raises(wl.UnknownModelError) as error:
-        wl.contact_model(name)
-    assert str(error.value) == (
-        f"no contact model is called '{name}'; {hint}"
-        " Installed: exact, fastsim, global, half_space, linear, polach, shen_hedrick_elkins, strip_theory"
-    )
-
-
-def test_an_unknown_option_is_named_with_the_fields_there_are() -> None:
-    with pytest.raises(wl.ConfigurationError) as error:
-        wl.contact_model("fastsim", bond="elliptic")
-    assert str(error.value) == (
-        "fastsim: bond: unknown field; did you mean 'bound'? The fields are: bound, flexibility, march, strips, slip,"
-        " interpolation"
-    )
+def test_an_unknown_contact_model_gets_a_suggestion_and_the_list() -> None:
+    with pytest.raises(wl.UnknownModelError, match=r"did you mean 'exact'\? Installed: exact, fastsim, global,"):
+        wl.contact_model("exakt")
 
 
 def test_threads_that_need_plugins_at_once_all_find_them(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -141,11 +141,6 @@ def test_every_variable_of_an_ellipse_is_watched_by_its_patch_mean(name: str) ->
         assert [("2 of 4" in text) for text in said] == ([True] if gap < 0.0 else [])
 
 
-def test_a_range_of_what_has_no_patch_mean_is_refused() -> None:
-    with pytest.raises(wl.ModelError, match=r"'x' in `valid_range`"):
-        messages(Stated(variable="x"), 0.05)
-
-
 def test_variables_are_warned_of_one_by_one() -> None:
     class Both(Stated):
         @property

@@ -114,12 +114,6 @@ def test_areas_and_forces_of_a_problem_take_the_whole_width() -> None:
     np.testing.assert_allclose(problem.patch_area, [6e-6], rtol=1e-15)
 
 
-def test_a_contact_is_equal_to_itself_alone_and_can_be_a_key() -> None:
-    one = contact()
-    assert one != contact()
-    assert {one: 1}[one] == 1
-
-
 @pytest.mark.parametrize("record", [contact(), line_problem((2,))], ids=["Contact", "Problem"])
 def test_records_are_frozen(record: object) -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):

@@ -13,7 +13,7 @@ from scipy.integrate import quad
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw.pipeline.ranges import SLIDING  # private: names of marks
+from wearlaw.pipeline.ranges import SLIDING, RangeWatch  # private: names of marks
 from wearlaw_sweeps import points  # private: small blocks
 
 DISCS = wl.TwinDisc.suros(material=wl.steel(shear_yield_stress=None))
@@ -56,7 +56,7 @@ def test_on_a_line_the_ratio_is_that_of_the_theory(sign: float) -> None:
     for law in (ARCHARD, wl.wear_law("kth")):
         predict = DISCS | PARABOLIC | law
         for share in d:
-            watch = predict.range_watch()
+            watch = RangeWatch(law)
             predict.watched(DISCS.problem(creepage=Q(sign * share * full_slip, ""), **ON_DISCS), watch)
             if share < 0.9:
                 # Both sides are quadratures; that of wearlaw is exact to rounding where the law declares its branches

@@ -162,7 +162,6 @@ BROKEN: dict[str, tuple[Change, str]] = {
         replace(traction=lambda q: q.astype(np.float32)),
         "gave a traction of type float32; it must be a float64 array",
     ),
-    "complex": (replace(area=text), "gave an area of type complex128"),
     "a list": (replace(slip=lambda s: s.tolist()), "gave a slip of type list"),
     "masked": (replace(slip=np.ma.array), "gave a slip of type MaskedArray"),
     "a pressure that is no number": (replace(pressure=entry(np.nan)), "gave a pressure that is not finite"),
@@ -174,6 +173,10 @@ BROKEN: dict[str, tuple[Change, str]] = {
         "gave a traction that is not finite",
     ),
     "a bound that is no number": (replace(traction_bound=entry(np.nan)), "gave a traction bound that is not finite"),
+    "a force that is no number": (
+        replace(tangential_force=lambda force: np.nan * force),
+        "gave a tangential force that is not finite",
+    ),
     "a negative area": (replace(area=entry(-1e-8)), "gave a negative area"),
     "an infinite area": (replace(area=entry(np.inf)), "gave an area that is not finite"),
     "traction above its bound": (
@@ -351,8 +354,6 @@ RATES: dict[str, tuple[Change, str]] = {
     "complex": (text, "returned values of type complex128; it must return a float64 array"),
     "a quantity": (lambda rate: Q(rate, "ug/m/mm^2"), "returned values of type ReadableQuantity"),
     "single precision": (lambda rate: rate.astype(np.float32), "returned values of type float32"),
-    "whole numbers": (lambda rate: (rate > 0.0).astype(np.int64), "returned values of type int64"),
-    "nothing": (lambda _: None, "returned values of type NoneType"),
     "a list": (lambda rate: rate.tolist(), "returned values of type list"),
     "an error": (lambda _: 1 / 0, "failed: ZeroDivisionError: division by zero"),
     "an exit": (lambda _: exit(0), "failed: SystemExit: 0"),
@@ -371,12 +372,6 @@ def test_a_law_that_fails_or_returns_no_floats_is_named(fault: str, predict: Any
 # --- What a model raises ---------------------------------------------------------------------------------------------
 
 
-ERRORS: dict[type[BaseException], str] = {
-    ZeroDivisionError: "ZeroDivisionError",
-    SystemExit: "SystemExit",
-}
-
-
 def failing(error: type[BaseException]) -> Change:
     def fail(_: Any) -> Any:
         raise error
@@ -384,7 +379,7 @@ def failing(error: type[BaseException]) -> Change:
     return fail
 
 
-@pytest.mark.parametrize("error", ERRORS)
+@pytest.mark.parametrize("error", [ZeroDivisionError, SystemExit])
 def test_what_a_contact_model_raises_names_it(error: type[BaseException]) -> None:
     line, ellipse = ChangedCells(change=failing(error)), ChangedStrips(change=failing(error))
     works: list[Callable[[], object]] = [
@@ -394,7 +389,7 @@ def test_what_a_contact_model_raises_names_it(error: type[BaseException]) -> Non
         lambda: (RAIL | ellipse | PerEnergy())(**ON_RAIL),
     ]
     for work in works:
-        with pytest.raises(wl.ModelError, match=f"^contact model 'changed' failed: {ERRORS[error]}\n") as caught:
+        with pytest.raises(wl.ModelError, match=f"^contact model 'changed' failed: {error.__name__}\n") as caught:
             work()
         assert isinstance(caught.value.__cause__, error)
 

@@ -156,13 +156,6 @@ def test_applications_see_the_stages() -> None:
     assert uncertain.median == wl.uncertainty(plain, samples=16, **{**half, "creepage": spread}).median
 
 
-def test_a_stage_survives_json() -> None:
-    predict = RIG | EXACT | wl.patch_mean()
-    assert wl.Pipeline.model_validate_json(predict.model_dump_json()) == predict
-    assert wl.stage("patch_mean") == wl.patch_mean()
-    assert '{"model":"patch_mean"}' in predict.model_dump_json()
-
-
 class Wrong(wl.Stage):
     """Returns what is not a problem, or another one."""
 
@@ -189,17 +182,10 @@ class WrongContact(Wrong):
     name: ClassVar[str] = "wrong_contact"
 
     def solve(self, problem: wl.Problem, inner: wl.Solve) -> Any:
+        if self.fault == "raises":
+            return 1 / 0
         contact = inner(problem)
-        match self.fault:
-            case "nothing":
-                return None
-            case "shape":
-                return contact[:1]
-            case "raises":
-                return 1 / 0
-            case "friction":
-                return contact.replaced(traction=2.0 * contact.traction)
-        raise AssertionError
+        return contact.replaced(traction=2.0 * contact.traction)
 
 
 @pytest.mark.parametrize(
@@ -212,8 +198,6 @@ class WrongContact(Wrong):
         ),
         (Wrong(fault="raises"), "stage 'wrong' failed: ZeroDivisionError"),
         (Wrong(fault="friction"), "stage 'wrong' posed a problem with a friction coefficient of nan"),
-        (WrongContact(fault="nothing"), "stage 'wrong_contact' returned None, not a wearlaw.Contact"),
-        (WrongContact(fault="shape"), r"stage 'wrong_contact' gave a pressure of shape \(1, "),
         (WrongContact(fault="raises"), "stage 'wrong_contact' failed: ZeroDivisionError"),
         (WrongContact(fault="friction"), "stage 'wrong_contact' gave a traction of .* where its own bound is"),
     ],

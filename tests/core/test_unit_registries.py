@@ -2,33 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from threading import Barrier
-from typing import Any, TypeVar
+from collections.abc import Iterator
+from typing import Any
 
 import pint
 import pytest
-from pint.registry import LazyRegistry
 
 import wearlaw as wl
 from tests.core.units import LENGTH
 from wearlaw import Q
 from wearlaw.units.quantities import from_si  # private: texts and floats at the rim
-
-T = TypeVar("T")
-
-
-def in_eight_threads(work: Callable[[], T]) -> list[T]:
-    """Return the results of eight threads that start at once."""
-    together = Barrier(8)
-
-    def begin(_: int) -> T:
-        together.wait()
-        return work()
-
-    with ThreadPoolExecutor(8) as threads:
-        return list(threads.map(begin, range(8)))
 
 
 @pytest.fixture
@@ -70,10 +53,3 @@ def test_a_registry_with_another_default_system_still_gives_si(system: str) -> N
     predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
     result = predict(normal_force="7.4143 kN", creepage="1 %", friction_coefficient=0.46)
     assert repr(result.wear_rate) == "27.70 µg/m/mm²"
-
-
-@pytest.mark.usefixtures("original_registry")
-def test_threads_wait_until_a_lazy_registry_is_made() -> None:
-    for _ in range(2):
-        pint.set_application_registry(LazyRegistry())  # type: ignore[no-untyped-call]
-        assert in_eight_threads(lambda: repr(wl.steel().youngs_modulus)) == ["206.5 GPa"] * 8

@@ -18,8 +18,6 @@ from tests.strategies import EPS, log_uniform
 from wearlaw import Q, hertz
 from wearlaw.contact.material import dundurs_beta  # private: Dundurs' constant, which only a warning shows
 from wearlaw.pipeline.composition import COUPLING  # private: the constant of a formula
-from wearlaw_studies.case import Case  # private: a case without its files
-from wearlaw_studies.study import run  # private: a case run without its files
 
 STEEL = wl.steel()
 POLYMER = wl.Material(youngs_modulus="3 GPa", poisson_ratio=0.4, density="1200 kg/m^3")
@@ -279,30 +277,3 @@ def test_an_uncertainty_warns() -> None:
     predict = rig(rail_material=POLYMER) | FASTSIM | Volume()
     with pytest.warns(wl.RangeWarning, match="unlike materials"):
         wl.uncertainty(predict, samples=32, **{**CONDITIONS, **creepage}).median  # noqa: B018
-
-
-def test_a_study_notes_it() -> None:
-    polymer = {"youngs_modulus": "3 GPa", "poisson_ratio": 0.4, "density": "1200 kg/m^3"}
-    case = Case.model_validate(
-        {
-            "title": "A polymer",
-            "rig": {
-                "type": "wheel_rail",
-                "wheel_radius": "460 mm",
-                "rail_head_radius": "300 mm",
-                "material": "steel",
-                "rail_material": polymer,
-                "rolling_speed": "30 m/s",
-            },
-            "contact_models": ["fastsim"],
-            "wear_laws": ["usfd", "kth"],
-            "sweeps": {
-                "load": {
-                    "normal_force": ["1 kN", "2 kN"],
-                    "longitudinal_creepage": "0.2 %",
-                    "friction_coefficient": 0.3,
-                }
-            },
-        }
-    )
-    assert sum("unlike materials" in note for note in run(case).notes) == 1

@@ -23,7 +23,6 @@ from typing import (
 from typing import get_type_hints as hints_of
 
 import numpy as np
-import pint
 from numpy.typing import ArrayLike
 from pydantic import Field
 
@@ -35,12 +34,8 @@ from wearlaw.units.quantities import (
     QuantityLike,
     Unit,
     coefficient,
-    parse,
-    real_array,
     scalar_si,
-    with_units,
 )
-from wearlaw.units.registry import symbol
 from wearlaw.units.variables import meaning_of
 
 Arrays: TypeAlias = dict[str, Array]
@@ -63,9 +58,6 @@ Friction: TypeAlias = Annotated[ArrayLike | FrictionLaw, coefficient]
 
 Creepage: TypeAlias = Annotated[QuantityLike, Unit("", positive=False, limit=1.0)]
 """A creepage: a ratio or in percent, of magnitude at most 1."""
-
-LOADS = ("normal_force", "normal_force_per_width", "max_pressure")
-"""The conditions that give the load of a line."""
 
 
 @dataclass(frozen=True)
@@ -174,25 +166,6 @@ def broadcast(arrays: Arrays) -> Arrays:
         name: read_only(array) if array.shape == shape else np.broadcast_to(array, shape)
         for name, array in arrays.items()
     }
-
-
-@dataclass(frozen=True, eq=False)
-class Known:
-    """A known condition: one number or several, and their unit, None for plain numbers."""
-
-    values: Array
-    unit: str | None
-
-    @classmethod
-    def of(cls, value: object) -> Known | None:
-        """Return a given condition, or None if it is not numeric, such as a law of friction."""
-        try:
-            quantity = parse(value) if isinstance(value, str) or with_units(value) else value
-            if isinstance(quantity, pint.Quantity):
-                return cls(real_array(quantity.magnitude), symbol(quantity.units, "~C"))
-            return cls(real_array(quantity), None)
-        except UnitError:
-            return None
 
 
 class FallingFriction(Configuration):

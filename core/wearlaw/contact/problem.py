@@ -397,27 +397,12 @@ class Problem:
         ----------
         a, b : Quantity or str
             Semi-axes of the patch in and across the rolling direction [m].
-        normal_force : Quantity or str
-            N [N].
-        shear_modulus : Quantity or str
-            G [Pa].
-        poisson_ratio, friction_coefficient : array_like of float
-            ν and μ [-].
         longitudinal_creepage, lateral_creepage : Quantity or str
             ξ and η, ratios or in percent.
         spin : Quantity or str
             φ [1/m].
-        rolling_speed : Quantity or str
-            V [m/s]; only laws that read the slip speed depend on it.
-        density : Quantity or str
-            Density of the body whose wear is predicted, ρ [kg/m³].
 
-        Raises
-        ------
-        UnitError
-            If an argument lacks its unit or is out of bounds.
-        ConditionsError
-            If the arguments do not broadcast.
+        The others, and the errors, are those of `line`.
         """
         given = {
             "a": a,

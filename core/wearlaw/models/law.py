@@ -1,7 +1,6 @@
 """The base class of laws of any outcome, `Law`, its `Outcome`, and the record of the fit of its parameters."""
 
 import math
-import warnings
 from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,6 +28,7 @@ from wearlaw.errors import (
     UnitError,
     did_you_mean,
     shown,
+    warn,
 )
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.model import Blame, Model, check_scale, fault
@@ -243,10 +243,6 @@ class Law(Model):
                     ' outcome = wl.Outcome("rcf_damage", unit="", of="patch"), or derive it from wl.WearLaw'
                 )
             check_scale(cls, SCALES)
-            known = cls.__pydantic_fields__
-            for name in Law.model_fields:
-                if known[name].default is None:
-                    known[name] = known.pop(name)  # last where fields are shown
 
     def check_variables(self) -> None:
         """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` names no variable."""
@@ -367,11 +363,10 @@ class Law(Model):
             held += ", of an ellipse"
         elif fitted_for.scale in ("any", scale):
             return
-        warnings.warn(
+        warn(
             f"the parameters of {self.kind} '{self.name}' were fitted for {fitted_for}, but the contact holds {held};"
             " check them against data",
             CalibrationWarning,
-            stacklevel=3,
         )
 
     def breakpoints(self, p: Numbers) -> BreakpointMap | None:  # noqa: ARG002

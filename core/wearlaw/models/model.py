@@ -81,11 +81,7 @@ class Model(Configuration, ABC):
 def fault(model: Model, what: str) -> ModelError:
     """Return the error for a model that is at fault; it names the model, its class and its distribution.
 
-    Parameters
-    ----------
-    model : Model
-    what : str
-        What the model did, such as "returned values of shape (3,)"; the message begins with kind and name of the model.
+    `what` is what the model did, such as "returned values of shape (3,)".
     """
     return ModelError(with_origin(model, f"{model.kind} '{model.name}' {what}"))
 
@@ -99,14 +95,8 @@ class Blame:
     """A context that turns an exception in a model's code into a `ModelError` that names the model.
 
     Errors of wearlaw pass, because their messages are complete. An `InputError` gets a note that names the model, but
-    not one of a rig or a reader, which is about the conditions or a file. Ctrl-C and a lack of memory pass as well.
-
-    Parameters
-    ----------
-    model : Model
-        The model to name.
-    p : mapping of str to float or ndarray, optional
-        The numbers given to a wear law. If there are arrays among them, the message says how to compute with arrays.
+    not one of a rig or a reader, which is about the conditions or a file. Ctrl-C and a lack of memory pass as well. If
+    there are arrays among the numbers `p` given to a law, the message says how to compute with arrays.
     """
 
     __slots__ = ("_model", "_p")

@@ -55,26 +55,11 @@ def crossings(
     breakpoints: Mapping[str, tuple[Any, ...]],
     variable: VariableOf = getattr,
 ) -> Array:
-    """Return the values of ψ at which variables cross their breakpoints, in ascending order.
+    """Return the values of ψ in the slip zone at which variables cross their breakpoints, (batch, k), ascending.
 
-    Parameters
-    ----------
-    model : LineContactModel
-        The contact model.
-    problem : Problem
-        With a batch of at most one axis and creepage ≥ 0.
-    zone : Zone
-        The slip zone.
-    breakpoints : mapping of str to tuple of float or ndarray
-        Names of variables at the nodes with SI values, each a float or one for each operating point, (points, 1).
-    variable : callable
-        Returns a variable of a contact by its name; by default its attribute.
-
-    Returns
-    -------
-    ndarray, (batch, k)
-        ψ of each crossing, exact to rounding; the zone's angle if there is no crossing. k is at most 2 × the number of
-        breakpoints.
+    They are exact to rounding, and the zone's angle where there is no crossing; k is at most 2 × the number of
+    breakpoints. The problem has a batch of at most one axis and creepage ≥ 0. Breakpoints are SI values by the names of
+    variables at the nodes, each a float or one for each operating point, (points, 1).
     """
     shape = problem.batch_shape
     distances, columns = [np.empty((*shape, 0))], []

@@ -14,8 +14,7 @@ cells of a plot does not matter here.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -42,7 +41,7 @@ BLOCK = 16384
 NODE_BLOCK = 3072
 """Operating points of a block with nodes."""
 
-ELLIPSE_NODES = 2**16
+ELLIPSE_NODES = 2**17
 """Nodes of a block of elliptic contacts: enough to outweigh the overhead of each NumPy call, and few enough for the
 memory of any machine."""
 
@@ -86,27 +85,43 @@ def prepared(model: ContactModel, problem: Problem) -> tuple[ContactModel, Probl
     """
     while isinstance(model, Staged) and model.stage.alters_problem_only():
         with steadily():
-            problem, model = model.altered(problem, partial(integrate_forces, model.model)), model.model
+            problem, model = model.altered(problem, Forces(model.model)), model.model
     return model, problem
 
 
-@steady
 def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
-    model, problem = prepared(model, problem)
-    if problem.geometry != "line":
+    return Forces(model)(problem)
 
-        def of_ellipse(part: Problem, _: slice) -> Totals:
-            return Totals.of_forces(model.creep_forces(part))
 
-        return _by_block(Solver(model), problem, of_ellipse).forces
-    if isinstance(model, LineContactModel):  # closed form, without nodes that would fill the memory
-        there = problem.existing()
-        with Blame(model):
-            force = model.tangential_force(there)
-        check_results(model, there, force, "tangential_force")
-        return CreepForces.of_line(force if there is problem else problem.unflatten(force))
-    return _by_block(Solver(model), problem, lambda part, _: Totals(longitudinal=model.tangential_force(part))).forces
+class Forces:
+    """The forces of a contact model on problems whose patches all have as many nodes as those of the first one."""
+
+    def __init__(self, model: ContactModel) -> None:
+        self.model = model
+        self._block = 0
+
+    @steady
+    def __call__(self, problem: Problem) -> CreepForces:
+        """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
+        model, problem = prepared(self.model, problem)
+        if problem.geometry != "line":
+
+            def of_ellipse(part: Problem, _: slice) -> Totals:
+                return Totals.of_forces(model.creep_forces(part))
+
+            if problem.size > FEW and not self._block:
+                self._block = _block(model, problem)
+            return Solver(model).by_block(problem, self._block or FEW, of_ellipse).forces
+        if isinstance(model, LineContactModel):  # closed form, without nodes that would fill the memory
+            there = problem.existing()
+            with Blame(model):
+                force = model.tangential_force(there)
+            check_results(model, there, force, "tangential_force")
+            return CreepForces.of_line(force if there is problem else problem.unflatten(force))
+        return _by_block(
+            Solver(model), problem, lambda part, _: Totals(longitudinal=model.tangential_force(part))
+        ).forces
 
 
 @steady
@@ -151,19 +166,11 @@ def integrate_laws(
 
     Parameters
     ----------
-    model : ContactModel
-    laws : sequence of Law
-    problem : Problem
     on_block : callable, optional
         Called with each block of operating points and its totals, which include the forces.
     numbers : sequence of mapping of str to float or ndarray, optional
         The numbers of each law in SI, by default its own. Arrays of shape (points, 1) need a batch of one axis,
         (points,).
-
-    Raises
-    ------
-    ModelError
-        If the model or a law breaks its contract.
     """
     model, problem = prepared(model, problem)
     if not laws:
@@ -171,7 +178,8 @@ def integrate_laws(
         if on_block is not None:
             on_block(problem, forces)
         return forces
-    numbered = list(zip(laws, map(_frozen, numbers) if numbers else [law.numbers for law in laws], strict=True))
+    frozen = [_arrays(p, read_only) for p in numbers] if numbers else [law.numbers for law in laws]
+    numbered = list(zip(laws, frozen, strict=True))
     solver = Solver(model)
     over = _over_line if problem.geometry == "line" else _over_ellipse
     totals = over(solver, numbered, problem, on_block)
@@ -191,7 +199,8 @@ def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: On
                 values.append(solver.rate(law, seen, part, _of_patches(own)))
                 kept.append(None)
                 continue
-            wear = seen.over_strip(split_rates(solver, law, seen, part, _of_nodes(own, seen)))
+            of_nodes = _arrays(own, lambda values: values[..., None])  # an axis for the nodes and one for the strips
+            wear = seen.over_strip(split_rates(solver, law, seen, part, of_nodes))
             values.append((wear * seen.strip_width).sum(axis=-1) / area)
             kept.append(Across.of(seen, wear) if keeps else None)
         return Totals(
@@ -321,9 +330,6 @@ def integrate_across(
 
     Parameters
     ----------
-    model : ContactModel
-    law : Law
-    problem : Problem
     strips : int, optional
         Number of strips of equal width. By default, and if the model cannot choose strips, the model's own strips.
     solved_before : Contact, optional
@@ -360,12 +366,16 @@ def _by_block(
     solver: Solver, problem: Problem, of_block: OfBlock[ResultT], on_block: OnBlock[ResultT] | None = None
 ) -> ResultT:
     """Return results over blocks; the model's number of nodes decides the number of operating points in a block."""
-    block = NODE_BLOCK
-    if problem.geometry != "line" and not isinstance(solver.model, Solved):
-        few = problem.size <= FEW
-        nodes = 1 if few else Solver(solver.model).solve(problem.flatten()[:1]).pressure.size
-        block = FEW if few else max(ELLIPSE_NODES // nodes, 1)
-    return solver.by_block(problem, block, of_block, on_block)
+    return solver.by_block(problem, _block(solver.model, problem), of_block, on_block)
+
+
+def _block(model: ContactModel, problem: Problem) -> int:
+    """Return the number of operating points of a block with nodes."""
+    if problem.geometry == "line" or isinstance(model, Solved):
+        return NODE_BLOCK
+    if problem.size <= FEW:
+        return FEW
+    return max(ELLIPSE_NODES // Solver(model).solve(problem.flatten()[:1]).pressure.size, 1)
 
 
 @steady
@@ -430,26 +440,19 @@ def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Array | N
     return ratio
 
 
-def _frozen(p: Numbers) -> Numbers:
-    """Return the numbers of a law with arrays that the law cannot change."""
-    return {name: read_only(value) if isinstance(value, np.ndarray) else value for name, value in p.items()}
+def _arrays(p: Numbers, function: Callable[[Array], Array]) -> Numbers:
+    """Return the numbers of a law with a function applied to those that are arrays."""
+    return {name: function(value) if isinstance(value, np.ndarray) else value for name, value in p.items()}
 
 
 def _at_points(p: Numbers, points: slice | NDArray[np.intp]) -> Numbers:
     """Return the numbers of a law at some operating points."""
-    return {name: value[points] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+    return _arrays(p, lambda values: values[points])
 
 
 def _of_patches(p: Numbers) -> Numbers:
     """Return the numbers of a law without the axis of the nodes, for an outcome of the patch."""
-    return {name: value[..., 0] if isinstance(value, np.ndarray) else value for name, value in p.items()}
-
-
-def _of_nodes(p: Numbers, contact: Contact) -> Numbers:
-    """Return the numbers of a law with an axis of length one for each axis of the nodes."""
-    if not contact.on_strips:
-        return p
-    return {name: value[..., None] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+    return _arrays(p, lambda values: values[..., 0])
 
 
 def _on_own_nodes(solver: Solver, law: Law, p: Numbers, problem: Problem, contact: Contact) -> Mean:

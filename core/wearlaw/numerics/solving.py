@@ -68,10 +68,6 @@ LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index"
 class Solver:
     """Solves contacts by a model, checks them, and counts the blocks.
 
-    Parameters
-    ----------
-    model : ContactModel
-
     Attributes
     ----------
     solved : Contact or None

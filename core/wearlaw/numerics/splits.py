@@ -28,22 +28,8 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
     beyond the jump has the rate beyond it. The error along the strip is then of second order in the size of the cells,
     and otherwise of first order.
 
-    Parameters
-    ----------
-    solver : Solver
-        For the contact model.
-    law : Law
-    contact : Contact
-        On strips, with a batch of one axis.
-    problem : Problem
-        The solved problem.
-    p : mapping of str to float or ndarray
-        The law's numbers in SI, floats or arrays of shape (points, 1, 1).
-
-    Returns
-    -------
-    ndarray, (points, nodes, strips)
-        Rates [kg/m/m²].
+    The batch of the contact has one axis, so that the rates are (points, nodes, strips), in SI. The law's numbers `p`
+    are floats, or arrays of shape (points, 1, 1).
     """
     rate = solver.rate(law, contact, problem, p)
     with Blame(law, p):

@@ -45,22 +45,9 @@ TAKE_MEANS = 'put wl.patch_mean() between them, or use wl.contact_model("global"
 
 
 def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str | None = None) -> int:
-    """Return the index of the law of an outcome for a body, or raise an error if there is none.
+    """Return the index of the law of an outcome, or raise a `CompositionError` if there is none.
 
-    Parameters
-    ----------
-    laws : sequence of Law
-    model : ContactModel
-        The contact model, with stages or without, for the message.
-    outcome : str
-        Name of the outcome, such as "wear_rate".
-    body : str, optional
-        The body; if it is not given, there must be one law of the outcome.
-
-    Raises
-    ------
-    CompositionError
-        If no law predicts the outcome, or if several laws do and no body is given.
+    Without a body, there must be one law of the outcome. The contact model, with stages or without, is for the message.
     """
     found = [index for index, law in enumerate(laws) if law.outcome.name == outcome]
     if not found:

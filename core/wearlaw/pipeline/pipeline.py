@@ -8,7 +8,7 @@ from __future__ import annotations
 import dataclasses
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache, cached_property, lru_cache, partial
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast, overload
 
 import numpy as np
@@ -22,7 +22,6 @@ from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import (
     CompositionError,
     ConditionsError,
-    InputError,
     ModelError,
     RangeWarning,
     did_you_mean,
@@ -34,7 +33,7 @@ from wearlaw.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.models.contact_model import ContactModel, Scale, Stage
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.model import Blame, Model, fault
-from wearlaw.numerics.integrate import integrate_forces, prepared
+from wearlaw.numerics.integrate import Forces, prepared
 from wearlaw.numerics.solving import check_problem
 from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.composition import (
@@ -175,10 +174,7 @@ class Rig(Model):
                 laws[name] = value
             else:
                 arrays[name] = condition.check(value, name)
-        if len(arrays) + len(laws) == len(conditions):
-            _check_given(cls, tuple(conditions))
-        else:
-            cls._check_names(known, conditions)
+        cls._check_names(known, conditions)
         for name, si in otherwise.items():
             arrays.setdefault(name, np.float64(si))  # type: ignore[arg-type]
         arrays = broadcast(arrays)
@@ -278,12 +274,6 @@ def _own_conditions(rig: type[Rig]) -> Mapping[str, Condition]:
     """Return the conditions of the nearest `problem` with a table; a subclass may hand its conditions on."""
     tables = (declared(base.problem) for base in rig.__mro__ if issubclass(base, Rig))
     return next((one for one in tables if any(condition.table for condition in one.values())), {})
-
-
-@lru_cache
-def _check_given(rig: type[Rig], names: tuple[str, ...]) -> None:
-    """Check names of conditions that are all given; names that passed once need no second look."""
-    rig._check_names(_own_conditions(rig), dict.fromkeys(names, True))
 
 
 @steady
@@ -439,7 +429,7 @@ class Pipeline(Configuration, Generic[P]):
         if positional:
             first = next(iter(self.rig.conditions()), "creepage")
             raise ConditionsError(f"{shown(positional[0])}: is given without a name; write {first}=..., for example")
-        return self._predicted(self.posed(conditions), self.range_watch(), conditions)
+        return self._predicted(self.posed(conditions), RangeWatch(*self.laws), conditions)
 
     def posed(self, conditions: Mapping[str, Any], of_one_patch: str = "") -> Problem:
         """Return the rig's problem for these conditions, with loads that balance the forces.
@@ -462,7 +452,7 @@ class Pipeline(Configuration, Generic[P]):
         if type(rig).balanced is Rig.balanced:
             return problem
         with Blame(rig), steadily():
-            balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
+            balanced = rig.balanced(problem, Forces(self.staged_model))
             if not isinstance(balanced, Problem) or _axes(balanced) != _axes(problem):
                 raise ValueError("`balanced` must return a problem like the one given, as from `Problem.replaced`")
             if balanced.exists is not None and balanced.exists is not problem.exists:
@@ -480,12 +470,7 @@ class Pipeline(Configuration, Generic[P]):
         on_block : callable, optional
             Called after each block with the number of its operating points, to show progress.
         """
-        if self.rig.patch_geometry not in (None, problem.geometry):
-            raise InputError(
-                f"problem: has the geometry '{problem.geometry}', but a {type(self.rig).__name__} makes problems with"
-                f" the geometry '{self.rig.patch_geometry}'; make it with the `problem` method of the rig"
-            )
-        return self._predicted(problem, self.range_watch(on_block))
+        return self._predicted(problem, RangeWatch(*self.laws, on_block=on_block))
 
     def _predicted(self, problem: Problem, watch: RangeWatch, given: Mapping[str, Any] | None = None) -> Prediction:
         if problem.exists is not None and not problem.exists.any():
@@ -520,10 +505,6 @@ class Pipeline(Configuration, Generic[P]):
             if not rig.bodies:
                 warn_of_materials(problem.bodies, law)
 
-    def range_watch(self, on_block: Callable[[int], None] | None = None) -> RangeWatch:
-        """Return a watch that sees whether operating points stay elastic and within the ranges of the laws."""
-        return RangeWatch(*self.laws, on_block=on_block)
-
     def watched(self, problem: Problem, watch: RangeWatch, given: Mapping[str, Any] | None = None) -> Prediction:
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         if problem.geometry == "line":
@@ -532,12 +513,6 @@ class Pipeline(Configuration, Generic[P]):
             watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
         return solved(model, self.laws, problem, watch, given)
-
-
-def expect_pipeline(predict: object) -> None:
-    """Raise an `InputError` unless the argument `predict` of an application is a pipeline."""
-    if not isinstance(predict, Pipeline):
-        raise InputError(f"predict: must be a pipeline, as in rig | contact model | wear law; got {shown(predict)}")
 
 
 def _several(*parts: Any, **more: Any) -> Any:

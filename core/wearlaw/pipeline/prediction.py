@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from html import escape
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import pint
 
-from wearlaw.arrays import same, steady
+from wearlaw.arrays import steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
@@ -26,7 +25,7 @@ from wearlaw.pipeline.composition import check_laws, check_scale, other_material
 from wearlaw.pipeline.ranges import RangeWatch, outside_range
 from wearlaw.pipeline.selection import Index, Label, Selection
 from wearlaw.pipeline.solution import Solution
-from wearlaw.pipeline.variables import ERROR, default_variables, long_name, outcome_units
+from wearlaw.pipeline.variables import ERROR, default_variables, outcome_units
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si
 
 if TYPE_CHECKING:
@@ -133,7 +132,7 @@ class Prediction:
         InputError
             If there is no such axis or label; the message lists those that exist.
         """
-        return self._part(Selection.by_label(self.problem, labels))
+        return Prediction(self._solution.part(Selection.by_label(self.problem, labels)))
 
     def isel(self, /, **positions: int | slice | Sequence[int]) -> Prediction:
         """Return the prediction for some operating points or patches, by their positions along the axes.
@@ -152,11 +151,7 @@ class Prediction:
         InputError
             If there is no such axis or position; the message lists those that exist.
         """
-        return self._part(Selection.by_position(self.problem, positions))
-
-    def _part(self, chosen: Selection) -> Prediction:
-        """Return the prediction for some entries along the axes."""
-        return Prediction(self._solution.part(chosen))
+        return Prediction(self._solution.part(Selection.by_position(self.problem, positions)))
 
     @overload
     def __getitem__(self, name: str, /) -> Quantity: ...
@@ -172,7 +167,7 @@ class Prediction:
         does.
         """
         if not isinstance(name, str):
-            return self._part(Selection.by_index(self.problem, name))
+            return Prediction(self._solution.part(Selection.by_index(self.problem, name)))
         named = named_outcomes(self.laws)
         if name in named:
             index = named[name]
@@ -203,15 +198,6 @@ class Prediction:
     def __contains__(self, name: object) -> bool:
         """Return whether there is a variable of this name."""
         return isinstance(name, str) and name in (*outcome_units(self.laws), *default_variables(self))
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether another prediction is one of the same contacts with the same models."""
-        if not isinstance(other, Prediction):
-            return NotImplemented
-        return same(*((one.problem, one.model, one.laws) for one in (self._solution, other._solution)))
-
-    def __hash__(self) -> int:
-        return hash((self.problem.geometry, self.problem.batch_shape))
 
     def outcome(self, name: str, body: str | None = None) -> Quantity:
         """Return the outcome of a law, with its unit.
@@ -251,9 +237,7 @@ class Prediction:
             of that condition; other axes are point_0, point_1 and so on, as in `isel`. A rig's own axes follow, with
             their labels; missing patches are NaN.
         """
-        made: xarray.Dataset = load("wearlaw_output.datasets", "dataset", "a dataset")(
-            self, self._solution.conditions, names
-        )
+        made: xarray.Dataset = load("wearlaw_output.datasets", "to_dataset", "a dataset")(self, self._solution, names)
         return made
 
     def to_dataframe(self, names: Sequence[str] | None = None) -> pandas.DataFrame:
@@ -270,9 +254,7 @@ class Prediction:
             The conditions, the labels of the patches and the variables. The heads hold the units, as in
             "wear_rate [ug/m/mm^2]"; `wearlaw.sweep` and `wearlaw.read_tests` read such heads.
         """
-        made: pandas.DataFrame = load("wearlaw_output.datasets", "frame", "a table")(
-            self, self._solution.conditions, names
-        )
+        made: pandas.DataFrame = load("wearlaw_output.datasets", "to_dataframe", "a table")(self, self._solution, names)
         return made
 
     def plot(self, name: str | None = None, *, x: str | None = None, ax: Axes | None = None) -> Axes:
@@ -300,7 +282,7 @@ class Prediction:
             If there is nothing to draw, or too many axes.
         """
         draw = load("wearlaw_output.pictures", "draw", "a picture")
-        drawn: Axes = draw(self, self._solution.conditions, name, x, ax)
+        drawn: Axes = draw(self, self._solution, name, x, ax)
         return drawn
 
     @property
@@ -605,14 +587,9 @@ class Prediction:
         return "".join([self._head, *(f"\n  {name:<20} {text}" for name, text in self._summary.items())])
 
     def _repr_html_(self) -> str:
-        models = ", ".join(model.name for model in (self.contact_model, *self.laws))
-        lines = [f"<b>{escape(self._head)}</b>", *map(escape, (models, self._solution.conditions.text()))]
-        rows = "".join(
-            f"<tr><td>{escape(long_name(name, self.laws))}</td><td><code>{escape(name)}</code></td>"
-            f"<td>{escape(text)}</td></tr>"
-            for name, text in self._summary.items()
-        )
-        return f"<div>{'<br>'.join(filter(None, lines))}<table>{rows}</table></div>"
+        of_prediction = load("wearlaw_output.notebook", "of_prediction", "a notebook")
+        html: str = of_prediction(self, self._solution, self._head, self._summary)
+        return html
 
     @property
     def _summary(self) -> dict[str, str]:

@@ -131,13 +131,7 @@ class RangeWatch:
 def overload_of(problem: Problem, tangential_force: Array, worst: Overload | None = None) -> Overload | None:
     """Return the operating point furthest beyond first yield of a body, or None if all are elastic.
 
-    Parameters
-    ----------
-    problem : Problem
-    tangential_force : ndarray
-        Magnitude of the tangential force [N], of the batch shape; NaN where there is no patch.
-    worst : Overload, optional
-        The furthest of other points.
+    The tangential force [N] is a magnitude; `worst` is the furthest of other points.
     """
     strengths = {strength for body in problem.bodies.values() if (strength := body.strength)}
     if not strengths:
@@ -163,11 +157,7 @@ def outside_range(problem: Problem, totals: Totals, law: Law) -> NDArray[np.bool
 def elastic_limits(problem: Problem, tangential_force: Array) -> tuple[Array, Array]:
     """Return Hertz's maximum pressure at first yield and at the shakedown limit [Pa], of the body that yields first.
 
-    Parameters
-    ----------
-    problem : Problem
-    tangential_force : ndarray
-        Magnitude of the tangential force [N], of the batch shape; NaN where there is no patch, and in the result.
+    The tangential force [N] is a magnitude. Where it is NaN, since there is no patch, the limits are too.
 
     Raises
     ------

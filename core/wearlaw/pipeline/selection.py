@@ -1,8 +1,8 @@
-"""The axes of a prediction: selection of entries along them, by label or by position, and the conditions there."""
+"""Selection of some entries along the axes of a prediction, by label or by position."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -10,11 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.contact.conditions import Known
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
-from wearlaw.units.variables import name_of
 
 Label: TypeAlias = str | int
 """A label of an entry along one of a rig's own axes."""
@@ -34,25 +32,13 @@ def axis_names(problem: Problem) -> list[str]:
 
 @dataclass(frozen=True)
 class Selection:
-    """Entries along the axes of a batch.
-
-    Attributes
-    ----------
-    positions : tuple
-        The positions along each axis of the batch.
-    """
+    """Entries along the axes of a batch: their positions along each axis."""
 
     positions: tuple[Position, ...]
 
     @classmethod
     def by_label(cls, problem: Problem, labels: Mapping[str, Any]) -> Selection:
-        """Return the selection of labels along the rig's own axes.
-
-        Raises
-        ------
-        InputError
-            If there is no such axis or label.
-        """
+        """Return the selection of labels along the rig's own axes."""
         found: dict[str, Position] = {}
         for name, given in labels.items():
             if name not in problem.dims:
@@ -71,13 +57,7 @@ class Selection:
 
     @classmethod
     def by_position(cls, problem: Problem, positions: Mapping[str, Any]) -> Selection:
-        """Return the selection of positions along any axes.
-
-        Raises
-        ------
-        InputError
-            If there is no such axis or position.
-        """
+        """Return the selection of positions along any axes."""
         sizes = dict(zip(axis_names(problem), problem.batch_shape, strict=True))
         for name in positions:
             if name not in sizes:
@@ -87,25 +67,13 @@ class Selection:
 
     @classmethod
     def by_index(cls, problem: Problem, index: Any) -> Selection:
-        """Return the selection of positions along the axes in their order, as in square brackets.
-
-        Raises
-        ------
-        InputError
-            If there are more positions than axes, or there is no such position.
-        """
+        """Return the selection of positions along the axes in their order, as in square brackets."""
         names = axis_names(problem)
         positions = index if isinstance(index, tuple) else (index,)
         if len(positions) > len(names):
             known = ", ".join(names) or "none: this is one operating point"
             raise InputError(f"{shown(positions)}: are more positions than there are axes. Axes: {known}")
         return cls.by_position(problem, dict(zip(names, positions, strict=False)))
-
-    def of_conditions(self, values: Array) -> Array:
-        """Return the chosen entries of a condition, with an axis for each of the conditions, of full length or 1."""
-        sizes_and_positions = zip(values.shape, self.positions, strict=False)
-        kept = (one if size > 1 else 0 if isinstance(one, int) else slice(None) for size, one in sizes_and_positions)
-        return Selection(tuple(kept)).of(values)
 
     def of(self, array: Array) -> Array:
         """Return the chosen entries of an array whose first axes are those of the batch."""
@@ -155,78 +123,3 @@ def _position(name: str, given: Any, size: int) -> Position:
         )
     found: list[int] = (numbers % size).reshape(-1).tolist()
     return found if numbers.ndim else found[0]
-
-
-class Conditions:
-    """The conditions of a prediction as its user gave them, laid along the axes of its operating points.
-
-    Parameters
-    ----------
-    given : mapping of str to object
-        The conditions.
-    shape : tuple of int
-        The shape of the operating points.
-
-    Attributes
-    ----------
-    numbers : dict of str to Known
-        The numbers, with an axis for each axis of the operating points, of its full length or 1.
-    others : dict of str to str
-        Text of the others, such as a law of friction.
-    """
-
-    def __init__(self, given: Mapping[str, Any], shape: tuple[int, ...]) -> None:
-        self.numbers: dict[str, Known] = {}
-        self.others: dict[str, str] = {}
-        for name, value in given.items():
-            known = None if value is None else Known.of(value)
-            if known is not None and _fits(np.shape(known.values), shape):
-                values = np.asarray(known.values)
-                self.numbers[name] = Known(values.reshape((1,) * (len(shape) - values.ndim) + values.shape), known.unit)
-            elif value is not None:
-                self.others[name] = str(value)
-
-    def chosen(self, selection: Selection) -> Conditions:
-        """Return the conditions of some of the operating points."""
-        found = Conditions({}, ())
-        found.others = self.others
-        found.numbers = {
-            name: Known(selection.of_conditions(one.values), one.unit) for name, one in self.numbers.items()
-        }
-        return found
-
-    def text(self, without: Collection[str] = ()) -> str:
-        """Return the conditions in words, those with several values as their range."""
-        found = []
-        for name, one in self.numbers.items():
-            if name not in without and one.values.size:
-                ends = dict.fromkeys(f"{end:.4g}" for end in (one.values.min(), one.values.max()))
-                found.append(f"{name_of(name)} {' to '.join(ends)} {one.unit or ''}".rstrip())
-        found += [f"{name_of(name)} {text}" for name, text in self.others.items() if name not in without]
-        return ", ".join(found)
-
-    def varying(self, axis: int) -> list[str]:
-        """Return the names of the conditions that vary along an axis."""
-        return [name for name, one in self.numbers.items() if one.values.shape[axis] > 1]
-
-    def axes(self, names: Sequence[str], taken: Collection[str]) -> list[str]:
-        """Return names for the axes of the operating points.
-
-        An axis along which a single condition varies, and along no other, has its name; the others keep theirs.
-        """
-        found = list(names)
-        for axis in range(len(names)):
-            alone = self.varying(axis)
-            if len(alone) == 1 and alone[0] not in taken:
-                (name,) = alone
-                if self.numbers[name].values.size == self.numbers[name].values.shape[axis]:
-                    found[axis] = name
-        return found
-
-
-def _fits(shape: tuple[int, ...], whole: tuple[int, ...]) -> bool:
-    """Return whether an array broadcasts to a shape without changing it."""
-    try:
-        return np.broadcast_shapes(shape, whole) == whole
-    except ValueError:
-        return False

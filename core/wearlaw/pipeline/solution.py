@@ -19,27 +19,16 @@ from wearlaw.numerics import integrate
 from wearlaw.numerics.totals import Across, SlipTotals, Totals, each
 from wearlaw.pipeline.composition import law_among, warn_of_body
 from wearlaw.pipeline.ranges import elastic_limits
-from wearlaw.pipeline.selection import Conditions, Selection
+from wearlaw.pipeline.selection import Selection
 from wearlaw.units.quantities import scalar_si
 
 
 class Solution:
     """The contacts of a problem, and the outcomes of laws in them.
 
-    Arrays have the shape of the batch. What the integration did not give is computed when it is first read.
-
-    Parameters
-    ----------
-    problem : Problem
-    model : ContactModel
-        The contact model, with its stages.
-    laws : tuple of Law
-    totals : Totals
-        The outcomes of the laws; of no laws, the forces alone.
-    given : mapping of str to object
-        The conditions, as given to the pipeline.
-    whole : tuple of Solution and Selection, optional
-        The solution that this one is a part of, and which part.
+    Arrays have the shape of the batch. What the integration did not give is computed when it is first read. The model
+    includes its stages, and the totals are the outcomes of the laws or, without laws, the forces alone. `given` are the
+    conditions of the pipeline; `whole` is the solution that this one is a part of, and which part.
     """
 
     def __init__(
@@ -67,15 +56,6 @@ class Solution:
             if isinstance(model, Solved):
                 model = model.model_copy(update={"contact": totals.contact})
         return Solution(chosen.of_problem(self.problem), model, self.laws, totals, whole=(self, chosen))
-
-    @cached_property
-    def conditions(self) -> Conditions:
-        """The conditions, along the axes of the operating points."""
-        if self.whole is not None:
-            whole, chosen = self.whole
-            return whole.conditions.chosen(chosen)
-        shape = self.problem.batch_shape
-        return Conditions(self.given or {}, shape[: len(shape) - len(self.problem.dims)])
 
     @cached_property
     def forces(self) -> CreepForces:

@@ -85,13 +85,8 @@ def default_variables(
 ) -> list[str]:
     """Return the variables of datasets and sweeps for which no names are given: the outcomes of laws come first.
 
-    Parameters
-    ----------
-    prediction : Prediction
-    without : iterable of str
-        Names of the conditions, which are coordinates.
-    several_patches : bool, optional
-        Whether the rig makes several patches, if the prediction does not show it.
+    Conditions, which are coordinates, are `without`. `several_patches` says whether the rig makes several patches, if
+    the prediction does not show it.
     """
     known = (MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *MORE)
     every = (*named_outcomes(prediction.laws), *offered(prediction, known, several_patches))

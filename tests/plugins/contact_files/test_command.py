@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import assert_refused, files, wearlaw
+from tests.cases import assert_refused, files, wearlaw
 from tests.plugins.contact_files.files import FILES
 from wearlaw_contact_files._command import _print  # private: one reader, without the look-up
 

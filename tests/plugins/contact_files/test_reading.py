@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.cases import wearlaw
 from tests.core.axles import GIVEN, KTH, Axle
-from tests.core.cases import wearlaw
 from tests.core.distributions import Install
 from tests.plugins.contact_files.files import FILES
 from wearlaw import Q

@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import files, wearlaw
-from tests.core.cli_data import COMPARE, FIT, LAW, listed, rates
+from tests.cases import files, wearlaw
+from tests.plugins.fits.cli_data import COMPARE, FIT, LAW, listed, rates
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
 

@@ -11,10 +11,10 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import files, wearlaw
-from tests.core.cli_data import CREEPAGE, FIT, HEAD, listed, rates, rows, write_tests
+from tests.cases import files, wearlaw
 from tests.core.distributions import Install
 from tests.core.test_stages import PLUGIN
+from tests.plugins.fits.cli_data import CREEPAGE, FIT, HEAD, listed, rates, rows, write_tests
 from wearlaw import Q
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")

@@ -114,7 +114,7 @@ def test_a_law_that_was_written_reads_back_equal(exact_fit: wl.Fit, tmp_path: Pa
     assert [file.name for file in tmp_path.iterdir()] == ["my-usfd.toml"]
     provenance = tomllib.loads(path.read_text(encoding="utf-8"))["provenance"]
     assert provenance["wearlaw"] == wl.__version__
-    assert provenance["wear_law"] == f"wearlaw {wl.__version__}"
+    assert provenance["laws"] == {"usfd": f"wearlaw {wl.__version__}"}
     assert (provenance["tests"], provenance["measurements"]) == ("made up", {"wear_rate": 20})
     assert (provenance["free"], provenance["seed"], provenance["bootstrap"]) == (list(ALL), 0, 300)
     assert provenance["chi2"] == exact_fit.chi2

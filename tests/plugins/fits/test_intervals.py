@@ -157,7 +157,7 @@ def test_intervals_of_a_law_with_kinks_hold_the_true_parameters_as_often_as_they
     best = fit_many(usfd, targets, np.zeros((fits, 4)), bounds)
     held = np.zeros(4)
     for number in range(fits):
-        one = Solutions(*(getattr(best, name)[[number]] for name in ("theta", "residuals", "jacobian", "converged")))
+        one = best[number]
         model = to(usfd, targets[number])
         replicates = replicate(model, one, bounds, np.zeros(W.size, dtype=np.intp), 200, number)
         low, high = studentised_intervals(one, replicates, level)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-from wearlaw_fits.least_squares import STEP, TOLERANCE, Bounds, fit_many, refine, search  # private: models with kinks
+from wearlaw_fits.least_squares import STEP, TOLERANCE, Bounds, fit_many, search  # private: models with kinks
 
 X = np.linspace(0.0, 3.0, 15)
 WIDE = Bounds(np.full(2, -5.0), np.full(2, 5.0))
@@ -91,7 +91,6 @@ def test_a_model_is_never_asked_beyond_the_bounds() -> None:
     targets = noisy(decay, [1.5, 0.7], 0.1, 10)
     found = fit_many(watched, targets, np.tile([1.2, 0.5], (10, 1)), bounds)
     assert (found.theta == bounds.high).any()
-    refine(watched, targets[0], np.array([0.4, 0.2]), bounds)
     search(watched, targets[0], np.array([0.4, 0.2]), bounds, WIDE, 20, 0)
 
 
@@ -107,7 +106,6 @@ def test_a_best_fit_on_a_kink_is_found() -> None:
     assert found.converged.all()
     # Within one step of the difference quotients from the kink, they mix the slopes of both sides.
     assert np.abs(found.theta).max() <= STEP
-    assert abs(refine(kinked, np.zeros(2), np.array([0.5]), bounds).theta[0, 0]) <= 1e-6
 
 
 def wave(theta: Any) -> Any:
@@ -117,8 +115,7 @@ def wave(theta: Any) -> Any:
 def test_a_search_from_many_points_finds_what_one_start_does_not() -> None:
     bounds = Bounds(np.array([0.1]), np.array([12.0]))
     target = wave(np.array([[7.0]]))[0]
-    assert refine(wave, target, np.array([1.0]), bounds).cost[0] > 1.0
-    found = search(wave, target, np.array([1.0]), bounds, bounds, 64, seed=0)
-    best = min(found, key=lambda one: float(one.cost[0]))
+    assert search(wave, target, np.array([1.0]), bounds, bounds, 0, seed=0).cost[0] > 1.0
+    best = search(wave, target, np.array([1.0]), bounds, bounds, 64, seed=0)
     assert best.theta[0, 0] == pytest.approx(7.0, abs=2.0 * TOLERANCE)
     assert best.converged[0]

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import POINT, files, table, wearlaw, write
+from tests.cases import POINT, files, table, wearlaw, write
 from tests.plugins.fits.fits import EXACT, made_up, usfd
 from wearlaw_studies.case import case_schema  # private: the schema of cases has no public name
 

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
-from tests.core.cases import load, table
+from tests.cases import load, table
 from tests.plugins.kit.cells import Cells
 from tests.strategies import EPS, LINE_MODELS, log_uniform, saturation_creepage, with_creepage
 from wearlaw import Q

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import InstallModel, assert_refused, wearlaw
+from tests import cases
+from tests.cases import InstallModel, assert_refused, wearlaw
 
 
 class Own(cases.Linear):

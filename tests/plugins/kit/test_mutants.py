@@ -13,7 +13,7 @@ import pytest
 
 import wearlaw as wl
 from tests.core import axles
-from tests.core.axle_case import Axle
+from tests.plugins.axle_case import Axle
 from tests.plugins.kit import (
     cells,
     strips,

@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 from click.testing import Result
 
-from tests.core.cases import assert_refused, wearlaw
+from tests.cases import assert_refused, wearlaw
 from wearlaw_kit.scaffold import Kind  # private: the kinds that the command offers
 
 pytestmark = pytest.mark.usefixtures("folder")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from pydantic import Field
 
 import wearlaw as wl
-from tests.core.axle_case import Axle
+from tests.plugins.axle_case import Axle
 
 DISCS = wl.TwinDisc.suros()
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import tree
+from tests.cases import tree
 from wearlaw_output.folder import FILES, results_folder  # private: what commands share
 
 RESULTS = "results.nc"

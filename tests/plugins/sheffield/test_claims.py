@@ -13,7 +13,7 @@ import pytest
 from scipy import optimize
 
 import wearlaw as wl
-from tests.core.cases import case
+from tests.cases import case
 from tests.plugins.sheffield.paper import (
     AREA,
     CORRECTED,

@@ -10,7 +10,7 @@ import pytest
 from pydantic import Field
 
 import wearlaw as wl
-from tests.core import cases
+from tests import cases
 from tests.core.outcome_laws import Damage as BaseOfDamage
 from tests.core.outcome_laws import Heat
 from tests.plugins.kit.wrong_rigs import Weight

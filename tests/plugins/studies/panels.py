@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import wearlaw as wl
-from tests.core.cases import case
+from tests.cases import case
 from wearlaw import Curve, FigureData, Panel, Study
 
 LOADS = {"from": "500 MPa", "to": "1500 MPa", "points": 3}

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 import wearlaw as wl
-from tests.core.cases import case
+from tests.cases import case
 from wearlaw import CheckedClaim, Curve, FigureData, Panel, PlotAxis, Section, Study
 from wearlaw_studies.report.page import report  # private: the page of a study with figures made by hand
 

@@ -11,8 +11,8 @@ import pytest
 import tomli_w
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import OWN_TESTS, STEEL, case, changed, load, table
+from tests import cases
+from tests.cases import OWN_TESTS, STEEL, case, changed, load, table
 from wearlaw_output.labels import labels  # private: the names of models in results, without running them
 from wearlaw_studies.case import written  # private: a case without its files
 

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import OWN_TESTS, changed, load, table
+from tests import cases
+from tests.cases import OWN_TESTS, changed, load, table
 
 WRONG: list[tuple[str, Any, str]] = [
     ("title", None, "title"),

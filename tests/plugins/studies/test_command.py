@@ -12,8 +12,8 @@ import pytest
 import xarray
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import assert_refused, files, table, wearlaw, write
+from tests import cases
+from tests.cases import assert_refused, files, table, wearlaw, write
 
 LATTICE = {**cases.SWEEP, "friction_coefficient": [0.3, 0.4]}
 MEASURED = {**cases.POINT, "traction_coefficient": [0.1, 0.2]}

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import InstallModel, case, table
+from tests import cases
+from tests.cases import InstallModel, case, table
 from tests.plugins.studies.panels import LOADS, assert_shows, by_label, by_name, one_panel, shown
 from tests.plugins.studies.test_rigs import ON_RAIL
 from tests.strategies import EPS

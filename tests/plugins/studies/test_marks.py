@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import case
+from tests import cases
+from tests.cases import case
 from tests.plugins.studies.panels import by_label, by_name
 from tests.plugins.studies.report_data import page_of
 from wearlaw import Q

@@ -13,8 +13,8 @@ import xarray as xr
 from pydantic import Field
 
 import wearlaw as wl
+from tests.cases import POINT, InstallModel, case, load, table, wearlaw
 from tests.core import outcome_laws
-from tests.core.cases import POINT, InstallModel, case, load, table, wearlaw
 from tests.core.outcome_laws import Heat, Volume
 from tests.core.stages import EXACT, KTH, RIG, predicted, silently
 

@@ -15,10 +15,11 @@ import pytest
 import xarray
 
 import wearlaw as wl
-from tests.core import axles, cases
-from tests.core.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE, PATCHES, SIDES, Axle
-from tests.core.cases import InstallModel, Table, changed, wearlaw
+from tests import cases
+from tests.cases import InstallModel, Table, changed, wearlaw
+from tests.core import axles
 from tests.core.distributions import Install
+from tests.plugins.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE, PATCHES, SIDES, Axle
 from tests.plugins.studies.panels import by_label, by_name, one_panel
 from tests.strategies import EPS
 from wearlaw import Q

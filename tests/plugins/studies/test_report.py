@@ -14,7 +14,7 @@ import plotly
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
+from tests import cases
 from tests.plugins.studies.report_data import EVIL, ODD, ONE, THREE, page_of, small_study
 from wearlaw_studies.report.interactive import plotly_figure  # private: the numbers that the page holds
 

@@ -13,8 +13,8 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import Table, changed, load, wearlaw
+from tests import cases
+from tests.cases import Table, changed, load, wearlaw
 from tests.core.distributions import Install
 from tests.plugins.studies.panels import by_label, by_name
 from tests.strategies import EPS

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import SWEEP, case
+from tests.cases import SWEEP, case
 from tests.core.distributions import Install
 
 LAB = """

@@ -10,7 +10,7 @@ import pytest
 
 import wearlaw as wl
 import wearlaw_wheelset as ws
-from tests.core.cases import wearlaw
+from tests.cases import wearlaw
 
 STARTERS = ("two_discs", "my_tests", "wheel_on_rail", "wheelset")
 OWN_STEEL = '{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = "7800 kg/m^3" }'

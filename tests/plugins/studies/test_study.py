@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import InstallModel, case
+from tests import cases
+from tests.cases import InstallModel, case
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_output.notes import grouped  # private: what commands print of notes
@@ -199,8 +199,15 @@ def test_what_is_left_out_and_every_warning_is_noted_once(study: wl.Study) -> No
 
 
 def test_printed_notes_name_all_subjects_of_a_remark_once() -> None:
-    said = grouped(["a: check it: now", "results.csv is left out", "b: check it", "c: check it: now"])
-    assert said == ["a, c: check it: now", "results.csv is left out", "b: check it"]
+    notes = [
+        "a: check it",
+        "results.csv is left out",
+        "b: law: too low; 1 of 3",
+        "c: check it",
+        "d: law: too low; 2 of 3",
+    ]
+    said = ["a, c: check it", "results.csv is left out", "law: too low; b: 1 of 3; d: 2 of 3"]
+    assert grouped(notes) == said
 
 
 def test_a_profile_that_no_model_resolves_is_left_out_and_noted() -> None:
@@ -237,3 +244,11 @@ def test_a_case_of_which_no_pair_can_be_is_refused_and_says_why() -> None:
     with pytest.raises(wl.InputError, match="no contact model can be used with any of the wear laws") as no:
         wl.run(impossible)
     assert "brr on exact is left out" in str(no.value)
+
+
+def test_a_study_notes_materials_that_the_contact_model_takes_for_alike() -> None:
+    polymer = {"youngs_modulus": "3 GPa", "poisson_ratio": 0.4, "density": "1200 kg/m^3"}
+    rig = {"preset": "suros", "disc_2": {"diameter": "47 mm", "material": polymer}}
+    point = {**cases.POINT, "max_pressure": "50 MPa"}
+    made = case(rig=rig, contact_models=["exact"], wear_laws=["usfd", "kth"], sweeps={"one": point}, profiles={})
+    assert sum("unlike materials" in note for note in wl.run(made).notes) == 1

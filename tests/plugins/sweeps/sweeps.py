@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import Linear
+from tests.cases import Linear
 from wearlaw import Array, Q
 
 CONDITIONS: dict[str, Any] = {

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import Linear
+from tests.cases import Linear
 from tests.core.stages import RAILS
 from wearlaw import Q
 

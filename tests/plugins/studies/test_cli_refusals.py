@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-from tests.core import cases
-from tests.core.cases import assert_refused, changed, files, table, wearlaw, write
+from tests import cases
+from tests.cases import assert_refused, changed, files, table, wearlaw, write
 from tests.core.distributions import Install
 
 pytestmark = pytest.mark.usefixtures("folder")

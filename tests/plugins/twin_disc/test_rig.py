@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wearlaw as wl
-from tests.core.cases import following_line
+from tests.cases import following_line
 from tests.core.stages import RIG
 from tests.strategies import EPS
 from wearlaw import Q

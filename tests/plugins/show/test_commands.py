@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import table, wearlaw, write
+from tests.cases import table, wearlaw, write
 from tests.core.distributions import FIRST_PARTY_MODELS, Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import case_schema, case_text  # private: a case without its files

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import wearlaw as wl
-from tests.core.cases import Table
+from tests.cases import Table
 
 RADIUS, CONICITY, FLANGE = 0.46, 0.05, 6e-3
 LEFT_OR_RIGHT = np.array([[-1.0], [1.0]])
@@ -68,7 +68,7 @@ def wearlaw_models() -> list[type[wl.Rig]]:
     return [Axle]
 
 
-AXLES = ("axles", "from tests.core.axle_case import wearlaw_models")
+AXLES = ("axles", "from tests.plugins.axle_case import wearlaw_models")
 """Name and source of the plugin."""
 
 MOVED = np.array([-7.0, -3.0, 0.0, 3.0, 7.0])

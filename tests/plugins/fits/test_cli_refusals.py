@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.core.cases import assert_refused, files, full_disk, wearlaw
-from tests.core.cli_data import COMPARE, FIT, HEAD, rates, rows, write_tests
+from tests.cases import assert_refused, files, full_disk, wearlaw
+from tests.plugins.fits.cli_data import COMPARE, FIT, HEAD, rates, rows, write_tests
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
 

@@ -12,7 +12,7 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 import wearlaw as wl
-from tests.core.cases import case, table, wearlaw
+from tests.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw_studies.case import Case, case_schema, case_text, load_case, written  # private: a case without its files
@@ -117,12 +117,8 @@ def test_the_case_of_a_run_has_the_same_provenance_as_the_run(install: Install, 
     assert provenance(again)["materials"] == {"soft_steel": "lab 1.2.3"}
 
 
-def test_a_run_says_what_it_used(
-    install: Install,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("wearlaw_studies.written.write_figures", lambda *_: [])  # private: results without figures
+@pytest.mark.usefixtures("blank_figures")
+def test_a_run_says_what_it_used(install: Install, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     install("lab", LAB, version="1.2.3")
     (tmp_path / "own.toml").write_text(LAB_STUDY)
     monkeypatch.chdir(tmp_path)
