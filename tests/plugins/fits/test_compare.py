@@ -28,29 +28,6 @@ from wearlaw import Q
 # What is compared
 
 
-def test_the_measures_are_those_of_the_predicted_and_the_measured_rates() -> None:
-    """The tests wear more than predicted by factors of 2 and 1/2, in turn, so that all factors are known."""
-    factors = np.array([2.0, 0.5] * 4)
-    found = wl.compare([EXACT | usfd()], made(wear_rate=made().wear_rate * factors)).compared[0].agreement
-    # Rates that were made into µg/m/mm² and back.
-    assert found.bias == pytest.approx(1.0, rel=1e2 * EPS)
-    assert found.rms_factor == found.largest_factor == pytest.approx(2.0, rel=1e2 * EPS)
-    assert found.geometric_sd == pytest.approx(2.0 ** math.sqrt(8 / 7), rel=1e2 * EPS)
-    rates = made().wear_rate.magnitude
-    in_si = float(np.sqrt(np.mean((rates * (factors - 1.0)) ** 2))) * 1e-3  # µg/m/mm² is 1e-9 kg/m over 1e-6 m²
-    assert found.rms_error == pytest.approx(in_si, rel=1e2 * EPS)
-
-
-def test_the_best_comes_first_whatever_the_order_they_are_given_in() -> None:
-    predictors = {
-        "half": EXACT | usfd(m_m="2.65 ug/m/N", q_s="27.5 ug/m/mm^2"),
-        "true": EXACT | usfd(),
-        "near": EXACT | usfd(q_s="50 ug/m/mm^2"),
-    }
-    assert order(wl.compare(predictors, made())) == ["true", "near", "half"]
-    assert order(wl.compare(dict(reversed(predictors.items())), made())) == ["true", "near", "half"]
-
-
 def test_tests_without_a_wear_rate_are_left_out_for_all() -> None:
     rates = made().wear_rate.magnitude.copy()
     rates[[1, 4]] = np.nan

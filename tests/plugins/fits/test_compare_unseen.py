@@ -69,13 +69,6 @@ def test_some_of_the_tests_of_a_fit_are_known_again_under_other_labels_and_units
     assert "in_sample" not in repr(comparison)
 
 
-def test_a_law_without_digests_is_known_by_the_source_that_it_names() -> None:
-    fit: Any = wl.fit(EXACT | usfd(), scattered(source="our lab, 2020"), ["q_s"], bootstrap=0)
-    law = fit.law.model_copy(update={"fitted_for": fit.law.fitted_for.model_copy(update={"tests": ()})})
-    assert seen(wl.compare({"a": EXACT | law}, scattered(source="our lab, 2020"))) == {"a": 8}
-    assert seen(wl.compare({"a": EXACT | law}, scattered(source="another lab"))) == {"a": 0}
-
-
 # Cross-validation
 
 

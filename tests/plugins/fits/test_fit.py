@@ -167,14 +167,6 @@ def test_tests_without_a_wear_rate_have_no_say() -> None:
     assert first.residuals["label"].tolist()[:4] == ["number 1", "number 2", "number 3", "number 5"]
 
 
-def test_what_is_not_free_stays() -> None:
-    predict = usfd("exact")
-    fit = wl.fit(predict, made_up(predict, 0.1), free=["q_s"], bootstrap=0)
-    law: Any = fit.law
-    assert (law.m_m, law.m_c, law.tr_sc) == (predict.wear_law.m_m, predict.wear_law.m_c, predict.wear_law.tr_sc)
-    assert law.q_s == fit.parameters["q_s"] != predict.wear_law.q_s
-
-
 def test_a_law_of_your_own_may_have_negative_parameters() -> None:
     predict = GLOBAL | sloping
     creepage = np.linspace(2.0, 15.0, 8)
@@ -189,13 +181,6 @@ def test_a_law_of_your_own_may_have_negative_parameters() -> None:
     line: Any = stats.linregress(density, in_microgram(tests.wear_rate))
     assert fit.standard_errors["offset"].magnitude == pytest.approx(line.intercept_stderr, rel=1e-5)
     assert fit.provenance["laws"] == {"sloping": "not installed"}
-
-
-def test_the_law_that_made_the_tests_has_the_better_information_criterion() -> None:
-    tests = made_up(usfd("global"), 0.1)
-    true = wl.fit(usfd("global"), tests, free=ALL, bootstrap=0)
-    other = wl.fit(KTH, tests, free=["coefficient.low_speed"], bootstrap=0)
-    assert true.aic < other.aic - 10.0
 
 
 def test_named_values_of_a_law_are_numbers_when_fitted() -> None:

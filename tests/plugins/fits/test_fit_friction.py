@@ -35,7 +35,7 @@ def test_friction_in_full_slip_is_the_mean_of_the_traction(value: float, interva
     assert relative.parameters["friction_coefficient"].magnitude == pytest.approx(stats.gmean(TRACTION), rel=value)
     assert relative.law is None
     assert relative.predict == EXACT
-    with pytest.raises(wl.FitError, match="no law to write"):
+    with pytest.raises(wl.FitError, match=r"one law, .* has 0"):
         relative.to_toml("nowhere.toml")
 
 

@@ -9,9 +9,8 @@ import pytest
 
 import wearlaw as wl
 from tests.core.outcome_laws import Damage, Heat
-from tests.plugins.fits.fits import EXACT, GLOBAL
+from tests.plugins.fits.fits import EXACT, FULL_SLIP, GLOBAL, USFD
 from tests.plugins.fits.test_fit_stages import Balanced, Choosy, Softer
-from tests.plugins.fits.uncertain import FULL_SLIP, USFD
 from wearlaw import Q
 
 UNCERTAIN: Any = {"friction_coefficient": wl.uniform(0.3, 0.5), "samples": 4}
@@ -27,6 +26,7 @@ HINT = r"(.|\n)*samples of its distribution"
         ({"creep": wl.normal("1 %", "0.1 %")}, "creep: .*'creepage'"),
         ({"creepage": wl.uniform("1 %", "2 %"), "max_pressur": None}, "max_pressur: "),
         ({"friction_coefficient": wl.normal(0.0, 0.1)}, "friction_coefficient: must be a positive"),
+        ({"max_pressure": wl.normal(1500.0, 1.0)}, "max_pressure: got the bare number"),
         ({"friction_coefficient": wl.normal(0.3, 0.2)}, f"friction_coefficient{HINT}"),
         ({"law": {"m_m": wl.uniform("-1 ug/m/N", "3 ug/m/N")}}, f"m_m{HINT}"),
         (
