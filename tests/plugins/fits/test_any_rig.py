@@ -46,7 +46,7 @@ def test_samples_on_a_rail_are_single_predictions(rig: wl.Rig) -> None:
     predict: Any = rig | wl.contact_model("fastsim") | KTH
     u = wl.uncertainty(
         predict,
-        normal_force=wl.uniform("60 kN", "90000 N"),
+        normal_force=wl.uniform("60000 N", "90 kN"),
         longitudinal_creepage=Q([0.1, 0.3], "%"),
         lateral_creepage=wl.uniform("-0.1 %", "0.2 %"),
         spin=wl.uniform("-0.5 1/m", "0.5 1/m"),
