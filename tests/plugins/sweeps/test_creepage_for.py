@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.test_own_rigs import OnRail, Roller
+from tests.core.test_own_rigs import OnRail
 from tests.plugins.fits.test_any_rig import FASTSIM, ON_ELLIPSE, ROLLER, WHEEL
 from tests.strategies import EPS
 from wearlaw import Q
@@ -83,16 +83,6 @@ def test_full_slip_on_a_rail_has_no_single_creepage() -> None:
         wl.creepage_for(FASTSIM, traction_coefficient=0.25, lateral_creepage="100 %", **ON_ELLIPSE)
 
 
-class Sliding(Roller):
-    """A roller whose creepage has another name."""
-
-    name: ClassVar[str] = "sliding"
-    creepage: ClassVar[str] = "slide"
-
-
-def test_a_rig_without_a_condition_for_the_creepage_says_so() -> None:
-    predict: Any = Sliding() | wl.contact_model("exact")
-    with pytest.raises(wl.CompositionError, match="rig 'sliding' has no condition 'slide', only mass, creepage"):
-        wl.creepage_for(predict, traction_coefficient=0.1, mass="20 kg")
+def test_the_creepage_that_is_found_is_not_given() -> None:
     with pytest.raises(wl.ConditionsError, match="creepage: creepage_for returns it; leave it out"):
         wl.creepage_for(ROLLER, traction_coefficient=0.1, mass="20 kg", creepage="1 %")
