@@ -435,7 +435,9 @@ def _in_si(name: str, values: Values) -> Array:
     """Return a column as SI floats, NaN included."""
     unit = COLUMNS[name].unit
     if unit and not isinstance(values, pint.Quantity):
-        raise UnitError(f"has no unit; it is in {unit} or another unit of that dimension")
+        raise UnitError(
+            f"has no unit; give it in {unit} or another unit of that dimension, in a file as '{name} [{unit}]'"
+        )
     try:
         factor = si_factor(Q(1.0, _unit(values)), unit)
     except UnitError as error:
