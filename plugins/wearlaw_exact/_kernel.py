@@ -45,7 +45,7 @@ class Functions(NamedTuple):
 
 
 OF_FLOATS = Functions(math.sqrt, math.cbrt, math.asin, min, max, bool)
-OF_ARRAYS = Functions(np.sqrt, np.cbrt, np.arcsin, np.minimum, np.maximum, np.all)
+OF_ARRAYS = Functions(np.sqrt, np.cbrt, np.arcsin, np.minimum, np.maximum, np.logical_and.reduce)
 
 
 def excess_dissipation(creepage: Array, *others: Any) -> Array:
@@ -105,11 +105,11 @@ def _above(of: Functions, level: Number, zone: Number, mean: Number, crest: Numb
 
 def _root(of: Functions, base: Number, growth: Number, top: Number, square: Number, v: Number) -> Number:
     """Return the v below the maximum at `top` where v (2-v) (base + growth v)² equals `square`, near a guess `v`."""
-    for _ in range(STEPS):
+    for step in range(STEPS):
         old = v
         v = old - _change(base, growth, square, old)
         v = of.minimum(of.maximum(v, 0.25 * old), 0.5 * (old + top))
-        if of.all(abs(v - old) <= CLOSE * of.minimum(v, top - v)):
+        if step and of.all(abs(v - old) <= CLOSE * of.minimum(v, top - v)):
             break
     return v
 

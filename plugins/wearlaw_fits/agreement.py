@@ -56,13 +56,7 @@ class Agreement:
 
 
 def agreement(predicted: Array, measured: Array) -> Agreement:
-    """Return the errors of predicted values against measured ones.
-
-    Parameters
-    ----------
-    predicted, measured : ndarray, (tests,)
-        Values in SI; at least one.
-    """
+    """Return the errors of predicted values (tests,) in SI against measured ones; at least one."""
     both = (predicted > 0) & (measured > 0)
     logs = np.log(predicted[both]) - np.log(measured[both])
     return Agreement(

@@ -305,12 +305,10 @@ def compare_named(
         raise InputError(f"two predictors are called {shown(twice[0])}; give a mapping from names of your own to them")
     given = [predictor for _, predictor in named]
     outcome = _outcome(given, tests, outcome)
-    units = [_law(one, outcome).outcome.unit for one in given]
+    unit = _law(given[0], outcome).outcome.unit
     tests = tests.measuring([name for one in given for name in named_outcomes(_pipeline(one).laws)])
-    for unit in units[1:]:
-        tests.measured(outcome, unit)  # an error if the predictors give it in units of other dimensions
     notes = Notes()
-    there, name = ~np.isnan(tests.measured(outcome, units[0])), name_of(outcome)
+    there, name = ~np.isnan(tests.measured(outcome, unit)), name_of(outcome)
     if not there.any():
         raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
     if not there.all():
@@ -336,7 +334,7 @@ def compare_named(
             " cross-validate"
         )
     ranked = sorted(compared, key=lambda one: one.agreement.rank)
-    return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, units[0], how)
+    return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, unit, how)
 
 
 def _outcome(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:

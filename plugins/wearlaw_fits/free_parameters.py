@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any, Self, get_args
 
 import numpy as np
 import pint
 from numpy.typing import NDArray
+from pydantic.fields import FieldInfo
 
 from wearlaw.arrays import Array
+from wearlaw.configuration import Configuration
 from wearlaw.errors import FitError, InputError, UnitError, did_you_mean, shown
 from wearlaw.parameters import number_in_si, number_like, numbers
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, from_si
-from wearlaw.units.registry import symbol
-from wearlaw_fits.allowed_range import allowed_range
+from wearlaw.units.registry import symbol, unit_in_si
 from wearlaw_fits.least_squares import Bounds
 from wearlaw_fits.named_numbers import FRICTION, Place, known_names, part_at, place_of
 
@@ -29,23 +30,9 @@ ROUNDINGS = 16.0 * float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FreeParameters:
-    """The free parameters of a fit.
+    """The free parameters of a fit: their names, places and first values, and the least and the greatest values in SI.
 
     Positive parameters are fitted by θ = ln(x/x₀), others by θ = (x - x₀)/|x₀|, with their first values x₀.
-
-    Attributes
-    ----------
-    names : tuple of str
-    places : dict of str to Place
-        Where each number stands in the pipeline, by name.
-    like : tuple of Quantity or float
-        The first values, with the units of the parameters.
-    first : ndarray, (p,)
-        The first values in SI.
-    positive : ndarray of bool, (p,)
-        Whether each must be greater than zero.
-    ends : tuple of ndarray, (p,)
-        The least and the greatest values in SI.
     """
 
     names: tuple[str, ...]
@@ -202,3 +189,32 @@ def _ends(
     if np.isfinite(most):
         high = min(high, most - ROUNDINGS * abs(most))
     return low, high
+
+
+def allowed_range(record: Configuration, name: str) -> tuple[float, float, bool]:
+    """Return the least and the greatest value in SI that one of `numbers` may have, and whether it must be positive.
+
+    These are the bounds in the annotation of the field, infinite where it has none.
+    """
+    outer, _, inner = name.partition(".")
+    if inner:
+        return allowed_range(getattr(record, outer), inner)
+    low, high, positive = -np.inf, np.inf, False
+    field = type(record).model_fields[outer]
+    for rule in (*field.metadata, *_rules_within(field.annotation)):
+        if isinstance(rule, Unit):
+            limit = rule.limit * unit_in_si(rule.unit) if rule.limit < np.inf else np.inf
+            low, high, positive = max(low, -limit), min(high, limit), positive or rule.positive
+            continue
+        above = getattr(rule, "gt", None)
+        positive = positive or (above is not None and above >= 0.0)
+        low = max([low, *(float(end) for end in (above, getattr(rule, "ge", None)) if end is not None)])
+        high = min([high, *(float(getattr(rule, end)) for end in ("lt", "le") if getattr(rule, end, None) is not None)])
+    return (max(low, 0.0) if positive else low), high, positive
+
+
+def _rules_within(annotation: Any) -> Iterator[Any]:
+    """Yield the rules of the types in a union, such as those of `Annotated[float, Field(ge=1)] | None`."""
+    for one in get_args(annotation):
+        for rule in getattr(one, "__metadata__", ()):
+            yield from rule.metadata if isinstance(rule, FieldInfo) else (rule,)

@@ -31,16 +31,9 @@ SINGULAR = 1e-12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Replicates:
-    """Fits to data resampled from the residuals.
+    """Fits to data resampled from the residuals, (replicates, p), and the share of them that converged.
 
-    Attributes
-    ----------
-    theta : ndarray, (replicates, p)
-        Parameters.
-    standard_errors : ndarray, (replicates, p)
-        Standard errors of each replicate from its own covariance; zero if it does not determine a parameter.
-    converged : float
-        Share of the replicates that converged.
+    The standard errors are from the covariance of each replicate, zero if it does not determine a parameter.
     """
 
     theta: Array
@@ -57,13 +50,7 @@ def covariance(fits: Solutions) -> Array:
 
 
 def undetermined(jacobian: Array) -> NDArray[np.bool_]:
-    """Return which parameters tests leave open, (sets, p): alone, or because only a combination of them matters.
-
-    Parameters
-    ----------
-    jacobian : ndarray, (sets, n, p)
-        Derivatives of the predictions.
-    """
+    """Return which parameters tests leave open, (sets, p), alone or because only a combination of them matters."""
     size = np.linalg.norm(jacobian, axis=1)
     unseen = size <= UNSEEN * np.maximum(size.max(axis=-1, keepdims=True), UNSEEN)
     scaled = jacobian * np.where(unseen, 0.0, 1.0 / np.where(unseen, 1.0, size))[:, None, :]
@@ -101,27 +88,11 @@ def replicate(
     seed: int,
     on_progress: Callable[[int], None] | None = None,
 ) -> Replicates:
-    """Fit the model to the fitted values plus resampled residuals.
+    """Fit the model to the fitted values plus residuals resampled within each of the `groups`, (n,).
 
     Since the fit follows each test, its residual is smaller than its scatter by √(1 - leverage). Residuals are scaled
-    up by that and centred in their group before they are drawn.
-
-    Parameters
-    ----------
-    model : callable
-        The fitted model.
-    fit : Solutions
-        The fit to one set of data.
-    bounds : Bounds
-        Bounds of the parameters.
-    groups : ndarray of int, (n,)
-        Kind of each measurement; residuals are drawn within each kind.
-    count : int
-        Number of replicates.
-    seed : int
-        Seed of the random numbers.
-    on_progress : callable, optional
-        Called with the number of replicates in each finished batch.
+    up by that and centred in their group before they are drawn. `on_progress` is called with the number of replicates
+    in each finished batch.
 
     Notes
     -----

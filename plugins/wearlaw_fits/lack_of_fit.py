@@ -69,28 +69,15 @@ def lack_of_fit(
     confidence: float,
     known_scatter: bool = False,
 ) -> LackOfFit | None:
-    """Test residuals for lack of fit; None if nothing tells the scatter of the measurements.
+    """Test residuals (n,) for lack of fit; None if nothing tells the scatter of the measurements.
 
-    With n residuals rᵢ at m operating points, p parameters and the mean residual r̄ⱼ of each point,
+    With n residuals rᵢ at m operating points, numbered by `points` as in `repeats`, p parameters and the mean residual
+    r̄ⱼ of each point,
 
         F = [Σⱼ nⱼ r̄ⱼ²/(m - p)] / [Σᵢ (rᵢ - r̄ⱼ₍ᵢ₎)²/(n - m)].
 
-    If the residuals are relative to a known scatter, Σ rᵢ² is χ² with ν = n - p.
-
-    Parameters
-    ----------
-    observable : str
-        Name of the measurement.
-    residuals : ndarray, (n,)
-        Residuals.
-    points : ndarray of int, (n,)
-        Number of the operating point of each test, from `repeats`.
-    parameters : float
-        Number of parameters p that these residuals determine, the sum of their leverages.
-    confidence : float
-        Confidence level.
-    known_scatter : bool
-        Whether the residuals are in units of their stated uncertainty.
+    If the residuals are in units of their stated uncertainty, Σ rᵢ² is χ² with ν = n - p. `parameters` is the number p
+    that these residuals determine, the sum of their leverages.
 
     Notes
     -----
@@ -117,14 +104,7 @@ def lack_of_fit(
 def repeats(conditions: Mapping[str, Any], count: int) -> NDArray[np.intp]:
     """Return the number of the operating point of each test, (n,); tests with the same number repeat each other.
 
-    Two tests are at the same point if all their conditions agree to `SAME`.
-
-    Parameters
-    ----------
-    conditions : mapping of str to Quantity or array_like, (n,) or a single value
-        The conditions of the tests.
-    count : int
-        Number of tests n.
+    Two tests are at the same point if all their conditions, (n,) or single values, agree to `SAME`.
     """
     arrays = (real_array(getattr(value, "magnitude", value)) for value in conditions.values())
     values = np.stack([np.broadcast_to(value, (count,)) for value in arrays], axis=-1)

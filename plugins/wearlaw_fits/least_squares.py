@@ -55,15 +55,8 @@ class Bounds:
 class Solutions:
     """The best fits to many sets of data.
 
-    Attributes
-    ----------
-    theta : ndarray, (sets, p)
-        Parameters.
-    residuals : ndarray, (sets, n)
-        Prediction minus target.
-    jacobian : ndarray, (sets, n, p)
-        Derivatives of the predictions.
-    converged : ndarray of bool, (sets,)
+    Parameters (sets, p), residuals (sets, n), which are prediction minus target, and derivatives of the predictions
+    (sets, n, p).
     """
 
     theta: Array
@@ -83,22 +76,7 @@ class Solutions:
 
 
 def jacobian(model: Model, theta: Array, predicted: Array, bounds: Bounds) -> Array:
-    """Return the derivatives of the predictions by difference quotients within the bounds, in one batch.
-
-    Parameters
-    ----------
-    model : callable
-        The model.
-    theta : ndarray, (sets, p)
-        Parameters.
-    predicted : ndarray, (sets, n)
-        Predictions of the model there.
-    bounds : Bounds
-
-    Returns
-    -------
-    ndarray, (sets, n, p)
-    """
+    """Return the derivatives of the predictions (sets, n, p), by difference quotients within the bounds."""
     sets, count = theta.shape
     step = STEP * np.maximum(np.abs(theta), 1.0)
     step = np.where(theta + step > bounds.high, -step, step)
@@ -110,17 +88,7 @@ def jacobian(model: Model, theta: Array, predicted: Array, bounds: Bounds) -> Ar
 
 
 def fit_many(model: Model, targets: Array, start: Array, bounds: Bounds) -> Solutions:
-    """Fit many sets of data at once by the Levenberg-Marquardt method, projected to the bounds.
-
-    Parameters
-    ----------
-    model : callable
-        The model.
-    targets : ndarray, (sets, n)
-        The data to fit.
-    start : ndarray, (sets, p)
-        First parameters, within the bounds.
-    bounds : Bounds
+    """Fit many sets of data (sets, n) at once by the Levenberg-Marquardt method, projected to the bounds.
 
     Notes
     -----
@@ -180,24 +148,9 @@ def _step(theta: Array, normal: Array, gradient: Array, damping: Array, scale: A
 def search(
     model: Model, target: Array, start: Array, bounds: Bounds, near: Bounds, starts: int, seed: int
 ) -> Solutions:
-    """Return the best of fits to one set of data from several starting points.
+    """Return the best of fits to one set of data (n,) from `start` (p,) and from other points in the range `near`.
 
-    Parameters
-    ----------
-    model : callable
-        The model.
-    target : ndarray, (n,)
-        The data to fit.
-    start : ndarray, (p,)
-        The first starting point.
-    bounds : Bounds
-        Bounds of the parameters.
-    near : Bounds
-        Range of the other starting points, a Latin hypercube.
-    starts : int
-        Number of other starting points. They are evaluated in one batch, and the best few fitted in another.
-    seed : int
-        Seed of the Latin hypercube.
+    The other points, a Latin hypercube, are evaluated in one batch, and the best few fitted in another.
     """
     chosen = bounds.clip(start)[None]
     if starts:

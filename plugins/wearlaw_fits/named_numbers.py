@@ -59,20 +59,11 @@ def known_names(predict: Pipeline[...], *kinds: Kind) -> list[str]:
 
 
 def place_of(predict: Pipeline[...], name: str, *kinds: Kind, others: Sequence[str] = ()) -> Place:
-    """Return the place of a number, or of a record with numbers.
+    """Return the place of a number, or of a record with numbers; an error suggests `others` too.
 
     A number that one part alone has is found by its name, such as "m_m". Any number is found by the name of its part
     and its own, such as "usfd.m_m". The body follows the name of laws of one name for different bodies, as in
     "usfd_rail.m_m", and its place follows the name of other parts of one name, as in "third_body_2.reduction".
-
-    Parameters
-    ----------
-    predict : Pipeline
-    name : str
-    *kinds : {"stage", "law"}
-        The parts to look at, by default both kinds.
-    others : sequence of str
-        Other names to suggest in the error.
     """
     found = [
         (label, replace(place, field=own))
@@ -118,20 +109,7 @@ def outcomes_at(
     indices: Sequence[int],
     on_block: OnBlock[Totals] | None = None,
 ) -> Array:
-    """Return outcomes of laws in SI, (laws, points), at operating points with numbers of their own.
-
-    Parameters
-    ----------
-    predict : Pipeline
-    problem : Problem
-        With batch shape (points,).
-    values : mapping of Place to ndarray, (points,)
-        Numbers of stages and laws in SI, and the friction coefficient.
-    indices : sequence of int
-        The laws.
-    on_block : callable, optional
-        As in `integrate_laws`.
-    """
+    """Return outcomes of laws in SI, (laws, points), at operating points (points,) with numbers of their own in SI."""
     laws = [predict.laws[index] for index in indices]
     problem = problem.replaced(**of_part(values, "condition", 0))
     found = np.empty((len(laws), problem.size))

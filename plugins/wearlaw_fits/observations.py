@@ -43,20 +43,12 @@ class Observations:
         "traction_coefficient" [-], or the name of a law's outcome, such as "wear_rate".
     law : int or None
         Index of the law that predicts it; None for the traction.
-    pipeline : Pipeline
-        The pipeline that predicts it.
-    places : mapping of str to Place
-        Where the free numbers stand in the pipeline.
-    tests : WearTests
-        The tests with this measurement, each with a label.
     measured : ndarray, (n,)
         The measurements in SI.
     conditions : mapping of str to Quantity or array_like, (n,) or a single value
         The conditions of the tests, which the rig takes.
     problem : Problem
         The contact problems of the tests, with batch shape (n,).
-    scatter : str
-        Kind of scatter.
     divisor : ndarray, (n,)
         Divisor of the residuals; 1 for relative scatter.
     """
@@ -83,15 +75,7 @@ class Observations:
         return label(self.observable, units={self.observable: self.unit})
 
     def predicted(self, values: Mapping[str, Array], problem: Problem | None = None) -> Array:
-        """Return the predictions (sets, n) for parameters in SI, (sets,) each.
-
-        Parameters
-        ----------
-        values : mapping of str to ndarray, (sets,)
-            All free parameters.
-        problem : Problem, optional
-            Other operating points than those of the tests, with batch shape (n,).
-        """
+        """Return the predictions (sets, n) for all free parameters in SI, (sets,) each, at tests or other points."""
         problem = self.problem if problem is None else problem
         sets, points = len(next(iter(values.values()))), problem.size
         problem = problem[np.tile(np.arange(points), sets)]

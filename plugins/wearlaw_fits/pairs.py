@@ -45,19 +45,8 @@ def compose(
 ) -> list[Pair]:
     """Compose all possible pairs, and note impossible ones and parameters fitted for other contact models.
 
-    Parameters
-    ----------
-    rig : Rig
-    contact_models, laws : mapping of str to Model
-        By their labels in results.
-    notes : Notes
-        Collects the remarks.
-    problem : problem, optional
-        A problem that the rig has made; it has a geometry even if the rig declares none.
-    stages : sequence of Stage, optional
-        The stages around every contact model.
-    remedy : str, optional
-        What to do about a law of the whole patch on a contact resolved into cells.
+    A `problem` that the rig has made tells the geometry even if the rig declares none; `remedy` says what to do about a
+    law of the whole patch on a contact resolved into cells.
     """
     geometry = None if problem is None else problem.geometry
     pairs = []

@@ -205,10 +205,11 @@ class Fit:
         OutputError
             If the file cannot be written.
         """
-        if self.law is None and self.predict.laws:
-            raise FitError("a file holds one law, and this fit has several; they are in fit.predict.laws")
         if self.law is None:
-            raise FitError("a fit without a wear law has no law to write; its parameters are in fit.parameters")
+            raise FitError(
+                f"a file holds one law, and this fit has {len(self.predict.laws)}; what it found is in fit.predict.laws"
+                " and fit.parameters"
+            )
         target, law = Path(path), self.law
         text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": self.provenance})
         temporary = target.with_name(f".{uuid4().hex}")  # short, since the name may be as long as names can be

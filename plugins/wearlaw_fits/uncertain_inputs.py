@@ -38,16 +38,7 @@ Sampled: TypeAlias = dict[str | Place, Any]
 class UncertainInput:
     """A condition, or numbers of a law or stage, which a distribution moves together.
 
-    Attributes
-    ----------
-    name : str
-    shown : str
-        The distribution in words.
-    distribution : Distribution
-    ends : mapping of str or Place to (float, float)
-        The two numbers of the distribution in SI, for each condition or number.
-    unit : str or None
-        The unit in which the rig gets a condition; None for plain numbers and numbers of laws and stages.
+    The distribution has two numbers in SI for each of them. The rig gets a condition in `unit`, None for plain numbers.
     """
 
     name: str

@@ -134,17 +134,7 @@ def uncertainty(
 
 @dataclass(frozen=True, eq=False)
 class Sampler:
-    """A pipeline whose laws predict at probabilities of the uncertain inputs.
-
-    Attributes
-    ----------
-    predict : Pipeline
-        With numbers instead of names of published values in its laws.
-    given : mapping of str to object
-        The conditions that are not distributed.
-    inputs : tuple of Uncertain
-        The distributed conditions and parameters.
-    """
+    """A pipeline whose laws predict at probabilities of the uncertain inputs, with the conditions that are given."""
 
     predict: Pipeline[...]
     given: Mapping[str, Any]
@@ -170,13 +160,7 @@ class Sampler:
     def sampled(self, probability: Array, indices: Sequence[int], warns: bool = False) -> tuple[Array, ...]:
         """Return outcomes of laws in SI at probabilities (inputs, samples), samples along the last axis.
 
-        Parameters
-        ----------
-        probability : ndarray, (inputs, samples)
-        indices : sequence of int
-            The laws.
-        warns : bool, optional
-            Whether to warn of samples outside the range of the laws or of elastic contact.
+        With `warns`, warn of samples outside the range of the laws or of elastic contact.
         """
         shape = (*self.shape, probability.shape[-1])
         conditions, numbers = self._at(np.clip(probability, INSIDE, 1.0 - INSIDE))
@@ -253,8 +237,8 @@ class Uncertainty:
     def __getitem__(self, outcome: str) -> Quantity:
         """Return the samples of an outcome by its name in results, along the last axis."""
         if outcome not in self.values:
-            hint = did_you_mean(outcome, self.values) if isinstance(outcome, str) else "."
-            raise InputError(f"no law predicts {shown(outcome)}{hint} The outcomes are: {', '.join(self.values)}")
+            known = f"{did_you_mean(outcome, self.values)} The outcomes are: {', '.join(self.values)}"
+            raise InputError(f"no law predicts {shown(outcome)}{known}")
         return self.values[outcome]
 
     @property

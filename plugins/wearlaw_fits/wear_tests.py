@@ -143,7 +143,6 @@ class WearTests:
         others, measured = dict(other_conditions or {}), dict(outcomes or {})
         wrong = [f"{name} is unknown{did_you_mean(name, COLUMNS)}" for name in columns if name not in COLUMNS]
         wrong += [f"{name}: is an argument of its own" for name in (*others, *measured) if name in COLUMNS]
-        wrong += [f"{name}: is among conditions and outcomes" for name in others if name in measured]
         given: dict[str, Values] = {}
         for name, value in {**columns, **others, **measured}.items():
             try:
@@ -223,19 +222,12 @@ class WearTests:
         return replace(self, other_conditions=kept, outcomes={**self.outcomes, **moved})
 
     def measured(self, name: str, unit: str) -> Array:
-        """Return measurements in SI, of shape (tests,); NaN where there is none.
-
-        Parameters
-        ----------
-        name : str
-            Name of an outcome or of a column.
-        unit : str
-            Unit of the outcome.
+        """Return measurements of an outcome or a column in SI, of shape (tests,); NaN where there is none.
 
         Raises
         ------
         DataError
-            If the tests give the outcome in a unit of another dimension.
+            If the tests give the outcome in a unit of another dimension than `unit`.
         """
         if name not in self.outcomes:
             return self.columns.get(name, np.full(len(self), np.nan))
@@ -246,20 +238,11 @@ class WearTests:
             raise DataError(f"{name}: the tests give it in {_unit(value) or 'no unit'}, {error}") from None
 
     def digests(self, name: str, unit: str) -> tuple[str, ...]:
-        """Return a digest of each test: of its conditions and one measurement, without labels and source.
-
-        Parameters
-        ----------
-        name, unit : str
-            The measurement, as for `measured`.
-        """
-        known = (*LOADS, "creepage", "friction_coefficient")
-        given = {column: self._quantity(column) for column in known if column in self.columns}
-        in_si = {
-            condition: np.asarray(value.to_base_units().magnitude if isinstance(value, pint.Quantity) else value)
-            for condition, value in sorted({**given, **self.other_conditions}.items())
-        }
-        in_si["measured"] = self.measured(name, unit)
+        """Return a digest of each test: of its conditions and one measurement as in `measured`."""
+        in_si: dict[str, Any] = {column: self.columns[column] for column in NEEDED if column in self.columns}
+        for condition, value in self.other_conditions.items():
+            in_si[condition] = value.to_base_units().magnitude if isinstance(value, pint.Quantity) else value
+        in_si = dict(sorted(in_si.items())) | {"measured": self.measured(name, unit)}
         texts = (
             # Nine digits, so that the rounding of units does not matter.
             ";".join(f"{column}={values[i]:.8e}" for column, values in in_si.items())
@@ -325,17 +308,11 @@ class WearTests:
         index = np.atleast_1d(np.arange(len(self))[key])
         if not index.size:
             raise DataError(f"none of the {len(self)} tests is selected")
-        columns, others, outcomes = (
-            {name: values[index] for name, values in some.items()}
-            for some in (self.columns, self.other_conditions, self.outcomes)
-        )
-        return replace(
-            self,
-            columns=columns,
-            labels=tuple(self.labels[i] for i in index),
-            other_conditions=others,
-            outcomes=outcomes,
-        )
+        chosen: dict[str, Any] = {
+            kind: {name: values[index] for name, values in getattr(self, kind).items()}
+            for kind in ("columns", "other_conditions", "outcomes")
+        }
+        return replace(self, labels=tuple(self.labels[i] for i in index), **chosen)
 
     def __iter__(self) -> Iterator[Self]:
         return (self[i] for i in range(len(self)))
@@ -458,7 +435,9 @@ def _in_si(name: str, values: Values) -> Array:
     """Return a column as SI floats, NaN included."""
     unit = COLUMNS[name].unit
     if unit and not isinstance(values, pint.Quantity):
-        raise UnitError(f"has no unit; it is in {unit} or another unit of that dimension")
+        raise UnitError(
+            f"has no unit; give it in {unit} or another unit of that dimension, in a file as '{name} [{unit}]'"
+        )
     try:
         factor = si_factor(Q(1.0, _unit(values)), unit)
     except UnitError as error:

@@ -17,7 +17,7 @@ from wearlaw_output.notes import caught_warnings
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import Points
 from wearlaw_sweeps.provenance import provenance_of
-from wearlaw_sweeps.sweep import checked_profile, run
+from wearlaw_sweeps.sweep import check_importable, checked_profile, run
 from wearlaw_sweeps.wear_profile import Sum
 
 if TYPE_CHECKING:
@@ -41,8 +41,8 @@ class Line:
     ) -> None:
         with caught_warnings():  # the first step gives them
             first = posed(points.part([slice(0, 1)]), predict.rig.checked_problem)
-        elsewhere = workers > 1 or client is not None
-        self.job = checked_profile(predict, first, body, wl.Q(1e3 * at, "mm"), True, elsewhere)
+        check_importable(predict, workers, client)
+        self.job = checked_profile(predict, first, body, wl.Q(1e3 * at, "mm"), True)
         self.sides = len(self.job.dims.get("side", "-"))
         self.points = dataclasses.replace(points, weight=self.job.weight(first))
         self._workers, self._client, self._quiet = workers, client, False
@@ -75,7 +75,7 @@ class Line:
             if not self._quiet:
                 warnings.warn(warning, stacklevel=4)
         self._quiet = True
-        depth, mass = (wl.Q(total.totals[name], self.job.units[name]).to_base_units() for name in Wear._fields)
+        depth, mass = (wl.Q(total.arrays()[name], self.job.units[name]).to_base_units() for name in Wear._fields)
         found = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude))
         if self._kept is not None:
             self._kept.add(step, found._asdict(), {})

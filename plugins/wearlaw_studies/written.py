@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TypeVar
@@ -21,7 +22,7 @@ from wearlaw_studies.report.tables import tables
 from wearlaw_studies.results import patch_axes
 from wearlaw_studies.study import Study
 from wearlaw_sweeps.points import ITEM
-from wearlaw_sweeps.room import check_disk, check_memory, set_size
+from wearlaw_sweeps.room import check_disk, check_memory
 
 RESULTS = "results.nc"
 CSV = "results.csv"
@@ -38,6 +39,8 @@ MOST_ROWS = 2**20 - 1
 """Most rows of a table of results that is written unasked: those that a sheet of Excel holds below the head."""
 SPARE = 2**20
 """Bytes of a netCDF file beside its numbers, at most."""
+PIECE = 2**20
+"""Bytes written at a time to a file that reserves its room."""
 T = TypeVar("T")
 
 
@@ -131,8 +134,18 @@ def write_netcdf(study: Study, path: Path) -> None:
     groups |= {f"profiles/{name}": dataset for name, dataset in study.profiles.items() if dataset}
     tree = xarray.DataTree.from_dict(groups)
     h5netcdf.File(path, "w").close()
-    set_size(path, tree.nbytes + SPARE)  # HDF5 crashes if it finds the disk full; it cuts the file to what it needs
+    _reserve(path, tree.nbytes + SPARE)  # HDF5 crashes if it finds the disk full; it cuts the file to what it needs
     tree.to_netcdf(path, mode="a", engine="h5netcdf")
+
+
+def _reserve(path: Path, size: int) -> None:
+    """Extend a file to a size that has its room on the disk; raise an `OSError` if the disk is full."""
+    with path.open("ab") as file:
+        if hasattr(os, "posix_fallocate"):
+            os.posix_fallocate(file.fileno(), 0, size)
+        else:
+            for start in range(file.tell(), size, PIECE):
+                file.write(bytes(min(PIECE, size - start)))
 
 
 def table(study: Study) -> pd.DataFrame:

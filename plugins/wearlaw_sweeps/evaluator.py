@@ -56,8 +56,7 @@ class Evaluator:
         job = Job(pipeline, {name: units[name] for name in outputs}, dims or {})
         blocks = len(points.blocks())
         workers = min(self._workers, blocks)
-        if workers > 1:
-            check_importable(pipeline)
+        check_importable(pipeline, workers)
         store = self._folder / f"{key}.zarr" if self._folder is not None and blocks > 1 else None
         with closing(target_of(job, points, store, self._resume)) as target:
             if self._resume and store is not None:

@@ -56,7 +56,7 @@ class Folder:
     def __init__(
         self, path: str | os.PathLike[str], provenance: Provenance, resume: bool, subject: str = "sweep", size: int = 0
     ) -> None:
-        self.path, self._subject, self._provenance = Path(path), subject, provenance
+        self.path, self._subject, self.provenance = Path(path), subject, provenance
         self.path.parent.mkdir(parents=True, exist_ok=True)
         self._lock = filelock.FileLock(f"{self.path.absolute()}.lock", blocking=False)
         try:
@@ -92,7 +92,7 @@ class Folder:
             raise OutputError(
                 f"store: {shown(self.path)} holds {what}; add resume=True, choose another folder, or remove it"
             )
-        check_same(self.path, before, self._provenance)
+        check_same(self.path, before, self.provenance)
         return True
 
     def close(self) -> None:
@@ -133,8 +133,13 @@ class Parts(Folder):
         """Write results beside the parts, with attributes that mark the folder as complete."""
         for name in results.variables:  # those of an earlier call
             shutil.rmtree(self.path / str(name), ignore_errors=True)
-        encoding = {name: {"compressors": (CHECKED,)} for name in results.variables}
-        results.to_zarr(str(self.path), mode="a", consolidated=False, zarr_format=3, encoding=encoding)
+        write_dataset(results, self.path)
+
+
+def write_dataset(results: xarray.Dataset, path: Path) -> None:
+    """Write the variables and the attributes of a dataset into a group of zarr."""
+    encoding = {name: {"compressors": (CHECKED,)} for name in results.variables}
+    results.to_zarr(str(path), mode="a", consolidated=False, zarr_format=3, encoding=encoding)
 
 
 def _name(number: int) -> str:

@@ -81,7 +81,12 @@ def creepage_for(
         target = coefficient(traction_coefficient, "traction_coefficient", positive=False)
     else:
         target = Unit("N", positive=False).si(tangential_force, "tangential_force") / problem.normal_force
-    shape = _broadcast(target.shape, problem.batch_shape)
+    try:
+        shape = np.broadcast_shapes(target.shape, problem.batch_shape)
+    except ValueError:
+        raise ConditionsError(
+            f"the shapes of the traction {target.shape} and of the conditions {problem.batch_shape} do not broadcast"
+        ) from None
     flat = problem.broadcast_to(shape).flatten()
     wanted = np.broadcast_to(target, shape).reshape(-1)
     size, sign = np.abs(wanted), np.copysign(1.0, wanted)
@@ -101,7 +106,12 @@ def creepage_for(
         tried = np.stack([at_start, *between, short])
         short = tried.min(axis=0) + ROUNDED * flat.friction_coefficient
     if (short >= 0.0).any():
-        raise _beyond_reach(predict, size, size - short, np.flatnonzero(short >= 0.0)[0], shape)
+        first = np.flatnonzero(short >= 0.0)[0]
+        reached = size[first] - short[first]
+        raise ConditionsError(
+            f"no creepage transmits a traction coefficient of {_where(size, first, shape)}: with contact model"
+            f" '{predict.contact_model.name}' it stays below {reached:.6g} (full slip); give a smaller one"
+        )
     _refuse_several(tried, flat.friction_coefficient, wanted, shape)
     creepage = np.zeros(size.size)
     # With a wanted force of zero, the sum over the nodes may be off by rounding.
@@ -116,15 +126,9 @@ def creepage_for(
 def _at_rest(predict: Pipeline[...], conditions: Mapping[str, Any]) -> Problem:
     """Return the problem at zero longitudinal creepage."""
     rig = predict.rig
-    known = rig.conditions()
     if rig.creepage is None:
         raise CompositionError(
             f"creepage_for: no single condition of rig '{rig.name}' sets the creepage; sweep its conditions instead"
-        )
-    if known and rig.creepage not in known:
-        raise CompositionError(
-            f"creepage_for: rig '{rig.name}' has no condition '{rig.creepage}', only {', '.join(known)}; its class"
-            " attribute `creepage` must name the one that sets the longitudinal creepage"
         )
     if rig.creepage in conditions:
         raise ConditionsError(f"{rig.creepage}: creepage_for returns it; leave it out")
@@ -161,25 +165,7 @@ def _refuse_several(tried: Array, friction: Array, wanted: Array, shape: tuple[i
             )
 
 
-def _broadcast(traction: tuple[int, ...], conditions: tuple[int, ...]) -> tuple[int, ...]:
-    try:
-        return np.broadcast_shapes(traction, conditions)
-    except ValueError:
-        raise ConditionsError(
-            f"the shapes of the traction {traction} and of the conditions {conditions} do not broadcast"
-        ) from None
-
-
 def _where(values: Array, first: int, shape: tuple[int, ...]) -> str:
     """Return a value and, if it is one of several, its index."""
     where = f" at index {[int(i) for i in np.unravel_index(first, shape)]}" if shape else ""
     return f"{values[first]:.6g}{where}"
-
-
-def _beyond_reach(
-    predict: Pipeline[...], wanted: Array, reached: Array, first: int, shape: tuple[int, ...]
-) -> ConditionsError:
-    return ConditionsError(
-        f"no creepage transmits a traction coefficient of {_where(wanted, first, shape)}: with contact model"
-        f" '{predict.contact_model.name}' it stays below {reached[first]:.6g} (full slip); give a smaller one"
-    )

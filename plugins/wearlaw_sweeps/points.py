@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import mmap
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -23,7 +22,6 @@ from wearlaw.contact.conditions import is_friction_law
 from wearlaw.errors import ConditionsError, UnitError
 from wearlaw.units.quantities import Q, parse, real_array, with_units
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import VARIABLES
 
 if TYPE_CHECKING:
     from wearlaw_tables import Table
@@ -86,16 +84,12 @@ class OnDisk:
 
     def __getitem__(self, part: slice) -> Array:
         """Return some of the numbers."""
-        with mmap.mmap(self._file.fileno(), self.size * ITEM, access=mmap.ACCESS_READ) as mapped:
-            every = np.frombuffer(mapped, dtype=np.float64)
-            found = every[part].copy()
-            del every  # a mapping in use cannot be closed
-        return found
+        return np.array(np.memmap(self._file, np.float64, "r")[part])
 
 
 @dataclass(frozen=True)
 class Block:
-    """A rectangle of operating points that are contiguous in the results.
+    """A rectangle of operating points.
 
     Attributes
     ----------
@@ -103,19 +97,24 @@ class Block:
         Index of the block.
     slices : tuple of slice
         Range along each dimension.
-    flat : slice
-        Range among all points, with the last dimension fastest.
     """
 
     number: int
     slices: tuple[slice, ...]
-    flat: slice
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values along each dimension."""
+        return tuple(one.stop - one.start for one in self.slices)
 
     @property
     def size(self) -> int:
         """Number of operating points."""
-        size: int = self.flat.stop - self.flat.start
-        return size
+        return math.prod(self.shape)
+
+    def laid_out(self, values: Array) -> Array:
+        """Return values of the points, the first axis, along the dimensions."""
+        return values.reshape(self.shape + values.shape[1:])
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,17 +180,11 @@ class Points:
 
     def blocks(self) -> list[Block]:
         """Return all blocks, in the order of the results."""
-        along = [range(0, size, step) for size, step in zip(self.shape, self.block_shape, strict=True)]
-        found, first = [], 0
-        for number, corner in enumerate(itertools.product(*along)):
-            slices = tuple(
-                slice(start, min(start + step, size))
-                for start, step, size in zip(corner, self.block_shape, self.shape, strict=True)
-            )
-            points = math.prod(one.stop - one.start for one in slices)
-            found.append(Block(number, slices, slice(first, first + points)))
-            first += points
-        return found
+        along = [
+            [slice(start, min(start + step, size)) for start in range(0, size, step)]
+            for size, step in zip(self.shape, self.block_shape, strict=True)
+        ]
+        return [Block(number, slices) for number, slices in enumerate(itertools.product(*along))]
 
     def part(self, slices: Iterable[slice]) -> Points:
         """Return the points of a block."""
@@ -246,7 +239,9 @@ def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Vary
         if np.ndim(values) == 0:
             fixed[name] = value
         elif np.ndim(values) == 1:
-            varying[name] = axis(name, name, values, unit)
+            if not np.size(values):
+                raise ConditionsError(f"{name}: the axis is empty; give at least one value")
+            varying[name] = Varying(name, np.ascontiguousarray(values), unit)
         else:
             raise ConditionsError(
                 f"{name}: must be one value or an axis of values, got an array of shape {np.shape(values)};"
@@ -264,24 +259,4 @@ def _plain(name: str, value: Any) -> tuple[Any, str | None]:
         quantity = isinstance(value, pint.Quantity)
         return real_array(value.magnitude if quantity else value), symbol(value.units, "~C") if quantity else None
     except UnitError as error:
-        raise UnitError(f"{name}: {error}; give one value, or several as in {name}={_several(name)}") from None
-
-
-def _several(name: str) -> str:
-    """Return an example of several values of a condition, in Python."""
-    unit = VARIABLES[name].unit if name in VARIABLES else ""
-    return f'Q([1, 2], "{unit}")' if unit else "[0.3, 0.4]"
-
-
-def axis(name: str, dim: str, values: object, unit: str | None) -> Varying:
-    """Return a condition that varies along a dimension.
-
-    Raises
-    ------
-    ConditionsError
-        If there are no values.
-    """
-    array = real_array(values)
-    if array.size == 0:
-        raise ConditionsError(f"{name}: the axis is empty; give at least one value")
-    return Varying(dim, np.ascontiguousarray(array), unit)
+        raise UnitError(f'{name}: {error}; give one value, or several as in Q([1, 2], "kN") or [0.3, 0.4]') from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -30,46 +31,66 @@ def bytes_of(job: Job, points: Points) -> int:
     return points.size * math.prod(job.own_shape) * len(job.units) * ITEM
 
 
-class Memory:
-    """Results in memory.
+class Target(ABC):
+    """Where the results of a sweep go.
 
     Attributes
     ----------
-    store : None
+    store : str or None
+        The absolute path of a folder to which the evaluating processes write; None if they hand results back.
     resumed : bool
-        False.
+        Whether it holds blocks of an interrupted sweep.
     job : Job
     points : Points
     done : dict of int to BlockRecord
         Records of the finished blocks, by number.
     """
 
-    store = None
+    store: str | None = None
     resumed = False
 
     def __init__(self, job: Job, points: Points) -> None:
-        check_memory(bytes_of(job, points), 'give a folder for them, store="..."')
         self.job, self.points = job, points
         self.done: dict[int, BlockRecord] = {}
-        self._arrays = {name: np.empty((points.size, *job.own_shape)) for name in job.units}
+
+    @abstractmethod
+    def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
+        """Take over a finished block."""
+
+    @abstractmethod
+    def arrays(self) -> dict[str, Array]:
+        """Return the outputs in the shape of the points, or their sums over the points."""
+
+    @abstractmethod
+    def finish(self, notes: Sequence[str]) -> xarray.Dataset:
+        """Return the results as a labelled dataset, with remarks for the reader."""
+
+    def close(self) -> None:  # noqa: B027
+        """Let other processes write the folder, if there is one."""
+
+
+class Memory(Target):
+    """Results in memory."""
+
+    def __init__(self, job: Job, points: Points) -> None:
+        check_memory(bytes_of(job, points), 'give a folder for them, store="..."')
+        super().__init__(job, points)
+        self._arrays = {name: np.empty(points.shape + job.own_shape) for name in job.units}
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
         """Take over a finished block."""
         for name, values in outputs.items():
-            self._arrays[name][block.flat] = values
+            self._arrays[name][block.slices] = values.reshape(block.shape + self.job.own_shape)
         self.done[block.number] = record
 
     def arrays(self) -> dict[str, Array]:
         """Return the outputs in the shape of the points."""
-        return {name: values.reshape(self.points.shape + self.job.own_shape) for name, values in self._arrays.items()}
+        return self._arrays
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Return the results as a labelled dataset."""
-        found = dataset(self.points, self.arrays(), self.job)
+        found = dataset(self.points, self._arrays, self.job)
         return found.assign_attrs(attributes(COMPLETE, provenance_of(self.job, self.points), notes))
-
-    def close(self) -> None:
-        """Do nothing: there is no file to close."""
 
 
 def attributes(status: str, provenance: Provenance, notes: Sequence[str] = ()) -> dict[str, str]:

@@ -13,9 +13,6 @@ from wearlaw.errors import InputError, OutputError, shown
 
 GIB = 2.0**30
 
-PIECE = 2**20
-"""Bytes written at a time."""
-
 
 @contextmanager
 def writing_to(store: object) -> Iterator[None]:
@@ -63,23 +60,6 @@ def check_disk(size: int, path: Path) -> None:
             f"the results need {size / GIB:.3g} GiB on disk, but {shown(nearest)} has {there / GIB:.3g} GiB free;"
             " choose another disk, fewer outputs or fewer points"
         )
-
-
-def set_size(path: Path, size: int) -> None:
-    """Cut a file to a size, or extend it by zeros that have their room on the disk.
-
-    Raises
-    ------
-    OSError
-        If the disk is full.
-    """
-    with path.open("rb+") as file:
-        file.truncate(min(size, file.seek(0, os.SEEK_END)))
-        if hasattr(os, "posix_fallocate"):
-            os.posix_fallocate(file.fileno(), 0, size)
-        else:
-            for start in range(file.tell(), size, PIECE):
-                file.write(bytes(min(PIECE, size - start)))
 
 
 def available_memory() -> int | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +15,14 @@ from pydantic import TypeAdapter
 from wearlaw.arrays import Array
 from wearlaw.errors import OutputError, shown
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
-from wearlaw_sweeps.folder import CHECKED, Folder
+from wearlaw_sweeps.folder import CHECKED, Folder, write_dataset
 from wearlaw_sweeps.points import ITEM, Block, Points, Varying
 from wearlaw_sweeps.provenance import provenance_of
-from wearlaw_sweeps.results import COMPLETE, INCOMPLETE, attributes, bytes_of, dataset
+from wearlaw_sweeps.results import COMPLETE, INCOMPLETE, Target, attributes, bytes_of, dataset
 from wearlaw_sweeps.workers import RECORDS
 
 
-class Store(Folder):
+class Store(Target):
     """Results in a folder, of which one process at a time is the writer.
 
     An output is an array in which each block is a chunk. A block counts as finished if its record and all its chunks
@@ -36,13 +36,6 @@ class Store(Folder):
     resume : bool
         Whether to go on with what the folder holds.
 
-    Attributes
-    ----------
-    store : str
-        The absolute path of the folder, to which the evaluating processes write.
-    done : dict of int to BlockRecord
-        Records of the finished blocks, by number.
-
     Raises
     ------
     OutputError
@@ -50,10 +43,11 @@ class Store(Folder):
     """
 
     def __init__(self, job: Job, points: Points, path: Path, resume: bool) -> None:
+        super().__init__(job, points)
         large = sum(one.values.size for one in points.coordinates().values() if one.on_disk)
-        super().__init__(path, provenance_of(job, points), resume, size=bytes_of(job, points) + large * ITEM)
-        self.job, self.points = job, points
-        self.store = str(path.absolute())
+        size = bytes_of(job, points) + large * ITEM
+        self._folder = Folder(path, provenance_of(job, points), resume, size=size)
+        self.path, self.store, self.resumed = path, str(path.absolute()), self._folder.resumed
         try:
             self._lay_out()
             kept = {block.number: self._kept(block) for block in points.blocks()} if self.resumed else {}
@@ -66,29 +60,20 @@ class Store(Folder):
 
     def _lay_out(self) -> None:
         """Write the coordinates, and the arrays of outputs that are missing."""
-        points, own_shape = self.points, self.job.own_shape
+        points, job = self.points, self.job
         group = zarr.open_group(self.store, mode="r+")
-        for name in self.job.units:
+        for name in job.units:
             if name not in group:
-                group.create_array(
-                    name,
-                    shape=points.shape + own_shape,
-                    chunks=points.block_shape + own_shape,
-                    dtype="float64",
-                    compressors=CHECKED,
-                    fill_value=np.nan,
-                    dimension_names=(*points.dims, *self.job.labels),
-                    attributes={**self.job.attributes(name)},
-                )
+                shape, chunks = points.shape + job.own_shape, points.block_shape + job.own_shape
+                _add_array(group, name, shape, chunks, (*points.dims, *job.labels), job.attributes(name))
         if RECORDS not in group:
             group.create_array(RECORDS, shape=(len(points.blocks()),), chunks=(1,), dtype=str, compressors=CHECKED)
-        small = dataset(points, {}, self.job).assign_attrs(attributes(INCOMPLETE, self._provenance))
-        small = small.drop_vars(self.job.units, errors="ignore")  # a case keeps some of its conditions as outputs
+        small = dataset(points, {}, job).assign_attrs(attributes(INCOMPLETE, self._folder.provenance))
+        small = small.drop_vars(job.units, errors="ignore")  # a case keeps some of its conditions as outputs
         large = {name: column for name, column in points.coordinates().items() if column.on_disk}
         for name in (*small.coords, *large):  # those of an interrupted sweep may be damaged
             shutil.rmtree(self.path / str(name), ignore_errors=True)
-        encoding = {name: {"compressors": (CHECKED,)} for name in small.coords}
-        small.to_zarr(self.store, mode="a", consolidated=False, zarr_format=3, encoding=encoding)
+        write_dataset(small, self.path)
         for name, column in large.items():
             self._write_large(name, column)
 
@@ -96,16 +81,7 @@ class Store(Folder):
         """Write a coordinate that is too large for memory, piece by piece."""
         step = dict(zip(self.points.dims, self.points.block_shape, strict=True))[column.dim]
         group = zarr.open_group(self.store, mode="r+")
-        array = group.create_array(
-            name,
-            shape=column.values.shape,
-            chunks=(step,),
-            dtype="float64",
-            compressors=CHECKED,
-            fill_value=np.nan,
-            dimension_names=(column.dim,),
-            attributes={"units": column.unit or ""},
-        )
+        array = _add_array(group, name, column.values.shape, (step,), (column.dim,), {"units": column.unit or ""})
         for start in range(0, column.values.size, step):
             array[start : start + step] = column.values[start : start + step]
         if name != column.dim:  # as xarray tells coordinates from variables
@@ -141,6 +117,31 @@ class Store(Folder):
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Mark the store as complete and open it; values are read when used."""
-        zarr.open_group(self.store, mode="r+").attrs.update(attributes(COMPLETE, self._provenance, notes))
+        zarr.open_group(self.store, mode="r+").attrs.update(attributes(COMPLETE, self._folder.provenance, notes))
         found: xarray.Dataset = xarray.open_zarr(self.store, chunks=None, consolidated=False)
         return found
+
+    def close(self) -> None:
+        """Let other processes write the folder."""
+        self._folder.close()
+
+
+def _add_array(
+    group: zarr.Group,
+    name: str,
+    shape: tuple[int, ...],
+    chunks: tuple[int, ...],
+    dims: tuple[str, ...],
+    attrs: Mapping[str, str],
+) -> Any:
+    """Return a new array of a group, which xarray reads as one of these dimensions."""
+    return group.create_array(
+        name,
+        shape=shape,
+        chunks=chunks,
+        dtype="float64",
+        compressors=CHECKED,
+        fill_value=np.nan,
+        dimension_names=dims,
+        attributes={**attrs},
+    )

@@ -30,7 +30,7 @@ from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import BLOCK, Points, outer_product
 from wearlaw_sweeps.progress import Bar
 from wearlaw_sweeps.provenance import parts
-from wearlaw_sweeps.results import Memory
+from wearlaw_sweeps.results import Memory, Target
 from wearlaw_sweeps.room import writing_to
 from wearlaw_sweeps.tables import from_table
 from wearlaw_sweeps.wear_profile import SHARE, WEAR_PROFILE, ProfileJob, Sum, check_shares
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     import pandas
 
     from wearlaw.units.quantities import QuantityLike
-    from wearlaw_sweeps.store import Store
 
 MOST = 2**24
 """Most numbers of a sweep whose outputs are not named; a larger sweep keeps the outcomes of laws alone."""
@@ -150,20 +149,17 @@ def sweep(
     ):
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
+        check_importable(predict, workers, client)
         if profile:
-            job: Job = checked_profile(predict, first, body, at, summed, workers > 1 or client is not None)
+            job: Job = checked_profile(predict, first, body, at, summed)
             notes: list[str] = []
         else:
-            job, notes = _checked_job(predict, first, points, outputs, workers > 1 or client is not None)
+            job, notes = _checked_job(predict, first, points, outputs)
         points = dataclasses.replace(points, weight=job.weight(first))
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
-        target: Memory | Sum | Store
         folder = None if store is None else Path(store)
-        if isinstance(job, ProfileJob) and job.summed:
-            target = Sum(job, points, folder, resume)
-        else:
-            target = target_of(job, points, folder, resume)
+        target = target_of(job, points, folder, resume)
         blocks = len(points.blocks())
         if folder is not None and target.resumed and len(target.done) < blocks:
             warnings.warn(kept(len(target.done), blocks, folder), ResumeWarning, stacklevel=2)
@@ -174,8 +170,10 @@ def sweep(
             return target.finish([*notes, *map(str, of_results)])
 
 
-def target_of(job: Job, points: Points, store: Path | None, resume: bool) -> Memory | Store:
-    """Return where the results of a sweep go: to memory, or to a store."""
+def target_of(job: Job, points: Points, store: Path | None, resume: bool) -> Target:
+    """Return where the results of a sweep go: to a sum, to memory, or to a store."""
+    if isinstance(job, ProfileJob) and job.summed:
+        return Sum(job, points, store, resume)
     if store is None:
         return Memory(job, points)
     from wearlaw_sweeps.store import Store  # zarr takes half a second
@@ -216,18 +214,16 @@ def operating_points(
 
 
 def _checked_job(
-    pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str] | None, elsewhere: bool
+    pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str] | None
 ) -> tuple[Job, list[str]]:
-    """Return the job of a sweep, after checks of its outputs and models, and remarks on the outputs.
+    """Return the job of a sweep, after checks of its outputs, and remarks on them.
 
     Raises
     ------
     InputError
-        If an output is impossible, or other processes could not import a model.
+        If an output is impossible.
     """
     names = [] if outputs is None else names_in(outputs, "outputs")
-    if elsewhere:
-        check_importable(pipeline)
     one = first.flatten()[:1]
     notes = []
     if outputs is None:
@@ -242,33 +238,31 @@ def _checked_job(
 
 
 def checked_profile(
-    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool, elsewhere: bool
+    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool
 ) -> ProfileJob:
     """Return the job of the wear across a profile, after a prediction of it at the first operating point.
 
     Raises
     ------
     InputError
-        If the body or the positions are wrong, or other processes could not import a model.
+        If the body or the positions are wrong.
     """
     if at is None:
         raise InputError('at: "wear_profile" needs positions, such as at=Q(np.arange(-60, 60, 0.25), "mm")')
-    if elsewhere:
-        check_importable(pipeline)
     unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
     positions = VARIABLES[POSITION].expected.si(at, "at")
     return ProfileJob.of(pipeline, first, body, positions, summed)
 
 
-def check_importable(pipeline: Pipeline[...]) -> None:
-    """Raise an error if other processes could not import a model.
+def check_importable(pipeline: Pipeline[...], workers: int, client: Any = None) -> None:
+    """Raise an error if a sweep needs other processes, which could not import a model.
 
     Raises
     ------
     InputError
         If a model is defined in the running script.
     """
-    for part in parts(pipeline):
+    for part in parts(pipeline) if workers > 1 or client is not None else ():
         if type(part).__module__ == "__main__":
             raise InputError(
                 f"{part.subject()}: is defined in the running script or notebook, from which other processes cannot"
@@ -307,15 +301,13 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
     return there
 
 
-def run(
-    target: Memory | Sum | Store, on_block: Callable[[int], None], workers: int = 1, client: Any = None
-) -> list[Warning]:
+def run(target: Target, on_block: Callable[[int], None], workers: int = 1, client: Any = None) -> list[Warning]:
     """Evaluate the remaining blocks and return the warnings that belong to the results.
 
     Parameters
     ----------
-    target : Memory, Sum or Store
-        Target of the results. It keeps the finished blocks after an interrupt.
+    target : Target
+        Where the results go. It keeps the finished blocks after an interrupt.
     on_block : callable
         Called with the number of points in each finished block, and first with those finished earlier.
     workers, client

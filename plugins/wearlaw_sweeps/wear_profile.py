@@ -23,7 +23,7 @@ from wearlaw_output.wear_profile import PATCH, POSITION
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_sweeps.points import Block, Points
 from wearlaw_sweeps.provenance import digest, provenance_of
-from wearlaw_sweeps.results import COMPLETE, attributes, labels_of
+from wearlaw_sweeps.results import COMPLETE, Target, attributes, labels_of
 
 if TYPE_CHECKING:
     from wearlaw_sweeps.folder import Parts
@@ -134,48 +134,33 @@ def _any(problem: Problem) -> Any:
     return np.asarray(problem.exists).any(axis=list(problem.dims).index(PATCH) - len(problem.dims))
 
 
-class Sum:
+class Sum(Target):
     """The sum of the outputs of all blocks, in their order, so that it is the same from any number of processes.
 
     Parameters
     ----------
-    job : ProfileJob
+    job : Job
     points : Points
     folder : path, optional
         Where to keep the outputs of each block.
     resume : bool
         Whether to go on with the blocks that are there.
-
-    Attributes
-    ----------
-    store : None
-        Evaluating processes write nothing.
-    resumed : bool
-        Whether the folder held the sum before.
-    job : ProfileJob
-    points : Points
-    done : dict of int to BlockRecord
-        Records of the finished blocks, by number.
-    totals : dict of str to ndarray
-        The sums, in the units of the job.
     """
 
-    store = None
-
-    def __init__(self, job: ProfileJob, points: Points, folder: Path | None = None, resume: bool = False) -> None:
-        self.job, self.points = job, points
-        self.done: dict[int, BlockRecord] = {}
-        self.totals: Outputs = {}
+    def __init__(self, job: Job, points: Points, folder: Path | None = None, resume: bool = False) -> None:
+        super().__init__(job, points)
+        self._totals: Outputs = {}
         self._waiting: dict[int, Outputs] = {}
         self._next = 0
         self._parts: Parts | None = None
-        if folder is not None:
-            from wearlaw_sweeps.folder import Parts  # zarr takes half a second
+        if folder is None:
+            return
+        from wearlaw_sweeps.folder import Parts  # zarr takes half a second
 
-            self._parts = Parts(folder, provenance_of(job, points), resume)
-        self.resumed = self._parts is not None and self._parts.resumed
+        self._parts = Parts(folder, provenance_of(job, points), resume)
+        self.resumed = self._parts.resumed
         for block in points.blocks() if self.resumed else ():
-            if self._parts is not None and (part := self._parts[block.number]) is not None:
+            if (part := self._parts[block.number]) is not None:
                 self._take(block, part.arrays, TypeAdapter(BlockRecord).validate_python(part.record))
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
@@ -189,15 +174,19 @@ class Sum:
         self._waiting[block.number] = outputs
         while self._next in self._waiting:
             for name, values in self._waiting.pop(self._next).items():
-                self.totals[name] = self.totals.get(name, 0.0) + values
+                self._totals[name] = self._totals.get(name, 0.0) + values
             self._next += 1
+
+    def arrays(self) -> dict[str, Array]:
+        """Return the sums."""
+        return self._totals
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Return the sums as a labelled dataset, and write them."""
         coordinates = labels_of(self.job)
         data = {
             name: (tuple(coordinates)[: values.ndim], values, self.job.attributes(name))
-            for name, values in self.totals.items()
+            for name, values in self._totals.items()
         }
         found = xarray.Dataset(data, coordinates)
         found = found.assign_attrs(attributes(COMPLETE, provenance_of(self.job, self.points), notes))

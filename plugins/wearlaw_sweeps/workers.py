@@ -62,8 +62,7 @@ def _write(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> N
         array: Any = zarr.open_array(store, path=name, mode="r+").with_config(
             {"write_empty_chunks": True}
         )  # NaN is a result
-        shape = tuple(part.stop - part.start for part in block.slices)
-        array[(*block.slices, ...)] = values.reshape(shape + values.shape[1:])
+        array[(*block.slices, ...)] = block.laid_out(values)
     zarr.open_array(store, path=RECORDS, mode="r+")[block.number] = json.dumps(asdict(record))
 
 

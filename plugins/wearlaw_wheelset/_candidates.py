@@ -29,6 +29,12 @@ SPARE = 1.5
 """A patch is followed if its gap is at most this share of the penetration under the whole load."""
 
 
+NEIGHBOURS = 0.5e-3
+"""Places at two rolls are one if they lie closer along the wheel [m]."""
+
+LINEAR = "arc", "angle", "lever", "curvature_x"
+"""What changes in proportion to the roll, by `rates`."""
+
 LEVEL_ANGLE = 0.2
 """Two places are one patch of half-spaces if their contact angles differ by less: cos 0.2 = 0.98 [rad]."""
 
@@ -50,12 +56,19 @@ class Candidates:
     lever : ndarray
         y + z tan δ, by which a roll changes the gap there [m].
     start, step, samples : ndarray
-        The gap normal to the surface around the place, above its least value and not negative by rounding, at even
-        steps across the track in the plane of contact [m]; `samples` has the shape (places, samples).
+        The gap normal to the surface around the place as it was last searched, above its least value and not negative
+        by rounding, at even steps across the track in the plane of contact [m]; `samples` has the shape (places,
+        samples).
     arcs : ndarray, (places, samples)
         Arc length of the wheel's profile at the samples [m].
     curvature_x : ndarray
         Half the relative curvature along the rolling direction [1/m].
+    rates : ndarray, (places, 4)
+        Rates of `LINEAR` with the roll of the position, from the last two searches; 0 if there was one.
+    tilts : ndarray, (places, samples)
+        Those of the samples [m/rad].
+    turned : ndarray
+        Change of the roll since the last search [rad].
     """
 
     point: NDArray[np.intp]
@@ -71,6 +84,9 @@ class Candidates:
     samples: Array
     arcs: Array
     curvature_x: Array
+    rates: Array
+    tilts: Array
+    turned: Array
 
     @property
     def cosine(self) -> Array:
@@ -81,6 +97,47 @@ class Candidates:
     def wheel(self) -> NDArray[np.intp]:
         """Index of the wheel among all wheels."""
         return 2 * self.point + self.side
+
+    @property
+    def gaps(self) -> Array:
+        """The samples at the present roll, not negative [m]."""
+        return np.maximum(self.samples + self.tilts * self.turned[:, None], 0.0)
+
+    def arc_at(self, offset: Array) -> Array:
+        """Return arc lengths of the wheel at distances across the track, (places, n) [m]; NaN for none."""
+        return self.between(self.arcs, offset) + (self.rates[:, 0] * self.turned)[:, None]
+
+    def learn(self, before: Candidates, rows: NDArray[np.intp], change: Array) -> NDArray[np.bool_]:
+        """Find the rates, in place, and return at which positions they are known.
+
+        Parameters
+        ----------
+        before, rows
+            Places as they were found before, and which of them are those of the same positions.
+        change : ndarray, (positions of the task,)
+            Change of the roll since then [rad].
+        """
+        count = 2 * change.size
+        wheel = before.wheel[rows]
+        same = np.bincount(self.wheel, minlength=count) == np.bincount(wheel, minlength=count)
+        new, old = np.flatnonzero(same[self.wheel]), rows[same[wheel]]
+        moved = np.stack([getattr(self, name)[new] - getattr(before, name)[old] for name in LINEAR], axis=-1)
+        moved += before.rates[old] * before.turned[old, None]  # to where the places were found
+        with np.errstate(invalid="ignore", divide="ignore"):  # infinite gaps, and positions that did not roll
+            rates = moved / change[self.point[new], None]
+            tilts = (self.samples[new] - before.samples[old]) / change[self.point[new], None]
+        self.rates[new], self.tilts[new] = (np.where(np.isfinite(one), one, 0.0) for one in (rates, tilts))
+        known = np.zeros(self.point.shape, dtype=np.bool_)
+        known[new] = (np.abs(moved[:, 0]) < NEIGHBOURS) & (self.step[new] == before.step[old])
+        learnt: NDArray[np.bool_] = (change != 0.0) & (np.bincount(self.point, ~known, change.size) == 0)
+        return learnt
+
+    def turn(self, by: Array) -> None:
+        """Roll the positions of the places by so much [rad], in place; the gaps above the first place stay."""
+        self.turned[:] += by
+        for name, change in zip(LINEAR, (self.rates * by[:, None]).T, strict=True):
+            getattr(self, name)[:] += change
+        self.position.roll[:] += np.where(self.side == 1, by, -by)
 
     def between(self, values: Array, offset: Array) -> Array:
         """Return values at samples, (places, samples), at distances across the track, (places, n) [m]; NaN for none."""
@@ -131,7 +188,8 @@ def candidates(section: Section, position: Position, touching: Touching, spacing
     found = Candidates(
         point, side, number, here, arc, touching.gap[point, side, number], place.angle,
         place.y + place.z * np.tan(place.angle), np.empty(count), np.empty(count), samples, arcs,
-        0.5 * curvature_along(section, here, place, arc),
+        0.5 * curvature_along(section, here, place, arc), np.zeros((count, len(LINEAR))), np.zeros((count, SAMPLES)),
+        np.zeros(count),
     )  # fmt: skip
     sample(section, found, np.arange(count), spacing[point, side], among)
     return found

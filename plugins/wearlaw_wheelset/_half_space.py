@@ -102,7 +102,7 @@ def rows(
     low, high = place.start[0] + spacing * (np.flatnonzero(rise < 0.0)[[0, -1]] + (-1.0, 1.0))
     y = dy * np.arange(np.floor(low / dy) - count // 2, np.ceil(high / dy) + count // 2)
     own = int(np.abs(y).argmin())
-    arc = place.between(place.arcs, y[None])[0]
+    arc = place.arc_at(y[None])[0]
     at, there = gaps(section, place.position, arc), placed(section, place.position, arc)
     shift, turn = at.x - at.x[own], float(there.angle[own])
     # The wheel is lowered, not pressed along its normal, and the gap taken along the normal.

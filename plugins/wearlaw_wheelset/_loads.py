@@ -57,6 +57,9 @@ other as the speed of rotation changes."""
 SLIGHT = 1e-9
 """Change of the roll that leaves all but the heights of the wheels as it is [rad]."""
 
+BEND = 1e-12
+"""Product of the changes of the roll since the last two searches up to which places change in proportion [rad²]."""
+
 SMALL = 1e-5
 """Change that does so before there are creep forces, which change the roll by about 1e-6 [rad]."""
 
@@ -73,7 +76,7 @@ NEWTON_STEPS, STEPS = 20, 100
 """Greatest number of steps by Newton's method, of which three or four are usual, and within bounds."""
 
 PATIENCE = 5
-"""Steps beyond `NEWTON_STEPS` that Newton's method is given to halve the imbalance once more, as near a jump."""
+"""Steps that Newton's method is given to halve the imbalance once more, beyond `NEWTON_STEPS` or below `STALLED`."""
 
 WIDEST_STEP, MOST_TURN, WIDEST_ROLL = 1.0, 0.01, 1e-3
 """Greatest step of the logarithm of the penetration, of the speed of rotation as a share of it, and of the roll [rad].
@@ -96,6 +99,9 @@ NEARLY = 1e-2
 
 LEAST_SHARE = 0.1
 """Smallest share of the load that a step of the penetration counts with."""
+
+POWER = 0.3
+"""Exponent of 1 - f, the share of full slip that is missing, in the creepage of FASTSIM on an ellipse."""
 
 FULL = 0.999
 """Greatest share of full slip that the rates of creep forces count with, so that they never vanish."""
@@ -264,6 +270,8 @@ class Balance:
     """All places where wheels come near their rails, at the roll of `placed`."""
     sampled: Array
     """Roll at which the gaps around them were found [rad]."""
+    apart: Array
+    """Change of the roll between the last two times if they gave the rates of the places, otherwise infinite [rad]."""
     searched: Array
     """Roll at which they were last looked for all along the profiles [rad]."""
     power: Array
@@ -314,9 +322,9 @@ class Balance:
         wheels, pairs, none = np.zeros(2 * count), np.zeros((count, 2)), np.zeros(count)
         balance = cls(
             section, elastic, task, pressure, strips, roll.copy(), wheels, none, wheels, touching, roll.copy(),
-            roll.copy(), np.full(2 * count, 1.5), pairs, pairs.copy(), none.copy(), np.ones(count, dtype=np.bool_),
-            none.copy(), np.full(count, SEPARATE), np.ones(2 * count), pairs.copy(), pairs.copy(),
-            np.zeros((count, 4, 4)),
+            np.full(count, np.inf), roll.copy(), np.full(2 * count, 1.5), pairs, pairs.copy(), none.copy(),
+            np.ones(count, dtype=np.bool_), none.copy(), np.full(count, SEPARATE), np.ones(2 * count), pairs.copy(),
+            pairs.copy(), np.zeros((count, 4, 4)),
         )  # fmt: skip
         balance.whole, sunk = balance._guessed()
         if task.free:
@@ -367,18 +375,22 @@ class Balance:
             self.whole[places.wheel[first]] = self._alone(places, first)
         joins = self.pressure == "half_space"
         kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point], joins)
+        change = np.zeros(self.roll.shape)
+        change[rows] = roll - self.sampled[rows]
         self.roll[rows], self.sampled[rows], self.height[rows] = roll, roll, touching.least
         lowest = places.part(first)
         place = Place(*(array.reshape(-1, 2) for array in placed(self.section, lowest.position, lowest.arc)))
         self.lever[rows] = lowest.lever.reshape(-1, 2)
         if task.free:
             self.roll_rate[rows] = roll_rate(place, task.lateral_velocity[rows], task.yaw_velocity[rows])
-        if rows.size == self.roll.size:
+        if not known:
             self.found = kept
             return
         stay = ~self._chosen(rows)[self.found.point]
-        if np.array_equal(self.found.wheel[~stay], kept.wheel):  # as many as before
-            self.found.put(np.flatnonzero(~stay), kept)
+        old = np.flatnonzero(~stay)
+        self.apart[rows] = np.where(kept.learn(self.found, old, change), np.abs(change), np.inf)[rows]
+        if np.array_equal(self.found.wheel[old], kept.wheel):  # as many as before
+            self.found.put(old, kept)
             return
         self.found, order = self.found.part(stay).joined(kept)
         for name, array in self.shapes.items():  # those of the new places follow at the next step
@@ -399,14 +411,17 @@ class Balance:
     def _turn(self, rows: NDArray[np.intp], roll: Array, slight: float = SLIGHT) -> None:
         """Roll some positions, in place; those whose wheels would leave the rails stay.
 
-        After changes below `slight`, only the heights of the wheels and the gaps of further places are new.
+        After changes below `slight`, only the heights of the wheels and the gaps of further places are new. After
+        changes that are small beside those before, all else follows in proportion.
         """
-        near, by, found = np.abs(roll - self.sampled[rows]) < slight, np.zeros(self.roll.size), self.found
+        ahead, by, found = np.abs(roll - self.sampled[rows]), np.zeros(self.roll.size), self.found
+        near = (ahead < slight) | (ahead < BEND / (ahead + self.apart[rows]))
         by[rows[near]] = (roll - self.roll[rows])[near]
         self.roll += by
         self.height += self.lever * by[:, None] * (1.0, -1.0)
         tilt = found.lever - self.lever[found.point, found.side]
         found.gap[:] += np.where(found.side == 0, 1.0, -1.0) * tilt * by[found.point]
+        found.turn(np.where(self.apart < np.inf, by, 0.0)[found.point])
         rows, roll, task = rows[~near], roll[~near], self.task
         if not rows.size:
             return
@@ -458,7 +473,7 @@ class Balance:
     def _penetrated(self, part: Candidates, depth: Array, strips: int) -> _normal.StripPatch:
         """Return strips at penetrations normal to the surface [m]."""
         return _normal.penetrated(
-            part.start, part.step, part.samples, part.curvature_x, self.elastic.modulus, depth, strips, self.roll.size,
+            part.start, part.step, part.gaps, part.curvature_x, self.elastic.modulus, depth, strips, self.roll.size,
         )  # fmt: skip
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, bounds: bool = True) -> Balance:
@@ -488,7 +503,7 @@ class Balance:
                 left &= found.imbalance > ROUGH
             if left.any():  # one of two humps of a patch takes over from the other; let them share the load
                 rows = np.flatnonzero(left)
-                found.share[rows], found.correction[rows] = 0.0, 0.0
+                found.share[rows], found.correction[rows], found.apart[rows] = 0.0, 0.0, np.inf
                 found._turn(rows, found.roll[rows], 0.0)
                 found._newton(forces, left, rolls)
                 left &= found.imbalance > ROUGH
@@ -528,7 +543,8 @@ class Balance:
             open_ &= (worst > (ROUGH if forces is None else BALANCED)) | (tilt * self._depths() > LEVEL)
             better = self.imbalance < 0.5 * least
             least, halved = np.where(better, self.imbalance, least), np.where(better, iteration, halved)
-            open_ &= (iteration < NEWTON_STEPS - 1) | (iteration - halved < PATIENCE)
+            slow = (iteration >= NEWTON_STEPS - 1) | (self.imbalance < STALLED)
+            open_ &= ~slow | (iteration - halved < PATIENCE)
             rows = np.flatnonzero(open_)
             if not rows.size:
                 break
@@ -698,9 +714,9 @@ class Balance:
         """Return estimates of the rates of `_State.miss` with ln h of both wheels, Ω and ρ, (positions, 4, 4).
 
         The normal force grows with the power 3/2 of the penetration. The creep forces start with Kalker's rates. As f,
-        their share of μN, grows, the rate along the force falls to (1 - f)^(2/3), and that across it to f/(3d) with
-        1 - f = (1 - d)³. This is FASTSIM on a strip, d being the creepage over that of full slip, which falls with the
-        third root of N.
+        their share of μN, grows, the rate along the force falls to (1 - f)^0.7, and that across it to f/x with
+        1 - f = (1 - 0.3 x)^(10/3). This is FASTSIM on an ellipse within 1 %, x being the force of the linear theory
+        over μN, which falls with the third root of N.
         """
         part, problem, patch, force, load, _, grip, _ = state
         count = load.size // 2
@@ -714,13 +730,13 @@ class Balance:
             size = np.maximum(force.tangential, TINY)
             x, y, up = force.longitudinal / size, force.lateral / size, side * np.sin(patch.place.angle)
             share = np.minimum(size / bound, FULL)
-            stuck = np.cbrt(1.0 - share)
-            across, swelling = (1.0 + stuck + stuck**2) / 3.0, bound * (share - stuck**2 * (1.0 - stuck))
+            slope, linear = (1.0 - share) ** (1.0 - POWER), -np.expm1(POWER * np.log1p(-share)) / POWER
+            across, swelling = share / linear, bound * (share - slope * linear / 3.0)
             c = wl.kalker.coefficients(problem.a / problem.b, self.elastic.poisson_ratio)
             stiffness, width = self.elastic.shear_modulus * problem.a * problem.b, np.sqrt(problem.a * problem.b)
             xi, eta, phi = patch.creepages.turning
             linear_x, linear_y = stiffness * c.c11 * xi, stiffness * (c.c22 * eta + c.c23 * width * phi)
-            along = (stuck**2 - across) * (x * linear_x + y * linear_y)
+            along = (slope - across) * (x * linear_x + y * linear_y)
             force_x, force_y = across * linear_x + along * x, across * linear_y + along * y
             own = own + up * y * swelling
             speed = problem.rolling_speed
@@ -749,7 +765,7 @@ class Balance:
     def _posed(self, part: Candidates, shapes: Mapping[str, Array]) -> tuple[wl.Problem, Patches]:
         task, elastic = self.task, self.elastic
         side = np.where(part.side == 1, 1.0, -1.0)
-        arc = part.between(part.arcs, shapes["centre"][:, None])[:, 0]
+        arc = part.arc_at(shapes["centre"][:, None])[:, 0]
         place = placed(self.section, part.position, arc)
         if "angle" in shapes:  # of two humps the middle may lie between them
             place = place._replace(angle=shapes["angle"], rail_arc=self.section.rail_position.at(shapes["rail_y"])[0])
@@ -789,8 +805,9 @@ class Balance:
     def humps(self) -> NDArray[np.bool_]:
         """Return which places have a second hump that bears: the gap bulges over a line from its least to another."""
         middle, half = SAMPLES // 2, 0.5 * self._depth(self.found)[:, None]
+        gaps = self.found.gaps
         number, humps = np.arange(1, middle + 1), np.zeros(half.size, dtype=np.bool_)
-        for samples in (self.found.samples[:, middle + 1 :], self.found.samples[:, middle - 1 :: -1]):
+        for samples in (gaps[:, middle + 1 :], gaps[:, middle - 1 :: -1]):
             slope = np.where(samples < half, samples / number, np.inf)
             least = np.minimum.accumulate(slope[:, ::-1], axis=-1)[:, ::-1]
             with np.errstate(invalid="ignore"):  # beyond the patch

@@ -15,7 +15,6 @@ cells of a plot does not matter here.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -42,7 +41,7 @@ BLOCK = 16384
 NODE_BLOCK = 3072
 """Operating points of a block with nodes."""
 
-ELLIPSE_NODES = 2**16
+ELLIPSE_NODES = 2**17
 """Nodes of a block of elliptic contacts: enough to outweigh the overhead of each NumPy call, and few enough for the
 memory of any machine."""
 
@@ -86,27 +85,43 @@ def prepared(model: ContactModel, problem: Problem) -> tuple[ContactModel, Probl
     """
     while isinstance(model, Staged) and model.stage.alters_problem_only():
         with steadily():
-            problem, model = model.altered(problem, partial(integrate_forces, model.model)), model.model
+            problem, model = model.altered(problem, Forces(model.model)), model.model
     return model, problem
 
 
-@steady
 def integrate_forces(model: ContactModel, problem: Problem) -> CreepForces:
     """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
-    model, problem = prepared(model, problem)
-    if problem.geometry != "line":
+    return Forces(model)(problem)
 
-        def of_ellipse(part: Problem, _: slice) -> Totals:
-            return Totals.of_forces(model.creep_forces(part))
 
-        return _by_block(Solver(model), problem, of_ellipse).forces
-    if isinstance(model, LineContactModel):  # closed form, without nodes that would fill the memory
-        there = problem.existing()
-        with Blame(model):
-            force = model.tangential_force(there)
-        check_results(model, there, force, "tangential_force")
-        return CreepForces.of_line(force if there is problem else problem.unflatten(force))
-    return _by_block(Solver(model), problem, lambda part, _: Totals(longitudinal=model.tangential_force(part))).forces
+class Forces:
+    """The forces of a contact model on problems whose patches all have as many nodes as those of the first one."""
+
+    def __init__(self, model: ContactModel) -> None:
+        self.model = model
+        self._block = 0
+
+    @steady
+    def __call__(self, problem: Problem) -> CreepForces:
+        """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
+        model, problem = prepared(self.model, problem)
+        if problem.geometry != "line":
+
+            def of_ellipse(part: Problem, _: slice) -> Totals:
+                return Totals.of_forces(model.creep_forces(part))
+
+            if problem.size > FEW and not self._block:
+                self._block = _block(model, problem)
+            return Solver(model).by_block(problem, self._block or FEW, of_ellipse).forces
+        if isinstance(model, LineContactModel):  # closed form, without nodes that would fill the memory
+            there = problem.existing()
+            with Blame(model):
+                force = model.tangential_force(there)
+            check_results(model, there, force, "tangential_force")
+            return CreepForces.of_line(force if there is problem else problem.unflatten(force))
+        return _by_block(
+            Solver(model), problem, lambda part, _: Totals(longitudinal=model.tangential_force(part))
+        ).forces
 
 
 @steady
@@ -351,12 +366,16 @@ def _by_block(
     solver: Solver, problem: Problem, of_block: OfBlock[ResultT], on_block: OnBlock[ResultT] | None = None
 ) -> ResultT:
     """Return results over blocks; the model's number of nodes decides the number of operating points in a block."""
-    block = NODE_BLOCK
-    if problem.geometry != "line" and not isinstance(solver.model, Solved):
-        few = problem.size <= FEW
-        nodes = 1 if few else Solver(solver.model).solve(problem.flatten()[:1]).pressure.size
-        block = FEW if few else max(ELLIPSE_NODES // nodes, 1)
-    return solver.by_block(problem, block, of_block, on_block)
+    return solver.by_block(problem, _block(solver.model, problem), of_block, on_block)
+
+
+def _block(model: ContactModel, problem: Problem) -> int:
+    """Return the number of operating points of a block with nodes."""
+    if problem.geometry == "line" or isinstance(model, Solved):
+        return NODE_BLOCK
+    if problem.size <= FEW:
+        return FEW
+    return max(ELLIPSE_NODES // Solver(model).solve(problem.flatten()[:1]).pressure.size, 1)
 
 
 @steady

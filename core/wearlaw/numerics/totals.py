@@ -157,10 +157,9 @@ OfBlock: TypeAlias = Callable[[Problem, slice], ResultT]
 OnBlock: TypeAlias = Callable[[Problem, ResultT], None]
 """A function called with a block of operating points and its results."""
 
-KEPT = 2**24
-"""Bytes that are allocated and freed before the first of several blocks. The C library of Linux then keeps twice as
-much of the memory that a block frees, for the next block. Otherwise it would return the memory to the system and
-request it again, which takes as long as the arithmetic."""
+# An array of 31 MiB that is freed makes the C library of Linux keep as much memory of later arrays for the next ones.
+# Otherwise it would return the memory to the system and request it again, which takes as long as the arithmetic.
+np.empty(31 * 2**20, dtype=np.uint8)
 
 
 def each(function: Callable[..., Any], first: Any, *others: Any) -> Any:
@@ -192,7 +191,6 @@ def by_block(
         if on_block is not None:
             on_block(problem, only)
         return only
-    np.empty(KEPT, dtype=np.uint8)
     whole: Any = None
     for part in blocks(points, block):
         within = problem[part]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import dataclasses
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache, cached_property, partial
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, ParamSpec, Protocol, Self, cast, overload
 
 import numpy as np
@@ -33,7 +33,7 @@ from wearlaw.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.models.contact_model import ContactModel, Scale, Stage
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.model import Blame, Model, fault
-from wearlaw.numerics.integrate import integrate_forces, prepared
+from wearlaw.numerics.integrate import Forces, prepared
 from wearlaw.numerics.solving import check_problem
 from wearlaw.numerics.staged import staged
 from wearlaw.pipeline.composition import (
@@ -452,7 +452,7 @@ class Pipeline(Configuration, Generic[P]):
         if type(rig).balanced is Rig.balanced:
             return problem
         with Blame(rig), steadily():
-            balanced = rig.balanced(problem, partial(integrate_forces, self.staged_model))
+            balanced = rig.balanced(problem, Forces(self.staged_model))
             if not isinstance(balanced, Problem) or _axes(balanced) != _axes(problem):
                 raise ValueError("`balanced` must return a problem like the one given, as from `Problem.replaced`")
             if balanced.exists is not None and balanced.exists is not problem.exists:

@@ -43,7 +43,7 @@ def in_microgram(quantity: Any) -> Any:
 
 
 class Sloping(wl.WearLaw):
-    """A straight line."""
+    """A line, straight or bent."""
 
     name: ClassVar[str] = "sloping"
     source: ClassVar[str] = "made up"
@@ -52,15 +52,19 @@ class Sloping(wl.WearLaw):
     """Rate without energy."""
     slope: Annotated[wl.Quantity, wl.Unit("ug/m/N", positive=False)] = Q(2.0, "ug/m/N")
     """Slope."""
+    bend: Annotated[wl.Quantity, wl.Unit("ug*mm^2/m/N^2", positive=False)] = Q(0.0, "ug*mm^2/m/N^2")
+    """Bend."""
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-        return p["offset"] + p["slope"] * contact.wear_index_density
+        return p["offset"] + contact.wear_index_density * (p["slope"] + p["bend"] * contact.wear_index_density)
 
     def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         return {}
 
 
 sloping = Sloping()
+USFD = GLOBAL | wl.wear_law("usfd")
+FULL_SLIP: Any = {"max_pressure": Q(1500, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}
 
 
 def refused(says: str, predict: Any, tests: wl.WearTests, free: Any, **settings: Any) -> None:

@@ -166,13 +166,6 @@ def test_parameters_that_the_tests_leave_open_are_refused(predict: Any, creepage
     refused(f"do not determine {open_}[,;] ", predict, made_up(predict, 0.1, 0, creepage), free)
 
 
-def test_a_fit_at_a_bound_is_warned_of_and_the_caller_is_named() -> None:
-    predict, tests = usfd("global"), made_up(usfd("global"), 0.1)
-    with pytest.warns(wl.FitWarning, match="at a bound of q_s") as caught:
-        wl.fit(predict, tests, free=["q_s"], bootstrap=0, bounds={"q_s": ("70 ug/m/mm^2", "80 ug/m/mm^2")})
-    assert caught[0].filename == __file__
-
-
 @pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")
 def test_an_interval_ends_at_the_bounds() -> None:
     # The scatter is that of the largest rates, which hides the mild regime; the interval of its slope has no ends.

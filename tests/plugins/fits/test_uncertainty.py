@@ -9,8 +9,18 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.plugins.fits.fits import CREEPAGE, EXACT, FRICTION, GLOBAL, PRESSURE, in_microgram, made_up, usfd
-from tests.plugins.fits.uncertain import FULL_SLIP, USFD
+from tests.plugins.fits.fits import (
+    CREEPAGE,
+    EXACT,
+    FRICTION,
+    FULL_SLIP,
+    GLOBAL,
+    PRESSURE,
+    USFD,
+    in_microgram,
+    made_up,
+    usfd,
+)
 from tests.strategies import EPS
 from wearlaw import Q
 
@@ -58,18 +68,6 @@ def test_a_uniform_parameter_of_a_linear_law_gives_a_uniform_rate(parts: float) 
     assert low == pytest.approx(at[0] + 0.05 * (at[1] - at[0]), abs=parts * part)
     assert high == pytest.approx(at[0] + 0.95 * (at[1] - at[0]), abs=parts * part)
     assert in_microgram(u.median) == pytest.approx(0.5 * (at[0] + at[1]), abs=parts * part)
-
-
-def test_each_sample_is_the_prediction_with_its_values() -> None:
-    u = wl.uncertainty(
-        USFD, normal_force=wl.normal("7 kN", "0.2 kN"), creepage=Q(4, "%"), friction_coefficient=0.4, samples=8
-    )
-    rates = np.sort(in_microgram(u.wear_rate))
-    probability = np.sort(stats.qmc.Sobol(1, rng=np.random.default_rng(0)).random_base2(3)[:, 0])
-    each = USFD(
-        normal_force=Q(stats.norm(7000.0, 200.0).ppf(probability), "N"), creepage=Q(4, "%"), friction_coefficient=0.4
-    )
-    assert rates == pytest.approx(np.sort(in_microgram(each.wear_rate)), rel=64 * EPS)
 
 
 def test_a_lognormal_value_has_its_median_and_its_factor() -> None:

@@ -112,8 +112,8 @@ def test_uncertainty_of_a_case_is_that_of_its_pairs_with_samples_rounded_up_and_
     assert result.exit_code == 0, result.output
     assert "Samples: 1000 rounded up to 1024, a power of two, as Sobol sequences need it" in result.stdout
     # Shares to a thousandth: their sampling error is larger.
-    assert re.search(r"creepage( +0\.\d{3}){4}\n", result.stdout)
-    assert not re.search(r"\d(e-\d|-0\.000)", result.stdout)
+    assert re.search(r"creepage +\d\.\d{1,3} ", result.stdout)
+    assert not re.search(r"\d(e-\d|-0\.000|\.\d{4})", result.stdout)
     rates = pd.read_csv(folder / "out" / "wear_rates.csv")
     predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth")
     u = wl.uncertainty(
@@ -141,10 +141,7 @@ def test_uncertainty_of_a_case_is_that_of_its_pairs_with_samples_rounded_up_and_
     [
         ({"creepage": {"unifrom": ["1 %", "2 %"]}}, "scatter.creepage.unifrom: unknown field; did you mean 'uniform'?"),
         ({"creepage": {}}, "scatter.creepage: give one of uniform, normal and lognormal; got none of them"),
-        (
-            {"creepage": {"uniform": ["2 %", "1 %"]}},
-            "the upper end of uniform(2.0 %, 1.0 %) must lie above the lower one",
-        ),
+        ({"creepage": {"uniform": ["2 %", "1 %"]}}, "uniform(2.0 %, 1.0 %): the upper end must lie above"),
         ({"creepage": {"uniform": ["1 N", "2 N"]}}, "creepage: "),
         ({"creepage": True}, "must be a value, or a table such as"),
         ({"friction_coefficient": -0.1}, "friction_coefficient: must be a positive finite number"),
@@ -165,7 +162,7 @@ def test_what_cannot_be_uncertain_is_refused_with_its_place(
 def test_a_law_of_which_nothing_is_uncertain_is_left_out_and_said_so(folder: Path) -> None:
     certain = {"friction_coefficient": 0.46, "creepage": "1 %"}
     result = wearlaw("uncertainty", uncertain(folder / "case.toml", certain), "--samples", "64", "-o", "out")
-    assert "note: scatter: usfd on exact is left out, since none of its inputs is uncertain" in result.stderr
+    assert "note: scatter, usfd on exact is left out, since none of its inputs is uncertain" in result.stderr
     assert list(pd.read_csv(folder / "out" / "wear_rates.csv").pair) == ["kth on exact"]
     result = wearlaw("uncertainty", uncertain(folder / "case.toml", {**certain, "laws": {}}))
     assert_refused(result, "nothing in the case is uncertain")

@@ -236,7 +236,7 @@ def alone(pair: ws.Wheelset, problem: Any, force: Array) -> Array:
         a, b = problem.a[1, : force.size], problem.b[1, : force.size]
         return np.asarray(wl.hertz_ellipse.approach(force, a, b, pair._elastic.modulus))
     part = found.part(rows)
-    gaps = part.start, part.step, part.samples, part.curvature_x, pair._elastic.modulus
+    gaps = part.start, part.step, part.gaps, part.curvature_x, pair._elastic.modulus
     low, high = 0.5 * problem.penetration[1, : force.size], 2.0 * problem.penetration[1, : force.size]
     for _ in range(60):  # bisection
         middle = 0.5 * (low + high)
