@@ -34,8 +34,9 @@ class HalfSpace(wl.ContactModel):
     -----
     Prefer this as the reference for other models, and where laws need pressure and slip in partial slip. It can't
     replace `strip_theory` in large batches, because a patch of 30 × 30 elements takes 0.2 s. The error is of first
-    order: on 20 cells forces are off by 1.5 % of μN, root mean square over a/b from 1/10 to 10, and 4.3 % at most, most
-    of it with spin. Twice the forces on 20 cells less those on 10 are off by 0.24 %, and 2.0 % at most.
+    order: on 20 cells forces are off by 1.5 % of μN, root mean square over a/b from 1/10 to 10 and any creepages up to
+    μN/(G ab), and 4.3 % at most, most of it with spin. Twice the forces on 20 cells less those on 10 are off by 0.24 %,
+    and 2.0 % at most.
     """
 
     name: ClassVar[str] = "half_space"

@@ -31,7 +31,8 @@ class StripTheory(wl.ContactModel):
     -----
     Prefer this for wear: μ ∫ p·s dA is Tγ = ξFx + ηFy + φMz at any creepage and spin, and the energy lies across the
     patch as in the full theory. It can't meet Kalker's C23 and C33, since it has no flexibilities for spin: Fy from
-    a small spin is off by +18 % at a/b = 10, +6 % at 1, and -32 % at 0.1. On a line it would be `exact`.
+    a small spin is off by +18 % at a/b = 10, +6 % at 1, and -32 % at 0.1 (ν = 0.28). On a line it would be
+    `exact`. The theory of elliptic contact in the documentation has tables of its errors.
 
     FaStrip (Sichani, Enblom and Berg, 2016) joins strip theory and FASTSIM as well. Its formulas were not at hand, so
     these are wearlaw's own.
@@ -63,7 +64,11 @@ class StripTheory(wl.ContactModel):
 
     @property
     def elliptic_accuracy(self) -> float:
-        """0.5/strips, as a share of full slip."""
+        """0.5/strips, as a share of full slip.
+
+        On 10 strips one in ninety random points of the range in the documentation of wheels on rails is further off, by
+        up to 0.13, all of them where √(ab) |φ| is more than 1.5 times the creepage. The root mean square is 0.012.
+        """
         return 0.5 / self.strips
 
     def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:

@@ -109,6 +109,22 @@ def test_yawed_flanges_are_pressed_as_in_space(
 
 @pytest.mark.validates(
     "wheelset",
+    "Maximum pressure on flanges with 12 to 36 mrad of yaw, where one ellipse fits, 6.6 to 7.1 mm, 20 to 80 kN a wheel",
+    source='`pressure="half_space"`, which is held to surfaces in space',
+    held_to="{strips:.1%} by strips, {ellipses:.1%} by ellipses",
+    strips=0.032,
+    ellipses=0.003,
+)
+def test_yawed_flanges_have_the_pressure_of_half_spaces(strips: float, ellipses: float) -> None:
+    displacement, yaw, load = (one.ravel() for one in np.meshgrid([6.6, 6.8, 7.1], [12.0, 36.0], [20.0, 80.0]))
+    at = {"lateral_displacement": Q(displacement, "mm"), "yaw": Q(yaw, "mrad"), "vertical_load": Q(load, "kN")}
+    half_spaces, kpec, hertz = (posed(one, **at).max_pressure[:, 1, 0] for one in ("half_space", "kpec", "hertz"))
+    assert kpec == pytest.approx(half_spaces, rel=strips)
+    assert hertz == pytest.approx(half_spaces, rel=ellipses)
+
+
+@pytest.mark.validates(
+    "wheelset",
     "Half-spaces under 80 kN a wheel, from the tread over two humps to the flange: maximum pressure, N and angle on"
     " the tread, power",
     source="CONTACT (Vollebregt), half-space theory on elements of 0.4 mm, whose own error is 2 %",
