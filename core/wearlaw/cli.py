@@ -84,8 +84,9 @@ def main() -> None:
     \b
     Begin with:
       wearlaw run tassini2010               the twin-disc study of Tassini et al. (2010)
-      wearlaw case tassini2010 > my.toml    a copy of its case file, to edit
+      wearlaw case two_discs > my.toml      a short case file, to edit
       wearlaw run my.toml -o my-results/    your own study
+      wearlaw explore wheelset              sliders and live figures in a browser
       wearlaw uncertainty my.toml           how uncertain its predictions are
       wearlaw fit my-tests.csv --help       parameters of a law, fitted to your own tests
       wearlaw compare my-tests.csv --help   which model predicts your tests best

@@ -101,7 +101,7 @@ def parse_toml(text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"is not valid TOML: {error}") from None
+        raise InputError(f'is not valid TOML: {error}; texts stand in quotes, as in "7 kN"') from None
 
 
 def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:

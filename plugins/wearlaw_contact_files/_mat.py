@@ -47,56 +47,36 @@ class Grid(NamedTuple):
 
 @dataclass(frozen=True)
 class Case:
-    """A solved patch with the units, axes and signs of CONTACT.
-
-    Attributes
-    ----------
-    path : Path
-        The file.
-    version : int
-        Version of the format.
-    module : {1, 3}
-        1 for wheel and rail, where body 1 is the rail; 3 for basic contact, where body 1 is the upper one.
-    wheel_radius, roller_radius : float
-        Rolling radius of the wheel and nominal radius of a roller [mm]; zero if the file does not hold it.
-    angle : float
-        Contact angle in the axes of the track [rad].
-    grid : Grid
-    backwards : bool
-        Whether the rolling direction is that of -x.
-    step : float
-        Distance rolled in a time step, DQ [mm].
-    steady : bool
-        Whether the rolling is steady.
-    shear_moduli, poisson_ratios : tuple of float
-        Of body 1 and 2 [N/mm²], [-].
-    flexibilities : tuple of float, or None
-        The three flexibilities of the simplified theory [mm³/N], if they differ from each other.
-    speed : float
-        Rolling speed of the patch, VELOC [mm/s].
-    ix, iy : ndarray of int, (elements,)
-        Place of each element in contact, from 0.
-    values : dict of str to ndarray, (elements,)
-        Columns of the elements in contact by their names.
-    """
+    """A solved patch with the units, axes and signs of CONTACT."""
 
     path: Path
     version: int
     module: int
+    """1 for wheel and rail, where body 1 is the rail; 3 for basic contact, where body 1 is the upper one."""
     wheel_radius: float
+    """Rolling radius of the wheel [mm]; zero if the file does not hold it."""
     roller_radius: float
+    """Nominal radius of a roller [mm]; zero without one."""
     angle: float
+    """Contact angle in the axes of the track [rad]."""
     grid: Grid
     backwards: bool
+    """Whether the rolling direction is that of -x."""
     step: float
+    """Distance rolled in a time step, DQ [mm]."""
     steady: bool
     shear_moduli: tuple[float, float]
+    """Of body 1 and 2 [N/mm²]."""
     poisson_ratios: tuple[float, float]
     flexibilities: tuple[float, float, float] | None
+    """The three flexibilities of the simplified theory [mm³/N], if they differ from each other."""
     speed: float
+    """Rolling speed of the patch, VELOC [mm/s]."""
     ix: NDArray[np.intp]
+    """Place of each element in contact along x, from 0, and `iy` across, (elements,)."""
     iy: NDArray[np.intp]
     values: dict[str, Array]
+    """Columns of the elements in contact by their names, (elements,)."""
 
 
 def case_of(path: Path) -> Case:

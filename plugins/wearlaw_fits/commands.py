@@ -99,7 +99,7 @@ stages_option = click.option(
     metavar="FIELDS",
     help="Parameters to fit: fields of the law or of a stage, or friction_coefficient.",
 )
-@click.option("--label", help="The name of the fitted law in tables and figures.")
+@click.option("--label", help="Name of the fitted law in tables and figures [default: LAW fitted to TESTS].")
 @click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
 @common
 @bounds_option
@@ -141,7 +141,10 @@ def fit(
     folder = output if output is not None else folder_for(tests, "fit")
     notes = Notes()
     with results_folder(folder, overwrite, FIT) as fresh:
-        names, given = listed("--free", free), values("--fixed", fixed) | ({"label": label} if label else {})
+        names, given = listed("--free", free), values("--fixed", fixed)
+        if law is not None:
+            name = Path(law.partition(":")[0]).stem
+            given["label"] = label or f"{name} fitted to {Path(tests).stem}"
         if both := [name for name in names if name in given]:
             raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
         measured = read_tests(tests, sep=sep, decimal=decimal)

@@ -125,17 +125,21 @@ def _unknown(table: Table, known: Collection[str]) -> Iterator[str]:
     Another condition of a rig has a unit, and a name unlike those of missing columns.
     """
     missing = [name for name in (*COLUMNS, *TEXTS) if name not in table.columns]
+    unknown = []
     for column in table.columns.values():
         if column.name in (*COLUMNS, *TEXTS, *known):
             continue
         of_body = column.name.startswith("wear_rate_")  # the wear rate of one body
         alike = [name for name in missing if not (of_body and name == "wear_rate")]
         if column.unit is None or get_close_matches(column.name, alike, n=1):
-            yield (
-                f"column '{column.head}': unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])} The columns are"
-                f" {', '.join([*COLUMNS, *TEXTS])}; another condition of a rig has its unit in square brackets, as in"
-                " 'mass [kg]'"
-            )
+            unknown.append(column)
+            yield f"column '{column.head}': unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])}"
+    if unknown:
+        heads = ", ".join(f"{name} [{one.unit}]" if one.unit else name for name, one in COLUMNS.items())
+        yield (
+            f"the columns are {heads}, {', '.join(TEXTS)}, in any unit; another condition of a rig has its unit in"
+            " square brackets, as in 'mass [kg]'"
+        )
 
 
 def explain_tests(name: str, text: str) -> Iterator[str]:

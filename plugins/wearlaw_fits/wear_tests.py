@@ -239,7 +239,7 @@ class WearTests:
 
     def digests(self, name: str, unit: str) -> tuple[str, ...]:
         """Return a digest of each test: of its conditions and one measurement as in `measured`."""
-        in_si = {column: self.columns[column] for column in NEEDED if column in self.columns}
+        in_si: dict[str, Any] = {column: self.columns[column] for column in NEEDED if column in self.columns}
         for condition, value in self.other_conditions.items():
             in_si[condition] = value.to_base_units().magnitude if isinstance(value, pint.Quantity) else value
         in_si = dict(sorted(in_si.items())) | {"measured": self.measured(name, unit)}
@@ -435,7 +435,9 @@ def _in_si(name: str, values: Values) -> Array:
     """Return a column as SI floats, NaN included."""
     unit = COLUMNS[name].unit
     if unit and not isinstance(values, pint.Quantity):
-        raise UnitError(f"has no unit; it is in {unit} or another unit of that dimension")
+        raise UnitError(
+            f"has no unit; give it in {unit} or another unit of that dimension, in a file as '{name} [{unit}]'"
+        )
     try:
         factor = si_factor(Q(1.0, _unit(values)), unit)
     except UnitError as error:

@@ -85,7 +85,7 @@ def draw(figure: FigureData) -> Figure:
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
     widths = {cell: WIDTH / len(set(row)) for row in rows for cell in row}
-    heights = [max(_height(figure.panels[cell], widths[cell]) for cell in row) for row in rows]
+    heights = [max(panel_height(figure.panels[cell], widths[cell]) for cell in row) for row in rows]
     title = textwrap.wrap(figure.title, TITLE_LETTERS)
     conditions = textwrap.wrap(figure.conditions, LETTERS)
     head = TITLE * len(title) + LINE * len(conditions) + 0.08
@@ -113,9 +113,9 @@ def draw(figure: FigureData) -> Figure:
     return drawn
 
 
-def _height(panel: Panel, width: float) -> float:
+def panel_height(panel: Panel, width: float) -> float:
     """Return the height of a panel of a width, in inches; a shape takes as much as it needs."""
-    if not panel.equal:
+    if not panel.equal or not panel.curves:
         return ROW_HEIGHT
     across, up = (
         np.ptp(axis.ends or np.concatenate([values[np.isfinite(values)] for values in every]))

@@ -112,7 +112,8 @@ def _main_figure(results: Results) -> FigureData | None:
         pairs = pairs[:MOST_MAIN_MAPS] if plane else pairs
         more = f" Only {' and '.join(pairs) if plane else f'the pairs with {first}'} are shown; the results hold all."
     file = "main" if "main" not in results.case.figures else "main_result"
-    figure = _figure(results, file, spec.model_copy(update={"pairs": tuple(pairs), "measured": False}))
+    shown = {"pairs": tuple(pairs), "measured": _has_tests(results, sweep, spec.x, outcome)}
+    figure = _figure(results, file, spec.model_copy(update=shown))
     if patch_axes(whole):
         more += f" {'The sum over' if outcome == MASS else 'The largest of'} all patches."
     return replace(figure, caption=figure.caption + more)
@@ -133,8 +134,7 @@ def main_result(results: Results) -> tuple[Results, str]:
 
 def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
     """Yield the default figures: outcomes and traction over each sweep, and the fields or wear of each profile."""
-    creepage, tests = results.case.rig.creepage, results.case.measured
-    known = known_variables(tests.data) if tests is not None else ()
+    creepage = results.case.rig.creepage
     for name, sweep in results.sweeps.items():
         if not axes_of(sweep):
             continue
@@ -142,15 +142,15 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
         for outcome in outcomes_of(results, sweep):
             plane = _plane(sweep, creepage)
             specs = [_over(results, name, outcome.name, axis, plane)] if plane else []
-            specs += [_over(results, name, outcome.name, x) for x in ("wear_index", axis)]
+            across = (axis,) if patch_axes(sweep) else ("wear_index", axis)  # each patch has an index of its own
+            specs += [_over(results, name, outcome.name, x) for x in across]
             for spec in specs:
-                measured = axis == creepage and {spec.x, outcome.name} <= {*known}
+                measured = _has_tests(results, sweep, spec.x, outcome.name)
                 up = f"_and_{spec.shown[0]}" if spec.map else ""
                 yield f"{name}_{outcome.name}_over_{spec.x}{up}", spec.model_copy(update={"measured": measured})
         if axis == creepage:
             spec = _over(results, name, "traction_coefficient", axis)
-            measured = {axis, "traction_coefficient"} <= {*known}
-            shown = {"measured": measured, "y_scale": "linear"}
+            shown = {"measured": _has_tests(results, sweep, axis, "traction_coefficient"), "y_scale": "linear"}
             yield f"{name}_traction_over_{axis}", spec.model_copy(update=shown)
     for name, profile in results.profiles.items():
         if "y" in profile:
@@ -159,6 +159,12 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
             yield f"{name}_across_the_patch", FigureSpec(profile=name, x="y", panels=panels)
         elif profile:
             yield f"{name}_along_the_patch", FigureSpec(profile=name, panels=tuple(Window(y=y) for y in ALONG))
+
+
+def _has_tests(results: Results, sweep: xarray.Dataset, *names: str) -> bool:
+    """Return whether the tests of a case hold variables of a figure of a sweep over creepage."""
+    tests, creepage = results.case.measured, results.case.rig.creepage
+    return tests is not None and main_axis(sweep, creepage) == creepage and {*names} <= {*known_variables(tests.data)}
 
 
 def _over(results: Results, name: str, y: str, x: str, plane: tuple[str, str] | None = None) -> FigureSpec:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import xarray
 
@@ -21,6 +21,8 @@ from wearlaw_studies.case import Case
 
 TAKE_MEANS_IN_A_CASE = 'write stages = ["patch_mean"] in the case, or use the contact model "global"'
 """Remedy in a case for a law of the whole patch on a contact resolved into cells."""
+
+T = TypeVar("T")
 
 Patch: TypeAlias = Mapping[str, Any]
 """Labels of a patch along the axes of its rig, such as {"side": "left", "patch": 1}; {} if the rig makes one patch."""
@@ -52,11 +54,7 @@ class Results:
         InputError
             If the case has none of that name.
         """
-        if name not in self.sweeps:
-            raise InputError(
-                f"the case has no sweep {shown(name)}{did_you_mean(name, self.sweeps)} Add [sweeps.{name}]"
-            )
-        return self.sweeps[name]
+        return _found("sweep", name, self.sweeps)
 
     def conditions(self, *, sweep: str | None = None, profile: str | None = None) -> dict[str, Any]:
         """Return the conditions of a sweep or a profile of the case, as arguments of a pipeline.
@@ -69,11 +67,9 @@ class Results:
         InputError
             If the case has none of that name.
         """
-        kind, name = ("sweep", sweep) if sweep is not None else ("profile", profile or "")
-        grids = self.case.sweeps if kind == "sweep" else self.case.profiles
-        if name not in grids:
-            raise InputError(f"the case has no {kind} {shown(name)}{did_you_mean(name, grids)} Add [{kind}s.{name}]")
-        return grids[name].conditions()
+        if sweep is not None:
+            return _found("sweep", sweep, self.case.sweeps).conditions()
+        return _found("profile", profile or "", self.case.profiles).conditions()
 
     def pair(self, label: str) -> Pair:
         """Return the pair with a label."""
@@ -83,6 +79,12 @@ class Results:
     def is_for_other_body(self, label: str, body: str) -> bool:
         """Return whether the parameters of a pair's wear law were fitted to another body than this one."""
         return fitted_to_other_body(self.case.rig.bodies, self.pair(label).pipeline.wear_law, body)
+
+
+def _found(kind: str, name: str, every: Mapping[str, T]) -> T:
+    if name not in every:
+        raise InputError(f"the case has no {kind} {shown(name)}{did_you_mean(name, every)} Add [{kind}s.{name}]")
+    return every[name]
 
 
 def pairs_of(case: Case, notes: Notes) -> list[Pair]:

@@ -48,7 +48,9 @@ class Pipelines(Generic[P]):
         self._parts = rig, models, stages
         self._dims = dims
         if not models or not all(isinstance(one, ContactModel) for one in models):
-            raise CompositionError(f"give lists as in rig | [contact models] | [laws], not {shown(models)}")
+            raise CompositionError(
+                f'give lists of models, as in rig | [wl.contact_model("exact")], not {shown(models)}'
+            )
         every_model, every_law = labelled(models), labelled(laws) if laws else {"": None}
         self.pipelines: dict[tuple[str, str], Any] = {}
         impossible = {}

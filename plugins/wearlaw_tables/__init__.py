@@ -225,6 +225,8 @@ class Table:
             ]
         if wrong:
             wrong = sorted(wrong, key=lambda one: one[0])[:PROBLEMS]
+            if self._hint(wrong[0][2]):  # all others of the column are alike
+                wrong = wrong[:1]
             places = self._rows_in_words({first + row for row, _, _ in wrong})
             raise DataError(
                 f"{self.label} is wrong in:",
@@ -240,7 +242,7 @@ class Table:
         """Return how to read a number with the other decimal mark."""
         other = "," if self.decimal == "." else "."
         if text.count(other) == 1 and text.lstrip("+-").replace(other, "").isdigit():
-            return f'; for decimals with "{other}", give decimal="{other}"'
+            return f'; for decimals with "{other}", give decimal="{other}", on the command line --decimal {other}'
         return ""
 
 

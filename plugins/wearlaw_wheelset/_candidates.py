@@ -107,19 +107,20 @@ class Candidates:
         """Return arc lengths of the wheel at distances across the track, (places, n) [m]; NaN for none."""
         return self.between(self.arcs, offset) + (self.rates[:, 0] * self.turned)[:, None]
 
-    def learn(self, before: Candidates, change: Array) -> NDArray[np.bool_]:
+    def learn(self, before: Candidates, rows: NDArray[np.intp], change: Array) -> NDArray[np.bool_]:
         """Find the rates, in place, and return at which positions they are known.
 
         Parameters
         ----------
-        before : Candidates
-            The places of the same positions as they were found before.
+        before, rows
+            Places as they were found before, and which of them are those of the same positions.
         change : ndarray, (positions of the task,)
             Change of the roll since then [rad].
         """
         count = 2 * change.size
-        same = np.bincount(self.wheel, minlength=count) == np.bincount(before.wheel, minlength=count)
-        new, old = np.flatnonzero(same[self.wheel]), np.flatnonzero(same[before.wheel])
+        wheel = before.wheel[rows]
+        same = np.bincount(self.wheel, minlength=count) == np.bincount(wheel, minlength=count)
+        new, old = np.flatnonzero(same[self.wheel]), rows[same[wheel]]
         moved = np.stack([getattr(self, name)[new] - getattr(before, name)[old] for name in LINEAR], axis=-1)
         moved += before.rates[old] * before.turned[old, None]  # to where the places were found
         with np.errstate(invalid="ignore", divide="ignore"):  # infinite gaps, and positions that did not roll

@@ -83,6 +83,8 @@ def parse(value: QuantityLike) -> Quantity:
         except pint.DimensionalityError as error:
             raise UnitError(f"{shown(value)}: {error}") from None
     match = _QUANTITY_TEXT.fullmatch(value) if isinstance(value, str) else None
+    if match is not None and re.match(r",\d", match["unit"]):
+        raise UnitError(f"{shown(value)} has a decimal comma; write a decimal point")
     if match is None or not match["unit"]:
         raise UnitError(f"{shown(value)} is not a number with a unit")
     return Q(float(match["number"]), match["unit"])

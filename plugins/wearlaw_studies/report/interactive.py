@@ -32,9 +32,12 @@ from wearlaw_output.drawing import (
     PALE,
     PALETTE,
     THIN,
+    WIDTH,
     line_styles,
     log_ticks,
+    panel_height,
 )
+from wearlaw_output.drawing import ROW_HEIGHT as PRINTED
 
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 SYMBOLS = dict(
@@ -74,11 +77,13 @@ def plotly_figure(figure: FigureData) -> Json:
             trace["showlegend"] = trace["legendgroup"] not in listed
             listed.add(trace["legendgroup"])
     rows = (len(numbered) + 1) // 2
+    width = WIDTH if len(numbered) == 1 else WIDTH / 2
+    tall = max(panel_height(panel, width) for panel in figure.panels) / PRINTED
     longest = max((len(curve.label) for panel in figure.panels for curve in panel.curves), default=0)
-    below = {"orientation": "h", "y": -0.2 / rows} if len(numbered) > 1 or longest > LONG else {}
+    below = {"orientation": "h", "y": -0.24 / rows / tall} if len(numbered) > 1 or longest > LONG else {}
     head = head_of_legend(figure)
     layout: Json = {
-        "height": ROW_HEIGHT * rows + 100,
+        "height": round(ROW_HEIGHT * tall) * rows + 100,
         "hovermode": "closest",
         "uirevision": figure.name,  # keeps zoom and what is switched off when the colours change
         "margin": {"l": 70, "r": 20, "t": 40, "b": 60},
@@ -274,7 +279,7 @@ def _axis(axis: PlotAxis) -> Json:
         "ticks": "outside",
         "showline": True,
         "zeroline": False,
-        **({"nticks": LOG_TICKS} if axis.scale == "log" else {}),
+        **({"nticks": LOG_TICKS, "tickformat": "~g"} if axis.scale == "log" else {}),
     }
     if axis.ends is not None:
         ends = [float(end) for end in (np.log10(axis.ends) if axis.scale == "log" else axis.ends)]

@@ -25,7 +25,7 @@ from wearlaw.models.model import Blame, Model
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.quantities import Q, from_si
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import UNITS, name_of
+from wearlaw.units.variables import UNITS, VARIABLES, name_of
 from wearlaw_fits.pairs import Pair
 from wearlaw_output.labels import label as label_of
 from wearlaw_output.labels import labelled, readable
@@ -82,7 +82,7 @@ def of_section(section: Section) -> list[NamedTable]:
 
 
 def main_table(study: Study) -> NamedTable:
-    """Return the least and the most of the main outcome of each pair, the borders of its law, and what lies outside."""
+    """Return the least and the most of the main outcome of each pair, what lies outside, and the borders of its law."""
     results, outcome = main_result(study)
     ((name, sweep),) = results.sweeps.items()
     what = f"[{readable(sweep[outcome].attrs['units'])}{', which is mg/km' if outcome == MASS else ''}]"
@@ -102,10 +102,10 @@ def main_table(study: Study) -> NamedTable:
                 row[f"{word}at"] = ", ".join(_place(study, name, value) for value in point.values())
         if outcome == WEAR:
             row["that is"] = _as_mass_and_depth(study, name, pair, point) if known else ""
-        row["regimes change at"] = _borders(law)
         row["outside the range"] = _count(of_pair.outside_range.values > 0.0) if law.valid_range else "not known"
         beyond = limits[SHAKEDOWN].sel(contact_model=pair.contact_model).values if limits else None
         row[LIMITS[SHAKEDOWN]] = "not known" if beyond is None else _count(beyond)
+        row["regimes change at"] = _borders(law)
         rows.append(row)
     where = f"Least and most over the sweep '{name}', with the {' and '.join(map(name_of, axes))} there"
     return NamedTable("main", where if axes else f"The operating point '{name}'", pd.DataFrame(rows))
@@ -124,13 +124,19 @@ def _as_mass_and_depth(study: Study, name: str, pair: Pair, point: Mapping[str, 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", WearlawWarning)  # the study has them
         found = pipeline.predict(pipeline.posed({**study.case.sweeps[name].given, **at}))
-        parts = [f"{float(found.mass_per_distance.m_as('mg/km')):.4g} mg/km"]
+        parts = [f"{_compact(Q(float(found.mass_per_distance.m_as('g/km')), 'g'))}/km"]
         body = law.body or next(iter(study.case.rig.bodies), None)
         if body is not None:
             with suppress(InputError):  # a rail does not turn
-                depth = 1e3 * float(found.depth_per_distance(body).m_as("um/km"))
-                parts.append(f"{body} {depth:.4g} µm in 1000 km")
+                depth = Q(float(found.depth_per_distance(body).m_as("mm/km")), "m")
+                parts.append(f"{body} {_compact(depth)} in 1000 km")
     return "; ".join(parts)
+
+
+def _compact(quantity: Any) -> str:
+    """Return a quantity in the unit in which it has few digits, such as "1.2 mm" for 0.0012 m."""
+    found = quantity.to_compact()
+    return f"{found.magnitude:.4g} {symbol(found.units, '~P')}"
 
 
 def _borders(law: Law) -> str:
@@ -143,7 +149,8 @@ def _borders(law: Law) -> str:
     for name, values in borders.items():
         unit = UNITS.get(name, "")
         numbers = ", ".join(f"{from_si(value, unit).magnitude:.4g}" if unit else f"{value:.4g}" for value in values)
-        shown.append(f"{name_of(name)} {numbers} {readable(unit)}".rstrip())
+        known = VARIABLES.get(name)
+        shown.append(f"{(known and known.symbol) or name_of(name)} {numbers} {readable(unit)}".rstrip())
     return "; ".join(shown) or "none"
 
 

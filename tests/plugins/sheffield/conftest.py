@@ -12,7 +12,6 @@ import wearlaw as wl
 @pytest.fixture(scope="session")
 def bench() -> Any:
     """Return the rig of Tassini et al. (2010) under their load and friction."""
-    from tests.plugins.sheffield.paper import FRICTION
     from wearlaw_sheffield.bench import Bench  # private: here, since tests of other plugins do not need it
 
-    return Bench(wl.TwinDisc.suros(), wl.Q(741.43, "kN/m"), FRICTION)
+    return Bench(wl.TwinDisc.suros())

@@ -6,6 +6,7 @@ import dataclasses
 import math
 import re
 from collections.abc import Callable, Iterable
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,6 @@ import pytest
 from scipy import optimize
 
 import wearlaw as wl
-from tests.cases import case
 from tests.plugins.sheffield.paper import (
     AREA,
     CORRECTED,
@@ -42,7 +42,6 @@ from tests.plugins.sheffield.paper import (
 )
 from wearlaw_sheffield import claims  # private: one claim or table, without the study
 from wearlaw_sheffield.bench import Bench  # private: one claim or table, without the study
-from wearlaw_studies.study import run  # private: a case run without its files
 
 BEGIN, END = GLOBAL[1] / GLOBAL[0] * AREA, GLOBAL[3] * AREA
 """Where severe and where catastrophic wear begin [N]."""
@@ -55,7 +54,6 @@ SLOW = 20.0 / SPEED - 1.5 * FULL_SLIP
 
 TRACTION = {creepage: heat / (creepage / 100.0 * SPEED * 7414.3) for creepage, heat in HEAT.items()}
 TESTS = np.array(list(TRACTION)), np.array(list(TRACTION.values()))
-SWEEP = {"normal_force_per_width": "741.43 kN/m", "creepage": ["0.1 %", "10 %"], "friction_coefficient": FRICTION}
 
 Expected = float | tuple[float, float]
 """A number, to half of the last digit shown, or a number and what a grid may miss of it."""
@@ -370,14 +368,17 @@ def test_tests_on_the_model_do_not_part_from_it(bench: Bench) -> None:
 # The bench
 
 
-def study_of(**changes: Any) -> wl.Study:
-    return run(case(sweeps={"creepage": {**SWEEP, **changes}}, profiles={}))
+def study_of(**rig: Any) -> Any:
+    """Return as much of a study as the sections need."""
+    return SimpleNamespace(case=SimpleNamespace(rig=wl.TwinDisc.suros(**rig)))
 
 
-def test_the_bench_is_that_of_the_study_with_the_borders_of_the_formulas(bench: Bench) -> None:
-    made = Bench.of(study_of(normal_force_per_width="800 kN/m", friction_coefficient=0.5))
-    assert made.normal_force_per_width.to("kN/m").magnitude == pytest.approx(800.0, rel=1e-12)
-    assert (made.friction_coefficient, made.rig) == (0.5, wl.TwinDisc.suros())
+def test_the_bench_has_the_rig_of_the_study_and_the_borders_of_the_formulas(bench: Bench) -> None:
+    assert Bench.of(study_of()) == bench
+    assert Bench.of(study_of(speed_of="mean")).rig.speed_of == "mean"
+    for other in ({"rolling_speed": "2 m/s"}, {"diameter": "60 mm"}):
+        with pytest.raises(wl.InputError, match=r"^rig: "):
+            Bench.of(study_of(**other))
     # The reference multiplies in another order: a few units in the last place.
     assert bench.patch_area == pytest.approx(AREA, rel=1e-14)
     assert bench.full_slip == pytest.approx(FULL_SLIP, rel=1e-14)
@@ -394,19 +395,3 @@ def test_the_section_of_a_study_has_a_row_for_each_claim() -> None:
     assert len({claim.theirs for claim in section.claims}) == len(PAPER)
     assert all(re.match(r"Sections? [356]", claim.where) and claim.why.endswith(".") for claim in section.claims)
     assert "741.43 kN/m and a friction coefficient of 0.46" in section.text
-
-
-@pytest.mark.parametrize(
-    ("changes", "rig", "names"),
-    [
-        ({"friction_coefficient": [0.3, 0.4]}, {}, "sweeps.creepage"),
-        ({"friction_coefficient": 0.1}, {}, "sweeps.creepage"),
-        ({}, {"rolling_speed": "2 m/s"}, "rig"),
-        ({}, {"diameter": "60 mm"}, "rig"),
-    ],
-)
-def test_a_study_that_the_claims_cannot_be_made_of_is_refused(changes: Any, rig: Any, names: str) -> None:
-    study = study_of(**changes)
-    study = dataclasses.replace(study, case=study.case.model_copy(update={"rig": wl.TwinDisc.suros(**rig)}))
-    with pytest.raises(wl.InputError, match=f"^{names}: "):
-        Bench.of(study)

@@ -52,7 +52,7 @@ def test_help_says_how_to_begin_and_every_command_has_its_own(flag: str) -> None
     result = wearlaw(flag)
     assert result.exit_code == 0
     assert "wearlaw run tassini2010 " in result.stdout
-    assert "wearlaw case tassini2010 > my.toml" in result.stdout
+    assert "wearlaw case two_discs > my.toml" in result.stdout
     for command in ("run", "case", "fit", "compare", "plugins", "show", "schema", "new-plugin", "check"):
         assert f"\n  {command} " in result.stdout
         own = wearlaw(command, flag)

@@ -119,8 +119,8 @@ def test_the_main_table_has_the_most_wear_as_mass_and_as_depth(study: wl.Study, 
     assert row["most [µg/m/mm²]"] == rate
     # On a patch of 2a × 10 mm with a = 2 p0 R / E*, once in each π 47 mm, at 7.85 mg/mm³; 1 µg/m is 1 mg/km.
     width = 4 * 1500 * 11.75 / 112021.2
-    mass, depth = rate * width * 10.0, 1e9 * 1e-3 * rate / 7.85 * width / (np.pi * 47.0)
-    assert row["that is"] == f"{mass:.4g} mg/km; disc_1 {depth:.4g} µm in 1000 km"
+    mass, depth = rate * width * 10.0, 1e6 * 1e-3 * rate / 7.85 * width / (np.pi * 47.0)
+    assert row["that is"] == f"{1e-3 * mass:.4g} g/km; disc_1 {depth:.4g} mm in 1000 km"
 
 
 @pytest.mark.usefixtures("blank_figures")

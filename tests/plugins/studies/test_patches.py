@@ -338,3 +338,9 @@ def test_a_case_runs_from_the_command_line_and_again_from_what_it_wrote() -> Non
     frame = pd.read_csv("out/tables/wear_rate_moving.csv")
     assert len(frame) == 2 * 4 * (1 + 3)  # models, patches, and laws with the ends of the band of kth
     assert frame.isna().sum().sum() == len(frame) // 2 * 4  # a flange touches at one of the five displacements
+    mass = pd.read_csv("out/tables/mass_per_distance_moving.csv", index_col=0)
+    with xarray.open_dataset("out/results.nc", group="sweeps/moving", engine="h5netcdf") as read:
+        together = read.mass_per_distance.sum(["side", "patch"])
+        for pair in read.pair.values:  # one row each, the sum over all patches
+            np.testing.assert_allclose(mass.loc[pair], together.sel(pair=pair), rtol=1e-12)
+    assert list(mass.index) == list(together.pair.values)
