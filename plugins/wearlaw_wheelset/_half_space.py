@@ -186,12 +186,13 @@ def _joined(most: Array, height: Array, count: int) -> tuple[NDArray[np.intp], N
     touches = most > 0.0
     if np.count_nonzero(touches) <= count:
         return np.sort(np.argsort(np.where(touches, most, -height))[-count:]), np.arange(count)
-    kept = np.flatnonzero(touches)
-    borders = np.flatnonzero((np.diff(kept) > 1) | (np.diff(_humps(most)[kept]) != 0)) + 1
-    begins = np.append(0, borders)
+    kept = np.arange(touches.argmax(), touches.size - touches[::-1].argmax())  # rows stay next to each other
+    area = np.where(touches, _humps(most), -1)[kept]
+    begins = np.append(0, np.flatnonzero(np.diff(area) != 0) + 1)
     wide, groups = np.diff(np.append(begins, kept.size)), np.ones(begins.size, dtype=np.intp)
+    shared = np.where(area[begins] < 0, 1, wide)  # rows that do not touch are one
     while groups.sum() < count:
-        groups[np.where(groups < wide, np.sqrt(wide) / groups, 0.0).argmax()] += 1
+        groups[np.where(groups < shared, np.sqrt(shared) / groups, 0.0).argmax()] += 1
     first = [begin + np.arange(n) * size // n for begin, size, n in zip(begins, wide, groups, strict=True)]
     return kept, np.concatenate(first)
 
