@@ -17,9 +17,7 @@ from tests.plugins.kit.cells import Cells
 from tests.plugins.kit.grids import Grid
 from tests.plugins.kit.strips import Means, Strips, StripsOnStrips
 from tests.plugins.kit.wrong_contacts import Wrapped
-from tests.plugins.kit.wrong_declarations import HottestNode, Ramps, Smooth
-from tests.plugins.kit.wrong_law_nodes import Severe
-from tests.plugins.kit.wrong_laws import Linear
+from tests.plugins.kit.wrong_laws import HottestNode, Linear, Ramps, Severe, Smooth
 from tests.plugins.kit.wrong_rigs import Delegating, Weight
 from wearlaw_kit import Check, checks
 from wearlaw_kth import PUBLISHED

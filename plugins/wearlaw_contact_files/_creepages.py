@@ -46,19 +46,10 @@ def derived(
 ) -> Creepages | None:
     """Return the creepages of a patch in steady rolling, or None if its fields do not determine them.
 
-    Parameters
-    ----------
-    x, y : ndarray, (nodes, 1) and (strips,)
-        Positions of elements one `step` apart along x, from the leading edge on [mm].
-    slip, displacement : pair of ndarray, (nodes, strips)
-        Components of the relative slip [-], and of the elastic displacement of the wheel minus that of the rail [mm],
-        in the rolling direction and along y.
-    usable : ndarray of bool, (nodes, strips)
-        The elements in contact, or those that stick.
-    step : float
-        DQ [mm].
-    flexibilities : tuple of float, or None
-        L1, L2, L3 if they differ.
+    Positions x, (nodes, 1), and y, (strips,), in mm run from the leading edge on, one `step` DQ apart along x. Slip [-]
+    and elastic displacement of the wheel minus that of the rail [mm], (nodes, strips), have components in the rolling
+    direction and along y. `usable` are the elements in contact, or those that stick if the `flexibilities` L1, L2, L3
+    differ.
     """
     here = usable[1:] & np.isfinite(displacement[0])[:-1]
     along, across = (np.broadcast_to(position, usable.shape)[1:][here] for position in (x, y))

@@ -25,6 +25,7 @@ from wearlaw_kit.law_contacts import (
     borders,
     for_each_contact,
     forward,
+    has_rates_at_nodes,
     on_contacts,
     random_contacts,
     retotalled,
@@ -56,7 +57,7 @@ def of_cells(law: Law) -> bool:
 
 def at_each_node(law: Law) -> bool:
     """Return whether a law has a rate for each node of the patch."""
-    return of_cells(law) and law.outcome.of != "patch"
+    return of_cells(law) and has_rates_at_nodes(law)
 
 
 @on_contacts(Law, always=True, first=True)
@@ -86,7 +87,7 @@ def rate_is_never_negative(law: Law, contact: Contact) -> None:
     assert not (rate < 0).any(), f"the rate is negative: {rate!r}"
 
 
-@on_contacts(Law, applies=lambda law: law.outcome.of != "patch" and (isinstance(law, WearLaw) or law.zero_in_stick))
+@on_contacts(Law, applies=lambda law: has_rates_at_nodes(law) and (isinstance(law, WearLaw) or law.zero_in_stick))
 def no_slip_no_wear(law: Law, contact: Contact) -> None:
     """Without slip, and hence without dissipation, the rate is exactly zero: at one node or in the whole patch."""
     rate = law.rate(retotalled(contact, slip=np.zeros_like(contact.slip)), law.numbers)
@@ -207,7 +208,7 @@ def batching_does_not_matter(law: Law, contact: Contact) -> None:
         assert_close(together[point], alone, f"the rate at operating point {point} of a batch")
 
 
-@on_contacts(Law, applies=lambda law: law.outcome.of != "patch" and not any(name == "x" for name, _ in borders(law)))
+@on_contacts(Law, applies=lambda law: has_rates_at_nodes(law) and not any(name == "x" for name, _ in borders(law)))
 def position_does_not_matter(law: Law, contact: Contact) -> None:
     """The rate is the same if the nodes lie elsewhere, and pressure, traction and slip are as before.
 
@@ -267,7 +268,7 @@ def strips_wear_as_lines_do(law: Law, contact: Contact) -> None:
     assert_close(rate, law.rate(line, law.numbers), "the rate on strips, against a line")
 
 
-@rule(Law, applies=lambda law: law.outcome.of != "patch")
+@rule(Law, applies=has_rates_at_nodes)
 def is_monotone_as_declared(law: Law) -> None:
     """The rate never falls when a variable in `monotone_in` grows, from anywhere to anywhere, over all decades.
 
@@ -298,7 +299,7 @@ def _grown(contact: Contact, name: str, factor: float) -> Contact:
     return aimed(contact, name, at_nodes(contact, name) * factor)
 
 
-@rule(Law, applies=lambda law: law.outcome.of != "patch")
+@rule(Law, applies=has_rates_at_nodes)
 def declared_names_are_variables(law: Law) -> None:
     """`breakpoints`, `jumps`, `monotone_in` and `valid_range` name variables of a contact, with finite values.
 

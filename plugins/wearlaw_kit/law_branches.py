@@ -12,7 +12,16 @@ from wearlaw.contact.contact import PATCH_VARIABLES, Contact
 from wearlaw.models.law import BreakpointMap, Law
 from wearlaw_kit.bisection import Indices, find_jumps, find_kinks, lost_digits
 from wearlaw_kit.examples import SAME, assert_close
-from wearlaw_kit.law_contacts import VALUES, aimed, at_nodes, forward, random_contacts, retotalled, with_totals
+from wearlaw_kit.law_contacts import (
+    VALUES,
+    aimed,
+    at_nodes,
+    forward,
+    has_rates_at_nodes,
+    random_contacts,
+    retotalled,
+    with_totals,
+)
 from wearlaw_kit.rules import rule
 
 PATHS = 64
@@ -24,11 +33,6 @@ KINK = 1e-4
 AT_JUMP = 1e-10
 """Relative distance up to which a jump counts as declared: a position on a path that spans ten
 decades is known to 23 times rounding."""
-
-
-def at_nodes_of_the_patch(law: Law) -> bool:
-    """Return whether a law has a rate for each node, and no single value for the patch."""
-    return bool(law.outcome.of != "patch")
 
 
 class _Paths:
@@ -73,7 +77,7 @@ class _Paths:
         raise AssertionError(f"{what}, at {at} in SI units")
 
 
-@rule(Law, applies=at_nodes_of_the_patch)
+@rule(Law, applies=has_rates_at_nodes)
 def rate_jumps_only_where_declared(law: Law) -> None:
     """Between any two contacts the rate is continuous, except where a variable passes a value in `jumps`."""
     paths, jumps = _Paths(law), law.jumps(law.numbers)
@@ -82,7 +86,7 @@ def rate_jumps_only_where_declared(law: Law) -> None:
         paths.assert_declared(jumps, path, (share, share), what)
 
 
-@rule(Law, applies=lambda law: at_nodes_of_the_patch(law) and law.breakpoints(law.numbers) is not None)
+@rule(Law, applies=lambda law: has_rates_at_nodes(law) and law.breakpoints(law.numbers) is not None)
 def rate_has_kinks_only_where_declared(law: Law) -> None:
     """Where a law declares its `breakpoints`, its slope is continuous everywhere else.
 
@@ -96,7 +100,7 @@ def rate_has_kinks_only_where_declared(law: Law) -> None:
         paths.assert_declared(breakpoints, path, (low, high), what)
 
 
-@rule(Law, applies=lambda law: at_nodes_of_the_patch(law) and law.ramps(law.numbers) is not None)
+@rule(Law, applies=lambda law: has_rates_at_nodes(law) and law.ramps(law.numbers) is not None)
 def ramps_sum_to_the_rate(law: Law) -> None:
     """The ramps are the law: Σ slope · max(q·s - threshold, 0), with thresholds at zero or at breakpoints."""
     ramps = law.ramps(law.numbers) or ()

@@ -55,6 +55,11 @@ LINES, AXES = (1, 3, 8), ((3, 1), (4, 3), (5, 4))
 """Numbers of nodes on a line, and along a strip and of strips."""
 
 
+def has_rates_at_nodes(law: Law) -> bool:
+    """Return whether a law has a rate for each node, and no single value for the patch."""
+    return bool(law.outcome.of != "patch")
+
+
 def borders(law: Law) -> tuple[Border, ...]:
     """Return where a law branches, the wear index last, since the values at the nodes change it.
 

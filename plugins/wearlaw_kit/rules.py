@@ -54,13 +54,8 @@ RULES: list[Rule] = []
 """All rules, in the order in which they are checked."""
 
 
-def any_model(model: Any) -> bool:  # noqa: ARG001
-    """Return that a rule is one for all models of its kind."""
-    return True
-
-
 def rule(
-    kind: type, *claims: str, applies: Applies = any_model, always: bool = False, first: bool = False
+    kind: type, *claims: str, applies: Applies = lambda _: True, always: bool = False, first: bool = False
 ) -> Callable[[F], F]:
     """Return a decorator that registers a check of models of a kind.
 

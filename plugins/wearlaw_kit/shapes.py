@@ -27,7 +27,7 @@ from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactMo
 from wearlaw.numerics.staged import staged
 from wearlaw_kit.examples import SAME, assert_close, failing, for_each
 from wearlaw_kit.reduced import friction_limit, in_strips, lever, random_ellipses, random_lines, wide_ellipses
-from wearlaw_kit.rules import Applies, any_model, rule
+from wearlaw_kit.rules import Applies, rule
 
 PANELS = 64
 """Panels of a zone: on 48 lines, every part of the patch that is longer than a thousandth of it has nodes."""
@@ -144,7 +144,7 @@ def of_stage(stage: Stage, points: int) -> list[tuple[ContactModel, Problem]]:
 
 
 def on_shapes(
-    *shapes: Shape, claims: tuple[str, ...] = (), applies: Applies = any_model, **options: bool
+    *shapes: Shape, claims: tuple[str, ...] = (), applies: Applies = lambda _: True, **options: bool
 ) -> Callable[[Callable[[ContactModel, Shape], None]], Callable[[ContactModel], None]]:
     """Return a decorator that registers a check of a model on a shape, on those of these which the model solves.
 

@@ -47,16 +47,10 @@ CONICITY = "equivalent_conicity"
 
 
 class Limits:
-    """Limits that end a life: those of measures, and the distance.
+    """Limits that end a life: those of measures, as in `wear_out`, and the distance in the unit of its column.
 
-    Parameters
-    ----------
-    until : mapping
-        As in `wear_out`; a measure that each side has for itself ends the life with the first side.
-    over : float
-        The distance, in the unit of its column.
-    start : mapping of str to float
-        Measures at the start by their columns, the distance first.
+    `start` has the measures at the start by their columns, the distance first. A measure that each side has for itself
+    ends the life with the first side.
     """
 
     def __init__(self, until: Mapping[str, wl.QuantityLike | float], over: float, start: Mapping[str, float]) -> None:

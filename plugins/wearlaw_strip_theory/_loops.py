@@ -106,6 +106,20 @@ def between(place: Number, table: Array) -> tuple[Number, Number]:
     return first[at] + share * (first[at + 1] - first[at]), second[at] + share * (second[at + 1] - second[at])
 
 
+def slipping(strip: tuple[Number, ...], cosine: float, half_x: Number, half_y: Number) -> tuple[Number, ...]:
+    """Return x, the bound, the direction of the traction and the slip along it, at x = 1 - V - V cos β.
+
+    The traction has half the angle of (half_x, half_y).
+    """
+    along, across, turning, k_x, k_y, v, n_x, n_y = strip
+    k, p = shape(k_x, k_y, turning, n_x, n_y)
+    behind = v * (1.0 + cosine)
+    w_y = across - turning * (1.0 - behind)
+    q_x, q_y = direction(half_x, half_y)
+    slip = along * q_x + w_y * q_y - taken_up(k, p, v, behind, cosine)
+    return 1.0 - behind, root(behind * (2.0 - behind)), q_x, q_y, slip
+
+
 ROWS, NODES = "float64[:, ::1]", "float64[:, :, ::1]"
 
 
@@ -163,13 +177,9 @@ def slip_loop(strips: Array, table: Array, half: Array, decay: Array, lagging: A
             to_x[i], to_length[i] = more * half_x[i] + other * half_y[i], less * half_y[i] + other * half_x[i]
         for i in range(v.size):
             half_x[i], half_y[i] = to_x[i], to_length[i]
-            k, p = shape(k_x[i], k_y[i], turning[i], n_x[i], n_y[i])
-            behind = v[i] * (1.0 + cosine)
-            w_y = across[i] - turning[i] * (1.0 - behind)
-            bound = root(behind * (2.0 - behind))
-            q_x, q_y = direction(half_x[i], half_y[i])
+            strip = along[i], across[i], turning[i], k_x[i], k_y[i], v[i], n_x[i], n_y[i]
+            _, bound, q_x, q_y, to_slip[i] = slipping(strip, cosine, half_x[i], half_y[i])
             to_bound[i], to_q_x[i], to_q_y[i] = bound, bound * q_x, bound * q_y
-            to_slip[i] = along[i] * q_x + w_y * q_y - taken_up(k, p, v[i], behind, cosine)
         for i in range(v.size):
             to_x[i], to_length[i] = 1.0 - v[i] * (1.0 + cosine), v[i] * length
 
@@ -200,15 +210,12 @@ def sum_loop(
             more, less, other = turn(along[i], lags[i], decays[i])
             next_x, next_y = more * half_x[i] + other * half_y[i], less * half_y[i] + other * half_x[i]
             half_x[i], half_y[i] = next_x, next_y
-            k, p = shape(k_x[i], k_y[i], turning[i], n_x[i], n_y[i])
-            behind = v[i] * (1.0 + cosine)
-            w_y = across[i] - turning[i] * (1.0 - behind)
-            q_x, q_y = direction(next_x, next_y)
-            slips = along[i] * q_x + w_y * q_y - taken_up(k, p, v[i], behind, cosine)
-            share = v[i] * length * root(behind * (2.0 - behind))
+            strip = along[i], across[i], turning[i], k_x[i], k_y[i], v[i], n_x[i], n_y[i]
+            x, bound, q_x, q_y, slips = slipping(strip, cosine, next_x, next_y)
+            share = v[i] * length * bound
             to_x[i] += share * q_x
             to_y[i] += share * q_y
-            to_turning[i] += share * (1.0 - behind) * q_y
+            to_turning[i] += share * x * q_y
             least[i] = min(least[i], slips)
 
 

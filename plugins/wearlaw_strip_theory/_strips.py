@@ -198,11 +198,9 @@ def _slip(rows: Array, table: Array, nodes: Array, stick_nodes: int) -> None:
     halves = np.empty_like(keeps)
     for at in range(len(table)):
         half = np.add(keeps[at] * half, other[at] * half[::-1], out=halves[at])
-    q_x, q_y = loops.direction(halves[:, 0], halves[:, 1])
     to = nodes[:, stick_nodes:]
-    to[0], to[1], to[2] = x, v * length, np.sqrt(behind * (2.0 - behind))
-    to[3], to[4] = to[2] * q_x, to[2] * q_y
-    to[5] = along * q_x + w_y * q_y - loops.taken_up(k, p, v, behind, cosine)
+    to[0], to[2], q_x, q_y, to[5] = loops.slipping(tuple(rows), cosine, halves[:, 0], halves[:, 1])
+    to[1], to[3], to[4] = v * length, to[2] * q_x, to[2] * q_y
 
 
 def _steps(rows: Array, table: Array) -> tuple[Array, Array, Array]:

@@ -321,9 +321,7 @@ def _columns(text: str, units: str, sep: str | None, decimal: str) -> Points:
 
 
 def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
-    """Write points to a file whose ending gives its format, whole or not at all.
-
-    Coordinates are written in mm with nine decimals.
+    """Write points in mm with nine decimals to a file whose ending gives its format, whole or not at all.
 
     Raises
     ------

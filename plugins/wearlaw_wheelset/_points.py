@@ -36,14 +36,7 @@ Name = Callable[[int], str]
 
 
 def check_points(y: Array, z: Array, name: Name) -> None:
-    """Raise an error if points cannot be joined to one profile.
-
-    Parameters
-    ----------
-    y, z : ndarray of float64, shape (n,)
-        The points [m], in their order along the profile.
-    name : callable
-        Returns the name of a point from its index.
+    """Raise an error if points [m] cannot be joined to one profile in their order; `name` names a point by its index.
 
     Raises
     ------

@@ -44,13 +44,6 @@ class Ends(Own):
         raise SystemExit(0)
 
 
-class Pairs(Own):
-    """A wrong law: its rates have an axis too many."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-        return super().rate(contact, p)[..., None]
-
-
 def checked(install_model: InstallModel, law: type[wl.WearLaw], *options: str) -> tuple[list[str], int]:
     """Return the lines that the check of a law of one's own prints, and the exit code."""
     install_model(law)
@@ -84,13 +77,6 @@ def test_a_failed_check_says_why_and_the_others_go_on(
     assert any(line.startswith(f"FAILED {check}: ") and reason in line for line in lines)
     assert lines.index("ok declared_names_are_variables") > 0
     assert re.fullmatch(r"\d+ ok, \d+ failed, 1 not claimed", lines[-1])
-
-
-def test_after_a_wrong_shape_all_checks_fail_with_its_message(install_model: InstallModel) -> None:
-    lines, _ = checked(install_model, Pairs)
-    failures = {line.partition(": ")[2] for line in lines if line.startswith("FAILED")}
-    assert len(failures) == 1
-    assert failures.pop().startswith("rates of shape ")
 
 
 def test_an_expected_failure_is_counted_apart_and_a_failure_once_it_passes(install_model: InstallModel) -> None:

@@ -14,19 +14,17 @@ import wearlaw as wl
 from tests.plugins.kit.cells import Cells
 from tests.plugins.kit.strips import Strips
 from tests.plugins.kit.wrong_contacts import Wrapped, changed
-from tests.plugins.kit.wrong_declarations import NoReason, UnknownClaim
-from tests.plugins.kit.wrong_laws import Linear, Raises, WrongSign
+from tests.plugins.kit.wrong_laws import OF_RATE, Linear, NoReason, UnknownClaim
 from tests.plugins.kit.wrong_rigs import Weight
 from tests.plugins.kit.wrong_stages import Lubricated
 from wearlaw_kit import checks, conformance
 from wearlaw_kit.rules import RULES  # private: all claims, whatever the model
 
 SUITE = """
-from tests.plugins.kit.wrong_declarations import HottestNode
-from tests.plugins.kit.wrong_laws import Linear, Offset, WrongSign
+from tests.plugins.kit.wrong_laws import OF_RATE, HottestNode, Linear
 from wearlaw_kit import conformance
 
-@conformance(WrongSign(), expected_failures={"rate_is_never_negative": "material grows"})
+@conformance(OF_RATE["WrongSign"](), expected_failures={"rate_is_never_negative": "material grows"})
 def test_known(check):
     check()
 
@@ -34,7 +32,7 @@ def test_known(check):
 def test_unknown(check):
     check()
 
-@conformance(Offset())
+@conformance(OF_RATE["Offset"]())
 def test_wrong(check):
     check()
 
@@ -111,7 +109,7 @@ def test_what_must_hold_for_any_model_cannot_be_exempt(base: Any, name: str) -> 
 
 
 def test_checks_are_named_documented_and_frozen() -> None:
-    found = list(checks(WrongSign()))
+    found = list(checks(OF_RATE["WrongSign"]()))
     assert len({check.name for check in found}) == len(found)
     assert all(check.name.isidentifier() and check.doc for check in found)
     with pytest.raises(AttributeError):
@@ -162,7 +160,7 @@ def test_after_a_wrong_shape_no_other_check_is_run_which_might_fill_the_memory()
 
 
 def test_a_model_that_raises_has_no_wrong_shape() -> None:
-    found = {check.name: check for check in checks(Raises())}
+    found = {check.name: check for check in checks(OF_RATE["Raises"]())}
     with pytest.raises(AssertionError, match="the model raised ZeroDivisionError: no slip"):
         found["no_slip_no_wear"]()
     found["declared_names_are_variables"]()

@@ -18,8 +18,6 @@ from tests.plugins.kit import (
     cells,
     strips,
     wrong_contacts,
-    wrong_declarations,
-    wrong_law_nodes,
     wrong_laws,
     wrong_rigs,
     wrong_stages,
@@ -28,15 +26,13 @@ from wearlaw_kit import Check, checks, conformance
 
 WRONG: dict[Any, str] = {
     **wrong_laws.CAUGHT,
-    **wrong_declarations.CAUGHT,
-    **wrong_law_nodes.CAUGHT,
     **wrong_contacts.CAUGHT,
     **wrong_rigs.CAUGHT,
     **wrong_stages.CAUGHT,
 }
 
 
-RIGHT_LAWS: list[Any] = [wrong_declarations.Ramps(), wl.wear_law("brr"), wl.wear_law("kth")]
+RIGHT_LAWS: list[Any] = [wrong_laws.Ramps(), wl.wear_law("brr"), wl.wear_law("kth")]
 RIGHT_RIGS: list[Any] = [wrong_rigs.Weight()]
 RIGHT_STAGES: list[Any] = [wrong_stages.Lubricated()]
 RIGHT_ON: dict[str, list[Any]] = {
@@ -80,8 +76,8 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any) -> Non
     with pytest.raises(AssertionError) as failure:
         check()
     assert len(str(failure.value)) > 10
-    raised = re.search(r"the model raised (?!ModelError)", str(failure.value))
-    assert bool(raised) == (mutant is wrong_laws.Raises), failure.value  # else it would be an error of the kit
+    raised = "the model raised" in str(failure.value)
+    assert raised == (mutant.__name__ == "Raises"), failure.value  # else it would be an error of the kit
     if check.name in ON_EACH_SHAPE and issubclass(mutant, wl.ContactModel):
         assert str(failure.value).startswith(tuple(BEGINS[shape] for shape in mutant.geometries()))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, ClassVar, NotRequired, TypedDict, Unpack
 
 import numpy as np
@@ -59,54 +59,53 @@ class Delegating(wl.Rig):
         return rig.problem(**conditions)
 
 
-class Changed(Weight):
-    """Numbers of the right problem changed."""
-
-    def problem(self, **conditions: Any) -> Any:
-        problem = super().problem(**conditions)
-        return dataclasses.replace(problem, **self.changed(problem))
-
-    @classmethod
-    def conditions(cls) -> Mapping[str, wl.Condition]:
-        return Weight.conditions()
-
-    def changed(self, problem: Any) -> dict[str, Any]:
-        raise NotImplementedError
+def divided_by_creepage(problem: wl.Problem) -> Any:
+    with np.errstate(invalid="ignore"):
+        return problem.rolling_speed * (problem.creepage / problem.creepage)
 
 
-class NoFriction(Changed):
-    """Friction of zero."""
+CHANGES: dict[str, tuple[str, str, Callable[[wl.Problem], Any]]] = {
+    "NoFriction": (
+        "problem_is_finite_and_positive",
+        "friction_coefficient",
+        lambda problem: 0.0 * problem.friction_coefficient,
+    ),
+    "MeanInsteadOfMaximum": ("pressure_carries_the_load", "max_pressure", lambda p: p.max_pressure * np.pi / 4.0),
+    "SpeedWithoutBatch": ("problem_has_the_shape_of_the_conditions", "rolling_speed", lambda _: np.array(1.0)),
+    "HalfTheDigits": (
+        "problem_has_the_shape_of_the_conditions",
+        "rolling_speed",
+        lambda problem: problem.rolling_speed.astype(np.float32),
+    ),
+    "FrictionInSinglePrecision": (
+        "problem_is_in_double_precision",
+        "friction_coefficient",
+        lambda problem: problem.friction_coefficient.astype(np.float32).astype(np.float64),
+    ),
+    "MeanOfTheBatch": (
+        "arrays_equal_single_calls",
+        "friction_coefficient",
+        lambda problem: np.full(problem.batch_shape, np.mean(problem.friction_coefficient)),
+    ),
+    "CreepageFromZero": ("creepage_is_proportional_to_its_condition", "rolling_speed", divided_by_creepage),
+    "MagnitudeOfCreepage": (
+        "creepage_is_proportional_to_its_condition",
+        "longitudinal_creepage",
+        lambda problem: np.abs(problem.creepage),
+    ),
+}
+"""Rigs whose problem is right but for one number: the check that must catch them, and the number."""
 
-    def changed(self, problem: Any) -> dict[str, Any]:
-        return {"friction_coefficient": 0.0 * problem.friction_coefficient}
 
+def changed(name: str, field: str, number: Callable[[wl.Problem], Any]) -> Any:
+    """Return the class of a rig with another number in its problem."""
 
-class ForceInsteadOfPressure(Changed):
-    """The mean pressure in place of the maximum."""
+    def problem(self: Any, **conditions: Any) -> Any:
+        right = Weight.problem(self, **conditions)
+        return dataclasses.replace(right, **{field: number(right)})
 
-    def changed(self, problem: Any) -> dict[str, Any]:
-        return {"max_pressure": problem.max_pressure * np.pi / 4.0}
-
-
-class SpeedWithoutBatch(Changed):
-    """One rolling speed for all points."""
-
-    def changed(self, problem: Any) -> dict[str, Any]:
-        return {"rolling_speed": np.array(1.0)}
-
-
-class SinglePrecision(Changed):
-    """A rolling speed of half the digits."""
-
-    def changed(self, problem: Any) -> dict[str, Any]:
-        return {"rolling_speed": problem.rolling_speed.astype(np.float32)}
-
-
-class FrictionInSinglePrecision(Changed):
-    """Friction of half the digits, in an array of double precision."""
-
-    def changed(self, problem: Any) -> dict[str, Any]:
-        return {"friction_coefficient": problem.friction_coefficient.astype(np.float32).astype(np.float64)}
+    methods = {"problem": problem, "conditions": classmethod(lambda _: Weight.conditions())}
+    return type(name, (Weight,), {**methods, "__module__": __name__, "__doc__": f"Wrong in {field}."})
 
 
 class ArmInOtherUnits(Weight):
@@ -131,33 +130,10 @@ class DensityOfSteel(Weight):
         return {"disc_1": wl.Body(self.material, 0.05)}
 
 
-class MeanOfTheBatch(Changed):
-    """Friction is the mean over all points."""
-
-    def changed(self, problem: Any) -> dict[str, Any]:
-        friction = problem.friction_coefficient
-        return {"friction_coefficient": np.full(friction.shape, np.mean(friction))}
-
-
 class OtherCreepage(Weight):
     """Names a condition that there is not."""
 
     creepage: ClassVar[str] = "slip_ratio"
-
-
-class CreepageFromZero(Changed):
-    """Divides by the creepage."""
-
-    def changed(self, problem: Any) -> dict[str, Any]:
-        with np.errstate(invalid="ignore"):
-            return {"rolling_speed": problem.rolling_speed * (problem.creepage / problem.creepage)}
-
-
-class MagnitudeOfCreepage(Changed):
-    """Creepage without its sign."""
-
-    def changed(self, problem: Any) -> dict[str, Any]:
-        return {"longitudinal_creepage": np.abs(problem.creepage)}
 
 
 class TakesBareNumbers(Weight):
@@ -259,18 +235,11 @@ class OnStrips(wl.Rig):
         return problem.replaced(normal_force=problem.strips.normal_force.sum(axis=-1))
 
 
-CAUGHT: dict[type[wl.Rig], str] = {
-    NoFriction: "problem_is_finite_and_positive",
-    ForceInsteadOfPressure: "pressure_carries_the_load",
-    SpeedWithoutBatch: "problem_has_the_shape_of_the_conditions",
-    SinglePrecision: "problem_has_the_shape_of_the_conditions",
-    FrictionInSinglePrecision: "problem_is_in_double_precision",
+CAUGHT: dict[Any, str] = {
+    **{changed(name, field, number): check for name, (check, field, number) in CHANGES.items()},
     ArmInOtherUnits: "units_of_parameters_do_not_matter",
     DensityOfSteel: "bodies_are_those_of_the_problem",
-    MeanOfTheBatch: "arrays_equal_single_calls",
     OtherCreepage: "conditions_are_declared",
-    CreepageFromZero: "creepage_is_proportional_to_its_condition",
-    MagnitudeOfCreepage: "creepage_is_proportional_to_its_condition",
     TakesBareNumbers: "units_of_conditions_are_checked",
     TakesBarePreloads: "units_of_conditions_are_checked",
     NumberWithoutUnit: "units_of_conditions_do_not_matter",

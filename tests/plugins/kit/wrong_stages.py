@@ -24,24 +24,36 @@ class Lubricated(wl.Stage):
         return problem.replaced(friction_coefficient=self.share * problem.friction_coefficient)
 
 
-class OfTheBatch(Lubricated):
-    """Friction that depends on the other operating points."""
-
-    name: ClassVar[str] = "of_the_batch"
-
-    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
-        share = 1.0 / (1.0 + np.ptp(problem.friction_coefficient))
-        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
+def divided_by_creepage(problem: wl.Problem) -> Any:
+    with np.errstate(all="ignore"):
+        return problem.longitudinal_creepage / problem.longitudinal_creepage * problem.friction_coefficient
 
 
-class Sided(Lubricated):
-    """Less friction forwards than backwards."""
+WRONG_FRICTIONS: dict[str, tuple[str, Callable[[wl.Problem], Any]]] = {
+    "OfTheBatch": (
+        "points_are_independent",
+        lambda problem: problem.friction_coefficient / (1.0 + np.ptp(problem.friction_coefficient)),
+    ),
+    "Sided": (
+        "opposite_creepages_have_opposite_forces",  # less forwards than backwards
+        lambda problem: np.where(problem.longitudinal_creepage > 0.0, 0.5, 1.0) * problem.friction_coefficient,
+    ),
+    "AtRest": ("contact_is_finite", divided_by_creepage),
+    "HalfTheDigits": (
+        "contact_is_in_double_precision",
+        lambda problem: problem.friction_coefficient.astype(np.float32).astype(np.float64),
+    ),
+}
+"""Friction after wrong stages by their names, each with the check that must catch it."""
 
-    name: ClassVar[str] = "sided"
 
-    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
-        share = np.where(problem.longitudinal_creepage > 0.0, 0.5, 1.0)
-        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
+def of_friction(name: str, friction: Callable[[wl.Problem], Any]) -> Any:
+    """Return the class of a stage with another friction than the right one."""
+
+    def altered(self: Any, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:  # noqa: ARG001
+        return problem.replaced(friction_coefficient=friction(problem))
+
+    return type(name, (Lubricated,), {"altered": altered, "__module__": __name__, "__doc__": "Wrong."})
 
 
 class Reversed(Lubricated):
@@ -66,17 +78,6 @@ class Forgets(Lubricated):
         return problem[:1]
 
 
-class AtRest(Lubricated):
-    """Divides by the creepage."""
-
-    name: ClassVar[str] = "at_rest"
-
-    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
-        with np.errstate(all="ignore"):
-            share = problem.longitudinal_creepage / problem.longitudinal_creepage
-        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
-
-
 class Film(Lubricated):
     """Friction that falls with the thickness of a film, whose number is read as millimetres."""
 
@@ -98,16 +99,6 @@ class Slower(Lubricated):
 
     def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
         return problem.replaced(rolling_speed=problem.rolling_speed + float(self.speed.magnitude))
-
-
-class HalfTheDigits(Lubricated):
-    """Friction in single precision."""
-
-    name: ClassVar[str] = "half_the_digits"
-
-    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
-        friction = self.share * problem.friction_coefficient.astype(np.float32)
-        return problem.replaced(friction_coefficient=friction.astype(np.float64))
 
 
 class Damage(wl.Law):
@@ -286,14 +277,11 @@ RIGHT: list[Any] = [
 """Stages and laws that pass."""
 
 CAUGHT: dict[Any, str] = {
-    OfTheBatch: "points_are_independent",
-    Sided: "opposite_creepages_have_opposite_forces",
+    **{of_friction(name, friction): check for name, (check, friction) in WRONG_FRICTIONS.items()},
     Reversed: "contact_does_not_gain_energy",
     Forgets: "pipelines_take_the_contact",
-    AtRest: "contact_is_finite",
     Film: "units_of_parameters_do_not_matter",
     Slower: "units_of_parameters_do_not_matter",
-    HalfTheDigits: "contact_is_in_double_precision",
     ReadsItself: "parameters_may_vary",
     Unsigned: "rate_is_never_negative",
     PlainMean: "listing_of_nodes_does_not_matter",

@@ -127,6 +127,15 @@ def interrupted_after(blocks: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Bar, "__call__", advance)
 
 
+def told(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Return a list that will hold the numbers of points of which the progress bar is told."""
+    from wearlaw_sweeps.progress import Bar  # private: what is told on the way
+
+    found: list[int] = []
+    monkeypatch.setattr(Bar, "__call__", lambda _, points: found.append(points))
+    return found
+
+
 def contents(folder: Path) -> dict[str, bytes]:
     """Return all files below a folder."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}

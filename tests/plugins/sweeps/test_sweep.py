@@ -56,23 +56,6 @@ HEADS = {
 }
 
 
-def of_xarray() -> xr.Dataset:
-    units = {"creepage": "%", "max_pressure": "MPa", "friction_coefficient": ""}
-    columns = zip(units.items(), HEADS.values(), strict=True)
-    return xr.Dataset({name: ("test", values, {"units": unit}) for (name, unit), values in columns})
-
-
-@pytest.mark.parametrize("make", [lambda: pd.DataFrame(HEADS), of_xarray])
-def test_a_table_is_taken_row_by_row(make: Any) -> None:
-    predict = predictor()
-    ds = wl.sweep(predict, make())
-    r = predict(
-        creepage=Q([1, 2, 5], "%"), max_pressure=Q([900, 1000, 1200], "MPa"), friction_coefficient=[0.3, 0.4, 0.5]
-    )
-    assert (abs(ds.wear_rate.to_numpy() - r.wear_rate.magnitude) <= 2 * r.wear_rate_error.magnitude).all()
-    assert len(ds.dims) == 1
-
-
 def test_a_table_keeps_the_names_of_its_rows_and_takes_conditions_for_all_of_them() -> None:
     table = pd.DataFrame(HEADS, index=pd.Index(["a", "b", "c"], name="test")).drop(columns="friction_coefficient")
     ds = wl.sweep(predictor(), table, friction_coefficient=0.4)

@@ -13,7 +13,7 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.core.axles import CREEP, GIVEN, KTH, Axle, Warns, Worn, lifted, of
-from tests.plugins.sweeps.sweeps import interrupted_after
+from tests.plugins.sweeps.sweeps import interrupted_after, told
 from tests.strategies import EPS
 from wearlaw import Q
 
@@ -69,26 +69,20 @@ def test_a_resumed_sweep_has_the_same_bytes(workers: int, tmp_path: Path, monkey
             wl.sweep(pipeline(), **given, store=tmp_path / "resumed.zarr", workers=workers)
     left = xr.open_zarr(tmp_path / "resumed.zarr", chunks=None, consolidated=False)
     assert left.wear_rate.dims == DIMS
-    told: list[int] = []
-    monkeypatch.setattr(
-        "wearlaw_sweeps.progress.Bar.__call__", lambda _, points: told.append(points)
-    )  # private: what is told on the way
+    points = told(monkeypatch)
     with pytest.warns(wl.ResumeWarning):
         resumed = wl.sweep(pipeline(), **given, store=tmp_path / "resumed.zarr", workers=workers, resume=True)
-    assert told[0] > 0
-    assert sum(told) == 40
+    assert points[0] > 0
+    assert sum(points) == 40
     xr.testing.assert_identical(resumed.load(), wl.sweep(pipeline(), **given))
 
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_progress_counts_operating_points(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    told: list[int] = []
-    monkeypatch.setattr(
-        "wearlaw_sweeps.progress.Bar.__call__", lambda _, points: told.append(points)
-    )  # private: what is told on the way
+    points = told(monkeypatch)
     wl.sweep(pipeline(), **AXES, workers=workers)
-    assert sum(told) == 40
-    assert len([points for points in told if points]) > 5
+    assert sum(points) == 40
+    assert len([some for some in points if some]) > 5
 
 
 class Lifting(Axle):

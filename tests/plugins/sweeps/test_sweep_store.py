@@ -16,13 +16,12 @@ from typing import Any
 
 import filelock
 import numpy as np
-import pandas as pd
 import pytest
 import xarray as xr
 from matplotlib import pyplot as plt
 
 import wearlaw as wl
-from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, held, interrupted_after, predictor
+from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, contents, held, interrupted_after, predictor, told
 from wearlaw import Q
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -47,10 +46,6 @@ def flip(path: Path, at: int) -> None:
     content = bytearray(path.read_bytes())
     content[at] ^= 0x10
     path.write_bytes(content)
-
-
-def files(folder: Path) -> dict[str, bytes]:
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def test_a_store_holds_the_results_and_is_read_when_used(tmp_path: Path) -> None:
@@ -82,10 +77,7 @@ def test_a_resumed_sweep_gives_the_same_as_an_uninterrupted_one(
     workers: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     interrupted(tmp_path / "map.zarr", monkeypatch, workers)
-    advances: list[int] = []
-    monkeypatch.setattr(
-        "wearlaw_sweeps.progress.Bar.__call__", lambda _, points: advances.append(points)
-    )  # private: what is told on the way
+    advances = told(monkeypatch)
     with pytest.warns(wl.ResumeWarning, match=r"\d of 10 blocks are kept in '.*map.zarr'; the others are"):
         resumed = wl.sweep(held(tmp_path / "gate"), **GIVEN, store=tmp_path / "map.zarr", workers=workers, resume=True)
     assert advances[0] >= 3 * 24  # not computed again
@@ -141,10 +133,10 @@ CHANGES: list[tuple[dict[str, Any], str]] = [
 def test_other_conditions_or_outputs_are_refused(changes: dict[str, Any], message: str, tmp_path: Path) -> None:
     store = tmp_path / "map.zarr"
     wl.sweep(predictor(), **GIVEN, store=store)
-    before = files(tmp_path)
+    before = contents(tmp_path)
     with pytest.raises(wl.OutputError, match=message):
         wl.sweep(predictor(), **{**GIVEN, **changes}, store=store, resume=True)
-    assert files(tmp_path) == before
+    assert contents(tmp_path) == before
 
 
 def test_another_law_or_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -165,25 +157,13 @@ def test_another_law_or_version_is_refused(tmp_path: Path, monkeypatch: pytest.M
         wl.sweep(predict, **GIVEN, store=store, resume=True)
 
 
-def test_a_table_with_another_number_is_refused(tmp_path: Path) -> None:
-    table = tmp_path / "run.csv"
-    creepages = np.linspace(1.0, 2.0, 50)
-    given: dict[str, Any] = {"normal_force": "5 kN", "friction_coefficient": 0.3, "store": tmp_path / "map.zarr"}
-    pd.DataFrame({"creepage [%]": creepages}).to_csv(table)
-    wl.sweep(predictor(), table, columns={"creepage": "creepage"}, **given)
-    creepages[20] *= 1.001
-    pd.DataFrame({"creepage [%]": creepages}).to_csv(table)
-    with pytest.raises(wl.OutputError, match=r"conditions\.creepage: was 50 values.* SHA-256"):
-        wl.sweep(predictor(), table, columns={"creepage": "creepage"}, **given, resume=True)
-
-
 def test_what_is_in_the_way_is_refused_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     wl.sweep(predictor(), **GIVEN, store=tmp_path / "finished.zarr")
     interrupted(tmp_path / "unfinished.zarr", monkeypatch)
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "thesis.txt").touch()
     (tmp_path / "file").touch()
-    before = files(tmp_path)
+    before = contents(tmp_path)
     for name, resume in (
         ("finished.zarr", False),
         ("unfinished.zarr", False),
@@ -194,7 +174,7 @@ def test_what_is_in_the_way_is_refused_and_kept(tmp_path: Path, monkeypatch: pyt
     ):
         with pytest.raises(wl.OutputError, match=name.partition("/")[0]):
             wl.sweep(predictor(), **GIVEN, store=tmp_path / name, resume=resume)
-    assert files(tmp_path) == before
+    assert contents(tmp_path) == before
 
 
 @pytest.mark.parametrize("resume", [False, True])

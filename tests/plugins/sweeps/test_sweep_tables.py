@@ -14,7 +14,7 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.core.axles import KTH, Axle
-from tests.plugins.sweeps.sweeps import interrupted_after, predictor
+from tests.plugins.sweeps.sweeps import interrupted_after, predictor, told
 from wearlaw import Q
 from wearlaw_sweeps import points  # private: small blocks
 
@@ -234,10 +234,7 @@ def test_an_interrupted_sweep_over_a_file_is_resumed(tmp_path: Path, monkeypatch
         interrupted_after(3, patched)  # the first of which is reading the file
         with pytest.raises(KeyboardInterrupt):
             swept(tmp_path / "run.csv", store=tmp_path / "map.zarr")
-    seen: list[int] = []
-    monkeypatch.setattr(
-        "wearlaw_sweeps.progress.Bar.__call__", lambda _, points: seen.append(points)
-    )  # private: what is told on the way
+    seen = told(monkeypatch)
     with pytest.warns(wl.ResumeWarning):
         resumed = swept(tmp_path / "run.csv", store=tmp_path / "map.zarr", resume=True)
     assert 0 < seen[1] < ROWS  # done before, and not again
