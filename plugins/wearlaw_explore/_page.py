@@ -114,6 +114,7 @@ class Page:
 
     def __init__(self, subject: Subject, given: Mapping[str, Any]) -> None:
         self.subject, self.start = subject, subject.conditions(given)
+        subject.rig.checked_problem(self.start)  # an error of what is given, before there is a page with notes
         sliders = {name: slider(subject.rig, name, value) for name, value in self.start.items()}
         self.sliders = {name: one for name, one in sliders.items() if one is not None}
         self.model = pn.widgets.Select(label="Contact model", options=[*subject.models], **STRETCHED)
@@ -225,7 +226,7 @@ def explore(predict: Any, /, **conditions: Any) -> Any:
     Raises
     ------
     InputError
-        If `predict` is no pipeline.
+        If `predict` is no pipeline, or a condition is wrong.
     """
     expect_pipeline(predict)
     pn.extension("plotly", inline=True)
@@ -241,7 +242,7 @@ def explore(predict: Any, /, **conditions: Any) -> Any:
 @click.option("--port", default=0, help="Port of the page [default: a free one].")
 @click.option("--browser/--no-browser", default=True, help="Whether to open a browser.")
 def command(rig: str, laws: tuple[str, ...], conditions: tuple[str, ...], port: int, browser: bool) -> None:
-    """Explore a rig on a local page: RIG is an installed rig or a case.
+    """Explore a rig on a local page: RIG is an installed rig, such as wheelset, or a case.
 
     \b
     wearlaw explore

@@ -190,7 +190,7 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
         look: dict[str, Any] = {"edgecolors": "face", "linewidths": 0.3}  # no seams between cells
         drawn_cells = PolyCollection([*cells(prediction)], array=fields[variable].values.ravel(), **look)
         axes.add_collection(drawn_cells)
-        axes.figure.colorbar(drawn_cells, ax=axes, label=_label(fields[variable]))
+        axes.figure.colorbar(drawn_cells, ax=axes, shrink=0.8, label=_label(fields[variable]))
         axes.autoscale_view()
         axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
         return axes

@@ -207,6 +207,14 @@ def test_errors_are_notes_and_a_load_replaces_the_other() -> None:
     assert "max_pressure" not in named("twin_disc").conditions({"normal_force": "7 m"})
 
 
+@pytest.mark.parametrize(
+    ("given", "error"), [({"normal_force": "7 m"}, wl.UnitError), ({"mu": 0.3}, wl.ConditionsError)]
+)
+def test_a_wrong_start_value_is_an_error_before_the_page_opens(given: dict[str, Any], error: type[Exception]) -> None:
+    with pytest.raises(error, match=next(iter(given))):
+        Page(named("twin_disc"), given)
+
+
 def opened(browser: webdriver.Chrome, address: str, width: int) -> webdriver.Chrome:
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 640}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
