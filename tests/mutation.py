@@ -65,7 +65,7 @@ TESTS = {
     " plugins/wheel_rail/test_wheel_rail.py plugins/wheel_rail/test_result.py core/test_models.py",
     "wearlaw.contact.contact": "core/test_contact_from_arrays.py core/test_elliptic_contact.py core/test_records.py"
     " plugins/fastsim/test_given_strips.py core/test_several_patches.py core/test_outcomes.py"
-    " core/test_materials.py core/test_scale.py core/test_blame.py",
+    " plugins/studies/test_materials.py core/test_scale.py core/test_blame.py",
     "wearlaw_archard.coefficients": "plugins/archard/test_wear_coefficients.py",
     "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py"
     " core/test_configuration.py",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.environments import ROOT
-from tests.release import inconsistencies, main, obstacles
+from tests.release import inconsistencies, main
 
 READY = {
     "core/wearlaw/version.py": '"""The version."""\n\n__version__ = "0.2.0"\n',
@@ -42,12 +41,6 @@ def commit(project: Path) -> None:
     git(project, "commit", "--quiet", "--allow-empty", "--message", "All")
 
 
-def edit(project: Path, path: str, old: str, new: str) -> None:
-    text = (project / path).read_text(encoding="utf-8")
-    assert old in text
-    (project / path).write_text(text.replace(old, new), encoding="utf-8")
-
-
 def test_the_files_of_wearlaw_agree_on_its_version() -> None:
     assert list(inconsistencies(ROOT)) == []
 
@@ -60,40 +53,29 @@ def test_a_project_that_is_ready_is_told_what_a_person_has_to_do(
 
 
 @pytest.mark.parametrize(
-    ("path", "old", "new", "message"),
+    ("path", "old", "new"),
     [
-        ("core/wearlaw/version.py", "0.2.0", "0.3.0", "CITATION.cff: its version is ['0.2.0'], but"),
-        ("CITATION.cff", "0.2.0", "0.1.0", "CITATION.cff: its version is ['0.1.0'], but"),
-        ("CHANGELOG.md", "0.1.0 (2026-12-24)", "0.1.0, 2026-12-24", "each heading must read"),
-        ("CHANGELOG.md", "## 0.1.0", "## 0.2.0", "the versions do not fall"),
-        ("CHANGELOG.md", "### Added\n\n- All", "### News\n\n- All", "0.2.0: its entries must stand under"),
+        ("CITATION.cff", "0.2.0", "0.1.0"),
+        ("CITATION.cff", "2027-03-01", "2027-02-28"),
+        ("CHANGELOG.md", "0.1.0 (2026-12-24)", "0.1.0, 2026-12-24"),
+        ("CHANGELOG.md", "## 0.1.0", "## 0.2.0"),
+        ("CHANGELOG.md", "### Added\n\n- All", "### News\n\n- All"),
+        ("CHANGELOG.md", "2027-03-01", "unreleased"),
+        ("CHANGELOG.md", "- All.\n", ""),
     ],
 )
-def test_files_that_disagree_are_named(project: Path, path: str, old: str, new: str, message: str) -> None:
-    edit(project, path, old, new)
-    assert any(message in found for found in inconsistencies(project))
-    assert main(project) == 1
-
-
-@pytest.mark.parametrize(
-    ("path", "old", "new", "message"),
-    [
-        ("CHANGELOG.md", "2027-03-01", "unreleased", "write the date of the release into the heading of 0.2.0"),
-        ("CITATION.cff", "2027-03-01", "2027-02-28", "date-released must be the date in the changelog"),
-        ("CHANGELOG.md", "- All.\n", "", "0.2.0 has no entry"),
-    ],
-)
-def test_a_release_that_is_not_written_up_is_refused(
-    project: Path, path: str, old: str, new: str, message: str
+def test_files_that_disagree_or_lack_something_are_named(
+    project: Path, capsys: pytest.CaptureFixture[str], path: str, old: str, new: str
 ) -> None:
-    edit(project, path, old, new)
+    text = (project / path).read_text(encoding="utf-8")
+    assert old in text
+    (project / path).write_text(text.replace(old, new), encoding="utf-8")
     commit(project)
-    assert any(message in found for found in obstacles(project))
     assert main(project) == 1
+    assert f"\n{path}: " in capsys.readouterr().out
 
 
-def test_a_release_of_what_is_not_committed_is_refused(project: Path) -> None:
+def test_a_release_of_what_is_not_committed_is_refused(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (project / "notes.txt").touch()
-    assert [re.sub(r"\s+", " ", found) for found in obstacles(project)] == [
-        "these files are not as committed: ?? notes.txt "
-    ]
+    assert main(project) == 1
+    assert "?? notes.txt" in capsys.readouterr().out

@@ -19,10 +19,11 @@ from wearlaw.numerics.solving import Solver
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.selection import axis_names
 from wearlaw.pipeline.solution import Solution
-from wearlaw.pipeline.variables import default_variables, long_name, unit_of
+from wearlaw.pipeline.variables import default_variables
 from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, name_of
 from wearlaw_output.conditions import Conditions, Known
+from wearlaw_output.labels import long_name, unit_of
 
 if TYPE_CHECKING:
     import pandas

@@ -6,9 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
 from wearlaw.errors import InputError
+from wearlaw.models.law import Law, named_outcomes
 from wearlaw.models.model import Model
 from wearlaw.pipeline.selection import Label
-from wearlaw.units.quantities import text_of
+from wearlaw.pipeline.variables import outcome_units
+from wearlaw.units.quantities import Quantity, text_of
+from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS, name_of
 
 ModelT = TypeVar("ModelT", bound=Model)
@@ -65,3 +68,18 @@ def readable(unit: str) -> str:
 def in_words(labels: Mapping[str, Label]) -> str:
     """Return the labels of a patch in words, such as "left, patch 1"; a number stands behind the name of its axis."""
     return ", ".join(one if isinstance(one, str) else f"{name_of(axis)} {one}" for axis, one in labels.items())
+
+
+def unit_of(name: str, value: Quantity, laws: Sequence[Law]) -> str:
+    """Return the unit of a variable in results, in the notation of `UNITS`."""
+    known = {**UNITS, **outcome_units(laws)}
+    return known[name] if name in known else symbol(value.units, "~C")
+
+
+def long_name(variable: str, laws: Sequence[Law]) -> str:
+    """Return the readable name of a variable, such as "wear rate of rail"."""
+    index = named_outcomes(laws).get(variable)
+    if index is None:
+        return name_of(variable)
+    law = laws[index]
+    return name_of(law.outcome.name) + (f" of {law.body}" if law.body is not None else "")

@@ -18,11 +18,10 @@ from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.solution import Solution
-from wearlaw.pipeline.variables import long_name
 from wearlaw.units.quantities import Q
 from wearlaw.units.variables import name_of
 from wearlaw_output.conditions import Conditions
-from wearlaw_output.labels import readable
+from wearlaw_output.labels import long_name, readable
 
 WIDTH, HEIGHT = 280, 160
 """Of a drawing, in pixels."""

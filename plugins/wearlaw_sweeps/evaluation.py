@@ -24,9 +24,10 @@ from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, Seen
 from wearlaw.pipeline.solution import Solution
-from wearlaw.pipeline.variables import long_name, outcome_units, unit_of
+from wearlaw.pipeline.variables import outcome_units
 from wearlaw.units.quantities import Quantity
 from wearlaw.units.variables import VARIABLES
+from wearlaw_output.labels import long_name, unit_of
 from wearlaw_output.notes import caught_warnings
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import Points

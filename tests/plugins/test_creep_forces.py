@@ -118,7 +118,7 @@ def test_nothing_moves_nothing_wears(model: wl.ContactModel) -> None:
 @every_model
 def test_the_patch_is_not_resolved(model: wl.ContactModel) -> None:
     with pytest.raises(
-        wl.CompositionError, match=r"gives means of the whole patch; .* wl.contact_model\(\"fastsim\"\)"
+        wl.CompositionError, match=r"gives means of the whole patch; .* wl.contact_model\(\"strip_theory\"\)"
     ):
         usfd(model)(**CONDITIONS).wear_profile("wheel")
 

@@ -9,7 +9,6 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, did_you_mean, shown
@@ -75,12 +74,8 @@ class Selection:
             raise InputError(f"{shown(positions)}: are more positions than there are axes. Axes: {known}")
         return cls.by_position(problem, dict(zip(names, positions, strict=False)))
 
-    def of(self, array: Array) -> Array:
+    def of(self, array: NDArray[Any]) -> NDArray[Any]:
         """Return the chosen entries of an array whose first axes are those of the batch."""
-        chosen: Array = self._of(array)
-        return chosen
-
-    def _of(self, array: Any) -> Any:
         for axis in reversed(range(len(self.positions))):  # the last first, since an integer drops its axis
             array = array[(*(slice(None),) * axis, self.positions[axis], ...)]
         return array
@@ -92,7 +87,7 @@ class Selection:
         for (name, labels), position in zip(problem.dims.items(), self.positions[first:], strict=True):
             if not isinstance(position, int):
                 dims[name] = labels[position] if isinstance(position, slice) else tuple(labels[i] for i in position)
-        exists = None if problem.exists is None else self._of(problem.exists)
+        exists = None if problem.exists is None else self.of(problem.exists)
         if exists is not None and exists.all():
             exists = None
         return problem.mapped(self.of, self.of).replaced(dims=dims, exists=exists)
@@ -103,7 +98,7 @@ class Selection:
             return contact
         rows: NDArray[np.intp] = np.full(problem.batch_shape, -1)
         rows[np.ones_like(rows, dtype=np.bool_) if problem.exists is None else problem.exists] = np.arange(problem.size)
-        chosen = self._of(rows).reshape(-1)
+        chosen = self.of(rows).reshape(-1)
         return contact[chosen[chosen >= 0]]
 
 

@@ -11,8 +11,6 @@ from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.units.quantities import Quantity
-from wearlaw.units.registry import symbol
-from wearlaw.units.variables import UNITS, name_of
 
 ERROR = "_error"
 """Ending of the name of an outcome's numerical error in results."""
@@ -124,18 +122,3 @@ def outcome_units(laws: Sequence[Law]) -> dict[str, str]:
         if outcome.of == "area mean":
             found[f"{name}{ERROR}"] = outcome.unit
     return found
-
-
-def unit_of(name: str, value: Quantity, laws: Sequence[Law]) -> str:
-    """Return the unit of a variable in results, in the notation of `UNITS`."""
-    known = {**UNITS, **outcome_units(laws)}
-    return known[name] if name in known else symbol(value.units, "~C")
-
-
-def long_name(variable: str, laws: Sequence[Law]) -> str:
-    """Return the readable name of a variable, such as "wear rate of rail"."""
-    index = named_outcomes(laws).get(variable)
-    if index is None:
-        return name_of(variable)
-    law = laws[index]
-    return name_of(law.outcome.name) + (f" of {law.body}" if law.body is not None else "")

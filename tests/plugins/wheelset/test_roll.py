@@ -77,6 +77,22 @@ def test_wheels_sink_together(pressure: Any, displacement: float, yaw: float, lo
         assert getattr(given, name) == pytest.approx(getattr(problem, name), rel=1e-5, abs=1e-9, nan_ok=True), name
 
 
+@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
+def test_places_that_are_followed_are_those_found_at_the_final_roll(pressure: Any) -> None:
+    pair = wheelset(pressure=pressure)
+    draw = np.random.default_rng(1)
+    conditions: dict[str, Any] = {
+        "lateral_displacement": Q(draw.uniform(-6.0, 6.0, 40), "mm"),
+        "yaw": Q(draw.uniform(-5.0, 5.0, 40), "mrad"),
+        "vertical_load": Q(draw.uniform(30.0, 100.0, 40), "kN"),
+        "friction_coefficient": 0.3,
+    }
+    problem = posed(pair, **conditions)
+    given = posed(pair, **conditions, roll=Q(problem.roll[:, 0, 0], "rad"))
+    # The rolls differ by less than 1e-6 rad from those of the last search, and places that stayed there by 1e-6 rad.
+    assert given.contact_angle == pytest.approx(problem.contact_angle, rel=0.0, abs=5e-7, nan_ok=True)
+
+
 @pytest.mark.skipif(not find_spec("numba"), reason="needs numba")
 def test_compiled_code_rolls_as_numpy_does() -> None:
     rolls = []
