@@ -10,7 +10,6 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from wearlaw.arrays import Array, steadily
 from wearlaw.configuration import known_name
@@ -157,7 +156,8 @@ def fit(
         best = task.solve(starts, seed)
         replicates = None
         if bootstrap:
-            replicates = replicate(task.model, best, task.free.bounds, task.groups, bootstrap, seed, on_progress)
+            groups = np.repeat(np.arange(len(task.observations)), [one.measured.size for one in task.observations])
+            replicates = replicate(task.model, best, task.free.bounds, groups, bootstrap, seed, on_progress)
         found = _result(task, best, replicates, confidence, settings)
     problem = found.observations[0].problem
     overload = overload_of(problem, integrate_forces(found.predict.staged_model, problem).tangential)
@@ -212,10 +212,9 @@ class _Task:
             )
         return cls(predict, tests, "uncertainty" if stated else scatter, parameters, observations, np.ones(count))
 
-    @property
-    def groups(self) -> NDArray[np.intp]:
-        """The index of the kind of each measurement, (n,)."""
-        return np.repeat(np.arange(len(self.observations)), [one.measured.size for one in self.observations])
+    def parts(self, values: Array) -> list[Array]:
+        """Return values of all measurements, (n,), by their kind, as views."""
+        return np.split(values, np.cumsum([one.measured.size for one in self.observations])[:-1])
 
     def model(self, theta: Array) -> Array:
         """Return the weighted residuals (sets, n) of scaled parameters (sets, p)."""
@@ -252,12 +251,10 @@ class _Task:
 
     def _weigh(self, best: Solutions) -> None:
         """Weigh each kind of measurement by its scatter about the fit."""
-        residuals, groups = self.residuals(best), self.groups
-        for group in np.unique(groups):
-            own = residuals[groups == group]
+        for own, weights in zip(self.parts(self.residuals(best)), self.parts(self.weights), strict=True):
             scatter = math.sqrt(float(np.mean(own**2)))
             if own.size >= LEAST_GROUP and scatter > 0.0:
-                self.weights[groups == group] = 1.0 / max(scatter, LEAST_SCATTER)
+                weights[:] = 1.0 / max(scatter, LEAST_SCATTER)
 
 
 def _first_friction(tests: WearTests, given: float | None) -> float:
@@ -306,11 +303,10 @@ def _result(
 
 def _lack_of_fit(task: _Task, best: Solutions, confidence: float) -> Iterator[LackOfFit]:
     """Yield a test for each kind of measurement whose scatter is known."""
-    residuals, leverages = task.residuals(best), leverage(best)
-    for number, one in enumerate(task.observations):
-        own = task.groups == number
-        points, spent = repeats(one.conditions, one.measured.size), float(leverages[own].sum())
-        found = lack_of_fit(one.observable, residuals[own], points, spent, confidence, one.scatter == "uncertainty")
+    residuals, leverages = task.parts(task.residuals(best)), task.parts(leverage(best))
+    for one, own, spent in zip(task.observations, residuals, leverages, strict=True):
+        points, known = repeats(one.conditions, own.size), one.scatter == "uncertainty"
+        found = lack_of_fit(one.observable, own, points, float(spent.sum()), confidence, known)
         if found is not None:
             yield found
 
@@ -402,8 +398,7 @@ def _sums(task: _Task, best: Solutions) -> tuple[float, float]:
     parameters = len(task.free.names)
     if task.scatter == "uncertainty" and len(task.observations) == 1:
         return float(squares.sum()), float(squares.sum()) + 2.0 * parameters
-    kinds = [squares[task.groups == number] for number in range(len(task.observations))]
-    tiny = float(np.finfo(np.float64).tiny)
+    kinds, tiny = task.parts(squares), float(np.finfo(np.float64).tiny)
     likelihood = sum(kind.size * math.log(max(float(kind.mean()), tiny)) for kind in kinds)
     return float(squares.sum()), likelihood + 2.0 * (parameters + len(kinds))
 

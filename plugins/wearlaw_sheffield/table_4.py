@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 
 import wearlaw as wl
-from wearlaw import Array, Q
-from wearlaw_sheffield.bench import TESTED, WEAR_RATE, Bench
+from wearlaw import Q
+from wearlaw_sheffield.bench import WEAR_RATE, Bench
 from wearlaw_sheffield.claims import SIMILAR, verdict
 from wearlaw_sheffield.tables import USFD_UNITS, number, shown_unit, usfd_parameters
 
@@ -19,9 +19,7 @@ FREE = ("q_s", "m_c", "tr_sc")
 """The parameters that the paper changed; it kept m_m."""
 
 HIGHEST = (18.0, 20.5, 22.0, 25.0)
-"""Creepages up to which parameters are fitted [%]; `SHOWN` is the one of the figure."""
-
-SHOWN = 20.5
+"""Creepages up to which parameters are fitted [%]."""
 
 POINTS = 200
 """Number of creepages in a fit, evenly spaced."""
@@ -62,13 +60,11 @@ def section(study: wl.Study) -> wl.Section:
     """Return the section; see `Bench.of` for what it needs."""
     bench = Bench.of(study)
     fits = [fitted(bench, model, highest, norm) for model in THEORY for norm in NORMS for highest in HIGHEST]
-    shown = {one.model: one for one in fits if one.highest == SHOWN and one.norm == "absolute"}
     return wl.Section(
         title="Table 4 of the paper as a fit",
         text=TEXT.format(points=POINTS),
         claims=(follows_from_a_fit(fits),),
         tables={"table_4_fit": table(fits)},
-        figures=(residual_figure(bench, shown),),
     )
 
 
@@ -89,20 +85,9 @@ def fitted(bench: Bench, model: str, highest: float, norm: Norm) -> Fitted:
         predict = bench.rig | wl.contact_model(model) | published
         found = wl.fit(predict, tests, free=FREE, scatter=norm, bootstrap=0, starts=0)
     values = {name: number(found.parameters[name], USFD_UNITS[name]) for name in FREE}
-    rms, of_published = (
-        float(np.sqrt(np.mean(_residuals(bench.rate(model, law, creepage), target, norm) ** 2)))
-        for law in (_law(model, values), published)
-    )
-    return Fitted(model, highest, norm, values, rms, of_published)
-
-
-def _law(model: str, parameters: dict[str, float]) -> wl.WearLaw:
-    values = {name: Q(value, USFD_UNITS[name]) for name, value in parameters.items()}
-    return wl.wear_law("usfd", fitted_for=model, **values)
-
-
-def _residuals(local: Array, target: Array, norm: Norm) -> Array:
-    return local - target if norm == "absolute" else np.log(local / target)
+    local = bench.rate(model, published, creepage)
+    apart = local - target if norm == "absolute" else np.log(local / target)
+    return Fitted(model, highest, norm, values, float(found.rms.magnitude), float(np.sqrt(np.mean(apart**2))))
 
 
 def follows_from_a_fit(fits: list[Fitted]) -> wl.CheckedClaim:
@@ -144,33 +129,3 @@ def table(fits: list[Fitted]) -> pd.DataFrame:
         ]
     order = ["contact model", "differences", "up to creepage [%]", *heads.values()]
     return pd.DataFrame(rows, columns=[*order, "rms of the fit", "rms of the paper's set"])
-
-
-def residual_figure(bench: Bench, shown: dict[str, Fitted]) -> wl.FigureData:
-    """Return the relative differences from the global law over creepage, for the fit and for the paper's set."""
-    inside = bench.creepage >= TESTED[0]
-    x, target = bench.creepage[inside], bench.rate("global", wl.wear_law("usfd"))[inside]
-
-    def curve(model: str, label: str, law: wl.WearLaw, style: int) -> wl.Curve:
-        return wl.Curve(label, x, 100.0 * (bench.rate(model, law)[inside] / target - 1.0), colour=style, dash=style)
-
-    panels = tuple(
-        wl.Panel(
-            x=wl.PlotAxis("creepage [%]"),
-            y=wl.PlotAxis("local minus global wear rate [%]"),
-            curves=(
-                curve(model, "parameters of the paper", wl.wear_law("usfd", fitted_for=model), 0),
-                curve(model, f"fit up to {SHOWN:g} %", _law(model, one.parameters), 1),
-            ),
-            title=THEORY[model].capitalize(),
-        )
-        for model, one in shown.items()
-    )
-    return wl.FigureData(
-        name="table_4_residuals",
-        title="Relative difference of the local USFD from the global one",
-        panels=panels,
-        caption="USFD on cells minus USFD on the patch means, with the corrected parameters of Table 4 and with"
-        f" parameters fitted up to {SHOWN:g} % creepage by absolute differences, at"
-        f" {bench.normal_force_per_width:.5g~P}.",
-    )

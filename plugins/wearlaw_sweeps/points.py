@@ -112,10 +112,6 @@ class Block:
         """Number of operating points."""
         return math.prod(self.shape)
 
-    def laid_out(self, values: Array) -> Array:
-        """Return values of the points, the first axis, along the dimensions."""
-        return values.reshape(self.shape + values.shape[1:])
-
 
 @dataclass(frozen=True, eq=False)
 class Points:

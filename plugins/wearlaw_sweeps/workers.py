@@ -62,7 +62,7 @@ def _write(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> N
         array: Any = zarr.open_array(store, path=name, mode="r+").with_config(
             {"write_empty_chunks": True}
         )  # NaN is a result
-        array[(*block.slices, ...)] = block.laid_out(values)
+        array[(*block.slices, ...)] = values.reshape(block.shape + values.shape[1:])
     zarr.open_array(store, path=RECORDS, mode="r+")[block.number] = json.dumps(asdict(record))
 
 

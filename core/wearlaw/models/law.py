@@ -243,6 +243,10 @@ class Law(Model):
                     ' outcome = wl.Outcome("rcf_damage", unit="", of="patch"), or derive it from wl.WearLaw'
                 )
             check_scale(cls, SCALES)
+            known = cls.__pydantic_fields__
+            for name in Law.model_fields:
+                if known[name].default is None:
+                    known[name] = known.pop(name)  # last where fields are shown
 
     def check_variables(self) -> None:
         """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` names no variable."""

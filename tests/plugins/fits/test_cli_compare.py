@@ -71,12 +71,10 @@ def test_a_law_can_be_fitted_on_every_contact_before_it_is_compared(scatter: Lit
 def test_a_law_that_has_seen_the_tests_is_marked_and_cross_validation_ranks_fits_by_unseen_tests() -> None:
     assert wearlaw(*FIT, "-o", "fit").exit_code == 0
     marked = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", f"fit/law.toml,{LAW}", "-o", "marked")
-    note = (
-        "note: fitted to these tests, which flatters their rank: fit/law.toml on exact (9 of 9); compare on other tests"
-    )
+    note = "note: fitted to these tests, which flatters their rank: usfd fitted to tests on exact (9 of 9)"
     assert note in marked.stderr
     ranking = pd.read_csv("marked/ranking.csv").set_index("predictor")
-    assert ranking.in_sample.to_dict() == {"fit/law.toml on exact": 9, f"{LAW} on exact": 0}
+    assert ranking.in_sample.to_dict() == {"usfd fitted to tests on exact": 9, f"{LAW} on exact": 0}
     command = ("compare", "tests.csv", "--contacts", "exact", "--laws", LAW, "--free", f"{LAW}=m_m,q_s")
     result = wearlaw(*command, "--cross-validate", "leave-one-out", "-o", "cv")
     assert result.exit_code == 0, result.output
