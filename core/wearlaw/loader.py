@@ -143,15 +143,6 @@ class Installed:
         )
         return message + "".join(f"\n  left out: {plugin}" for plugin in self.broken)
 
-    def listing(self) -> list[tuple[str, str, Origin]]:
-        """Return kind, name and origin of everything from plugins, including items that share a name."""
-        return [
-            (kind, name, origin)
-            for kind, shelf in self.shelves.items()
-            for name, found in sorted(shelf.providers.items())
-            for _, origin in found
-        ]
-
 
 _SEARCHING = RLock()
 

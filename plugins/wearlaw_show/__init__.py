@@ -39,7 +39,12 @@ def list_plugins() -> None:
         warnings.simplefilter("ignore", PluginWarning)  # the listing below names what is left out
         found = loader.installed()
     rows = [("kind", "name", "distribution", "version")]
-    rows += [(kind, name, origin.distribution, origin.version) for kind, name, origin in found.listing()]
+    rows += [
+        (kind, name, origin.distribution, origin.version)
+        for kind, shelf in found.shelves.items()
+        for name, provided in sorted(shelf.providers.items())
+        for _, origin in provided
+    ]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         click.echo("  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())

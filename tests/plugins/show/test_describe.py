@@ -207,7 +207,8 @@ def test_what_a_law_or_a_rig_does_not_keep_is_said(monkeypatch: pytest.MonkeyPat
 
 
 def test_everything_that_is_listed_is_shown_by_its_name() -> None:
-    for kind, name, _ in loader.installed().listing():
+    every = [(kind, name) for kind, shelf in loader.installed().shelves.items() for name in shelf.items()]
+    for kind, name in every:
         shown = cases.wearlaw("show", name)
         assert shown.exit_code == 0, shown.output
         assert f"{name}: a {kind} of wearlaw" in shown.stdout
