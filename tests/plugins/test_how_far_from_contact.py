@@ -126,7 +126,7 @@ def in_space(case: Case, row: float) -> tuple[Any, Rows]:
     def solved(depth: float) -> Any:
         return pressed(height, 0.4e-3, 1e-3 * row, MODULUS, depth)
 
-    pressure = solved(brentq(lambda depth: solved(depth).sum() * cell - contact.fn, 1e-4, 2e-4, xtol=1e-10))
+    pressure = solved(brentq(lambda depth: solved(depth).sum() * cell - contact.fn, 3e-5, 3e-4, xtol=1e-10))
     cosine, force = np.cos(contact.delta), 1e-3 * 0.4e-3 * pressure.sum(axis=0)
     across = contact.y + cosine * gap.t[::every]
     return pressure, Rows(across, np.full(across.size, row * cosine), force / cosine, np.nan * force)
