@@ -1,8 +1,9 @@
-"""The array type of all values in SI, extremes of arrays, and the treatment of errors of floats."""
+"""The array type of all values in SI, extremes and equality of arrays, and the treatment of errors of floats."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -58,3 +59,18 @@ def extremes(array: Array) -> tuple[float, float]:
         return float(array.min()), float(array.max())
     value = float(array.item(0) if array.ndim else array)  # one number, maybe broadcast
     return value, value
+
+
+def same(one: object, other: object) -> bool:
+    """Return whether two values are the same, with arrays in records compared by entry; NaN is the same as NaN."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return np.array_equal(np.asarray(one), np.asarray(other), equal_nan=True)
+    if type(one) is not type(other):
+        return False
+    if is_dataclass(one):
+        return all(same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return list(one) == list(other) and all(same(one[key], other[key]) for key in one)
+    if isinstance(one, (tuple, list)) and isinstance(other, (tuple, list)):
+        return len(one) == len(other) and all(map(same, one, other))
+    return bool(one == other)

@@ -45,10 +45,10 @@ def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
 
 
 def _telling_apart(models: Sequence[Model]) -> list[str]:
-    """Return the fewest fields that tell models of one name apart, a law's own ones first."""
+    """Return the fewest fields, in their order, that tell models of one name apart."""
     fields: list[str] = []
     kinds: set[tuple[str, ...]] = {()}
-    for field in sorted(type(models[0]).model_fields, key=Law.model_fields.__contains__):
+    for field in type(models[0]).model_fields:
         finer = {tuple(text_of(getattr(model, name)) for name in (*fields, field)) for model in models}
         if len(finer) > len(kinds):
             fields, kinds = [*fields, field], finer

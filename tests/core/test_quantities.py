@@ -102,9 +102,8 @@ def test_a_unit_may_begin_with_one_over(text: str) -> None:
     "text", ["", "abc", "47", "0.01", "1e3", "3 2 mm", "mm", "--3 mm", "1,5 mm", "5 e3 mm", "31/m", "3 2/m", "3 1m"]
 )
 def test_parse_refuses_text_that_is_no_quantity(text: str) -> None:
-    with pytest.raises(wl.UnitError) as caught:
+    with pytest.raises(wl.UnitError):
         wl.parse(text)
-    assert "is not a" in str(caught.value)
 
 
 def test_a_list_of_quantities_takes_the_unit_of_the_first() -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 import pint
 
-from wearlaw.arrays import steady
+from wearlaw.arrays import same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
@@ -198,6 +198,15 @@ class Prediction:
     def __contains__(self, name: object) -> bool:
         """Return whether there is a variable of this name."""
         return isinstance(name, str) and name in (*outcome_units(self.laws), *default_variables(self))
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether another prediction is one of the same contacts with the same models."""
+        if not isinstance(other, Prediction):
+            return NotImplemented
+        return same(*((one.problem, one.model, one.laws) for one in (self._solution, other._solution)))
+
+    def __hash__(self) -> int:
+        return hash((self.problem.geometry, self.problem.batch_shape))
 
     def outcome(self, name: str, body: str | None = None) -> Quantity:
         """Return the outcome of a law, with its unit.
