@@ -20,6 +20,9 @@ from wearlaw_wheelset._half_space import pressed  # private: the normal problem,
 
 MODULUS = 82e9 / (1.0 - 0.28)
 
+NARROW = dict(zip(SERVICE[-2:], [(9.2, 14.0), (2.4, 24.0)], strict=True))
+"""Cases in which CONTACT has four to eight rows on a hump, and half the width and length of a grid for them [mm]."""
+
 
 @pytest.fixture(scope="module")
 def computed() -> Computed:
@@ -56,7 +59,8 @@ def test_the_tables_are_what_the_script_writes_within_a_last_digit(computed: Com
     '`pressure="half_space"` with `strip_theory` and `half_space`: power by row in full slip, 80 kN a wheel, at seven'
     " positions from the tread over two humps to the root",
     source="CONTACT (Vollebregt), half-space theory, rows of 0.4 mm",
-    held_to="{misplaced:.0%} of the power in other rows, and {peak:.0%} of the largest row",
+    held_to="{misplaced:.0%} of the power in other rows, and {peak:.0%} of the largest row, but where CONTACT has eight"
+    " rows on a hump",
     misplaced=0.03,
     peak=0.05,
 )
@@ -65,7 +69,7 @@ def test_power_by_row_is_contacts(computed: Computed, misplaced: float, peak: fl
         for case in SERVICE[:-1]:
             rows = placed(computed.ours["half_space", model][case], computed.due[case])
             assert rows.misplaced < misplaced, (model, case)
-            assert abs(rows.peak) < peak, (model, case)
+            assert abs(rows.peak) < peak or case in NARROW, (model, case)
 
 
 @pytest.mark.validates(
@@ -115,10 +119,12 @@ def in_space(case: Case, row: float) -> tuple[Any, Rows]:
 
     The wheelset has CONTACT's height, roll and yaw, and elements are 0.4 mm long.
     """
+    half_width, half_length = NARROW[case]
     contact = service().iloc[SERVICE.index(case)]
     gap = wheel_on_rail.gap(
         case.displacement, contact.z, contact.roll, 1e-3 * case.yaw,
-        angle=contact.delta, at=contact.y, half_width=2.4, half_length=24.0, step=0.1,
+        angle=contact.delta, at=contact.y, half_width=half_width, half_length=half_length, step=0.1,
+        border=wheel_on_rail.UIC_60,
     )  # fmt: skip
     every = round(row / 0.1)
     height, cell = 1e-3 * np.ascontiguousarray(gap.height[::4, ::every]), 0.4e-3 * 1e-3 * row
@@ -132,18 +138,19 @@ def in_space(case: Case, row: float) -> tuple[Any, Rows]:
     return pressure, Rows(across, np.full(across.size, row * cosine), force / cosine, np.nan * force)
 
 
-def test_on_the_flange_the_difference_is_that_of_contacts_four_rows(computed: Computed) -> None:
-    flange = SERVICE[-1]
-    contact = of_contact(SERVICE)[-1]
-    coarse, rows = in_space(flange, 0.4)
-    assert contact.rows[0].y.size == 4
-    assert (coarse > 0.0).sum() * 0.16 == pytest.approx(contact.area)  # to an element
-    assert placed(contact._replace(rows=(rows,)), contact, "force").misplaced < 0.005
-    fine, rows = in_space(flange, 0.1)
+@pytest.mark.parametrize("case", NARROW)
+def test_where_a_hump_is_narrow_the_difference_is_that_of_contacts_rows(computed: Computed, case: Case) -> None:
+    contact = of_contact(SERVICE)[SERVICE.index(case)]
+    coarse, rows = in_space(case, 0.4)
+    assert (coarse > 0.0).sum() * 0.16 == pytest.approx(contact.area, abs=4 * 0.16)  # to four of 627 elements
+    on_its_grid = placed(contact._replace(rows=(rows,)), contact, "force")
+    assert on_its_grid.misplaced < 0.005
+    assert abs(on_its_grid.peak) < 0.005
+    fine, rows = in_space(case, 0.1)
     area = (fine > 0.0).sum() * 0.04
-    assert area < 0.93 * contact.area
+    assert area < 0.98 * contact.area
     for model in ("strip_theory", "half_space"):
-        ours = computed.ours["half_space", model][flange]
+        ours = computed.ours["half_space", model][case]
         # The area of strips is that of half ellipses with their force and greatest pressure.
         assert ours.area == pytest.approx(area, rel=0.03)
         found = placed(ours, contact._replace(rows=(merged(rows),)), "force")
