@@ -12,9 +12,10 @@ which the undeformed bodies overlap. So the force is a continuous function of δ
 grid does not depend on δ.
 
 The gap of a wheel is that between the surfaces in space. Rows of elements are halved where a hump is so narrow that the
-pressure changes much from one row to the next; rows of wider humps then become one with their neighbours. A row with
-the force per width q and the maximum pressure p0 becomes a strip of half the length 2q/(π p0), which it has if its
-pressure is half an ellipse, as on Hertz's patch. Strips lie about x = 0, although yaw moves rows along the rail.
+pressure changes much from one row to the next; rows of wider humps then become one with their neighbours, of the same
+force and area. A row with the force per width q and the maximum pressure p0 becomes a strip of half the length
+2q/(π p0), which it has if its pressure is half an ellipse, as on Hertz's patch. Strips lie about x = 0, although yaw
+moves rows along the rail.
 """
 
 from __future__ import annotations
@@ -132,10 +133,10 @@ def rows(
     rail_y = float(np.interp(share @ y, y, grid.foot))
     kept, begin = _joined(most, grid.height, count)
     size = np.diff(np.append(begin, kept.size))
-    y, force = (np.add.reduceat(one[kept], begin) / size for one in (y, force))
-    most = np.maximum(np.maximum.reduceat(most[kept], begin), FLOOR * most.max())
-    half_length = 2.0 / np.pi * force / most
+    length = 2.0 / np.pi * force / np.maximum(most, FLOOR * most.max())
+    y, force, half_length = (np.add.reduceat(one[kept], begin) / size for one in (y, force, length))
     half_length = np.maximum(half_length, FLOOR * half_length.max())
+    most = np.maximum(2.0 / np.pi * force / half_length, FLOOR * most.max())
     return Rows(
         y, half_length, most, dy * size, rail_y, float(share @ grid.angle), error, finer, pressure, grid.middle,
         grid.own,

@@ -142,7 +142,7 @@ def in_space(case: Case, row: float) -> tuple[Any, Rows]:
 def test_where_a_hump_is_narrow_the_difference_is_that_of_contacts_rows(computed: Computed, case: Case) -> None:
     contact = of_contact(SERVICE)[SERVICE.index(case)]
     coarse, rows = in_space(case, 0.4)
-    assert (coarse > 0.0).sum() * 0.16 == pytest.approx(contact.area, abs=4 * 0.16)  # to four of 627 elements
+    assert abs((coarse > 0.0).sum() - round(contact.area / 0.16)) <= 4  # of 254 and 627 elements
     on_its_grid = placed(contact._replace(rows=(rows,)), contact, "force")
     assert on_its_grid.misplaced < 0.005
     assert abs(on_its_grid.peak) < 0.005
