@@ -136,7 +136,10 @@ def rows(
     length = 2.0 / np.pi * force / np.maximum(most, FLOOR * most.max())
     y, force, half_length = (np.add.reduceat(one[kept], begin) / size for one in (y, force, length))
     half_length = np.maximum(half_length, FLOOR * half_length.max())
+    greatest = np.maximum.reduceat(most[kept], begin)
     most = np.maximum(2.0 / np.pi * force / half_length, FLOOR * most.max())
+    top = greatest.argmax()  # the maximum pressure of the patch is that of the narrow rows
+    most[top], half_length[top] = greatest[top], 2.0 / np.pi * force[top] / greatest[top]
     return Rows(
         y, half_length, most, dy * size, rail_y, float(share @ grid.angle), error, finer, pressure, grid.middle,
         grid.own,
