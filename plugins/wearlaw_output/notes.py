@@ -6,7 +6,8 @@ import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from threading import RLock
+from threading import RLock, get_ident
+from typing import TextIO
 
 from wearlaw.errors import WearlawWarning
 
@@ -15,22 +16,33 @@ _CATCHING = RLock()
 
 @contextmanager
 def caught_warnings(*kinds: type[Warning]) -> Iterator[list[Warning]]:
-    """Yield a list that holds the warnings of some kinds, by default all of wearlaw's, when the context ends.
+    """Yield a list of the warnings of some kinds, by default all of wearlaw's, that this thread gives in the context.
 
     All other warnings are shown as ever. Python's `catch_warnings` changes settings of the process, and two threads
     that enter it at once leave the changes behind, so one thread at a time enters it here.
     """
-    kept = kinds or (WearlawWarning,)
+    kept, thread = kinds or (WearlawWarning,), get_ident()
     found: list[Warning] = []
-    with _CATCHING, warnings.catch_warnings(record=True) as caught:
+    with _CATCHING, warnings.catch_warnings():
         for kind in kept:
             warnings.simplefilter("always", kind)
+        show = warnings.showwarning
+
+        def keep(
+            message: Warning | str,
+            category: type[Warning],
+            filename: str,
+            lineno: int,
+            file: TextIO | None = None,
+            line: str | None = None,
+        ) -> None:
+            if get_ident() == thread and isinstance(message, kept):
+                found.append(message)
+            else:
+                show(message, category, filename, lineno, file, line)
+
+        warnings.showwarning = keep
         yield found
-    for one in caught:
-        if issubclass(one.category, kept):
-            found.append(one.message)  # type: ignore[arg-type]
-        else:
-            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
 
 
 @dataclass
