@@ -12,10 +12,9 @@ which the undeformed bodies overlap. So the force is a continuous function of δ
 grid does not depend on δ.
 
 The gap of a wheel is that between the surfaces in space. Rows of elements are halved where a hump is so narrow that the
-pressure changes much from one row to the next; rows of wider humps then become one with their neighbours, of the same
-force and area. A row with the force per width q and the maximum pressure p0 becomes a strip of half the length
-2q/(π p0), which it has if its pressure is half an ellipse, as on Hertz's patch. Strips lie about x = 0, although yaw
-moves rows along the rail.
+pressure changes much from one row to the next; neighbours then become one, of the same force and area. A row with the
+force per width q and the maximum pressure p0 becomes a strip of half the length 2q/(π p0), which it has if its pressure
+is half an ellipse, as on Hertz's patch. Strips lie about x = 0, although yaw moves rows along the rail.
 """
 
 from __future__ import annotations
@@ -170,31 +169,19 @@ def _error(most: Array) -> float:
     return float(((2.0 * here - before - after)[peak] / (8.0 * here[peak])).max())
 
 
-def _humps(most: Array) -> NDArray[np.intp]:
-    """Return the number of the hump of each row, from 1 on; 0 for rows with less than half the pressure on both sides.
-
-    `most` is the maximum pressure of each row [Pa].
-    """
-    before, after = np.maximum.accumulate(most), np.maximum.accumulate(most[::-1])[::-1]
-    hump = (most > 0.0) & (most >= 0.5 * np.minimum(before, after))
-    number: NDArray[np.intp] = np.where(hump, np.cumsum(np.diff(hump, prepend=False) & hump), 0)
-    return number
-
-
 def _joined(most: Array, height: Array, count: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the rows to keep, and where the groups of neighbours begin that become one row each, `count` in all.
 
-    Humps, and what lies between them, share the groups by the root of their number of rows. Where few rows touch, all
-    of them are kept, and the nearest of the others.
+    Areas that touch share the groups by the root of their number of rows. Where few rows touch, all of them are kept,
+    and the nearest of the others.
     """
     touches = most > 0.0
     if np.count_nonzero(touches) <= count:
         return np.sort(np.argsort(np.where(touches, most, -height))[-count:]), np.arange(count)
     kept = np.arange(touches.argmax(), touches.size - touches[::-1].argmax())  # rows stay next to each other
-    area = np.where(touches, _humps(most), -1)[kept]
-    begins = np.append(0, np.flatnonzero(np.diff(area) != 0) + 1)
+    begins = np.append(0, np.flatnonzero(np.diff(touches[kept])) + 1)
     wide, groups = np.diff(np.append(begins, kept.size)), np.ones(begins.size, dtype=np.intp)
-    shared = np.where(area[begins] < 0, 1, wide)  # rows that do not touch are one
+    shared = np.where(touches[kept][begins], wide, 1)  # rows that do not touch are one
     while groups.sum() < count:
         groups[np.where(groups < shared, np.sqrt(shared) / groups, 0.0).argmax()] += 1
     first = [begin + np.arange(n) * size // n for begin, size, n in zip(begins, wide, groups, strict=True)]
