@@ -25,4 +25,3 @@ def __getattr__(name: str) -> object:
 def wearlaw_commands() -> list[wl.Command]:
     """Return the command that wears a profile over a distance."""
     return [wl.Command("life", "wearlaw_life._command:life", "Wear a profile over a distance on a line.")]
-
