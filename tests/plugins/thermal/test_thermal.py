@@ -6,6 +6,7 @@ import re
 import warnings
 from collections.abc import Callable
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -274,18 +275,6 @@ def test_no_heat_leaves_the_friction_to_the_bit() -> None:
     assert hot(thermal(hot_ratio=1.0), "exact", line()).friction_coefficient == 0.46
 
 
-class Counted:
-    """A function of μ that counts its evaluations."""
-
-    def __init__(self, function: Callable[[Array], Array]) -> None:
-        self.function = function
-        self.times = 0
-
-    def __call__(self, friction: Array) -> Array:
-        self.times += 1
-        return self.function(friction)
-
-
 @pytest.mark.parametrize(
     ("shape", "most"),
     [
@@ -297,10 +286,10 @@ class Counted:
 )
 def test_the_root_is_found_to_rounding(shape: Callable[[Array], Array], most: int) -> None:
     places = np.array([0.1, 0.11, 0.2, 0.37, 0.49, 0.5])
-    function = Counted(lambda friction: shape(friction - places))
+    function = Mock(side_effect=lambda friction: shape(friction - places))
     found = wearlaw_thermal._root(function, np.full(6, 0.1), np.full(6, 0.5))
     assert found == pytest.approx(places, rel=8 * EPS)
-    assert function.times <= most
+    assert function.call_count <= most
     assert found[[0, -1]].tolist() == [0.1, 0.5]  # the ends of the bracket to the bit
 
 
