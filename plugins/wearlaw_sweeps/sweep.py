@@ -17,15 +17,17 @@ import numpy as np
 import xarray
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, InputError, ResumeWarning, shown
-from wearlaw.pipeline.composition import warn_of_unlike_materials
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ResumeWarning, shown
+from wearlaw.models.law import named_outcomes
+from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.units.variables import VARIABLES
 from wearlaw_output.datasets import names_in
+from wearlaw_output.labels import unit_of
 from wearlaw_output.notes import caught_warnings
 from wearlaw_output.wear_profile import POSITION
-from wearlaw_sweeps.evaluation import Job, expect_pipeline, output_units, range_warnings, unsolved
+from wearlaw_sweeps.evaluation import Job, expect_pipeline, range_warnings, unsolved
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import BLOCK, Points, outer_product
 from wearlaw_sweeps.progress import Bar
@@ -220,20 +222,36 @@ def _checked_job(
 
     Raises
     ------
+    CompositionError
+        If no outputs are given and there is no law.
     InputError
-        If an output is impossible.
+        If there is no such output, or it is a condition.
     """
-    names = [] if outputs is None else names_in(outputs, "outputs")
-    one = first.flatten()[:1]
-    notes = []
+    one, laws, conditions = first.flatten()[:1], pipeline.laws, {*points.coordinates(), *points.fixed}
+    if one.geometry == "line":
+        check_traction(pipeline.contact_model, one)
+    prediction = unsolved(one, pipeline.staged_model, laws)
+    names, notes = [] if outputs is None else names_in(outputs, "outputs"), []
     if outputs is None:
-        known = unsolved(one, pipeline.staged_model, pipeline.laws)
-        names = default_variables(known, {*points.varying, *points.fixed}, bool(first.dims))
+        names = default_variables(prediction, conditions, bool(first.dims))
         size = len(names) * points.size * math.prod(map(len, first.dims.values()))
         if size > MOST:
             names = []
             notes = [f"the sweep is large and keeps only the outcomes of laws: all outputs are {size:.2g} numbers"]
-    units = output_units(pipeline, one, points, list(dict.fromkeys(names)) or None)
+    names = names or list(named_outcomes(laws))
+    if not names:
+        raise CompositionError(
+            f"the pipeline has no wear law; give one, as in rig | {pipeline.contact_model!r} | wl.wear_law('usfd'), or"
+            ' name what to keep, as in outputs=["tangential_force"]'
+        )
+    units = {}
+    for name in names:
+        if name in conditions:
+            raise InputError(f"outputs: {shown(name)} is among the coordinates of the results already")
+        try:
+            units[name] = unit_of(name, prediction[name], laws)
+        except CompositionError as error:
+            raise InputError(f"outputs: {error}") from None
     return Job(pipeline, units, first.dims), notes
 
 

@@ -188,8 +188,8 @@ class Sum(Target):
             name: (tuple(coordinates)[: values.ndim], values, self.job.attributes(name))
             for name, values in self._totals.items()
         }
-        found = xarray.Dataset(data, coordinates)
-        found = found.assign_attrs(attributes(COMPLETE, provenance_of(self.job, self.points), notes))
+        attrs = attributes(COMPLETE, provenance_of(self.job, self.points), notes)
+        found = xarray.Dataset(data, coordinates, attrs)
         if self._parts is not None:
             self._parts.finish(found)
         return found

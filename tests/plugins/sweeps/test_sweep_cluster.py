@@ -59,5 +59,5 @@ def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers
 
 def test_a_block_at_which_every_worker_of_the_cluster_dies_is_given_up(client: Any, tmp_path: Path) -> None:
     client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
-    with pytest.raises(wl.SweepError, match=r"block \d was given up by the cluster, since its workers died"):
+    with pytest.raises(wl.SweepError, match="given up by the cluster, since its workers died"):
         wl.sweep(deadly(tmp_path / "marker", always=True), **CONDITIONS, client=client)
