@@ -6,10 +6,9 @@ import dataclasses
 import math
 import os
 import pickle
-import tempfile
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,13 +28,13 @@ from wearlaw_output.notes import caught_warnings
 from wearlaw_output.wear_profile import POSITION
 from wearlaw_sweeps.evaluation import Job, expect_pipeline, range_warnings, unsolved
 from wearlaw_sweeps.located import posed
-from wearlaw_sweeps.points import BLOCK, Points, outer_product
+from wearlaw_sweeps.points import BLOCK, Points
 from wearlaw_sweeps.progress import Bar
 from wearlaw_sweeps.provenance import parts
 from wearlaw_sweeps.results import Memory, Target
 from wearlaw_sweeps.room import writing_to
-from wearlaw_sweeps.tables import from_table
-from wearlaw_sweeps.wear_profile import SHARE, WEAR_PROFILE, ProfileJob, Sum, check_shares
+from wearlaw_sweeps.tables import operating_points
+from wearlaw_sweeps.wear_profile import SHARE, WEAR_PROFILE, ProfileJob, Sum
 from wearlaw_sweeps.workers import here, in_processes, on_cluster
 
 if TYPE_CHECKING:
@@ -186,33 +185,6 @@ def target_of(job: Job, points: Points, store: Path | None, resume: bool) -> Tar
 def kept(count: int, of: int, where: Path) -> str:
     """Return the remark of a sweep that is resumed, with numbers of blocks."""
     return f"{count} of {of} blocks are kept in {shown(where)}; the others are missing or damaged, and are computed"
-
-
-@contextmanager
-def operating_points(
-    predict: Pipeline[...],
-    table: Any,
-    conditions: Mapping[str, Any],
-    columns: Mapping[str, str] | None,
-    keep: Mapping[str, str] | None,
-    as_csv: Mapping[str, Any],
-    store: str | os.PathLike[str] | None,
-    summed: bool,
-) -> Iterator[Points]:
-    """Give the operating points of a sweep; if they are to be summed, the kept column `SHARE` has their shares."""
-    if table is None:
-        for name, value in {"columns": columns, "keep": keep}.items():
-            if value is not None:
-                raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
-        yield outer_product(conditions)
-        return
-    beside = Path(tempfile.gettempdir(), "sum") if summed and store is None else store  # a sum needs no memory
-    on_disk = None if beside is None else Path(beside)
-    check = predict.rig.check_names
-    with from_table(table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk) as points:
-        if summed and keep is not None:
-            check_shares(points, keep[SHARE])
-        yield points
 
 
 def _checked_job(

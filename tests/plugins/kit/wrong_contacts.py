@@ -262,12 +262,6 @@ def slips_everywhere(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
     return contact.replaced(slip=contact.slip + (0.1 if contact.on_strips else 1e-9) * contact.per_node(creepage))
 
 
-@wrong("force_stays_below_friction", LINE, ELLIPSE)
-def above_friction(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
-    """More than friction allows: by a millionth on a line, by five hundredths on cells."""
-    return times(contact, 1.05 if contact.on_strips else 1.0 + 1e-6)
-
-
 @wrong("forces_are_continuous", LINE, ELLIPSE)
 def jumps_into_full_slip(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
     """The force lacks a thousandth, on cells a hundredth, until all tractions are at their bound."""
