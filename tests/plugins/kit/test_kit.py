@@ -13,7 +13,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.kit.cells import Cells
 from tests.plugins.kit.strips import Strips
-from tests.plugins.kit.wrong_laws import OF_RATE, Linear, NoReason, UnknownClaim
+from tests.plugins.kit.wrong_laws import OF_RATE, Linear
 from tests.plugins.kit.wrong_rigs import Weight
 from tests.plugins.kit.wrong_stages import Lubricated
 from wearlaw_kit import checks, conformance
@@ -62,13 +62,6 @@ def test_what_pytest_shows_of_expected_failures_exemptions_and_counter_examples(
 def test_an_expected_failure_is_a_check_and_has_a_reason(reason: dict[str, str]) -> None:
     with pytest.raises(wl.InputError, match="no_slip_no_wear"):
         conformance(wl.wear_law("usfd"), expected_failures=reason)
-
-
-@pytest.mark.parametrize("model", [UnknownClaim(), NoReason()], ids=lambda model: type(model).__name__)
-def test_an_exemption_names_a_claim_and_has_a_reason(model: Any) -> None:
-    check = {check.name: check for check in checks(model)}["exemptions_are_claims"]
-    with pytest.raises(AssertionError, match="each_node_wears_by_itself"):
-        check()
 
 
 def exempt(base: Any, claim: str) -> Any:

@@ -348,12 +348,6 @@ def order_of_x(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
 
 
 @wrong("nodes_lie_where_their_areas_do", *NODES)
-def x_in_the_middle(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-    """x is zero everywhere."""
-    return with_sums(contact.replaced(x=np.zeros_like(contact.x)), problem)
-
-
-@wrong("nodes_lie_where_their_areas_do", *NODES)
 def x_over_half_the_patch(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
     """x ends half-way to the edges."""
     return with_sums(contact.replaced(x=0.5 * contact.x), problem)
@@ -364,13 +358,6 @@ def shuffled_pressure(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
     """The pressures are those of other nodes."""
     third = contact.x.shape[along(contact)] // 3
     return contact.replaced(pressure=np.roll(contact.pressure, third, axis=along(contact)))
-
-
-@wrong("pressure_is_that_of_the_problem", *NODES)
-def uniform_pressure(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-    """The pressure is its mean."""
-    mean = contact.per_node(problem.normal_force / contact.patch_area)
-    return contact.replaced(pressure=np.broadcast_to(mean, contact.x.shape))
 
 
 @wrong("pressure_is_that_of_the_problem", *NODES)
