@@ -10,9 +10,10 @@ import numpy as np
 
 import wearlaw as wl
 from tests.plugins.kit.cells import Cells
-from tests.plugins.kit.strips import Means, Strips
+from tests.plugins.kit.strips import Strips
 
 Exact: Any = type(wl.contact_model("exact"))
+ShenHedrickElkins: Any = type(wl.contact_model("shen_hedrick_elkins"))
 
 
 class Wrapped(wl.ContactModel):
@@ -234,10 +235,10 @@ def wrong_initial_slope(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
 
 
 @wrong("initial_slopes_are_kalkers")
-class TooSoftForSpin(Means):
+class TooSoftForSpin(ShenHedrickElkins):  # type: ignore[misc]
     """The lateral force of spin is too small by 2 per mille."""
 
-    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
+    def creep_forces(self, problem: wl.Problem) -> Any:
         forces = super().creep_forces(problem)
         creeps = (problem.longitudinal_creepage != 0.0) | (problem.lateral_creepage != 0.0)
         return dataclasses.replace(forces, lateral=forces.lateral * np.where(creeps, 1.0, 0.998))
