@@ -21,11 +21,9 @@ from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline
 from wearlaw.pipeline.variables import default_variables
-from wearlaw.units.variables import VARIABLES
 from wearlaw_output.datasets import names_in
 from wearlaw_output.labels import unit_of
 from wearlaw_output.notes import caught_warnings
-from wearlaw_output.wear_profile import POSITION
 from wearlaw_sweeps.evaluation import Job, expect_pipeline, range_warnings, unsolved
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import BLOCK, Points
@@ -152,7 +150,7 @@ def sweep(
         first = _checked_conditions(predict, points, not_given)
         check_importable(predict, workers, client)
         if profile:
-            job: Job = checked_profile(predict, first, body, at, summed)
+            job: Job = ProfileJob.of(predict, first, body, at, summed)
             notes: list[str] = []
         else:
             job, notes = _checked_job(predict, first, points, outputs)
@@ -225,23 +223,6 @@ def _checked_job(
         except CompositionError as error:
             raise InputError(f"outputs: {error}") from None
     return Job(pipeline, units, first.dims), notes
-
-
-def checked_profile(
-    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool
-) -> ProfileJob:
-    """Return the job of the wear across a profile, after a prediction of it at the first operating point.
-
-    Raises
-    ------
-    InputError
-        If the body or the positions are wrong.
-    """
-    if at is None:
-        raise InputError('at: "wear_profile" needs positions, such as at=Q(np.arange(-60, 60, 0.25), "mm")')
-    unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
-    positions = VARIABLES[POSITION].expected.si(at, "at")
-    return ProfileJob.of(pipeline, first, body, positions, summed)
 
 
 def check_importable(pipeline: Pipeline[...], workers: int, client: Any = None) -> None:
