@@ -181,7 +181,6 @@ class TwinDisc(wl.Rig):
         per_width = self._normal_force_per_width(arrays)
         half_width = wl.hertz.half_width(per_width, constants["relative_radius"], constants["effective_modulus"])
         loaded: dict[str, Any] = {
-            **self._same,
             "a": half_width,
             "normal_force": per_width * constants["track_width"],
             "max_pressure": wl.hertz.max_pressure(per_width, half_width),
@@ -199,6 +198,7 @@ class TwinDisc(wl.Rig):
             rolled_distance=arrays.get("rolled_distance"),
             bodies=self._bodies,
             **loaded,
+            **self._same_at(shape),
         ).checked()
 
     @property
@@ -247,17 +247,20 @@ class TwinDisc(wl.Rig):
         }
         return {name: np.float64(value) for name, value in values.items()}
 
+    def _same_at(self, shape: tuple[int, ...]) -> dict[str, Any]:
+        """Return the fields of `Problem` that are the same at all operating points; one broadcast of all is faster."""
+        names, numbers = self._same
+        if not shape:
+            return dict(zip(names, numbers, strict=True))
+        columns = numbers.reshape(-1, *[1] * len(shape))
+        return dict(zip(names, np.broadcast_to(columns, (len(names), *shape)), strict=True))
+
     @cached_property
-    def _same(self) -> dict[str, Any]:
-        """The fields of `Problem` that are the same at all operating points, as SI scalars."""
-        constants = self._constants
-        none, b = np.float64(0.0), 0.5 * constants["track_width"]
-        return {
-            **{name: constants[name] for name in ("effective_modulus", "poisson_ratio", "density")},
-            "b": b,
-            "lateral_creepage": none,
-            "spin": none,
-        }
+    def _same(self) -> tuple[tuple[str, ...], Array]:
+        """The names and the SI values of the fields of `Problem` that are the same at all operating points."""
+        names = ("effective_modulus", "poisson_ratio", "density", "b", "lateral_creepage", "spin")
+        constants = {**self._constants, "b": 0.5 * self._constants["track_width"], "lateral_creepage": 0.0, "spin": 0.0}
+        return names, np.array([constants[name] for name in names])
 
 
 def _disc(name: str, disc: Disc) -> Disc:
