@@ -249,18 +249,22 @@ class TwinDisc(wl.Rig):
 
     def _same_at(self, shape: tuple[int, ...]) -> dict[str, Any]:
         """Return the fields of `Problem` that are the same at all operating points; one broadcast of all is faster."""
-        names, numbers = self._same
         if not shape:
-            return dict(zip(names, numbers, strict=True))
-        columns = numbers.reshape(-1, *[1] * len(shape))
-        return dict(zip(names, np.broadcast_to(columns, (len(names), *shape)), strict=True))
+            return self._same
+        columns = np.array(list(self._same.values())).reshape(-1, *[1] * len(shape))
+        return dict(zip(self._same, np.broadcast_to(columns, (len(self._same), *shape)), strict=True))
 
     @cached_property
-    def _same(self) -> tuple[tuple[str, ...], Array]:
-        """The names and the SI values of the fields of `Problem` that are the same at all operating points."""
-        names = ("effective_modulus", "poisson_ratio", "density", "b", "lateral_creepage", "spin")
-        constants = {**self._constants, "b": 0.5 * self._constants["track_width"], "lateral_creepage": 0.0, "spin": 0.0}
-        return names, np.array([constants[name] for name in names])
+    def _same(self) -> dict[str, Any]:
+        """The fields of `Problem` that are the same at all operating points, as SI scalars."""
+        constants = self._constants
+        none, b = np.float64(0.0), 0.5 * constants["track_width"]
+        return {
+            **{name: constants[name] for name in ("effective_modulus", "poisson_ratio", "density")},
+            "b": b,
+            "lateral_creepage": none,
+            "spin": none,
+        }
 
 
 def _disc(name: str, disc: Disc) -> Disc:
