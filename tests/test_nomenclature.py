@@ -13,7 +13,6 @@ import pytest
 import wearlaw as wl
 from docs import nomenclature
 from docs.nomenclature import Documented
-from tests.environments import ROOT
 from wearlaw.units.variables import VARIABLES  # private: the one table of variables
 
 SYMBOLS_OF_SEVERAL_NAMES = {
@@ -30,7 +29,8 @@ NAMES_OF_SEVERAL_SYMBOLS = {
 }
 OF_OTHER_KINDS = {"geometry", "problem", "strips", "bodies", "dims", "exists"}
 """Fields of records that are no numbers with a unit."""
-SYMBOL_IS_THE_NAME = {"a", "b", "y"}
+
+
 IN_NO_CLASS = {"wear_rate_low", "wear_rate_high", "wear_rate_uncertainty", "frictional_heat"}
 """Columns of results and of files with tests, which the page explains below its table."""
 
@@ -159,26 +159,10 @@ def test_the_table_of_variables_has_the_documented_dimensions_and_symbols(docume
             assert (name, variable.symbol) in symbols
 
 
-def test_a_docstring_begins_with_the_meaning_in_the_table_of_variables(documented: list[Documented]) -> None:
-    for name, variable in VARIABLES.items():
-        said = [one.meaning for one in documented if one.name == name]
-        assert name in IN_NO_CLASS or any(text.startswith(variable.meaning) for text in said), (variable.meaning, said)
-
-
 def test_every_variable_is_in_the_nomenclature_with_its_meaning_in_the_table_of_variables() -> None:
     rows = list(csv.DictReader(nomenclature.TABLE.read_text(encoding="utf-8").splitlines()))
     shown = {(row["name"].strip("`"), row["meaning"]) for row in rows}
     assert {(name, one.meaning) for name, one in VARIABLES.items()} <= shown
-
-
-def test_every_variable_with_a_symbol_in_the_table_has_one_in_its_documentation(documented: list[Documented]) -> None:
-    without = {one.name for one in documented if not one.symbol} - {one.name for one in documented if one.symbol}
-    assert {name for name, one in VARIABLES.items() if one.symbol and name in without} == SYMBOL_IS_THE_NAME
-
-
-def test_what_is_in_no_class_is_explained_on_the_page() -> None:
-    page = (ROOT / "docs/conventions.md").read_text(encoding="utf-8")
-    assert all(f"`{name}`" in page for name in IN_NO_CLASS)
 
 
 def test_a_name_has_one_unit_and_one_symbol_and_a_symbol_one_name(documented: list[Documented]) -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import runpy
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +10,6 @@ import pytest
 from matplotlib.quiver import Quiver
 from PIL import Image
 
-import wearlaw as wl
 from docs import choosing, pictures, regimes
 from docs.conventions import conventions
 from tests.environments import ROOT
@@ -84,47 +81,3 @@ def test_every_shipped_contact_model_and_law_can_be_chosen() -> None:
     assert sorted(shown) == sorted({*shipped})
     page = (ROOT / "docs" / "choosing.md").read_text(encoding="utf-8")
     assert [name for name in shown if f"`{name}`" not in page] == []
-
-
-def test_building_the_documentation_changes_no_tracked_file(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "path", [*sys.path])
-    files = [path for path in (ROOT / "docs").rglob("*") if path.is_file() and path.suffix in {".png", ".csv", ".md"}]
-    before = {path: path.stat().st_mtime_ns for path in files}
-    runpy.run_path(str(ROOT / "docs" / "conf.py"))
-    assert {path: path.stat().st_mtime_ns for path in files} == before
-
-
-def test_every_axis_of_the_theory_and_of_the_benchmarks_has_its_unit() -> None:
-    for panel in (*pictures.creep_forces().panels, *pictures.falling_friction().panels):
-        assert panel.x.label.endswith("]")
-        assert panel.y.label.endswith("]")
-    costs = pictures.cost_against_error().axes[0]
-    assert costs.get_xlabel().endswith("]")
-    assert costs.get_ylabel().endswith("]")
-
-
-def test_the_curves_of_the_creep_forces_are_kalkers_lines_and_their_reduction_by_a_cubic() -> None:
-    # Table E.3 of Kalker (1990) for a = b: C11 and C23 at ν = 1/4 and 1/2, between which 0.28 lies
-    table = (100.0, (4.12, 5.20)), (1.0 / 6e-3, (1.47, 1.63))
-    for panel, (unit, (low, high)) in zip(pictures.creep_forces().panels, table, strict=True):
-        drawn = {curve.label: curve for curve in panel.curves}
-        x, line = drawn["linear"].x, drawn["linear"].y
-        assert low < unit * line[-1] / x[-1] * 30e3 / (82e9 * 36e-6) < high
-        assert line == pytest.approx(line[-1] / x[-1] * x, rel=1e-12)
-        cubic = 1.0 - (1.0 - np.minimum(line / 3.0, 1.0)) ** 3
-        assert drawn["shen_hedrick_elkins"].y == pytest.approx(cubic, rel=1e-12)
-        points = drawn["half-space theory"]
-        near = np.interp(points.x, x, drawn["fastsim"].y)
-        # The page says 2.7 % of μN; half of its last digit, and h²/8 f'' between points of the curve, are below 1e-3.
-        assert points.y == pytest.approx(near, abs=0.028)
-
-
-def test_the_figure_of_falling_friction_ends_in_full_slip_under_the_friction_of_its_creep_speed() -> None:
-    (panel,) = pictures.falling_friction().panels
-    drawn = {curve.label: curve for curve in panel.curves}
-    friction = drawn["friction coefficient"]
-    creep_speed = 30.0 * friction.x / 100.0
-    assert friction.y == pytest.approx(0.55 * (0.6 * np.exp(-0.6 * creep_speed) + 0.4), rel=1e-12)
-    declared = wl.contact_model("fastsim").elliptic_accuracy
-    assert drawn["fastsim"].y[-1] == pytest.approx(friction.y[-1], rel=declared)
-    assert drawn["polach"].y[-1] < friction.y[-1]

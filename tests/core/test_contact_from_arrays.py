@@ -74,11 +74,6 @@ def test_a_patch_with_two_axes_of_nodes_and_a_batch() -> None:
     assert wear.local_value.magnitude.shape == shape
 
 
-def test_one_node_is_a_contact() -> None:
-    contact = wl.Contact.from_arrays(**{**FOUR_NODES, **{name: FOUR_NODES[name][3:] for name in NODES}})
-    assert contact.normal_force == pytest.approx(150.0, rel=4 * EPS)  # [N]
-
-
 @pytest.mark.parametrize(
     ("changes", "error", "message"),
     [
@@ -160,19 +155,6 @@ def test_parameters_of_another_scale_are_warned_of() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         contact.patch_mean() | wl.wear_law("usfd", fitted_for="global")
-
-
-def test_negative_wear_is_refused() -> None:
-    class Gain(wl.WearLaw):
-        name = "gain"
-        source = "made up"
-
-        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-            return -contact.pressure
-
-    contact = wl.Contact.from_arrays(**{**FOUR_NODES, "slip": "1 %"})
-    with pytest.raises(wl.ModelError, match="gives a negative wear rate"):
-        contact | Gain()
 
 
 def test_only_a_contact_comes_before_a_law() -> None:

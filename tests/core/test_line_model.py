@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +12,6 @@ from hypothesis import given
 import wearlaw as wl
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
-from wearlaw.contact.quadrature import ORDER  # private: rules of quadrature, which no result shows alone
 from wearlaw_kit import line_problems
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
@@ -114,44 +112,6 @@ def test_the_contact_can_be_had_at_any_nodes(name: str, shape: tuple[int, ...]) 
     assert (contact.slip == sign * fields.slip).all()
     assert (contact.traction_bound == fields.traction_bound).all()
     assert (contact.tangential_force == model.tangential_force(problem)).all()
-
-
-@every_model
-def test_stick_and_full_slip_in_one_batch_are_what_they_are_alone(name: str) -> None:
-    model = LINE_MODELS[name]
-    problem = sweep(np.array([0.3, 1e-4, 0.0, -0.3, -0.005, 0.03]))
-    together = model.solve(problem)
-    assert together.patch_area == pytest.approx(problem.patch_area, rel=SUM)
-    for point, creepage in enumerate(problem.creepage):
-        alone = model.solve(problem[point])
-        assert together.tangential_force[point] == pytest.approx(alone.tangential_force, rel=4 * EPS)
-        dissipated = (together.traction * together.slip * together.area)[point].sum()
-        assert dissipated == pytest.approx(float((alone.traction * alone.slip * alone.area).sum()), rel=SUM)
-        assert together.mean_slip[point] == pytest.approx(alone.mean_slip, rel=SUM)
-        assert (np.sign(together.slip[point]) * np.sign(creepage) >= 0.0).all()
-    assert together.pressure.shape[-1] == 2 * ORDER
-    if "elliptic" not in name:  # of which a part always sticks
-        assert model.solve(problem[[0, 3]]).pressure.shape == (2, ORDER)
-
-
-@every_model
-def test_closed_forms_take_batches_of_any_shape(name: str) -> None:
-    model = LINE_MODELS[name]
-    problem = sweep(np.geomspace(1e-4, 0.3, 12).reshape(3, 4))
-    flat = problem.flatten()
-    methods: dict[str, Callable[[wl.Problem], Array | None]] = {
-        "slip_length": model.slip_length,
-        "tangential_force_per_width": model.tangential_force_per_width,
-        "excess_dissipation": lambda p: model.excess_dissipation(p, 1e6),
-        "crossings": lambda p: model.crossings(p, "slip", np.full(p.batch_shape, 1e-3)),
-    }
-    for name, method in methods.items():
-        found, due = method(problem), method(flat)
-        if due is None:
-            assert found is None, name
-            continue
-        assert found is not None, name
-        np.testing.assert_array_equal(found, due.reshape(3, 4, *due.shape[1:]), err_msg=name)
 
 
 # --- Closed forms against quadrature ---------------------------------------------------------------------------

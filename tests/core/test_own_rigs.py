@@ -88,16 +88,6 @@ class OnRail(wl.Rig):
         return wheel.problem(normal_force=load, longitudinal_creepage=longitudinal_creepage, friction_coefficient=0.3)
 
 
-@pytest.mark.parametrize("law", ["kth", "usfd"])
-def test_a_rig_of_ones_own_predicts_what_the_discs_do(law: str) -> None:
-    own = Roller() | wl.contact_model("global") | wl.wear_law(law)
-    discs = SUROS | wl.contact_model("global") | wl.wear_law(law)
-    found = own(mass=Q([20.0, 40.0], "kg"), creepage="1 %")
-    expected = discs(normal_force=Q([196.2, 392.4], "N"), creepage="1 %", friction_coefficient=0.4)
-    # The load is a product, rounded once.
-    np.testing.assert_allclose(found.wear_rate.magnitude, expected.wear_rate.magnitude, rtol=8 * EPS)
-
-
 def test_parameters_fitted_for_another_shape_of_patch_give_a_warning_once_the_shape_is_known() -> None:
     predict = OnRail() | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
     for call in (
@@ -123,13 +113,6 @@ class Delegating(wl.Rig):
 def test_a_rig_that_takes_any_conditions_is_blamed_for_its_failure() -> None:
     with pytest.raises(wl.ModelError, match="rig 'delegating' failed: KeyError: 'creepage'"):
         (Delegating() | MODEL)(creepage="1 %")
-
-
-def test_a_sweep_runs_along_the_conditions_of_the_rig() -> None:
-    swept = wl.sweep(Roller() | MODEL | KTH, mass=Q([20.0, 40.0], "kg"), creepage=Q([1.0, 2.0, 3.0], "%"))
-    assert dict(swept.wear_rate.sizes) == {"mass": 2, "creepage": 3}
-    alone = (Roller() | MODEL | KTH)(mass="40 kg", creepage="3 %").wear_rate.to("ug/m/mm^2").magnitude
-    assert float(swept.wear_rate[1, 2]) == alone
 
 
 @pytest.mark.parametrize(

@@ -114,12 +114,6 @@ def test_like_bodies_keep_every_digit(material: wl.Material) -> None:
     assert hertz.mean_poisson_ratio(modulus, ratio, modulus, ratio) == ratio
 
 
-def test_each_body_has_its_own_material() -> None:
-    bodies = rig(rail_material=IRON).bodies
-    assert (bodies["wheel"].material, bodies["rail"].material) == (STEEL, IRON)
-    assert rig().bodies["rail"].material is rig().bodies["wheel"].material
-
-
 def test_each_body_loses_mass_by_its_own_density() -> None:
     with silent():
         found = (rig(rail_material=IRON) | FASTSIM | Volume())(**CONDITIONS)
@@ -146,12 +140,6 @@ def test_the_weaker_body_yields_first() -> None:
         (rig(rail_material=IRON) | FASTSIM)(**{**CONDITIONS, "normal_force": Q(60, "kN")})
     with silent():
         (rig() | FASTSIM)(**{**CONDITIONS, "normal_force": Q(60, "kN")})
-
-
-def test_a_rig_of_two_materials_survives_json_and_a_case() -> None:
-    two = rig(rail_material=IRON) | FASTSIM
-    assert wl.Pipeline.model_validate_json(two.model_dump_json()) == two
-    assert wl.WheelRail.model_validate({**GIVEN, "rail_material": "steel"}).rail_material == STEEL
 
 
 # --- Dundurs' β ------------------------------------------------------------------------------------------------------
