@@ -184,8 +184,7 @@ class Prediction:
             return self.outcome(name)
         known = dict.fromkeys([*outcome_units(self.laws), *default_variables(self)])
         raise CompositionError(
-            f"there is no variable {shown(name)} here{did_you_mean(name, known)} There are:"
-            f" {', '.join(known)}"
+            f"there is no variable {shown(name)} here{did_you_mean(name, known)} There are: {', '.join(known)}"
         )
 
     def __iter__(self) -> Iterator[Prediction]:
