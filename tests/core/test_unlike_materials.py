@@ -258,10 +258,3 @@ def test_a_sweep_warns_once_whatever_its_blocks() -> None:
         wl.sweep(rig(rail_material=POLYMER) | FASTSIM | Volume(), outputs=["wear_rate"], **conditions)
     assert len(caught) == 1
     assert caught[0].filename == __file__
-
-
-def test_an_uncertainty_warns() -> None:
-    creepage = {"longitudinal_creepage": wl.uniform(Q(0.1, "%"), Q(0.2, "%"))}
-    predict = rig(rail_material=POLYMER) | FASTSIM | Volume()
-    with pytest.warns(wl.RangeWarning, match="unlike materials"):
-        wl.uncertainty(predict, samples=32, **{**CONDITIONS, **creepage}).median  # noqa: B018
