@@ -260,20 +260,6 @@ def test_a_wrong_law_is_named(law: wl.Law, said: str) -> None:
         predicted(RIG | EXACT | law, **BATCH)
 
 
-def test_a_contact_solved_elsewhere_goes_into_any_law() -> None:
-    contact = wl.Contact.from_arrays(
-        pressure=Q([800.0, 1000.0], "MPa"),
-        traction=Q([100.0, 300.0], "MPa"),
-        slip=Q([0.0, 1.0], "%"),
-        area=Q([1.0, 2.0], "mm^2"),
-        rolling_speed=Q(2.0, "m/s"),
-    )
-    heat, damage = contact | HEAT, contact | Damage()
-    assert heat.value.m_as("W/mm^2") == pytest.approx(300.0 * 0.01 * 2000.0 * 2.0 / 3.0 * 1e-3, rel=16 * EPS)
-    assert heat.local_value.m_as("W/mm^2") == pytest.approx([0.0, 6.0], rel=16 * EPS)
-    assert damage.value.m_as("") == pytest.approx(1e-6 * (6.0 - 15.0), rel=16 * EPS)
-
-
 # --- Borders in a variable of the law's own --------------------------------------------------------------------
 
 

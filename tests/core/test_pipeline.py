@@ -119,13 +119,6 @@ def test_a_pipeline_prints_its_stages_in_order() -> None:
     assert str(RIG | EXACT | KTH) == repr(RIG | EXACT | KTH)
 
 
-@pytest.mark.parametrize("predict", [RIG | EXACT, RIG | EXACT | KTH], ids=["contact", "wear"])
-def test_a_pipeline_is_frozen(predict: Any) -> None:
-    for name in type(predict).model_fields:
-        with pytest.raises(wl.FrozenError, match="frozen"):
-            setattr(predict, name, None)
-
-
 def test_a_law_is_taken_off_and_put_on_again() -> None:
     contact = RIG | FASTSIM | wl.patch_mean()
     predict = contact | KTH
