@@ -339,16 +339,6 @@ def test_the_traction_falls_beyond_its_largest() -> None:
     assert contact.traction_bound.max() <= 0.46 * problem.max_pressure[0]
 
 
-def test_a_batch_agrees_with_one_point_at_a_time() -> None:
-    creepage = np.array([[0.0, 1e-3, -2e-3], [1e-4, 0.01, 0.3]])
-    batch = hot(thermal(), "exact", line(creepage)).friction_coefficient
-    assert batch.shape == (2, 3)
-    for index in np.ndindex(2, 3):
-        single = hot(thermal(), "exact", line(creepage[index])).friction_coefficient
-        assert single == pytest.approx(batch[index], rel=8 * EPS)
-    assert hot(thermal(), "exact", line(-creepage)).friction_coefficient == pytest.approx(batch, rel=8 * EPS)
-
-
 def test_forces_are_asked_for_at_the_shape_of_the_batch() -> None:
     problem = line(np.full((2, 3), 0.1))
     shapes = set()
