@@ -16,6 +16,7 @@ WRONG: list[tuple[str, Any, str]] = [
     ("title", None, "title"),
     ("titel", "x", "titel"),
     ("rig", "suros", "rig"),
+    ("rig", {}, "rig"),
     ("rig", "twin_disk", "rig"),
     ("rig", {"type": "twin_disc"}, "rig.disc_1"),
     ("rig.type", "wheel_rail", "rig.preset"),

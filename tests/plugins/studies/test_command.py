@@ -212,6 +212,7 @@ def test_the_shipped_study_and_a_copy_of_its_file_give_equal_results(folder: Pat
         (["wrong.toml"], "contact_models.0: no contact model is called 'exat'; did you mean"),
         (["no_pair.toml"], "no contact model can be used with any of"),
         (["c.toml", "-o", "full", "--overwrite"], "output: 'full' does not hold results of wearlaw"),
+        (["c.toml", "-o", "earlier"], "output: 'earlier' is not empty; choose another folder with -o, or add --over"),
     ],
 )
 def test_what_cannot_be_run_is_one_clear_error_and_nothing_is_written(
@@ -223,6 +224,8 @@ def test_what_cannot_be_run_is_one_clear_error_and_nothing_is_written(
     (folder / "taken.txt").write_text("not TOML")
     (folder / "full").mkdir()
     (folder / "full" / "thesis.tex").write_text("years of work")
+    (folder / "earlier").mkdir()
+    (folder / "earlier" / ".wearlaw-files").write_text("results.nc\n")
     before = files(folder)
     assert_refused(wearlaw("run", *arguments), message)
     assert files(folder) == before
