@@ -157,6 +157,19 @@ def test_parameters_of_another_scale_are_warned_of() -> None:
         contact.patch_mean() | wl.wear_law("usfd", fitted_for="global")
 
 
+def test_negative_wear_is_refused() -> None:
+    class Gain(wl.WearLaw):
+        name = "gain"
+        source = "made up"
+
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+            return -contact.pressure
+
+    contact = wl.Contact.from_arrays(**{**FOUR_NODES, "slip": "1 %"})
+    with pytest.raises(wl.ModelError, match="gives a negative wear rate"):
+        contact | Gain()
+
+
 def test_only_a_contact_comes_before_a_law() -> None:
     with pytest.raises(wl.CompositionError, match="a wear law takes a contact, not 3"):
         3 | wl.wear_law("kth")  # type: ignore[operator]

@@ -129,6 +129,13 @@ def test_loops_work_where_nothing_can_be_kept(theirs: Path) -> None:
 
 
 @needs_numba
+def test_loops_work_on_a_full_disk(theirs: Path) -> None:
+    pytest.importorskip("resource", reason="a system without limits for files")
+    limit = "import resource, runpy; resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)); runpy.run_path('run.py')"
+    assert_agree(run(theirs, "-B", "-c", limit, NUMBA_CACHE_DIR=str(theirs / "kept")))
+
+
+@needs_numba
 def test_a_compiled_loop_takes_arrays_that_it_only_reads_read_only_and_is_compiled_once_more(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -127,59 +127,6 @@ def without_closed_forms(model: wl.LineContactModel) -> wl.LineContactModel:
     return plain
 
 
-def operating_points(saturation: float) -> Array:
-    """Return creepages over the whole range of both signs, half of them next to full slip."""
-    random = np.random.default_rng(72)
-    anywhere, gap = 10.0 ** random.uniform(-7.0, 0.0, 300), 10.0 ** random.uniform(-12.0, -1.0, 300)
-    creepage = np.concatenate([anywhere, saturation * (1.0 + gap * random.choice([-1.0, 1.0], 300)), [0.0]])
-    signed: Array = creepage * random.choice([-1.0, 1.0], creepage.size)
-    return signed
-
-
-@pytest.mark.parametrize("fitted_for", ["global", "exact"])
-@pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])
-def test_closed_forms_give_the_wear_that_quadrature_gives(name: str, fitted_for: str) -> None:
-    model, law = LINE_MODELS[name], wl.wear_law("usfd", fitted_for=fitted_for)
-    # ξ_sat = 2 μ p0/E*, and full slip of FASTSIM at 3/2 of it
-    saturation = 2.0 * 0.46 * 2.2e9 / float(sweep(np.array(0.1)).effective_modulus)
-    creepage = operating_points(saturation if name == "exact" else 1.5 * saturation)
-    conditions: Any = {"max_pressure": "2.2 GPa", "creepage": Q(creepage, ""), "friction_coefficient": 0.46}
-    closed, nodes = ((RIG | each | law)(**conditions) for each in (model, without_closed_forms(model)))
-    assert closed.tangential_force.m.tolist() == nodes.tangential_force.m.tolist()
-    # Each ramp alone is as large as its slope times the whole dissipation, from which the others are subtracted.
-    largest = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ()) * closed.wear_index_density.m_as("N/m^2")
-    apart = np.abs(closed.wear_rate.m_as("kg/m/m^2") - nodes.wear_rate.m_as("kg/m/m^2"))
-    assert (apart <= SUM * largest).all()
-    rate = closed.wear_rate.m_as("ug/m/mm^2")
-    assert np.count_nonzero(rate > 55.0) > 10
-    assert np.count_nonzero((rate < 55.0) & (rate > 0.0)) > 200
-
-
-@pytest.mark.parametrize("threshold", [1e-3, 1e4, 1e7, 1e8])
-@pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])
-def test_the_energy_above_a_threshold_is_that_of_the_fields(name: str, threshold: float) -> None:
-    class Above(wl.WearLaw):
-        """The density above the threshold, of which quadrature alone knows the mean."""
-
-        name: ClassVar[str] = "above"
-        source: ClassVar[str] = "the tests"
-
-        def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
-            return {"wear_index_density": (threshold,)}
-
-        def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-            return np.maximum(contact.wear_index_density - threshold, 0.0)
-
-    model = LINE_MODELS[name]
-    problem = sweep(np.abs(operating_points(0.0123)))
-    conditions: Any = {"max_pressure": "1500 MPa", "creepage": Q(problem.creepage, ""), "friction_coefficient": 0.46}
-    mean = (RIG | model | Above())(**conditions).wear_rate.m_as("kg/m/m^2")
-    excess = model.excess_dissipation(problem, threshold)
-    assert excess is not None
-    whole = model.tangential_force_per_width(problem) * problem.creepage
-    assert (np.abs(excess - mean * 2.0 * problem.half_width) <= SUM * whole).all()
-
-
 @pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])
 @pytest.mark.parametrize("speed", ["4 m/s", "40 m/s"])  # with borders of the slip in full and in partial slip
 def test_where_slip_or_pressure_crosses_a_value_is_where_a_search_finds_it(name: str, speed: str) -> None:

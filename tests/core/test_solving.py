@@ -77,10 +77,6 @@ def entry(value: float) -> Change:
     return changed
 
 
-def text(values: Array) -> Any:
-    return values.astype(np.complex128)
-
-
 class Ramps(PerEnergy):
     """The same above a threshold."""
 
@@ -341,10 +337,8 @@ class Told(wl.WearLaw):
 
 
 RATES: dict[str, tuple[Change, str]] = {
-    "complex": (text, "returned values of type complex128; it must return a float64 array"),
     "a quantity": (lambda rate: Q(rate, "ug/m/mm^2"), "returned values of type ReadableQuantity"),
     "single precision": (lambda rate: rate.astype(np.float32), "returned values of type float32"),
-    "a list": (lambda rate: rate.tolist(), "returned values of type list"),
     "another shape": (lambda rate: rate[..., :1], r"returned values of shape \(.*\); it must return one a node"),
     "no number": (lambda rate: rate * np.nan, "returned a value that is not finite"),
     "negative": (lambda rate: -rate, "gives a negative wear rate, -"),
