@@ -9,26 +9,7 @@ import wearlaw as wl
 from tests.plugins.sheffield.paper import HEAT, SPEED
 from wearlaw_fits.read_tests import text_of_tests  # private: one part of a fit, without the whole
 from wearlaw_output.labels import labels  # private: how laws are labelled in figures and tables
-<<<<<<< HEAD
 from wearlaw_studies.case import load_case  # private: a case without its files
-=======
-from wearlaw_studies.case import Case, case_text, load_case  # private: a case without its files
-from wearlaw_studies.study import run  # private: a case run without its files
-
-
-def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> None:
-    cases = loader.installed()["case"].items()
-    assert list(cases) == [
-        "my_tests",
-        "tassini2010",
-        "two_discs",
-        "wheel_life",
-        "wheel_on_rail",
-        "wheelset",
-    ]
-    package = Path(wearlaw_sheffield.__file__).parent
-    assert case_text("tassini2010") == (package / "tassini2010.toml").read_text(encoding="utf-8")
->>>>>>> parent of 9feb7537 (The case wheel_life and its section go: wearlaw life does the same with any case, line, distance and limit (115 lines, and a test of 30 s))
 
 
 def test_the_shipped_case_sweeps_what_section_5_2_of_the_paper_sweeps() -> None:

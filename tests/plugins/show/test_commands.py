@@ -66,47 +66,11 @@ def test_all_that_plugins_provide_is_listed_with_distribution_and_version() -> N
     assert result.exit_code == 0
     head, *rows = [line.split() for line in result.stdout.splitlines()]
     assert head == ["kind", "name", "distribution", "version"]
-<<<<<<< HEAD
     provided = {(kind, name) for kind, shelf in loader.installed().shelves.items() for name in shelf.items()}
     assert {(" ".join(row[:-3]), row[-3]) for row in rows if row[-2:] == ["wearlaw", wl.__version__]} == provided
     assert len(rows) == len(provided)
     examples = [("rig", "wheelset"), ("law", "wlrm"), ("material type", "SteelWithHardness"), ("command", "life")]
     assert {*examples, ("profile", "uic60"), ("test set", "lewis2004"), ("reader", "contact_mat")} <= provided
-=======
-    ours = [row for row in rows if row[-2] == "wearlaw"]
-    assert sorted(ours) == sorted(
-        [
-            *(["rig", name, "wearlaw", wl.__version__] for name in ("twin_disc", "wheel_rail", "wheelset")),
-            *(["contact", "model", name, "wearlaw", wl.__version__] for name in sorted(FIRST_PARTY_MODELS)),
-            *(["stage", name, "wearlaw", wl.__version__] for name in ("patch_mean", "thermal", "third_body")),
-            *(["wear", "law", name, "wearlaw", wl.__version__] for name in ("archard", "brr", "energy", "kth", "usfd")),
-            ["law", "wlrm", "wearlaw", wl.__version__],
-            ["reader", "contact_mat", "wearlaw", wl.__version__],
-            ["preset", "suros", "wearlaw", wl.__version__],
-            *(
-                ["material", name, "wearlaw", wl.__version__]
-                for name in ("R200", "R220", "R260", "R260Mn", "R320Cr", "R350HT", "R350LHT", "steel")
-            ),
-            ["material", "type", "SteelWithHardness", "wearlaw", wl.__version__],
-            *(["command", name, "wearlaw", wl.__version__] for name in COMMANDS),
-            *(
-                ["case", name, "wearlaw", wl.__version__]
-                for name in ("my_tests", "tassini2010", "two_discs", "wheel_life", "wheel_on_rail", "wheelset")
-            ),
-            *(
-                ["profile", name, "wearlaw", wl.__version__]
-                for name in ("cone20", "cone40", "rail_54e1", "rail_60e1", "rail_60e2", "s1002", "uic60")
-            ),
-            ["section", "life", "wearlaw", wl.__version__],
-            *(
-                ["section", f"tassini2010_{name}", "wearlaw", wl.__version__]
-                for name in ("claims", "table_4", "tables")
-            ),
-            ["section", "wheelset", "wearlaw", wl.__version__],
-            ["test", "set", "lewis2004", "wearlaw", wl.__version__],
-        ]
-    )
->>>>>>> parent of 9feb7537 (The case wheel_life and its section go: wearlaw life does the same with any case, line, distance and limit (115 lines, and a test of 30 s))
     assert result.stderr == ""
 
 
