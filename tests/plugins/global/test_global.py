@@ -81,11 +81,6 @@ def test_a_pipeline_hands_a_measured_traction_coefficient_on() -> None:
     assert contact.traction_coefficient.magnitude == pytest.approx(0.4, rel=4 * EPS)
 
 
-def test_a_local_model_refuses_a_measured_traction_coefficient() -> None:
-    with pytest.raises(wl.ConditionsError, match=r"traction_coefficient.*'exact' computes the traction itself"):
-        (SUROS | wl.contact_model("exact"))(creepage=Q(1, "%"), traction_coefficient=0.4, **CONDITIONS)  # type: ignore[arg-type]
-
-
 def test_the_exemptions_follow_the_model_that_the_total_is_from() -> None:
     kalker = wl.contact_model("fastsim", bound="elliptic", flexibility="kalker")
     assert set(wl.contact_model("global").exemptions) == {"stick"}
@@ -116,7 +111,7 @@ def test_a_case_whose_total_is_of_a_model_that_solves_no_lines_is_refused_at_its
 def test_its_force_is_as_exact_as_that_of_the_model_it_is_taken_from() -> None:
     model = wl.contact_model("global", total_from=Cells())
     assert model.accuracy == Cells().accuracy
-    held_to_friction = {"force_stays_below_friction", "traction_keeps_its_bound", "full_slip_is_reached"}
+    held_to_friction = {"traction_keeps_its_bound", "full_slip_is_reached"}
     checked = [check for check in checks(model) if check.name in held_to_friction]
     assert len(checked) == len(held_to_friction)
     for check in checked:
