@@ -28,7 +28,6 @@ BALANCED = Balanced(**dict(EXACT.rig)) | EXACT.contact_model | Softer() | Heat()
         (USFD, {"creepage": wl.uniform("1 mm", "2 mm")}, "creepage: .*not a ratio"),
         (USFD, {"creepage": wl.uniform("1 %", "200 %")}, "creepage: "),
         (USFD, {"creep": wl.normal("1 %", "0.1 %")}, "creep: .*'creepage'"),
-        (USFD, {"creepage": wl.uniform("1 %", "2 %"), "max_pressur": None}, "max_pressur: "),
         (USFD, {"friction_coefficient": wl.normal(0.0, 0.1)}, "friction_coefficient: must be a positive"),
         (USFD, {"max_pressure": wl.normal(1500.0, 1.0)}, "max_pressure: got the bare number"),
         (USFD, {"friction_coefficient": wl.normal(0.3, 0.2)}, f"friction_coefficient{HINT}"),
