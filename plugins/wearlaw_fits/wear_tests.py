@@ -407,7 +407,7 @@ def _faulty_values(
 def _with_traction(columns: Mapping[str, Array]) -> dict[str, Array]:
     """Replace the columns from which the traction coefficient follows by the traction coefficient."""
     kept = {name: values for name, values in columns.items() if name not in (*MEASURED_FORCES, "rolling_speed")}
-    with np.errstate(divide="ignore", over="ignore", under="ignore"):  # `_faulty_values` reports the result
+    with np.errstate(divide="ignore"):  # `_faulty_values` reports the result
         force = columns.get("tangential_force")
         if "frictional_heat" in columns:
             force = columns["frictional_heat"] / (abs(columns["creepage"]) * columns["rolling_speed"])
@@ -426,8 +426,7 @@ def _in_si(name: str, unit: str, values: Values) -> Array:
         factor = si_factor(Q(1.0, _unit(values)), unit)
     except UnitError as error:
         raise UnitError(f"got {_unit(values) or 'no unit'}, {error}; give it in {unit or 'plain numbers'}") from None
-    with np.errstate(over="ignore"):  # an overflow is reported as not finite
-        return plain(values) * factor
+    return plain(values) * factor
 
 
 def _values(value: object) -> Values:

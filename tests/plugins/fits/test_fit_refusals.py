@@ -10,9 +10,11 @@ import pytest
 from pydantic import Field
 
 import wearlaw as wl
+from tests.plugins.fits.comparisons import scattered
 from tests.plugins.fits.fits import (
     ALL,
     CREEPAGE,
+    EXACT,
     FRICTION,
     GLOBAL,
     PRESSURE,
@@ -169,14 +171,8 @@ def test_parameters_that_the_tests_leave_open_are_refused(predict: Any, creepage
 @pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")
 def test_an_interval_ends_at_the_bounds() -> None:
     # The scatter is that of the largest rates, which hides the mild regime; the interval of its slope has no ends.
-    creepage = Q([0.2, 0.5, 1.0, 2.0, 5.0, 12.0, 16.0, 18.0, 20.0], "%")
-    conditions: Any = {"max_pressure": "1500 MPa", "creepage": creepage, "friction_coefficient": 0.46}
-    contact = wl.TwinDisc.suros() | wl.contact_model("exact")
-    law = wl.wear_law("usfd", fitted_for="exact")
-    scatter = [1.1, 0.9, 1.05, 0.97, 1.02, 0.93, 1.08, 0.99, 0.98]
-    tests = wl.WearTests.from_arrays(**conditions, wear_rate=(contact | law)(**conditions).wear_rate * scatter)
-    wide = law.model_copy(update={"m_c": "61.9 ug/m/N", "tr_sc": "77.26 N/mm^2"})
-    fit = wl.fit(contact | wide, tests, ["m_m", "q_s"], scatter="absolute", bootstrap=40, seed=7)
+    law = wl.wear_law("usfd", fitted_for="exact", m_c="61.9 ug/m/N", tr_sc="77.26 N/mm^2")
+    fit = wl.fit(EXACT | law, scattered(), ["m_m", "q_s"], scatter="absolute", bootstrap=40, seed=7)
     for intervals in (fit.intervals, fit.covariance_intervals):
         low, high = (end.to("ug/m/N").magnitude for end in intervals["m_m"])
         assert 5.3 / 100 * (1 - 1e-12) <= low <= high <= 5.3 * 100 * (1 + 1e-12)

@@ -46,12 +46,6 @@ def test_each_outcome_has_samples_with_its_unit() -> None:
     due = alone["rcf_damage"].magnitude - 1e-6 * (10.0 + 20.0 * p[1])
     assert damage.magnitude == pytest.approx(due, rel=1e-9)
     assert u.wear_rate.magnitude == pytest.approx(np.full(64, alone.wear_rate.magnitude), rel=64 * EPS)
-    # The median of samples that are even to one in 64.
-    part = alone["heat_flux"].magnitude * 0.4 / 64
-    assert u.of("heat_flux").median.magnitude == pytest.approx(0.4 * alone["heat_flux"].magnitude, abs=2 * part)
-    low, high = u.of("heat_flux").interval(0.5)
-    assert low.magnitude == pytest.approx(0.3 * alone["heat_flux"].magnitude, abs=2 * part)
-    assert high.magnitude == pytest.approx(0.5 * alone["heat_flux"].magnitude, abs=2 * part)
 
 
 def test_the_table_has_a_row_for_each_point_and_the_heads_of_conditions_and_outcomes() -> None:
@@ -74,14 +68,22 @@ def test_the_table_has_a_row_for_each_point_and_the_heads_of_conditions_and_outc
     assert len(one.table()) == 1
 
 
-def test_the_variance_of_each_outcome_is_explained_by_its_own_inputs() -> None:
+@pytest.mark.validates(
+    "fitting",
+    "Sobol indices of a product of two uniform factors",
+    source="variance of a product, in closed form",
+    held_to="{errors:g} standard errors",
+    errors=8.0,
+)
+def test_the_variance_of_each_outcome_is_explained_by_its_own_inputs(errors: float) -> None:
     given = {**GIVEN, "friction_coefficient": wl.uniform(0.2, 0.4)}
     u = wl.uncertainty(EXACT | Heat() | Damage(), **given, law={"share": wl.uniform(0.2, 0.4)}, samples=2**10)
     heat, damage = u.of("heat_flux").sobol(), u.of("rcf_damage").sobol()
     # The heat is a product of two uniform factors on 1 ± 1/3; of each the variance is v = (1/3)²/3, of both 2v + v².
     v = (1.0 / 3.0) ** 2 / 3.0
-    errors = 8.0 * heat["first_order_error"]  # with 7 degrees of freedom, passed by chance once in 10⁴
-    assert np.all(np.abs(heat["first_order"] - v / (2 * v + v**2)) < errors)
+    for order, due in (("first_order", v), ("total_order", v + v**2)):
+        # With 7 degrees of freedom, 8 standard errors are passed by chance once in 10⁴.
+        assert np.all(np.abs(heat[order] - due / (2 * v + v**2)) < errors * heat[f"{order}_error"])
     assert damage.loc["share", "total_order"] == 0.0
     assert damage.loc["friction_coefficient", "total_order"] == pytest.approx(1.0, abs=0.01)
 

@@ -269,23 +269,17 @@ FAULTY = [
         (GOOD.replace(old, new, 1), named)
         for old, new, named in [
             ("creepage [%]", "creepage", "creepage"),
-            ("creepage [%]", "creepage (%)", "creepage"),
             ("creepage [%]", "crepage [%]", "did you mean 'creepage'"),
-            ("creepage [%]", "zzz", "zzz"),
             ("creepage [%]", "slide_creepage [%]", "slide_creepage"),
             ("label,", "max_pressur [MPa],", "did you mean 'max_pressure'"),
             ("label", "mass [kgg]", "kgg"),
             ("label", "mass [kg]", "line 2, column 'mass"),
-            ("[kN]", "[mm]", "normal_force"),
             ("[kN]", "[weights]", "normal_force"),
             ("label", "creepage [-]", "creepage"),
             ("40", "-40", "line 3, column 'wear_rate"),
-            ("-2,7.4", "-2,1e307", "line 3, column 'normal_force"),
-            ("-2", "2000", "line 3, column 'creepage"),
             ("-2", "", "line 3, column 'creepage"),
             ("-2", "two", "line 3, column 'creepage"),
             ("7.4,40", "7,4,40", "line 3"),
-            ("b,-2,7.4,40", "b,-2,7.4", "line 3"),
         ]
     ),
     (f"{HEAT}\n1,7.4,3,1\n0,7.4,2,1\n", "line 3, column 'frictional_heat"),
