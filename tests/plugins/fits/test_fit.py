@@ -179,8 +179,6 @@ def test_a_law_of_your_own_may_have_negative_parameters() -> None:
     slope, offset = np.polyfit(density, in_microgram(tests.wear_rate), 1)
     assert fit.parameters["offset"].magnitude == pytest.approx(offset, rel=1e-6)
     assert fit.parameters["slope"].magnitude == pytest.approx(slope, rel=1e-6)
-    line: Any = stats.linregress(density, in_microgram(tests.wear_rate))
-    assert fit.standard_errors["offset"].magnitude == pytest.approx(line.intercept_stderr, rel=1e-5)
     assert fit.provenance["laws"] == {"sloping": "not installed"}
 
 
