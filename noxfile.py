@@ -66,12 +66,7 @@ def bench(session: nox.Session) -> None:
     """Time wearlaw beside its rivals; the rivals in C need a compiler."""
     session.install("-e", ".[fast]")
     session.run("python", "-m", "tests.benchmarks.speed", *session.posargs)
-    session.run("python", "-m", "tests.benchmarks.wheel_rail")
-    session.run("python", "-m", "tests.benchmarks.wheelset")
-    session.run("python", "-m", "tests.benchmarks.fit")
-    session.run("python", "tests/benchmarks/study.py")
-    session.run("python", "tests/benchmarks/importing.py")
-    session.install("-e", ".[fast,dask]")
+    session.install("-e", ".[fast,studies]")
     session.run("python", "-m", "tests.benchmarks.sweep")
 
 

@@ -1,7 +1,7 @@
 """Every code block of the README and the documentation runs in the tests, or stands here with the reason why not.
 
-`conftest.py` in the folder above runs the blocks of pages and compares what they print. Here run blocks of ``sh``, in
-what looks like a clone with its environment, and the job scripts, with stand-ins for the scheduler of a cluster.
+`conftest.py` in the folder above runs the blocks of pages and compares what they print. Here run the job scripts, with
+stand-ins for the scheduler of a cluster.
 """
 
 from __future__ import annotations
@@ -110,7 +110,6 @@ def blocks_of(path: Path) -> list[Block]:
 FILES = [*sorted(ROOT.glob("*.md")), *sorted(path for path in ROOT.glob("docs/**/*.md") if "_build" not in path.parts)]
 BLOCKS = {path: blocks_of(path) for path in FILES}
 EVERY = [block for blocks in BLOCKS.values() for block in blocks]
-COMMANDS = [block for block in EVERY if block.kind == "sh" and block.key not in NOT_RUN]
 SUBMITTED = ("case.sh", "map.sh")
 JOBS = {block.file: block.text.partition("\n\n")[2] for block in EVERY if block.file in SUBMITTED}
 
@@ -122,7 +121,7 @@ def runs(block: Block, starts: list[int]) -> bool:
     if block.kind == "{code-block} bash":
         return block.file in JOBS
     elsewhere = any(re.fullmatch(pattern, block.kind) for pattern in ELSEWHERE)
-    return elsewhere or block in COMMANDS or any(block.start <= start < block.end for start in starts)
+    return elsewhere or any(block.start <= start < block.end for start in starts)
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -140,18 +139,6 @@ def environment(**variables: str) -> dict[str, str]:
     """Return the variables of a shell in which `python` is this one."""
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     return {**os.environ, "PATH": path, **variables}
-
-
-@posix
-@pytest.mark.parametrize("block", COMMANDS, ids=lambda block: block.text.strip())
-def test_a_command_runs_in_a_clone_with_its_environment(block: Block, tmp_path: Path) -> None:
-    for entry in ROOT.iterdir():
-        if not entry.name.startswith("."):
-            (tmp_path / entry.name).symlink_to(entry)
-    (tmp_path / ".venv").symlink_to(sys.prefix)
-    command = ("bash", "-euo", "pipefail", "-c", block.text)
-    done = subprocess.run(command, cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def submit(job: str, folder: Path) -> None:

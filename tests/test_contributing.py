@@ -7,35 +7,13 @@ import re
 import textwrap
 import tomllib
 
-import pytest
-
 from tests.environments import ROOT
 
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-BLOCKS = [line for block in re.findall(r"```sh\n(.*?)```", TEXT, re.DOTALL) for line in block.splitlines()]
-INLINE = re.findall(r"`((?:\.venv/|\.ci/)[^`]+)`", re.sub(r"```.*?```", "", TEXT, flags=re.DOTALL))
 
 
 def text_of(path: str) -> str:
     return (ROOT / path).read_text(encoding="utf-8")
-
-
-def known_commands() -> str:
-    """Return the commands of the README and `.ci/run`, as typed with the environment in .venv."""
-    ci = text_of(".ci/run").replace('"$python"', ".venv/bin/python").replace(" --quiet", "")
-    return text_of("README.md") + re.sub(r'"\$bin/([\w-]+)"', r".venv/bin/\1", ci)
-
-
-@pytest.mark.parametrize("command", sorted({*BLOCKS, *INLINE} - {".venv/bin", ".ci/run"}))
-def test_a_command_is_one_that_the_project_runs(command: str) -> None:
-    if session := re.fullmatch(r"\.venv/bin/nox -s (\w+)", command):
-        assert f"\ndef {session[1]}(session: nox.Session)" in text_of("noxfile.py")
-    elif script := re.fullmatch(r"\.venv/bin/python (?:-m pytest )?(\S+\.py)", command):
-        assert (ROOT / script[1]).is_file()
-    elif module := re.match(r"\.venv/bin/python -m (tests\.\w+)", command):
-        assert (ROOT / module[1].replace(".", "/") / "__main__.py").is_file()
-    else:
-        assert re.search(rf"{re.escape(command)}$", known_commands(), re.MULTILINE)
 
 
 def test_all_sessions_of_nox_are_told() -> None:

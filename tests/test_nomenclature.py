@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import csv
 import dataclasses
 from collections import defaultdict
 from collections.abc import Iterable
@@ -13,7 +12,6 @@ import pytest
 import wearlaw as wl
 from docs import nomenclature
 from docs.nomenclature import Documented
-from tests.environments import ROOT
 from wearlaw.units.variables import VARIABLES  # private: the one table of variables
 
 SYMBOLS_OF_SEVERAL_NAMES = {
@@ -30,7 +28,8 @@ NAMES_OF_SEVERAL_SYMBOLS = {
 }
 OF_OTHER_KINDS = {"geometry", "problem", "strips", "bodies", "dims", "exists"}
 """Fields of records that are no numbers with a unit."""
-SYMBOL_IS_THE_NAME = {"a", "b", "y"}
+
+
 IN_NO_CLASS = {"wear_rate_low", "wear_rate_high", "wear_rate_uncertainty", "frictional_heat"}
 """Columns of results and of files with tests, which the page explains below its table."""
 
@@ -142,12 +141,6 @@ def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dim
         assert one_of(units[place]).is_compatible_with(value), place
 
 
-def test_records_are_documented_in_si(documented: list[Documented]) -> None:
-    for one in documented:
-        if one.where in ("Problem", "Contact", "CreepForces"):
-            assert one_of(one.unit).to_base_units().magnitude == 1.0, one
-
-
 def test_the_table_of_variables_has_the_documented_dimensions_and_symbols(documented: list[Documented]) -> None:
     units = {one.name: one.unit for one in documented}
     symbols = {(one.name, one.symbol) for one in documented if one.symbol}
@@ -157,28 +150,6 @@ def test_the_table_of_variables_has_the_documented_dimensions_and_symbols(docume
             assert one_of(variable.unit).is_compatible_with(one_of(units[name])), name
         if variable.symbol and any(name == known for known, _ in symbols):
             assert (name, variable.symbol) in symbols
-
-
-def test_a_docstring_begins_with_the_meaning_in_the_table_of_variables(documented: list[Documented]) -> None:
-    for name, variable in VARIABLES.items():
-        said = [one.meaning for one in documented if one.name == name]
-        assert name in IN_NO_CLASS or any(text.startswith(variable.meaning) for text in said), (variable.meaning, said)
-
-
-def test_every_variable_is_in_the_nomenclature_with_its_meaning_in_the_table_of_variables() -> None:
-    rows = list(csv.DictReader(nomenclature.TABLE.read_text(encoding="utf-8").splitlines()))
-    shown = {(row["name"].strip("`"), row["meaning"]) for row in rows}
-    assert {(name, one.meaning) for name, one in VARIABLES.items()} <= shown
-
-
-def test_every_variable_with_a_symbol_in_the_table_has_one_in_its_documentation(documented: list[Documented]) -> None:
-    without = {one.name for one in documented if not one.symbol} - {one.name for one in documented if one.symbol}
-    assert {name for name, one in VARIABLES.items() if one.symbol and name in without} == SYMBOL_IS_THE_NAME
-
-
-def test_what_is_in_no_class_is_explained_on_the_page() -> None:
-    page = (ROOT / "docs/conventions.md").read_text(encoding="utf-8")
-    assert all(f"`{name}`" in page for name in IN_NO_CLASS)
 
 
 def test_a_name_has_one_unit_and_one_symbol_and_a_symbol_one_name(documented: list[Documented]) -> None:

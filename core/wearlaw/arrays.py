@@ -56,7 +56,8 @@ def type_name(value: object) -> str:
 def extremes(array: Array) -> tuple[float, float]:
     """Return the smallest and the largest entry; NaN if any entry is NaN."""
     if array.ndim and array.size != 1 and any(array.strides):
-        return float(array.min()), float(array.max())
+        # `min` and `max` of the array itself pass through Python, which takes as long as a thousand entries.
+        return float(np.minimum.reduce(array, None)), float(np.maximum.reduce(array, None))
     value = float(array.item(0) if array.ndim else array)  # one number, maybe broadcast
     return value, value
 

@@ -53,21 +53,19 @@ def excess_dissipation(creepage: Array, *others: Any) -> Array:
     """
     if not creepage.ndim:
         reduced, threshold, unit = _reduced(*map(float, (creepage, *others)))
-        zone, *shape, square = _maximum(OF_FLOATS, reduced)
+        zone, _, _, square = of_point = _maximum(OF_FLOATS, reduced)
         level = threshold / zone if zone else math.inf
-        reached = level * level < square
-        energy_above = unit * zone * zone * _above(OF_FLOATS, level, zone, *shape, square) if reached else 0.0
-        of_patch: Any = np.float64(energy_above)
+        above = _above(OF_FLOATS, level, *of_point) if level * level < square else 0.0
+        of_patch: Any = np.float64(zone * zone * above * unit)
         return of_patch  # type: ignore[no-any-return]
     with np.errstate(over="ignore", divide="ignore"):  # a threshold may lie infinitely far above all values
         reduced, threshold, unit = _reduced(creepage, *others)
-        zone, *shape, square = _maximum(OF_ARRAYS, reduced)
+        zone, _, _, square = of_points = _maximum(OF_ARRAYS, reduced)
         level = threshold / zone
         reached = np.nonzero(level * level < square)
-    excess, zone = np.zeros(creepage.shape), zone[reached]
-    above = _above(OF_ARRAYS, level[reached], zone, *(values[reached] for values in (*shape, square)))
-    excess[reached] = zone * zone * above
-    energy: Array = excess * unit
+    excess = np.zeros(creepage.shape)
+    excess[reached] = _above(OF_ARRAYS, level[reached], *(values[reached] for values in of_points))
+    energy: Array = zone * zone * excess * unit
     return energy
 
 
@@ -133,4 +131,5 @@ def _ahead(of: Functions, square: Number, share: Number, zone: Number, base: Num
         first = line * (slope * line + 2.0 * rise)
         half_second = zone * rise + line * (2.0 * zone * slope - line)
         v = v - value * first / (first * first - value * half_second + LEAST)
-    return v
+    result: Number = v
+    return result

@@ -2,8 +2,9 @@
 
 With d = ξ/g, where g = L μp2(0)/a × 2 (parabola) or × 1 (ellipse) is the slope of the bound times L, and v = (a - x)/a:
 
-parabola: q s = μp2(0) g P(v), P(v) = v (2-v) (1+d-v), over v < 2 min(d, 1). P rises from zero to one maximum and then
-falls towards its next zero z = min(2, 1+d). With v counted from 0 or from z, P is v (z-v) (B + g v).
+parabola: q s = μp2(0) g P(v), P(v) = v (2-v) (1+d-v), over v < 2 min(d, 1). P rises from zero to its maximum at v = c,
+and then falls towards its next zero, min(2, 1+d). With r = √(d²+3)/3 it is at a level at v = c + r (1 - cos α ∓ √3 sin α)
+where its maximum less the level is 4 r³ sin²(3α/2): Viète's roots of a cubic.
 ellipse: q s = μp2(0) g (d sin ψ + cos ψ) over ψ < 2 atan d, where x = a cos ψ: symmetric about its maximum √(1+d²)
 at ψ = atan d, and at least 1 everywhere in the slip zone.
 
@@ -20,12 +21,6 @@ import numpy as np
 
 from wearlaw import Array
 
-CLOSE = 2e-3
-"""Step of Halley's method after which a root is good enough; see `wearlaw_exact._kernel.CLOSE` for the reason."""
-
-STEPS = 60
-"""Most steps; two to four are enough, except near d = 1."""
-
 Number = TypeVar("Number", float, Array)
 
 
@@ -33,13 +28,15 @@ class Functions(NamedTuple):
     """Functions of floats or of arrays."""
 
     sqrt: Any
+    sin: Any
+    cos: Any
+    arcsin: Any
     minimum: Any
     maximum: Any
-    all: Any
 
 
-OF_FLOATS = Functions(math.sqrt, min, max, bool)
-OF_ARRAYS = Functions(np.sqrt, np.minimum, np.maximum, np.all)
+OF_FLOATS = Functions(math.sqrt, math.sin, math.cos, math.asin, min, max)
+OF_ARRAYS = Functions(np.sqrt, np.sin, np.cos, np.arcsin, np.minimum, np.maximum)
 
 
 def parabolic_excess(creepage: Array, *others: Any) -> Array:
@@ -85,22 +82,22 @@ def _reduced(creepage: Any, slope: Any, centre: Any, half_width: Any, threshold:
     return creepage / slope, threshold / scale, scale * half_width
 
 
-def _maximum(of: Functions, reduced: Number) -> tuple[Number, Number, Number, Number, Number]:
-    """Return the end of the slip zone, 1+d, the v of the maximum, and that in the zone with its P."""
-    end, more = 2.0 * of.minimum(reduced, 1.0), 1.0 + reduced
-    top = 2.0 * more / (2.0 + more + of.sqrt(reduced * reduced + 3.0))
+def _maximum(of: Functions, reduced: Number) -> tuple[Number, Number, Number, Number, Number, Number]:
+    """Return the end of the slip zone, 1+d, r, c, and the v of the maximum in the zone with its P."""
+    end, more, root = 2.0 * of.minimum(reduced, 1.0), 1.0 + reduced, of.sqrt(reduced * reduced + 3.0)
+    top = 2.0 * more / (2.0 + more + root)
     crest = of.minimum(top, end)
-    return end, more, top, crest, crest * (2.0 - crest) * (more - crest)
+    return end, more, root / 3.0, top, crest, crest * (2.0 - crest) * (more - crest)
 
 
-def _above(of: Functions, level: Number, end: Number, more: Number, top: Number, crest: Number) -> Number:
+def _above(of: Functions, level: Number, end: Number, more: Number, size: Number, top: Number, crest: Number) -> Number:
     """Return ∫ max(P - level, 0) dv over the slip zone, for a level below the maximum there."""
-    zero, other = of.minimum(2.0, more), of.maximum(2.0, more)
-    left = level / (top * (zero - top) * (other - top))
-    share = left / (1.0 + of.sqrt(of.maximum(1.0 - left, 0.0)))  # on the parabola through the maximum
-    trailing = of.minimum(_root(of, other, -1.0, zero, level, top, top * share), crest)
-    leading = zero - _root(of, other - zero, 1.0, zero, level, zero - top, (zero - top) * share)
-    leading = of.minimum(of.maximum(leading, crest), end)
+    drop = top * (2.0 - top) * (more - top) - level
+    angle = 2.0 / 3.0 * of.arcsin(of.sqrt(of.minimum(of.maximum(drop, 0.0) / (4.0 * size * size * size), 1.0)))
+    middle, apart = top + size * (1.0 - of.cos(angle)), math.sqrt(3.0) * size * of.sin(angle)
+    trailing = middle - apart
+    trailing = of.minimum(trailing - _change(more, level, trailing), crest)  # keeps its digits next to zero
+    leading = of.minimum(of.maximum(middle + apart, crest), end)
     above: Number = of.maximum(_energy(more, leading) - _energy(more, trailing) - level * (leading - trailing), 0.0)
     return above
 
@@ -110,21 +107,8 @@ def _energy(more: Number, v: Number) -> Number:
     return v * v * (more - v * ((2.0 + more) / 3.0 - 0.25 * v))
 
 
-def _change(base: Number, growth: float, zero: Number, level: Number, v: Number) -> Number:
-    """Return Halley's step towards v (zero-v) (base + growth v) = level."""
-    line, arch, slope = base + growth * v, v * (zero - v), zero - 2.0 * v
-    value = arch * line - level
-    first = slope * line + growth * arch
-    half_second = growth * slope - line
-    return value * first / (first * first - value * half_second + 1e-300)  # all terms are zero at the maximum itself
-
-
-def _root(of: Functions, base: Number, growth: float, zero: Number, level: Number, top: Number, v: Number) -> Number:
-    """Return the v below the maximum at `top` where v (zero-v) (base + growth v) is at its level, near a guess `v`."""
-    for _ in range(STEPS):
-        old = v
-        v = old - _change(base, growth, zero, level, old)
-        v = of.minimum(of.maximum(v, 0.25 * old), 0.5 * (old + top))
-        if of.all(abs(v - old) <= CLOSE * of.minimum(v, top - v)):
-            break
-    return v
+def _change(more: Number, level: Number, v: Number) -> Number:
+    """Return Halley's step towards P = level."""
+    line, arch, slope = more - v, v * (2.0 - v), 2.0 - 2.0 * v
+    value, first = arch * line - level, slope * line - arch
+    return value * first / (first * first + value * (slope + line) + 1e-300)  # all are zero at the maximum itself

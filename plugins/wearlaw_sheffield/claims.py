@@ -13,7 +13,6 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_sheffield.bench import HIGHEST, PARTIAL, TESTED, Bench, borders
-from wearlaw_sheffield.figures import figures
 
 SAME, SIMILAR, GOOD = 0.02, 0.10, 0.20
 
@@ -43,12 +42,7 @@ def section(study: wl.Study) -> wl.Section:
     text = TEXT.format(
         load=bench.normal_force_per_width, friction=bench.friction_coefficient, source=tests.source.rstrip(".")
     )
-    return wl.Section(
-        "Claims of the paper, checked",
-        text,
-        claims=tuple(checked(bench, measured).values()),
-        figures=figures(bench),
-    )
+    return wl.Section("Claims of the paper, checked", text, claims=tuple(checked(bench, measured).values()))
 
 
 def checked(bench: Bench, tests: tuple[Array, Array]) -> dict[str, wl.CheckedClaim]:

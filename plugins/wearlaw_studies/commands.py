@@ -50,7 +50,7 @@ def run(
 ) -> None:
     """Run a study: CASE is a case file, or the name of a shipped one.
 
-    Shipped are two_discs, my_tests, wheel_on_rail, wheelset, wheel_life and tassini2010.
+    Shipped are two_discs, my_tests, wheel_on_rail, wheelset and tassini2010.
 
     Every contact model of the case is paired with every law. Results are written as report.html, a page to open in a
     browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-from tests.benchmarks.rivals import compilers
+from tests.benchmarks.rivals import has_compiler
 from tests.benchmarks.timing import modes
 
 
@@ -71,8 +71,8 @@ def machine() -> str:
     parts = [_processor(), f"Python {platform.python_version()}", f"NumPy {version('numpy')}"]
     if "numba" in modes():
         parts.append(f"numba {version('numba')}")
-    for compiler in compilers():
-        shown = subprocess.run([compiler, "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    if has_compiler():
+        shown = subprocess.run(["cc", "--version"], stdout=subprocess.PIPE, text=True, check=True).stdout
         parts.append(shown.splitlines()[0])
     return ", ".join(parts)
 

@@ -1,7 +1,7 @@
 """Print the gain of a sweep on two processes, and the time of the worked example: `python -m tests.benchmarks.sweep`.
 
-The gain is the time of a sweep in one process over that on two that are warm. It says something where the machine is
-otherwise idle, which is looked at before each. `--strict` fails if it is too small, `--write` renews the picture.
+The gain is the time of a sweep in one process over that on two that are warm, on a machine that is otherwise idle.
+`--strict` fails if it is too small, `--write` renews the picture.
 """
 
 from __future__ import annotations
@@ -27,8 +27,6 @@ POINTS = (250, 500, 400)
 """5·10⁷ operating points: at a fifth of a microsecond each ten seconds of work."""
 GAIN = 1.6
 ROUNDS = 3
-BUSY = 0.1
-"""The share of the processors that others may use."""
 DOCS = Path(__file__).parents[2] / "docs"
 
 
@@ -43,20 +41,6 @@ def main(arguments: list[str]) -> int:
     example(options.write)  # first, since a process that starts another passes on its peak memory
     gain = speed_up()
     return int(options.strict and gain < GAIN)
-
-
-def busy(seconds: float) -> float:
-    """Return the share of the processors that is used while this process sleeps."""
-    before = _ticks()
-    time.sleep(seconds)
-    used, total = (after - start for after, start in zip(_ticks(), before, strict=True))
-    return used / total
-
-
-def _ticks() -> tuple[int, int]:
-    """Return the time that all processors have worked, and all time, in the kernel's unit."""
-    user, nice, system, idle, waiting, *others = map(int, Path("/proc/stat").read_text("ascii").split()[1:9])
-    return user + nice + system + sum(others), user + nice + system + sum(others) + idle + waiting
 
 
 def speed_up() -> float:
@@ -74,12 +58,10 @@ def speed_up() -> float:
         wl.sweep(predict, **small, workers=workers)  # starts processes, loads kernels
         times = []
         for _ in range(ROUNDS):
-            others = busy(1.0)
             start = time.perf_counter()
             wl.sweep(predict, **given, workers=workers)
             times.append(time.perf_counter() - start)
-            state = "idle" if others < BUSY else f"NOT IDLE, {others:.0%} of it used by others"
-            print(f"{np.prod(POINTS):.0e} points on {workers}: {times[-1]:.2f} s; before, the machine was {state}")
+            print(f"{np.prod(POINTS):.0e} points on {workers}: {times[-1]:.2f} s")
         best[workers] = min(times)
     gain = best[1] / best[2]
     print(f"two processes are {gain:.2f} times as fast as one, {'met' if gain >= GAIN else 'MISSED'}: {GAIN}")

@@ -29,10 +29,6 @@ class Times:
         low, middle, high = np.quantile(self.seconds[name] / self.seconds[base], [0.25, 0.5, 0.75])
         return float(middle), float(low), float(high)
 
-    def best_ratio(self, name: str, base: str) -> float:
-        """Return the ratio of the best rounds of two rivals, which the rest of the machine disturbs least."""
-        return float(self.seconds[name].min() / self.seconds[base].min())
-
 
 def side_by_side(rivals: Mapping[str, Callable[[], object]], rounds: int) -> Times:
     """Time every rival once a round, the order turned round from one round to the next."""

@@ -206,12 +206,6 @@ def test_parameters_on_another_contact_give_one_warning_that_names_both(
     assert len(again) == 1
 
 
-def test_what_is_no_rig_is_refused() -> None:
-    wrong: Any = 3
-    with pytest.raises(wl.ConfigurationError, match=r"rig: input should be .* instance of Rig, got 3"):
-        wl.Pipeline(rig=wrong, contact_model=GLOBAL)
-
-
 def test_a_pipeline_read_from_json_is_checked_like_one_composed_in_python() -> None:
     text = (RIG | wl.contact_model("global") | wl.wear_law("brr")).model_dump_json()
     on_cells = text.replace('"model":"global","total_from":{"model":"exact","slip":"consistent"}', '"model":"exact"')

@@ -27,14 +27,6 @@ def disc(**fields: Any) -> wl.Disc:
     ("make", "message"),
     [
         (lambda: disc(diameter=47), f"Disc: diameter: got the bare number 47, which has no unit; {IN_MM}"),
-        (lambda: disc(diameter="47"), f"Disc: diameter: '47' is not a number with a unit; {IN_MM}"),
-        (
-            lambda: disc(diameter="47 kN"),
-            f"Disc: diameter: got 47.00 kN, which does not have the dimension of 'mm'; {IN_MM}",
-        ),
-        (lambda: disc(diameter="47 xyz"), f"Disc: diameter: 'xyz' is not a known unit; {IN_MM}"),
-        (lambda: disc(diameter="nan mm"), f"Disc: diameter: must be a number, got nan mm; {IN_MM}"),
-        (lambda: disc(diameter="-4 mm"), f"Disc: diameter: must be greater than zero, got -4.000 mm; {IN_MM}"),
         (lambda: disc(diameter=Q([1, 2], "mm")), "Disc: diameter: must be one value, got an array of shape (2,)"),
         (lambda: disc(diametr="4 mm"), "did you mean 'diameter'? The fields are: diameter, material"),
         (lambda: wl.Disc(diameter="4 mm"), "Disc: material: is missing"),  # type: ignore[call-arg]
@@ -102,16 +94,10 @@ def test_a_configuration_survives_pickle_copy_and_json() -> None:
     assert wl.Disc.model_validate(made.model_dump(mode="json")) == made
 
 
-def test_a_configuration_prints_as_text_with_units() -> None:
-    shown = "Disc(diameter=47.0 mm, material=Material(youngs_modulus=206.47742 GPa, poisson_ratio=0.28"
-    assert " ".join(repr(disc()).split()).startswith(shown)
-    assert str(disc()) == repr(disc())
-
-
-def test_a_long_configuration_breaks_between_its_fields() -> None:
+def test_a_configuration_prints_with_units_and_breaks_between_its_fields() -> None:
     both = wl.TwinDisc.suros(disc_2=disc())
     lines = repr(both).splitlines()
-    assert len(lines) > 1
+    assert str(both) == repr(both)
     assert max(map(len, lines)) <= 100
     assert all(line.endswith(",") for line in lines[:-1])
     assert " ".join(map(str.strip, lines)).startswith("TwinDisc(disc_1=Disc(diameter=47.0 mm, material=Material(youngs")

@@ -74,11 +74,6 @@ def test_a_patch_with_two_axes_of_nodes_and_a_batch() -> None:
     assert wear.local_value.magnitude.shape == shape
 
 
-def test_one_node_is_a_contact() -> None:
-    contact = wl.Contact.from_arrays(**{**FOUR_NODES, **{name: FOUR_NODES[name][3:] for name in NODES}})
-    assert contact.normal_force == pytest.approx(150.0, rel=4 * EPS)  # [N]
-
-
 @pytest.mark.parametrize(
     ("changes", "error", "message"),
     [

@@ -279,27 +279,6 @@ def test_the_tables_are_as_exact_as_the_docstrings_say(
             assert np.abs(off[:, 0]).max() <= 0.0015
 
 
-def test_what_the_theory_page_says_of_partial_slip_direction_and_the_reference_test() -> None:
-    mu, share = np.linspace(0.02, 0.6, 30)[:, None], np.linspace(0.02, 1.0, 50)
-    spread = first_yield(K, mu * share, poisson_ratio=0.28)
-    lower = 1.0 - first_yield(K, mu * share, mu, poisson_ratio=0.28) / spread
-    assert 0.37 < lower.max() < 0.385
-    aspect, traction = 2.0 ** np.linspace(0.0, 4.3, 20), np.linspace(0.0, 0.6, 16)[:, None]
-    for friction in (
-        None,
-        1.3 * traction,
-    ):  # a lateral force on an ellipse is a longitudinal one on the same ellipse, turned
-        turned = first_yield(K, traction, friction, poisson_ratio=0.28, axis_ratio=aspect)
-        assert (
-            np.abs(turned / first_yield(K, traction, friction, poisson_ratio=0.28, axis_ratio=1 / aspect) - 1).max()
-            < 0.08
-        )
-    creepage = np.array([0.15, 0.16, 0.23, 0.24])
-    found = 0.46 * (1.0 - (1.0 - creepage / 1.2319) ** 2)  # Carter's; full slip from 1.2319 % on
-    assert (first_yield(K, found, 0.46, poisson_ratio=0.28) < 1.5e9).tolist() == [False, True, True, True]
-    assert (shakedown_limit(K, found, 0.46) < 1.5e9).tolist() == [False, False, False, True]
-
-
 def test_a_body_is_elastic_without_traction_or_friction_and_alike_in_both_directions() -> None:
     assert first_yield(1.0, 0.0, 0.0, poisson_ratio=0.3) == first_yield(1.0, 0.0, poisson_ratio=0.3)
     assert first_yield(1.0, -0.3, poisson_ratio=0.3) == first_yield(1.0, 0.3, poisson_ratio=0.3)
@@ -363,7 +342,7 @@ def test_an_overload_is_the_same_of_one_point_and_of_many(shape: str) -> None:
 
 
 @pytest.mark.parametrize("shape", ["line", "ellipse"])
-@pytest.mark.parametrize("nu", [0.0, 0.1, 0.28, 0.5])
+@pytest.mark.parametrize("nu", [0.0, 0.28, 0.5])
 def test_no_point_beyond_a_limit_is_passed_over(shape: str, nu: float) -> None:
     """The quick bound is conservative: a point just beyond a limit is found, alone and among points of less load."""
     mu, share = np.array([1e-3, 0.05, 0.15, 0.3, 0.37, 0.5, 1.0, 5.0])[:, None], np.linspace(0.0, 1.0, 40)
@@ -381,12 +360,3 @@ def test_no_point_beyond_a_limit_is_passed_over(shape: str, nu: float) -> None:
             among = overload([(K, nu)], p0, t, mu, ratio if aspect else None)
             assert among is not None
             assert among >= alone
-
-
-def test_ellipses_are_looked_at_by_their_own_axis_ratio() -> None:
-    p0, t, ratio = np.full(3, 1.6e9), np.full(3, 0.2), np.array([0.1, 1.0, 8.0])
-    limits = first_yield(K, t, poisson_ratio=0.28, axis_ratio=ratio)
-    found = overload([(K, 0.28)], p0, t, t, ratio)
-    assert found is not None
-    assert found.ratio == pytest.approx(float((p0 / limits).max()), rel=1e-14)
-    assert overload([(K, 0.28)], 0.99 * limits, t, t, ratio) is None

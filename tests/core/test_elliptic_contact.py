@@ -185,11 +185,3 @@ def test_one_point_of_the_batch_is_taken_with_its_problem() -> None:
     assert one.pressure.shape == (4, 3)
     assert one.problem is not None
     assert one.problem.normal_force == one.normal_force == 1e5
-
-
-def test_a_law_is_evaluated_at_the_nodes_of_an_ellipse() -> None:
-    contact = on_strips()
-    wear = contact | wl.wear_law("kth", coefficient="low")
-    # ρ k p s / H, with k = 1e-4 below 0.2 m/s and at any pressure below 2.1 GPa
-    due = 7850.0 * 1e-4 * contact.pressure * contact.slip / 2.625e9
-    assert wear.rate == pytest.approx(due, rel=16 * EPS)

@@ -50,12 +50,6 @@ def test_the_coefficient_is_polachs(roundings: int, speed: float, static: float,
     assert float(friction.coefficient(np.array(speed))) == pytest.approx(expected, rel=roundings * EPS)
 
 
-def test_it_starts_at_the_static_coefficient_and_halves_its_fall_in_ln_2_over_b() -> None:
-    speeds = np.array([0.0, math.log(2.0) / 0.6, 2.0 * math.log(2.0) / 0.6, 1e3])
-    found = FRICTION.coefficient(speeds)
-    assert found == pytest.approx([0.55, 0.55 * 0.7, 0.55 * 0.55, 0.22], rel=8 * EPS)
-
-
 def falling(speed: Array) -> Array:
     expected: Array = 0.55 * (0.6 * np.exp(-0.6 * speed) + 0.4)
     return expected

@@ -1,4 +1,4 @@
-"""`import wearlaw`: silent and light; `tests/benchmarks/importing.py` times it."""
+"""`import wearlaw`: silent and light."""
 
 from __future__ import annotations
 

@@ -14,9 +14,7 @@ from tests.core.integrals import FULL_SLIP, MEANS, REFERENCE, RIG, SPEED, Points
 from tests.roots import brentq
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
-from wearlaw.numerics import integrate  # private: integrals at the size of blocks
-from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK, integrate_forces, integrate_slip  # private: sizes of blocks
-from wearlaw.numerics.totals import Totals  # private: what the integrator returns
+from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK, integrate_slip  # private: sizes of blocks
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 
@@ -166,19 +164,6 @@ def test_slip_is_summed_in_blocks() -> None:
     assert slip.slip_area == pytest.approx(share * points.problem.patch_area, rel=64 * EPS)
     alone = integrate_slip(model, points.problem[-1:])
     assert slip.mean_slip[-1] == pytest.approx(alone.mean_slip[0], rel=64 * EPS)
-
-
-def test_each_block_is_told_with_its_forces() -> None:
-    told: list[tuple[wl.Problem, Array]] = []
-    problem = Points(seed=16, size=BLOCK + 10).problem
-
-    def on_block(part: wl.Problem, totals: Totals) -> None:
-        told.append((part, totals.forces.longitudinal))
-
-    integrate.integrate_laws(LINE_MODELS["exact"], (wl.wear_law("usfd"),), problem, on_block)
-    assert [part.creepage.size for part, _ in told] == [BLOCK, 10]
-    forces = np.concatenate([force for _, force in told])
-    assert forces == pytest.approx(integrate_forces(LINE_MODELS["exact"], problem).longitudinal, rel=4 * EPS)
 
 
 class CountedExact(type(wl.contact_model("exact"))):  # type: ignore[misc]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,7 +12,6 @@ from hypothesis import given
 import wearlaw as wl
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
-from wearlaw.contact.quadrature import ORDER  # private: rules of quadrature, which no result shows alone
 from wearlaw_kit import line_problems
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
@@ -116,44 +114,6 @@ def test_the_contact_can_be_had_at_any_nodes(name: str, shape: tuple[int, ...]) 
     assert (contact.tangential_force == model.tangential_force(problem)).all()
 
 
-@every_model
-def test_stick_and_full_slip_in_one_batch_are_what_they_are_alone(name: str) -> None:
-    model = LINE_MODELS[name]
-    problem = sweep(np.array([0.3, 1e-4, 0.0, -0.3, -0.005, 0.03]))
-    together = model.solve(problem)
-    assert together.patch_area == pytest.approx(problem.patch_area, rel=SUM)
-    for point, creepage in enumerate(problem.creepage):
-        alone = model.solve(problem[point])
-        assert together.tangential_force[point] == pytest.approx(alone.tangential_force, rel=4 * EPS)
-        dissipated = (together.traction * together.slip * together.area)[point].sum()
-        assert dissipated == pytest.approx(float((alone.traction * alone.slip * alone.area).sum()), rel=SUM)
-        assert together.mean_slip[point] == pytest.approx(alone.mean_slip, rel=SUM)
-        assert (np.sign(together.slip[point]) * np.sign(creepage) >= 0.0).all()
-    assert together.pressure.shape[-1] == 2 * ORDER
-    if "elliptic" not in name:  # of which a part always sticks
-        assert model.solve(problem[[0, 3]]).pressure.shape == (2, ORDER)
-
-
-@every_model
-def test_closed_forms_take_batches_of_any_shape(name: str) -> None:
-    model = LINE_MODELS[name]
-    problem = sweep(np.geomspace(1e-4, 0.3, 12).reshape(3, 4))
-    flat = problem.flatten()
-    methods: dict[str, Callable[[wl.Problem], Array | None]] = {
-        "slip_length": model.slip_length,
-        "tangential_force_per_width": model.tangential_force_per_width,
-        "excess_dissipation": lambda p: model.excess_dissipation(p, 1e6),
-        "crossings": lambda p: model.crossings(p, "slip", np.full(p.batch_shape, 1e-3)),
-    }
-    for name, method in methods.items():
-        found, due = method(problem), method(flat)
-        if due is None:
-            assert found is None, name
-            continue
-        assert found is not None, name
-        np.testing.assert_array_equal(found, due.reshape(3, 4, *due.shape[1:]), err_msg=name)
-
-
 # --- Closed forms against quadrature ---------------------------------------------------------------------------
 
 
@@ -165,59 +125,6 @@ def without_closed_forms(model: wl.LineContactModel) -> wl.LineContactModel:
         **{field: getattr(model, field) for field in type(model).model_fields}
     )
     return plain
-
-
-def operating_points(saturation: float) -> Array:
-    """Return creepages over the whole range of both signs, half of them next to full slip."""
-    random = np.random.default_rng(72)
-    anywhere, gap = 10.0 ** random.uniform(-7.0, 0.0, 300), 10.0 ** random.uniform(-12.0, -1.0, 300)
-    creepage = np.concatenate([anywhere, saturation * (1.0 + gap * random.choice([-1.0, 1.0], 300)), [0.0]])
-    signed: Array = creepage * random.choice([-1.0, 1.0], creepage.size)
-    return signed
-
-
-@pytest.mark.parametrize("fitted_for", ["global", "exact"])
-@pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])
-def test_closed_forms_give_the_wear_that_quadrature_gives(name: str, fitted_for: str) -> None:
-    model, law = LINE_MODELS[name], wl.wear_law("usfd", fitted_for=fitted_for)
-    # ξ_sat = 2 μ p0/E*, and full slip of FASTSIM at 3/2 of it
-    saturation = 2.0 * 0.46 * 2.2e9 / float(sweep(np.array(0.1)).effective_modulus)
-    creepage = operating_points(saturation if name == "exact" else 1.5 * saturation)
-    conditions: Any = {"max_pressure": "2.2 GPa", "creepage": Q(creepage, ""), "friction_coefficient": 0.46}
-    closed, nodes = ((RIG | each | law)(**conditions) for each in (model, without_closed_forms(model)))
-    assert closed.tangential_force.m.tolist() == nodes.tangential_force.m.tolist()
-    # Each ramp alone is as large as its slope times the whole dissipation, from which the others are subtracted.
-    largest = sum(abs(slope) for _, slope in law.ramps(law.numbers) or ()) * closed.wear_index_density.m_as("N/m^2")
-    apart = np.abs(closed.wear_rate.m_as("kg/m/m^2") - nodes.wear_rate.m_as("kg/m/m^2"))
-    assert (apart <= SUM * largest).all()
-    rate = closed.wear_rate.m_as("ug/m/mm^2")
-    assert np.count_nonzero(rate > 55.0) > 10
-    assert np.count_nonzero((rate < 55.0) & (rate > 0.0)) > 200
-
-
-@pytest.mark.parametrize("threshold", [1e-3, 1e4, 1e7, 1e8])
-@pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])
-def test_the_energy_above_a_threshold_is_that_of_the_fields(name: str, threshold: float) -> None:
-    class Above(wl.WearLaw):
-        """The density above the threshold, of which quadrature alone knows the mean."""
-
-        name: ClassVar[str] = "above"
-        source: ClassVar[str] = "the tests"
-
-        def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
-            return {"wear_index_density": (threshold,)}
-
-        def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-            return np.maximum(contact.wear_index_density - threshold, 0.0)
-
-    model = LINE_MODELS[name]
-    problem = sweep(np.abs(operating_points(0.0123)))
-    conditions: Any = {"max_pressure": "1500 MPa", "creepage": Q(problem.creepage, ""), "friction_coefficient": 0.46}
-    mean = (RIG | model | Above())(**conditions).wear_rate.m_as("kg/m/m^2")
-    excess = model.excess_dissipation(problem, threshold)
-    assert excess is not None
-    whole = model.tangential_force_per_width(problem) * problem.creepage
-    assert (np.abs(excess - mean * 2.0 * problem.half_width) <= SUM * whole).all()
 
 
 @pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])

@@ -2,53 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from typing import Any
 
-import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.cases import Coarse
 from wearlaw import Array, Q
 
 RIG = wl.TwinDisc.suros()
-
-
-class Ramp(wl.LineContactModel):
-    """Sticks in the first half of the patch; behind it, slip rises with x."""
-
-    name = "ramp"
-    source = "a test"
-    steepness: float = 1.0
-
-    @property
-    def exemptions(self) -> Mapping[wl.Claim, str]:
-        return {"energy_balance": "slip and traction are not those of one theory"}
-
-    def slip_length(self, problem: wl.Problem) -> Array:
-        return problem.half_width
-
-    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
-        assert (problem.creepage >= 0).all()
-        x = nodes.x
-        slip = self.steepness * problem.creepage * np.maximum(x, 0.0) / problem.half_width
-        return wl.LineFields(
-            pressure=wl.hertz.pressure(x, problem.half_width, problem.max_pressure),
-            traction=np.broadcast_to(problem.creepage * 1e6, x.shape),
-            slip=slip,
-            traction_bound=np.full_like(x, 1e9),
-        )
-
-    def tangential_force_per_width(self, problem: wl.Problem) -> Array:
-        return problem.creepage * 1e6 * 2.0 * problem.half_width
-
-
-class Proportional(wl.WearLaw):
-    name = "proportional"
-    source = "a test"
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        return contact.wear_index_density
 
 
 @pytest.mark.parametrize("base", [wl.ContactModel, wl.LineContactModel, wl.CreepForceModel, wl.WearLaw])
@@ -57,42 +19,16 @@ def test_the_bases_are_abstract(base: type[Any]) -> None:
         base()
 
 
-@pytest.mark.parametrize("creepage", [[0.02], [-0.02], [0.02, -0.02, 0.0]])
-def test_negative_creepage_mirrors_traction_and_slip(creepage: list[float]) -> None:
-    problem = RIG.problem(normal_force="7 kN", creepage=Q(creepage, ""), friction_coefficient=0.4)
-    forward = problem.replaced(longitudinal_creepage=np.abs(problem.creepage))
-    mirrored, straight = Ramp().solve(problem), Ramp().solve(forward)
-    sign = np.sign(problem.creepage)
-    np.testing.assert_array_equal(mirrored.traction, sign[:, None] * straight.traction)
-    np.testing.assert_array_equal(mirrored.slip, sign[:, None] * straight.slip)
-    np.testing.assert_array_equal(mirrored.tangential_force, sign * straight.tangential_force)
-    np.testing.assert_array_equal(mirrored.pressure, straight.pressure)
-    np.testing.assert_array_equal(mirrored.wear_index, straight.wear_index)
-
-
-def test_solve_puts_nodes_on_the_whole_patch_and_integrates_the_slip_zone() -> None:
-    problem = RIG.problem(normal_force="7 kN", creepage=Q([0.02, 0.05], ""), friction_coefficient=0.4)
-    contact = Ramp().solve(problem)
-    # ∫ of a ramp over half the patch: a quarter of the creepage on average, half the area slipping. Gauss-Legendre
-    # of 24 nodes in θ integrates sin θ cos θ to rounding, of which 48 terms leave some eps.
-    np.testing.assert_allclose(contact.mean_slip, problem.creepage / 4.0, rtol=1e-14)
-    np.testing.assert_allclose(contact.stick_ratio, 0.5, rtol=1e-14)
-    np.testing.assert_allclose(contact.patch_area, problem.patch_area, rtol=1e-14)
-
-
-def test_an_outside_model_and_law_make_a_pipeline() -> None:
-    predict = RIG | Ramp() | Proportional()
-    result = predict(normal_force="7 kN", creepage=Q([0.02, -0.02], ""), friction_coefficient=0.4)
-    # The law is the local q·s; q is uniform and s is a quarter of the creepage on average.
-    np.testing.assert_allclose(result.wear_rate.to("kg/m^3").magnitude, 0.02e6 * 0.005, rtol=1e-13)
-    np.testing.assert_allclose(result.tangential_force.magnitude[0], -result.tangential_force.magnitude[1])
-
-
 def test_what_a_model_or_law_does_not_declare_has_a_cautious_default() -> None:
-    assert Ramp().scale == "cells"
-    assert not Ramp().uses_measured_traction
-    assert wl.contact_model("exact").exemptions == {}
-    law = Proportional()
+    class Proportional(wl.WearLaw):
+        name = "proportional"
+        source = "a test"
+
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+            return contact.wear_index_density
+
+    model, law = Coarse(), Proportional()
+    assert (model.scale, model.uses_measured_traction, model.exemptions) == ("cells", False, {})
     assert (law.scale, law.valid_range, law.numbers) == ("any", {}, {})
     assert (law.breakpoints({}), law.ramps({}), law.jumps({})) == (None, None, {})
     assert law.calibration is None
@@ -139,31 +75,6 @@ def test_a_calibration_says_what_it_was_fitted_for() -> None:
     assert str(calibration(options=(("bound", "parabolic"),))) == (
         "the cells of contact_model('fastsim', bound='parabolic')"
     )
-
-
-WRONG_RATES: dict[str, Callable[[wl.Contact], Array]] = {
-    r"returned values of shape \(\d+,\); it must return one a node": lambda contact: np.atleast_1d(contact.density),
-    "returned a value that is not finite": lambda contact: contact.pressure * np.nan,
-    "gives a negative wear rate, -": lambda contact: -contact.wear_index_density,
-    "gives values where the bodies stick": lambda contact: contact.pressure,
-}
-
-
-@pytest.mark.parametrize("said", WRONG_RATES)
-def test_a_law_that_breaks_its_contract_is_named(said: str) -> None:
-    class Wrong(Proportional):
-        name = "wrong"
-
-        def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-            return WRONG_RATES[said](contact)
-
-    with pytest.raises(wl.ModelError, match=f"wear law 'wrong' {said}"):
-        (RIG | Ramp() | Wrong())(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4)
-    rail = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
-    with pytest.raises(wl.ModelError, match=f"wear law 'wrong' {said}"):
-        (rail | wl.contact_model("fastsim") | Wrong())(
-            normal_force="80 kN", longitudinal_creepage="0.1 %", friction_coefficient=0.3
-        )
 
 
 def test_what_a_model_knows_of_its_force_without_nodes_is_used() -> None:

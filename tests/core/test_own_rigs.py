@@ -1,4 +1,4 @@
-"""Rigs of one's own: in a script, and from a plugin by name."""
+"""Rigs of one's own, in a script."""
 
 from __future__ import annotations
 
@@ -10,38 +10,12 @@ import pytest
 from numpy.typing import ArrayLike
 
 import wearlaw as wl
-from tests.cases import wearlaw
-from tests.core.distributions import Install
 from wearlaw import Q
 
 SUROS = wl.TwinDisc.suros()
 EPS = np.finfo(np.float64).eps
 MODEL = wl.contact_model("exact")
 KTH = wl.wear_law("kth")
-
-ROLLER = '''
-    from typing import ClassVar
-
-    import wearlaw as wl
-
-    class Roller(wl.Rig):
-        """A roller that a weight presses on a flat."""
-
-        name: ClassVar[str] = "roller"
-        source: ClassVar[str] = "a test"
-
-        width: wl.Length
-        """Width of the track [m]."""
-
-        def problem(self, *, mass, creepage, friction_coefficient=0.4):
-            load = wl.Q(wl.Unit("kg").si(mass, "mass") * 9.81, "N")
-            discs = wl.TwinDisc.suros(track_width=self.width)
-            return discs.problem(normal_force=load, creepage=creepage, friction_coefficient=friction_coefficient)
-
-    @wl.hookimpl
-    def wearlaw_models():
-        return [Roller]
-'''
 
 
 class Roller(wl.Rig):
@@ -88,16 +62,6 @@ class OnRail(wl.Rig):
         return wheel.problem(normal_force=load, longitudinal_creepage=longitudinal_creepage, friction_coefficient=0.3)
 
 
-@pytest.mark.parametrize("law", ["kth", "usfd"])
-def test_a_rig_of_ones_own_predicts_what_the_discs_do(law: str) -> None:
-    own = Roller() | wl.contact_model("global") | wl.wear_law(law)
-    discs = SUROS | wl.contact_model("global") | wl.wear_law(law)
-    found = own(mass=Q([20.0, 40.0], "kg"), creepage="1 %")
-    expected = discs(normal_force=Q([196.2, 392.4], "N"), creepage="1 %", friction_coefficient=0.4)
-    # The load is a product, rounded once.
-    np.testing.assert_allclose(found.wear_rate.magnitude, expected.wear_rate.magnitude, rtol=8 * EPS)
-
-
 def test_parameters_fitted_for_another_shape_of_patch_give_a_warning_once_the_shape_is_known() -> None:
     predict = OnRail() | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
     for call in (
@@ -123,13 +87,6 @@ class Delegating(wl.Rig):
 def test_a_rig_that_takes_any_conditions_is_blamed_for_its_failure() -> None:
     with pytest.raises(wl.ModelError, match="rig 'delegating' failed: KeyError: 'creepage'"):
         (Delegating() | MODEL)(creepage="1 %")
-
-
-def test_a_sweep_runs_along_the_conditions_of_the_rig() -> None:
-    swept = wl.sweep(Roller() | MODEL | KTH, mass=Q([20.0, 40.0], "kg"), creepage=Q([1.0, 2.0, 3.0], "%"))
-    assert dict(swept.wear_rate.sizes) == {"mass": 2, "creepage": 3}
-    alone = (Roller() | MODEL | KTH)(mass="40 kg", creepage="3 %").wear_rate.to("ug/m/mm^2").magnitude
-    assert float(swept.wear_rate[1, 2]) == alone
 
 
 @pytest.mark.parametrize(
@@ -166,27 +123,3 @@ def test_bodies_that_are_not_named_lose_no_mass() -> None:
     r = (Roller() | MODEL | KTH).predict(Roller().problem(**given).replaced(bodies={}))
     with pytest.raises(wl.InputError, match="body: this rig has no 'disc_1'; its bodies are not named"):
         r.mass_lost(over="1 km", body="disc_1")
-
-
-def test_a_rig_of_a_plugin_is_found_by_name(install: Install) -> None:
-    install("rollers", ROLLER)
-    rig = wl.rig("roller", width="8 mm")
-    predict = rig | MODEL | KTH
-    again: Any = wl.Pipeline.model_validate_json(predict.model_dump_json())
-    assert again == predict
-    given: Any = {"mass": "20 kg", "creepage": "1 %"}
-    discs = wl.TwinDisc.suros(track_width="8 mm") | MODEL | KTH
-    expected = discs(normal_force="196.2 N", creepage="1 %", friction_coefficient=0.4).wear_rate.magnitude
-    assert predict(**given).wear_rate.magnitude == pytest.approx(expected, rel=8 * EPS)
-    assert wl.rigs()["roller"] is type(rig)
-    shown = wearlaw("show", "roller").stdout
-    assert "roller: a rig of rollers 1.0 (plugin 'rollers')" in shown
-    assert "width (must be given)\n      Width of the track [m]." in shown
-    assert "conditions:\n  mass (must be given)\n      mass\n  creepage (must be given)\n" in shown
-
-
-def test_the_shipped_rigs_come_from_a_plugin_like_any_other() -> None:
-    assert list(wl.rigs()) == ["twin_disc", "wheel_rail", "wheelset"]
-    assert wl.rig("twin_disc", **SUROS.model_dump(mode="json")) == SUROS
-    with pytest.raises(wl.UnknownModelError, match="no rig is called 'twin_discs'; did you mean 'twin_disc'"):
-        wl.rig("twin_discs")

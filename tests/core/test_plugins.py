@@ -182,6 +182,8 @@ def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
 def test_an_unknown_contact_model_gets_a_suggestion_and_the_list() -> None:
     with pytest.raises(wl.UnknownModelError, match=r"did you mean 'exact'\? Installed: exact, fastsim, global,"):
         wl.contact_model("exakt")
+    with pytest.raises(wl.UnknownModelError, match="no wear law is called 'wlrm'"):  # which predicts fatigue
+        wl.wear_law("wlrm")
 
 
 def test_threads_that_need_plugins_at_once_all_find_them(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:

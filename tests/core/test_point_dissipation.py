@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.kit.brushes import KINETIC, Brush, BrushOnCells, LetGo
+from tests.plugins.kit.brushes import Brush, BrushOnCells, LetGo
 from wearlaw import Q
 
 RIG = wl.TwinDisc.suros()
@@ -88,18 +88,3 @@ def test_a_node_for_the_point_lets_a_law_see_its_energy() -> None:
     allowed = BrushOnCells().accuracy * SLOPE * power / si(fields.patch_area)
     assert (np.abs(si(on_cells.wear_rate) - whole) <= allowed).all()
     assert (si(fields.wear_rate) < whole - allowed)[:20].all()
-
-
-def test_a_model_that_keeps_the_balance_has_the_numerical_error_alone() -> None:
-    found = solved(wl.contact_model("exact"), Q([0.01, 0.1, 1.0], "%"))
-    assert (si(found.wear_rate_error) < 1e-11 * si(found.wear_rate)).all()
-
-
-def test_the_bristles_lose_the_energy_of_their_fall() -> None:
-    problem = RIG.problem(creepage="0.1 %", **CONDITIONS)
-    flexibility, c, length = (float(value) for value in LetGo.of(problem))
-    a, width = float(problem.half_width), float(problem.track_width)
-    static = c * length * (2.0 * a - length)
-    fall = np.linspace(KINETIC * static, static, 1001)
-    lost = np.trapezoid(fall * flexibility, fall)  # ∫ q du with u = L q
-    assert float(LetGo.of(problem).energy(problem)) == pytest.approx(lost * width, rel=1e-12)

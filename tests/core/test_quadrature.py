@@ -65,11 +65,6 @@ def test_a_zone_mapped_over_the_patch_has_the_square_roots_of_its_edges_to_round
     assert total(nodes, np.sqrt(nodes.from_leading * nodes.from_trailing)) == pytest.approx(expected, rel=64 * EPS)
 
 
-def test_polynomials_are_integrated_to_rounding() -> None:
-    nodes = zone().nodes()
-    assert total(nodes, nodes.x**5) == pytest.approx((1.1**6 - 0.3**6) / 6.0, rel=32 * EPS)
-
-
 def test_a_split_at_a_step_keeps_the_accuracy() -> None:
     split = zone().angle_of(np.array([0.525]))
     nodes = zone().nodes(split)
@@ -145,11 +140,6 @@ def test_a_root_just_outside_a_zone_mapped_over_itself_costs_what_models_declare
 
 
 # --- The error estimate ----------------------------------------------------------------------------------------
-
-
-def test_the_remainder_of_a_resolved_integrand_is_rounding() -> None:
-    nodes = zone().nodes(panels=2)
-    assert float(remainder(np.cos(nodes.x) * nodes.length)) < 64 * EPS
 
 
 def test_the_remainder_is_summed_over_panels() -> None:

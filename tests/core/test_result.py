@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.core.discs import (
@@ -91,24 +89,6 @@ def test_every_property_has_its_unit_and_value(creepage: float) -> None:
         # `quad` was asked for 1e-10; the kink of the law makes it miss by a little more.
         assert quantity.to(si).magnitude == pytest.approx(value, rel=1e-8), name
         assert isinstance(quantity.magnitude, float), name
-
-
-def test_the_error_estimate_bounds_the_true_error() -> None:
-    result = PREDICT(creepage="0.4 %", **CONDITIONS)
-    true = mean_over_slip_zone(lambda x: usfd(bound_at(x) * slip_at(x, 0.004) * 1e-6), 0.004)
-    assert result.wear_rate_error.units == result.wear_rate.units
-    assert 0 < result.wear_rate_error.to("kg/m^3").magnitude < 1e-8 * true
-
-
-@pytest.mark.filterwarnings("ignore:disc_1 and disc_2 are of unlike materials")  # at very little friction
-@settings(deadline=None)  # the time of the first call is that of the imports
-@given(creepage=st.floats(0.0, 1.0), friction=st.floats(0.01, 1.0))
-def test_the_stick_ratio_lies_between_nothing_and_the_whole_patch(creepage: float, friction: float) -> None:
-    result = (RIG | wl.contact_model("exact"))(
-        creepage=Q(creepage, ""), normal_force="6 kN", friction_coefficient=friction
-    )
-    # The sum of some hundred areas, each rounded.
-    assert -100 * EPS <= result.stick_ratio.magnitude <= 1.0
 
 
 def test_the_averaged_wear_index_equals_the_wear_index_in_full_slip_and_exceeds_it_before() -> None:

@@ -53,17 +53,6 @@ def test_a_surface_loses_235_times_less_than_what_the_contact_loses(within: floa
     assert ratio == pytest.approx(np.pi * 47 / (2 * 0.31467), rel=within)  # a printed to 5 digits
 
 
-@pytest.mark.parametrize("creepage", [0.01, 0.15])
-def test_the_profile_area_rate_of_disc_1_gives_back_the_published_brr(creepage: float) -> None:
-    predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("brr")
-    result = predict(max_pressure="1500 MPa", creepage=Q(creepage, ""), friction_coefficient=0.46)
-    index, diameter = result.wear_index.to("N").magnitude, 47.0
-    # Table 1 of Tassini et al. (2010), mm² per km with D in mm.
-    published = 0.25 * index / diameter if index < 100 else (1.19 * index - 154) / diameter
-    assert index < 100 or index >= 200
-    assert result.profile_area_rate("disc_1").to("mm^2/km").magnitude == pytest.approx(published, rel=32 * EPS)
-
-
 def test_discs_of_unlike_density_lose_the_same_volume_by_archards_law() -> None:
     # V = k N s/H (Archard, J. Appl. Phys. 24 (1953) 981-988) knows no density; the mass follows from that of the body.
     result = (RIG | wl.contact_model("exact") | wl.wear_law("kth"))(creepage="1 %", **CONDITIONS)

@@ -29,22 +29,6 @@ class Half(wl.WearLaw):
         return 0.5 * self.inner.rate(contact, self.inner.numbers)
 
 
-class Checked(wl.ContactModel):
-    """Another contact model, unchanged."""
-
-    name: ClassVar[str] = "checked"
-    source: ClassVar[str] = "a test"
-
-    inner: wl.ContactModelField
-
-    @property
-    def scale(self) -> Any:
-        return self.inner.scale
-
-    def solve_line(self, problem: wl.Problem) -> wl.Contact:
-        return self.inner.solve_line(problem)
-
-
 class Declares(wl.WearLaw):
     """A law that declares what its class attributes say."""
 
@@ -78,13 +62,6 @@ def test_a_law_around_a_law_of_the_patch_is_refused_on_cells() -> None:
     cells = (RIG | wl.contact_model("exact"))(max_pressure="1 GPa", creepage="1 %", friction_coefficient=0.3).contact
     with pytest.raises(wl.CompositionError, match="wear law 'half' is stated for the means"):
         cells | Half(inner=wl.wear_law("brr"))
-
-
-def test_a_contact_model_around_another_has_its_scale() -> None:
-    assert Checked(inner=wl.contact_model("global")).scale == "patch"
-    assert (RIG | Checked(inner=wl.contact_model("global")) | wl.wear_law("brr")).scale == "patch"
-    with pytest.raises(wl.CompositionError, match="contact model 'checked' resolves it into cells"):
-        RIG | Checked(inner=Coarse()) | wl.wear_law("brr")
 
 
 @pytest.mark.parametrize(

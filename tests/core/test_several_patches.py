@@ -306,22 +306,8 @@ def test_creepages_and_the_contact_angle_of_each_patch() -> None:
         np.testing.assert_allclose(of(found, "contact_angle"), np.where(EXISTS, angles, np.nan), rtol=4 * EPS)
         np.testing.assert_allclose(of(found, "spin"), np.where(EXISTS, np.sin(angles) / RADIUS, np.nan), rtol=4 * EPS)
         assert (str(found.contact_angle.units), str(found.spin.units)) == ("degree", "1 / meter")
-        given = {name: value for name, value in GIVEN.items() if name != "spin"}
-        swept = wl.sweep(
-            predict,
-            **{**given, "spin": Q([0.0], "1/m")},
-            outputs=["contact_angle", "lateral_creepage", "creepage", "wear_index"],
-        )
-        assert swept.contact_angle.attrs == {"units": "deg", "long_name": "contact angle"}
-        assert swept.lateral_creepage.attrs == {"units": "%", "long_name": "lateral creepage"}
-        np.testing.assert_allclose(swept.contact_angle.values[:, 0], np.where(EXISTS, [3.0, 70.0], np.nan))
     level = PREDICT(**GIVEN).contact_angle.magnitude
     np.testing.assert_array_equal(level, np.where(EXISTS, 0.0, np.nan))
-    discs = (wl.TwinDisc.suros() | wl.contact_model("exact"))(
-        creepage=Q([1.0, 2.0], "%"), max_pressure="1.5 GPa", friction_coefficient=0.4
-    )
-    for name in ("contact_angle", "spin", "lateral_creepage"):
-        assert getattr(discs, name).magnitude.tolist() == [0.0, 0.0]
 
 
 def test_warnings_and_limits_on_strips_look_at_patches_that_exist() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 from tests.strategies import EPS
-from wearlaw import Array, Q
+from wearlaw import Array
 from wearlaw.numerics.solving import Solver  # private: what the solver checks of each block
 from wearlaw.numerics.splits import split_rates  # private: rates of split cells, not their sum
 
@@ -117,24 +117,6 @@ def test_what_sticks_does_not_wear_beside_a_jump(variable: str, level: float) ->
     assert (rates[contact.slip == 0.0] == 0.0).all()
     if variable == "slip_speed":
         assert found.wear_rate.m_as("kg/m^3") == pytest.approx(1e-3 * (1.0 - contact.stick_ratio), rel=64 * EPS)
-
-
-def test_kth_on_ten_strips_is_nearer_to_many() -> None:
-    conditions = {**FULL_SLIP, "longitudinal_creepage": Q(np.linspace(0.2, 2.0, 40), "%"), "normal_force": "150 kN"}
-
-    def mean(strips: int) -> Array:
-        found = (RAILS | wl.contact_model("fastsim", strips=strips) | wl.wear_law("kth"))(**conditions)
-        rate: Array = found.wear_rate.magnitude
-        return rate
-
-    def unsplit(strips: int) -> Array:
-        contact = (RAILS | wl.contact_model("fastsim", strips=strips))(**conditions).contact
-        rate: Array = contact.mean(wl.wear_law("kth").checked_rate(contact)) * 1e3
-        return rate
-
-    many = mean(120)
-    errors = [float(np.sqrt(np.mean((rate / many - 1.0) ** 2))) for rate in (mean(10), unsplit(10))]
-    assert errors[0] < 0.75 * errors[1]
 
 
 def test_a_patch_whose_strips_are_not_in_the_middle_wears_as_one_whose_strips_are() -> None:

@@ -32,12 +32,6 @@ CONDITIONS: dict[str, Any] = {
     "lateral_creepage": Q([0.0, 0.1, -0.1, 0.0], "%"),
     "spin": Q(0.3, "1/m"),
 }
-STILL: dict[str, Any] = {
-    **CONDITIONS,
-    "longitudinal_creepage": Q(0, "%"),
-    "lateral_creepage": Q(0, "%"),
-    "spin": Q(0, "1/m"),
-}
 
 
 def usfd(model: wl.ContactModel) -> wl.Pipeline[...]:
@@ -109,13 +103,6 @@ def test_brr_takes_the_energy_of_the_whole_patch(model: wl.ContactModel) -> None
 
 
 @every_model
-def test_nothing_moves_nothing_wears(model: wl.ContactModel) -> None:
-    found = usfd(model)(**STILL)
-    for quantity in (found.tangential_force, found.spin_moment, found.wear_index, found.wear_rate):
-        assert (quantity.magnitude == 0.0).all()
-
-
-@every_model
 def test_the_patch_is_not_resolved(model: wl.ContactModel) -> None:
     with pytest.raises(
         wl.CompositionError, match=r"gives means of the whole patch; .* wl.contact_model\(\"strip_theory\"\)"
@@ -130,15 +117,3 @@ def test_a_line_contact_is_refused_with_the_models_that_solve_it(model: wl.Conta
     )
     with pytest.raises(wl.CompositionError, match=re.escape(message) + r".*exact, fastsim, global$"):
         wl.TwinDisc.suros() | model
-
-
-@every_model
-def test_a_sweep_agrees_with_one_point_at_a_time(model: wl.ContactModel) -> None:
-    creepage = np.linspace(-0.01, 0.01, 1001)
-    swept = (RIG | model)(**{**CONDITIONS, "normal_force": Q(80, "kN"), "longitudinal_creepage": Q(creepage, ""),
-                             "lateral_creepage": Q(0.1, "%")})  # fmt: skip
-    for at in (0, 500, 731):
-        single = (RIG | model)(**{**CONDITIONS, "normal_force": Q(80, "kN"), "lateral_creepage": Q(0.1, "%"),
-                                  "longitudinal_creepage": Q(creepage[at], "")})  # fmt: skip
-        assert swept.longitudinal_force[at] == single.longitudinal_force
-        assert swept.spin_moment[at] == single.spin_moment

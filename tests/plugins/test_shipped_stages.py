@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 import warnings
 from typing import Any
 
@@ -78,44 +77,6 @@ def test_missing_patches_stay_missing(stage: wl.Stage) -> None:
     found = (Axle() | wl.contact_model("fastsim") | stage | wl.wear_law("kth"))(**GIVEN)
     assert (np.isnan(found.wear_rate.magnitude) == ~EXISTS).all()
     assert (np.isnan(found.longitudinal_force.magnitude) == ~EXISTS).all()
-
-
-@every_stage
-def test_pipelines_with_it_are_written_and_read(stage: wl.Stage) -> None:
-    predict = SUROS | wl.contact_model("exact") | stage
-    assert wl.Pipeline.model_validate_json(predict.model_dump_json()) == predict
-    assert pickle.loads(pickle.dumps(predict)) == predict
-
-
-def test_the_first_stage_is_next_to_the_model() -> None:
-    third_body, thermal = STAGES["falling"], STAGES["hot"]
-    exact = wl.contact_model("exact")
-    found = (SUROS | exact | third_body | thermal)(**DISCS)
-    # By hand: the friction of the hot contact, with the force of the flexible one
-    problem = SUROS.problem(**DISCS)
-
-    def forces(one: wl.Problem) -> wl.CreepForces:
-        return wl.CreepForces.of_line(exact.tangential_force(third_body.altered(one, forces)))
-
-    hot = thermal.altered(problem, forces)
-    assert found.tangential_force.to("N").magnitude == pytest.approx(forces(hot).longitudinal, rel=1e-14)
-    other = (SUROS | exact | thermal | third_body)(**DISCS)
-    assert not np.array_equal(other.tangential_force.magnitude, found.tangential_force.magnitude)
-
-
-def test_a_measured_traction_is_kept() -> None:
-    measured = {**DISCS, "creepage": Q(1, "%"), "traction_coefficient": 0.21}
-    for stage in STAGES.values():
-        found = (SUROS | wl.contact_model("global") | stage | wl.wear_law("usfd"))(**measured)
-        assert found.traction_coefficient.to("").magnitude == pytest.approx(0.21, rel=1e-15)
-
-
-def test_a_sweep_gives_the_same() -> None:
-    predict = SUROS | wl.contact_model("exact") | STAGES["falling"] | STAGES["hot"] | wl.wear_law("kth")
-    grid = {**DISCS, "creepage": Q(np.linspace(0.0, 10.0, 50), "%")}
-    swept = wl.sweep(predict, **grid)
-    direct = predict(**grid)
-    assert swept["wear_rate"].values.ravel() == pytest.approx(direct.wear_rate.to("ug/m/mm^2").magnitude, rel=1e-12)
 
 
 def test_slow_rolling_warns_once_a_prediction() -> None:

@@ -85,9 +85,6 @@ DIRECTIONS = 48
 SURFACE = 1e-12
 """Depth over the smaller semi-axis that stands for the surface, where the formulas are singular at the edges."""
 
-BLOCK = 1 << 16
-"""Operating points in a block."""
-
 
 def first_yield(
     shear_yield_stress: ArrayLike,
@@ -217,16 +214,15 @@ def overload(
         return worst
     flat = [array.reshape(-1) for array in points]
     highest, traction, friction = (float(array.max()) for array in flat[:3])
+    friction = max(traction, friction)
     for k, nu in bodies:
-        if highest * _most_stressed(nu, max(traction, friction)) <= k:
+        if highest * _most_stressed(nu, friction) <= k:
             continue
-        for start in range(0, max_pressure.size, BLOCK):
-            part = [array[start : start + BLOCK] for array in flat]
-            for measure, beyond in LIMITS:
-                known = worst is not None and worst.beyond_shakedown
-                least = worst.ratio if worst is not None and known == beyond else 1.0
-                if not known or beyond:  # beyond shakedown there is no need to check first yield
-                    worst = _worse(worst, _overload_at(k, nu, *_furthest(measure, k, nu, least, *part)))
+        for measure, beyond in LIMITS:
+            known = worst is not None and worst.beyond_shakedown
+            least = worst.ratio if worst is not None and known == beyond else 1.0
+            if not known or beyond:  # beyond shakedown there is no need to check first yield
+                worst = _worse(worst, _furthest(measure, beyond, k, nu, friction, least, *flat))
     return worst
 
 
@@ -260,34 +256,49 @@ def _most_stressed(poisson_ratio: float, friction_coefficient: _Value) -> _Value
 
 
 def _furthest(
-    measure: str, k: float, nu: float, least: float, max_pressure: Array, traction: Array, *more: Array
-) -> list[float]:
-    """Return p0, T/N, μ and a/b of the point with the greatest deciding shear stress, if one is above `least` k.
+    measure: str,
+    beyond: bool,
+    k: float,
+    nu: float,
+    friction: float,
+    least: float,
+    max_pressure: Array,
+    traction: Array,
+    *more: Array,
+) -> Overload | None:
+    """Return the point with the greatest deciding shear stress, or None if none is above `least` k.
 
-    Points are left out whose p0 is so low that their stress is below that of one that is close to the greatest.
+    Points are left out whose p0 is so low that at the greatest `friction` their stress is below that of a point that is
+    close to the greatest.
     """
-    points = (traction, *more)
-    first = int((max_pressure * traction).argmax())
-    least = max(least, float(max_pressure[first] * _peak(measure, nu, *(float(array[first]) for array in points)) / k))
-    mu = np.maximum(np.maximum(traction, more[0]), TINY)
-    most = _greatest(measure, nu, float(mu.max()), float((traction / mu).max()), line=len(more) == 1)
-    chosen = np.append(first, np.flatnonzero(max_pressure * most > (1.0 + 1e-9) * least * k))
-    load = max_pressure[chosen] * _peak(measure, nu, *(array[chosen] for array in points))
-    at = chosen[load.argmax()]
-    return [float(array[at]) for array in (max_pressure, *points)]
+    at = int((max_pressure * traction).argmax())
+    load = float(max_pressure[at]) * _peak(measure, nu, *(float(array[at]) for array in (traction, *more))) / k
+    share = _greatest(measure, nu, friction, line=len(more) == 1) / k
+    chosen = np.flatnonzero(max_pressure * share > (1.0 + 1e-9) * max(load, least))
+    if chosen.size:
+        loads = max_pressure[chosen] * _peak(measure, nu, *(array[chosen] for array in (traction, *more))) / k
+        greatest = int(loads.argmax())
+        if loads[greatest] > load:
+            at, load = chosen[greatest], float(loads[greatest])
+    return Overload(beyond, load, float(max_pressure[at]), float(traction[at])) if load > least else None
 
 
-def _greatest(measure: str, nu: float, friction: float, sliding: float, *, line: bool) -> float:
-    """Return an upper bound of `_peak` for all points up to μ and up to a share T/μN.
-
-    On a line it is the greatest value of the table's row up to that share, since stresses grow with μ.
-    """
+def _greatest(measure: str, nu: float, friction: float, *, line: bool) -> float:
+    """Return an upper bound of `_peak` for all points up to μ; on a line it is the greatest value of the table."""
     if line:
-        table = np.maximum.accumulate(_table(measure, nu, 0.0).reshape(-1, WIDTH), axis=1).reshape(-1)
-        return _interpolated(table, sliding * friction, friction, 0.5)
+        most, u = _rows(measure, nu), FRICTIONS * friction / (1.0 + friction)
+        row = int(u)
+        return float((1.0 + friction) * (most[row] + (u - row) * (most[row + 1] - most[row])))
     if measure == "forward":  # at most 0.25 without traction, μ with much, within the error of the tables
         return max(0.251 + 0.326 * friction, 1.008 * friction)
     return _most_stressed(nu, friction)
+
+
+@lru_cache(maxsize=16)
+def _rows(measure: str, nu: float) -> Array:
+    """Return the greatest value of each row of the table of a line; stresses grow with μ."""
+    greatest: Array = _table(measure, nu, 0.0).reshape(-1, WIDTH).max(axis=1)
+    return greatest
 
 
 def _peak_of(measure: str, nu: float, traction: ArrayLike, friction: ArrayLike | None, axis_ratio: ArrayLike) -> Array:

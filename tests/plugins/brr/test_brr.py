@@ -82,22 +82,6 @@ def test_the_rate_is_per_patch_area_and_of_the_density_of_the_contact() -> None:
     assert rate(BRR, 300.0, density=3925.0) == pytest.approx(rate(BRR, 300.0) / 2.0, rel=8 * EPS)
 
 
-def test_the_law_is_of_the_patch_only_and_refused_on_cells() -> None:
-    assert BRR.scale == "patch"
-    rig = wl.TwinDisc.suros()
-    for name in ("exact", "fastsim"):
-        with pytest.raises(wl.CompositionError, match=rf"'brr'.*'{name}'.*wl\.patch_mean\(\).*\"global\""):
-            rig | wl.contact_model(name) | BRR  # type: ignore[unused-ignore]
-
-
-def test_the_law_takes_the_means_of_a_local_model() -> None:
-    rig = wl.TwinDisc.suros()
-    conditions: dict[str, Any] = {"normal_force": "7.4143 kN", "creepage": "1 %", "friction_coefficient": 0.46}
-    means = (rig | wl.contact_model("exact") | wl.patch_mean() | BRR)(**conditions)
-    one_cell = (rig | wl.contact_model("global") | BRR)(**conditions)
-    assert means.wear_rate.m == pytest.approx(one_cell.wear_rate.m, rel=64 * EPS)
-
-
 def test_parameters_of_your_own_move_the_law() -> None:
     law = wl.wear_law("brr", severe_limit="160 N", mild_slope="0.2 mm^3/km/N")
     assert rate(law, 10.0) == pytest.approx(7850.0 * math.pi * 2.0 * 1e-6, rel=32 * EPS)

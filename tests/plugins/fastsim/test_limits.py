@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.benchmarks.wheel_rail_rivals import workload
 from tests.plugins.ellipses import of_ratio
 from tests.plugins.full_theory import spheres
 from wearlaw import Array, Q
@@ -16,6 +15,22 @@ from wearlaw import Array, Q
 
 def rms(error: Array) -> float:
     return float(np.sqrt(np.mean(error**2)))
+
+
+def at_random(count: int) -> wl.Problem:
+    """Return ellipses of steel under 80 kN, with √(ab) = 5 mm and a/b from 1/5 to 5, that creep and spin at random."""
+    rng = np.random.default_rng(19820101)
+
+    def log_uniform(low: float, high: float) -> Array:
+        return np.exp(rng.uniform(np.log(low), np.log(high), count))
+
+    root = np.sqrt(log_uniform(0.2, 5.0))
+    along, across = (log_uniform(1e-4, 3e-2) * rng.choice([-1.0, 1.0], count) for _ in range(2))
+    return wl.Problem.ellipse(
+        a=Q(5e-3 * root, "m"), b=Q(5e-3 / root, "m"), normal_force="80 kN", shear_modulus="82 GPa", poisson_ratio=0.28,
+        longitudinal_creepage=Q(along, ""), lateral_creepage=Q(across, ""), spin=Q(rng.uniform(0.0, 1.0, count), "1/m"),
+        friction_coefficient=rng.uniform(0.1, 0.5, count), rolling_speed="30 m/s",
+    )  # fmt: skip
 
 
 @pytest.mark.validates(
@@ -106,7 +121,7 @@ def test_few_strips_are_near_many_but_less_so_for_a_law_that_jumps(
     bound: str, forces: float, usfd: float, kth: float, single: float
 ) -> None:
     # The bounds are what the documentation says, and for the wear rates what was found, 0.3 and 4.3 %, rounded up.
-    problem = workload(200)
+    problem = at_random(200)
     few, many = (wl.contact_model("fastsim", bound=bound, strips=strips).solve(problem) for strips in (10, 80))
     apart = np.hypot(few.force_x - many.force_x, few.force_y - many.force_y)
     assert rms(apart / (problem.friction_coefficient * problem.normal_force)) < forces

@@ -81,11 +81,6 @@ def test_a_pipeline_hands_a_measured_traction_coefficient_on() -> None:
     assert contact.traction_coefficient.magnitude == pytest.approx(0.4, rel=4 * EPS)
 
 
-def test_a_local_model_refuses_a_measured_traction_coefficient() -> None:
-    with pytest.raises(wl.ConditionsError, match=r"traction_coefficient.*'exact' computes the traction itself"):
-        (SUROS | wl.contact_model("exact"))(creepage=Q(1, "%"), traction_coefficient=0.4, **CONDITIONS)  # type: ignore[arg-type]
-
-
 def test_the_exemptions_follow_the_model_that_the_total_is_from() -> None:
     kalker = wl.contact_model("fastsim", bound="elliptic", flexibility="kalker")
     assert set(wl.contact_model("global").exemptions) == {"stick"}

@@ -100,11 +100,6 @@ def test_coefficients_of_your_own_have_no_band() -> None:
         assert got == pytest.approx(7850.0 * OWN[name] * pressure * slip / 2.625e9, rel=16 * EPS)
 
 
-def test_coefficients_of_your_own_survive_a_round_trip() -> None:
-    law = kth(OWN)
-    assert kth(**law.model_dump(mode="json")) == law
-
-
 def test_borders_of_your_own_move_the_jumps() -> None:
     law = kth(pressure_threshold="1 GPa", lower_slip_speed="10 cm/s", upper_slip_speed=Q(0.5, "m/s"))
     jumps = law.jumps(law.numbers)
@@ -152,8 +147,6 @@ def test_slip_speeds_and_pressures_in_the_fields_without_an_end_are_warned_of() 
     [
         ({"coefficient": "middle"}, r"kth: coefficient: must be 'low', 'mid', 'high' or your own .*got 'middle'"),
         ({"coefficient": 1e-3}, r"coefficient: must be 'low', 'mid', 'high' or your own .*got 0\.001"),
-        ({"coefficient": None}, r"coefficient: must be 'low'"),
-        ({"coefficient": ["low"]}, r"coefficient: must be 'low'"),
         ({"coefficient": {**OWN, "low_speed": -1e-4}}, r"coefficient\.low_speed: .*greater than 0.*-0\.0001"),
         ({"coefficient": {**OWN, "low_speed": "1e-4"}}, r"coefficient\.low_speed: "),
         ({"coefficient": {"low_speed": 1e-4}}, r"coefficient\.high_pressure: is missing"),

@@ -23,7 +23,6 @@ def test_the_shipped_cases_are_listed_and_their_text_is_that_of_the_file() -> No
         "my_tests",
         "tassini2010",
         "two_discs",
-        "wheel_life",
         "wheel_on_rail",
         "wheelset",
     ]

@@ -91,17 +91,13 @@ def test_all_models_are_listed_with_their_distribution_and_version() -> None:
             *(["command", name, "wearlaw", wl.__version__] for name in COMMANDS),
             *(
                 ["case", name, "wearlaw", wl.__version__]
-                for name in ("my_tests", "tassini2010", "two_discs", "wheel_life", "wheel_on_rail", "wheelset")
+                for name in ("my_tests", "tassini2010", "two_discs", "wheel_on_rail", "wheelset")
             ),
             *(
                 ["profile", name, "wearlaw", wl.__version__]
                 for name in ("cone20", "cone40", "rail_54e1", "rail_60e1", "rail_60e2", "s1002", "uic60")
             ),
-            ["section", "life", "wearlaw", wl.__version__],
-            *(
-                ["section", f"tassini2010_{name}", "wearlaw", wl.__version__]
-                for name in ("claims", "table_4", "tables")
-            ),
+            *(["section", f"tassini2010_{name}", "wearlaw", wl.__version__] for name in ("claims", "table_4")),
             ["section", "wheelset", "wearlaw", wl.__version__],
             ["test", "set", "lewis2004", "wearlaw", wl.__version__],
         ]

@@ -350,16 +350,6 @@ def test_the_traction_falls_beyond_its_largest() -> None:
     assert contact.traction_bound.max() <= 0.46 * problem.max_pressure[0]
 
 
-def test_a_batch_agrees_with_one_point_at_a_time() -> None:
-    creepage = np.array([[0.0, 1e-3, -2e-3], [1e-4, 0.01, 0.3]])
-    batch = hot(thermal(), "exact", line(creepage)).friction_coefficient
-    assert batch.shape == (2, 3)
-    for index in np.ndindex(2, 3):
-        single = hot(thermal(), "exact", line(creepage[index])).friction_coefficient
-        assert single == pytest.approx(batch[index], rel=8 * EPS)
-    assert hot(thermal(), "exact", line(-creepage)).friction_coefficient == pytest.approx(batch, rel=8 * EPS)
-
-
 def test_forces_are_asked_for_at_the_shape_of_the_batch() -> None:
     problem = line(np.full((2, 3), 0.1))
     shapes = set()
@@ -422,12 +412,9 @@ def test_heat_near_the_trailing_edge_warms_less_of_the_patch(of_saturation: floa
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"hot_ratio": -0.2}, "hot_ratio: input should be greater than 0, got -0.2"),
         ({"hot_ratio": 0.0}, "hot_ratio: input should be greater than 0, got 0.0"),
         ({"hot_ratio": 1.2}, "hot_ratio: input should be less than or equal to 1, got 1.2"),
-        ({"hot_ratio": "half"}, "hot_ratio: input should be a valid number, got 'half'"),
         ({"temperature_range": "0 K"}, "temperature_range: must be greater than zero"),
-        ({"temperature_range": "-20 K"}, "temperature_range: must be greater than zero"),
         ({"temperature_range": 400.0}, "temperature_range: got the bare number 400.0, which has no unit"),
         ({"temperature_range": "400 degC"}, "temperature_range: got 400.0 °C, whose unit has an offset"),
         ({"temperature_range": "400 m"}, "temperature_range: got 400.0 m"),

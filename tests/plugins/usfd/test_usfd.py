@@ -145,28 +145,6 @@ def test_a_wrong_parameter_is_one_clear_error(options: dict[str, Any], message: 
         wl.wear_law("usfd", **options)
 
 
-def fits(fitted_for: str, contact: wl.Pipeline[...]) -> bool:
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        contact | wl.wear_law("usfd", fitted_for=fitted_for)  # type: ignore[unused-ignore]
-    assert len(caught) <= 1
-    assert all(issubclass(w.category, wl.CalibrationWarning) for w in caught)
-    return not caught
-
-
-def test_each_set_fits_the_contact_it_was_fitted_for_and_no_other() -> None:
-    rig = wl.TwinDisc.suros()
-    contacts = {
-        "global": rig | wl.contact_model("global"),
-        "means": rig | wl.contact_model("exact") | wl.patch_mean(),
-        "exact": rig | wl.contact_model("exact"),
-        "fastsim": rig | wl.contact_model("fastsim"),
-        "elliptic": rig | wl.contact_model("fastsim", bound="elliptic"),
-    }
-    fitting = {(s, c) for s in TABLE_4 for c, contact in contacts.items() if fits(s, contact)}
-    assert fitting == {("global", "global"), ("global", "means"), ("exact", "exact"), ("fastsim", "fastsim")}
-
-
 def test_the_range_is_that_of_the_tests_up_to_twenty_percent_creepage() -> None:
     # The slip speed of 20 % is the highest if the rig keeps the mean of the surface speeds.
     predict = wl.TwinDisc.suros(speed_of="mean") | wl.contact_model("global") | wl.wear_law("usfd")
