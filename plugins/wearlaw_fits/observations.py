@@ -156,8 +156,7 @@ def observe(
         problem = pipeline.posed(conditions, of_one_patch="fit")
         stated = name == WEAR and tests.wear_rate_uncertainty is not None
         chosen: Scatter = "uncertainty" if stated else scatter
-        sticking = (problem.rigid_slip == 0.0) & (law is None or law.zero_in_stick)
-        divisor = _divisor(name, selected, measured, chosen, sticking)
+        divisor = _divisor(name, selected, measured, chosen)
         found.append(
             Observations(name, index, pipeline, free.places, selected, measured, conditions, problem, chosen, divisor)
         )
@@ -169,9 +168,7 @@ def observe(
     return found
 
 
-def _divisor(
-    observable: str, tests: WearTests, measured: Array, scatter: Scatter, sticking: NDArray[np.bool_]
-) -> Array:
+def _divisor(observable: str, tests: WearTests, measured: Array, scatter: Scatter) -> Array:
     """Return the divisor of the residuals, (n,), or raise an error if measurements cannot scatter in that way."""
     if scatter == "absolute":
         return np.full_like(measured, np.sqrt(np.mean(measured**2)) or 1.0)
@@ -183,11 +180,11 @@ def _divisor(
                 " with a wear rate, or for none"
             )
         return divisor
-    zero = (measured <= 0.0) | sticking
+    zero = measured <= 0.0
     if zero.any():
         raise FitError(
-            f"{observable}: is zero or negative, or the creepage is zero, in {test_names(tests, zero)}, which no"
-            ' scatter by a factor can express; leave these tests out, or fit with scatter="absolute"'
+            f"{observable}: is zero or negative in {test_names(tests, zero)}, which no scatter by a factor can express;"
+            ' leave these tests out, or fit with scatter="absolute"'
         )
     return np.ones_like(measured)
 

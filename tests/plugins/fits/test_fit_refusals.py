@@ -124,12 +124,9 @@ def test_rates_of_zero_are_refused_where_scatter_is_by_a_factor() -> None:
     wl.fit(predict, zeros, free=["q_s"], scatter="absolute", bootstrap=0)
     still = np.where(np.arange(20) == 5, 0.0, CREEPAGE)
     conditions["creepage"] = Q(still, "%")
-    refused(
-        "test number 6",
-        predict,
-        wl.WearTests.from_arrays(**conditions, wear_rate=tests.wear_rate),
-        ["q_s"],
-    )
+    stuck = wl.WearTests.from_arrays(**conditions, wear_rate=tests.wear_rate)
+    refused("predicts no wear rate in test number 6", predict, stuck, ["q_s"])
+    refused("no traction .* in test number 6", GLOBAL, traction_tests(0.3, still), ["friction_coefficient"])
 
 
 def test_measurements_that_are_not_there_are_refused() -> None:
