@@ -15,7 +15,7 @@ import wearlaw as wl
 from tests.plugins.kit.brushes import Brush, BrushOnCells
 from tests.plugins.kit.cells import Cells
 from tests.plugins.kit.grids import Grid
-from tests.plugins.kit.strips import Means, Strips, StripsOnStrips
+from tests.plugins.kit.strips import Strips, StripsOnStrips
 from tests.plugins.kit.wrong_contacts import Wrapped
 from tests.plugins.kit.wrong_laws import HottestNode, Linear, Ramps, Severe, Smooth
 from tests.plugins.kit.wrong_rigs import Delegating, Weight
@@ -106,7 +106,7 @@ def named(model: Any) -> str:
 
 
 RIGHT: list[Any] = [
-    *(Cells(), Strips(), StripsOnStrips(), Grid(), Means(), Wrapped(), Brush(), BrushOnCells()),
+    *(Cells(), Strips(), StripsOnStrips(), Grid(), Wrapped(), Brush(), BrushOnCells()),
     *(Linear(), Smooth(), Ramps(), Severe(), HottestNode(), Weight(), Delegating()),
 ]
 MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *LAWS, *STAGES, *RIGS.values(), *RIGHT]

@@ -82,7 +82,7 @@ def sums_of(contact: Contact) -> CreepForces:
     )
 
 
-@on_shapes(*SHAPES, always=True, first=True)
+@on_shapes(*SHAPES, always=True)
 def contact_has_the_shape_of_the_problem(model: ContactModel, shape: Shape) -> None:
     """Totals have the batch shape, fields one more axis, on an ellipse two, of nodes and strips."""
     for point in range(8):  # a wrong shape may depend on the creepage

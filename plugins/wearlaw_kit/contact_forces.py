@@ -14,7 +14,6 @@ from wearlaw_kit.bisection import Indices, find_jumps
 from wearlaw_kit.contact import has_nodes, mixed_batch
 from wearlaw_kit.examples import SAME, SUM, assert_close, for_each
 from wearlaw_kit.reduced import (
-    at_factors,
     at_magnitude,
     at_reduced,
     creeping,
@@ -124,14 +123,6 @@ def force_grows_with_creepage(model: ContactModel, problem: Problem) -> None:
     fell = np.diff(force) < -SUM * force[:, :-1]
     assert not fell.any(), f"the force falls as the creepage grows: {force!r}"
     assert (force[:, 0] > 0).all(), f"the force is {force[:, 0].min()!r} at a positive creepage"
-
-
-@on_problems(*SHAPES, claims=("traction_bound", "friction"))
-def force_stays_below_friction(model: ContactModel, problem: Problem) -> None:
-    """The tangential force, on an ellipse of Fx and Fy, does not exceed μN."""
-    batch = at_factors(problem, np.logspace(0, 2, 5))
-    share = forces_alone(model, batch).tangential / friction_limit(batch)
-    assert (share <= 1.0 + error_of_force(model, problem)).all(), f"the force reaches {share.max():.9g} μN"
 
 
 @on_problems(*SHAPES, claims=("traction_bound",))

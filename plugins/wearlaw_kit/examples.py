@@ -39,10 +39,6 @@ def for_each(examples: T, examine: Callable[[T], None]) -> None:
         raise  # only together
 
 
-class ModelRaisedError(AssertionError):
-    """The failure of a check in which the model raised an error of its own."""
-
-
 @contextmanager
 def failing(where: str = "") -> Iterator[None]:
     """Begin the message of a failure with the place where the model fails; an error in the model is a failure too."""
@@ -55,8 +51,7 @@ def failing(where: str = "") -> Iterator[None]:
         raise
     except BaseException as error:
         of_a_run = isinstance(error, ModelError)  # what every run checks
-        failure = AssertionError(str(error)) if of_a_run else ModelRaisedError(f"the model raised {described(error)}")
-        failure.args = (f"{where}{failure}",)
+        failure = AssertionError(f"{where}{error if of_a_run else f'the model raised {described(error)}'}")
         failure.__notes__ = getattr(error, "__notes__", [])
         raise failure from error
 

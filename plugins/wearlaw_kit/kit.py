@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -23,8 +22,8 @@ from wearlaw_kit import (  # each registers its rules  # noqa: F401
     stage,
     units,
 )
-from wearlaw_kit.examples import ModelRaisedError, failing
-from wearlaw_kit.rules import RULES, Rule, rule
+from wearlaw_kit.examples import failing
+from wearlaw_kit.rules import RULES, rule
 
 TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
 
@@ -74,8 +73,7 @@ def checks(model: Model) -> Iterator[Check]:
     """Yield the checks of a model, each on a new instance with the fields of the model.
 
     Checks that do not apply to the model are left out: those of claims in `Model.exemptions`, of nodes for a law of the
-    whole patch, of geometries that a contact model does not solve, and of optional methods that are missing. If arrays
-    of a wrong shape might fill the memory, all checks fail with the same message.
+    whole patch, of geometries that a contact model does not solve, and of optional methods that are missing.
 
     Parameters
     ----------
@@ -104,20 +102,8 @@ def checks(model: Model) -> Iterator[Check]:
         if isinstance(model, known.kind) and not exempt & {*known.claims} and known.applies(model)
     ]
 
-    @functools.cache
-    def try_shapes() -> None:
-        for known in found:
-            if known.first:
-                with suppress(ModelRaisedError), failing():
-                    known.check(model.model_copy())
-
-    def run(known: Rule) -> None:
-        if not known.first and known.check is not exemptions_are_claims:
-            try_shapes()
-        known.check(model.model_copy())
-
     for known in found:
-        yield Check(known.name, known.doc, functools.partial(run, known))
+        yield Check(known.name, known.doc, functools.partial(known.check, model.model_copy()))
 
 
 def conformance(

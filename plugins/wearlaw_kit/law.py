@@ -60,7 +60,7 @@ def at_each_node(law: Law) -> bool:
     return of_cells(law) and has_rates_at_nodes(law)
 
 
-@on_contacts(Law, always=True, first=True)
+@on_contacts(Law, always=True)
 def rate_has_the_right_shape(law: Law, contact: Contact) -> None:
     """There is a rate for each node, or one value for each patch, with no batch axis, one or two."""
     for shape in ((), (1,), (2, 1)):

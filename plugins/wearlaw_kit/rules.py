@@ -29,15 +29,12 @@ class Rule:
         Names in `Model.exemptions` that leave it out, its own among them; none if it holds whatever the theory.
     applies : callable
         Whether it is one for this model, from what the model declares.
-    first : bool
-        Whether other checks need it: arrays of a wrong shape may broadcast, and fill the memory.
     """
 
     check: CheckFunction
     kind: type
     claims: tuple[str, ...]
     applies: Applies
-    first: bool
 
     @property
     def name(self) -> str:
@@ -54,9 +51,7 @@ RULES: list[Rule] = []
 """All rules, in the order in which they are checked."""
 
 
-def rule(
-    kind: type, *claims: str, applies: Applies = lambda _: True, always: bool = False, first: bool = False
-) -> Callable[[F], F]:
+def rule(kind: type, *claims: str, applies: Applies = lambda _: True, always: bool = False) -> Callable[[F], F]:
     """Return a decorator that registers a check of models of a kind.
 
     Parameters
@@ -65,14 +60,14 @@ def rule(
         Base class of the models.
     claims : str
         Further names under which a model can be exempt, beside that of the check.
-    applies, first
+    applies
         See `Rule`.
     always : bool
         Whether no model can be exempt, whatever its theory: shapes, finite values, signs and units.
     """
 
     def register(check: F) -> F:
-        RULES.append(Rule(check, kind, () if always else (check.__name__, *claims), applies, first))
+        RULES.append(Rule(check, kind, () if always else (check.__name__, *claims), applies))
         return check
 
     return register

@@ -17,8 +17,8 @@ from wearlaw_output.notes import caught_warnings
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import Points
 from wearlaw_sweeps.provenance import provenance_of
-from wearlaw_sweeps.sweep import check_importable, checked_profile, run
-from wearlaw_sweeps.wear_profile import Sum
+from wearlaw_sweeps.sweep import check_importable, run
+from wearlaw_sweeps.wear_profile import ProfileJob, Sum
 
 if TYPE_CHECKING:
     from wearlaw_sweeps.folder import Parts
@@ -42,7 +42,7 @@ class Line:
         with caught_warnings():  # the first step gives them
             first = posed(points.part([slice(0, 1)]), predict.rig.checked_problem)
         check_importable(predict, workers, client)
-        self.job = checked_profile(predict, first, body, wl.Q(1e3 * at, "mm"), True)
+        self.job = ProfileJob.of(predict, first, body, wl.Q(1e3 * at, "mm"), True)
         self.sides = len(self.job.dims.get("side", "-"))
         self.points = dataclasses.replace(points, weight=self.job.weight(first))
         self._workers, self._client, self._quiet = workers, client, False

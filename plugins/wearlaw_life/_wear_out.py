@@ -18,7 +18,7 @@ from wearlaw_life._removal import even, positions
 from wearlaw_life._steps import Limits, Steps
 from wearlaw_sweeps.evaluation import expect_pipeline
 from wearlaw_sweeps.progress import Bar
-from wearlaw_sweeps.sweep import operating_points
+from wearlaw_sweeps.tables import operating_points
 from wearlaw_sweeps.wear_profile import SHARE
 
 if TYPE_CHECKING:

@@ -21,6 +21,7 @@ from wearlaw.pipeline.selection import axis_names
 from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import default_variables
 from wearlaw.units.quantities import in_unit
+from wearlaw.units.registry import magnitude
 from wearlaw.units.variables import UNITS, name_of
 from wearlaw_output.conditions import Conditions, Known
 from wearlaw_output.labels import long_name, unit_of
@@ -68,7 +69,7 @@ def dataset(prediction: Prediction, conditions: Conditions, names: Sequence[str]
         value = prediction[name]
         unit = unit_of(name, value, prediction.laws)
         attributes = {"units": unit, "long_name": long_name(name, prediction.laws)}
-        variables[name] = (dims, np.asarray(value.to(unit).magnitude), attributes)
+        variables[name] = (dims, np.asarray(magnitude(value, unit)), attributes)
     return labelled(problem, coordinates, variables).assign_attrs(conditions.others)
 
 

@@ -8,26 +8,22 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import pint
 
 from wearlaw import kernels
 from wearlaw.arrays import Array, steady
 from wearlaw.contact.elastic_limit import Overload
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, InputError, RangeWarning, did_you_mean, shown
+from wearlaw.errors import InputError, RangeWarning, shown
 from wearlaw.models.contact_model import ContactModel
-from wearlaw.models.law import Law, named_outcomes
+from wearlaw.models.law import Law
 from wearlaw.models.model import fault
 from wearlaw.numerics.totals import SlipTotals, Totals
-from wearlaw.pipeline.composition import check_traction
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, Seen
 from wearlaw.pipeline.solution import Solution
-from wearlaw.pipeline.variables import outcome_units
-from wearlaw.units.quantities import Quantity
-from wearlaw.units.variables import VARIABLES
-from wearlaw_output.labels import long_name, unit_of
+from wearlaw.units.registry import magnitude
+from wearlaw_output.labels import long_name
 from wearlaw_output.notes import caught_warnings
 from wearlaw_sweeps.located import posed
 from wearlaw_sweeps.points import Points
@@ -81,7 +77,7 @@ class Job:
 
     def outputs(self, prediction: Prediction, part: Points) -> Outputs:  # noqa: ARG002
         """Return the outputs of a prediction at some of the points."""
-        return {name: _in_unit(prediction[name], unit) for name, unit in self.units.items()}
+        return {name: magnitude(prediction[name], unit) for name, unit in self.units.items()}
 
     def attributes(self, name: str) -> dict[str, str]:
         """Return the attributes of an output in results: its unit and its long name."""
@@ -178,62 +174,6 @@ def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
         watch.warn()
     remark = next((text for one in every for text in one.remarks), None)
     return found if remark is None else [*found, RangeWarning(remark)]
-
-
-def output_units(
-    pipeline: Pipeline[...], problem: Problem, points: Points, outputs: list[str] | None = None
-) -> dict[str, str]:
-    """Return the unit of each output; `problem` is that of the first operating point, of shape (1,).
-
-    Parameters
-    ----------
-    pipeline : Pipeline
-    problem : Problem
-    points : Points
-    outputs : list of str, optional
-        Names of the outputs; by default the outcomes of all laws.
-
-    Raises
-    ------
-    CompositionError
-        If no outputs are given and there is no law.
-    InputError
-        If there is no such output, or it is a condition.
-    """
-    if problem.geometry == "line":
-        check_traction(pipeline.contact_model, problem)
-    if outputs is None and not pipeline.laws:
-        raise CompositionError(
-            f"the pipeline has no wear law; give one, as in rig | {pipeline.contact_model!r} | wl.wear_law('usfd'), or"
-            ' name what to keep, as in outputs=["tangential_force"]'
-        )
-    prediction = unsolved(problem, pipeline.staged_model, pipeline.laws)
-    units = {}
-    for name in list(named_outcomes(pipeline.laws)) if outputs is None else outputs:
-        if name in points.coordinates() or name in points.fixed:
-            raise InputError(f"outputs: {shown(name)} is among the coordinates of the results already")
-        value = _output(prediction, name)
-        if value is None:
-            known = [one for one in (*outcome_units(pipeline.laws), *problem.results, *VARIABLES) if one != name]
-            raise InputError(
-                f"outputs: {shown(name)} is none of the outcomes, nor a property of a prediction at a point"
-                f"{did_you_mean(name, known)} The outcomes are: {', '.join(outcome_units(pipeline.laws)) or 'none'}"
-            )
-        units[name] = unit_of(name, value, pipeline.laws)
-    return units
-
-
-def _output(prediction: Prediction, name: str) -> Quantity | None:
-    """Return a value of a prediction at one point, or None if it cannot be an output."""
-    if name in outcome_units(prediction.laws) or name in prediction.problem.results:
-        return prediction[name]
-    there = not name.startswith("_") and hasattr(type(prediction), name)
-    value = getattr(prediction, name) if there else None
-    return value if isinstance(value, pint.Quantity) and np.shape(value.magnitude) == (1,) else None
-
-
-def _in_unit(quantity: Any, unit: str) -> Array:
-    return np.ascontiguousarray(quantity.to(unit).magnitude)
 
 
 def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Prediction:

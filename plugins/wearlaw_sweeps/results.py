@@ -89,8 +89,8 @@ class Memory(Target):
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Return the results as a labelled dataset."""
-        found = dataset(self.points, self._arrays, self.job)
-        return found.assign_attrs(attributes(COMPLETE, provenance_of(self.job, self.points), notes))
+        attrs = attributes(COMPLETE, provenance_of(self.job, self.points), notes)
+        return dataset(self.points, self._arrays, self.job, attrs)
 
 
 def attributes(status: str, provenance: Provenance, notes: Sequence[str] = ()) -> dict[str, str]:
@@ -98,7 +98,7 @@ def attributes(status: str, provenance: Provenance, notes: Sequence[str] = ()) -
     return {"status": status, "provenance": json.dumps(provenance), "notes": "\n".join(notes)}
 
 
-def dataset(points: Points, variables: Mapping[str, Array], job: Job) -> xarray.Dataset:
+def dataset(points: Points, variables: Mapping[str, Array], job: Job, attrs: Mapping[str, str]) -> xarray.Dataset:
     """Return results as a dataset with the conditions as coordinates, except those on disk."""
     coordinates: dict[str, Any] = {**points.rows, **labels_of(job)}
     for name, one in points.coordinates().items():
@@ -109,7 +109,7 @@ def dataset(points: Points, variables: Mapping[str, Array], job: Job) -> xarray.
     dims = (*points.dims, *job.labels)
     data = {name: (dims, values, job.attributes(name)) for name, values in variables.items()}
     others = {name: str(points.fixed[name]) for name, number in numbers.items() if number is None}
-    return xarray.Dataset(data, coordinates, others)
+    return xarray.Dataset(data, coordinates, {**others, **attrs})
 
 
 def labels_of(job: Job) -> dict[str, Any]:

@@ -68,7 +68,7 @@ class Store(Target):
                 _add_array(group, name, shape, chunks, (*points.dims, *job.labels), job.attributes(name))
         if RECORDS not in group:
             group.create_array(RECORDS, shape=(len(points.blocks()),), chunks=(1,), dtype=str, compressors=CHECKED)
-        small = dataset(points, {}, job).assign_attrs(attributes(INCOMPLETE, self._folder.provenance))
+        small = dataset(points, {}, job, attributes(INCOMPLETE, self._folder.provenance))
         small = small.drop_vars(job.units, errors="ignore")  # a case keeps some of its conditions as outputs
         large = {name: column for name, column in points.coordinates().items() if column.on_disk}
         for name in (*small.coords, *large):  # those of an interrupted sweep may be damaged

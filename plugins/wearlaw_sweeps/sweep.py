@@ -6,10 +6,9 @@ import dataclasses
 import math
 import os
 import pickle
-import tempfile
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,23 +16,23 @@ import numpy as np
 import xarray
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, InputError, ResumeWarning, shown
-from wearlaw.pipeline.composition import warn_of_unlike_materials
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ResumeWarning, shown
+from wearlaw.models.law import named_outcomes
+from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline
 from wearlaw.pipeline.variables import default_variables
-from wearlaw.units.variables import VARIABLES
 from wearlaw_output.datasets import names_in
+from wearlaw_output.labels import unit_of
 from wearlaw_output.notes import caught_warnings
-from wearlaw_output.wear_profile import POSITION
-from wearlaw_sweeps.evaluation import Job, expect_pipeline, output_units, range_warnings, unsolved
+from wearlaw_sweeps.evaluation import Job, expect_pipeline, range_warnings, unsolved
 from wearlaw_sweeps.located import posed
-from wearlaw_sweeps.points import BLOCK, Points, outer_product
+from wearlaw_sweeps.points import BLOCK, Points
 from wearlaw_sweeps.progress import Bar
 from wearlaw_sweeps.provenance import parts
 from wearlaw_sweeps.results import Memory, Target
 from wearlaw_sweeps.room import writing_to
-from wearlaw_sweeps.tables import from_table
-from wearlaw_sweeps.wear_profile import SHARE, WEAR_PROFILE, ProfileJob, Sum, check_shares
+from wearlaw_sweeps.tables import operating_points
+from wearlaw_sweeps.wear_profile import SHARE, WEAR_PROFILE, ProfileJob, Sum
 from wearlaw_sweeps.workers import here, in_processes, on_cluster
 
 if TYPE_CHECKING:
@@ -151,7 +150,7 @@ def sweep(
         first = _checked_conditions(predict, points, not_given)
         check_importable(predict, workers, client)
         if profile:
-            job: Job = checked_profile(predict, first, body, at, summed)
+            job: Job = ProfileJob.of(predict, first, body, at, summed)
             notes: list[str] = []
         else:
             job, notes = _checked_job(predict, first, points, outputs)
@@ -186,33 +185,6 @@ def kept(count: int, of: int, where: Path) -> str:
     return f"{count} of {of} blocks are kept in {shown(where)}; the others are missing or damaged, and are computed"
 
 
-@contextmanager
-def operating_points(
-    predict: Pipeline[...],
-    table: Any,
-    conditions: Mapping[str, Any],
-    columns: Mapping[str, str] | None,
-    keep: Mapping[str, str] | None,
-    as_csv: Mapping[str, Any],
-    store: str | os.PathLike[str] | None,
-    summed: bool,
-) -> Iterator[Points]:
-    """Give the operating points of a sweep; if they are to be summed, the kept column `SHARE` has their shares."""
-    if table is None:
-        for name, value in {"columns": columns, "keep": keep}.items():
-            if value is not None:
-                raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
-        yield outer_product(conditions)
-        return
-    beside = Path(tempfile.gettempdir(), "sum") if summed and store is None else store  # a sum needs no memory
-    on_disk = None if beside is None else Path(beside)
-    check = predict.rig.check_names
-    with from_table(table, conditions, columns=columns, keep=keep, **as_csv, check=check, on_disk=on_disk) as points:
-        if summed and keep is not None:
-            check_shares(points, keep[SHARE])
-        yield points
-
-
 def _checked_job(
     pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str] | None
 ) -> tuple[Job, list[str]]:
@@ -220,38 +192,37 @@ def _checked_job(
 
     Raises
     ------
+    CompositionError
+        If no outputs are given and there is no law.
     InputError
-        If an output is impossible.
+        If there is no such output, or it is a condition.
     """
-    names = [] if outputs is None else names_in(outputs, "outputs")
-    one = first.flatten()[:1]
-    notes = []
+    one, laws, conditions = first.flatten()[:1], pipeline.laws, {*points.coordinates(), *points.fixed}
+    if one.geometry == "line":
+        check_traction(pipeline.contact_model, one)
+    prediction = unsolved(one, pipeline.staged_model, laws)
+    names, notes = [] if outputs is None else names_in(outputs, "outputs"), []
     if outputs is None:
-        known = unsolved(one, pipeline.staged_model, pipeline.laws)
-        names = default_variables(known, {*points.varying, *points.fixed}, bool(first.dims))
+        names = default_variables(prediction, conditions, bool(first.dims))
         size = len(names) * points.size * math.prod(map(len, first.dims.values()))
         if size > MOST:
             names = []
             notes = [f"the sweep is large and keeps only the outcomes of laws: all outputs are {size:.2g} numbers"]
-    units = output_units(pipeline, one, points, list(dict.fromkeys(names)) or None)
+    names = names or list(named_outcomes(laws))
+    if not names:
+        raise CompositionError(
+            f"the pipeline has no wear law; give one, as in rig | {pipeline.contact_model!r} | wl.wear_law('usfd'), or"
+            ' name what to keep, as in outputs=["tangential_force"]'
+        )
+    units = {}
+    for name in names:
+        if name in conditions:
+            raise InputError(f"outputs: {shown(name)} is among the coordinates of the results already")
+        try:
+            units[name] = unit_of(name, prediction[name], laws)
+        except CompositionError as error:
+            raise InputError(f"outputs: {error}") from None
     return Job(pipeline, units, first.dims), notes
-
-
-def checked_profile(
-    pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool
-) -> ProfileJob:
-    """Return the job of the wear across a profile, after a prediction of it at the first operating point.
-
-    Raises
-    ------
-    InputError
-        If the body or the positions are wrong.
-    """
-    if at is None:
-        raise InputError('at: "wear_profile" needs positions, such as at=Q(np.arange(-60, 60, 0.25), "mm")')
-    unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
-    positions = VARIABLES[POSITION].expected.si(at, "at")
-    return ProfileJob.of(pipeline, first, body, positions, summed)
 
 
 def check_importable(pipeline: Pipeline[...], workers: int, client: Any = None) -> None:

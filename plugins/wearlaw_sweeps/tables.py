@@ -1,10 +1,10 @@
-"""Operating points in the rows of a table: which columns are which conditions."""
+"""The operating points that a sweep is given, above all the rows of a table: which columns are which conditions."""
 
 from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO, Any, cast
@@ -12,11 +12,13 @@ from typing import IO, Any, cast
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.errors import ConditionsError, DataError, UnitError
+from wearlaw.errors import ConditionsError, DataError, InputError, UnitError
+from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import Q
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.located import advice
-from wearlaw_sweeps.points import OnDisk, Points, Varying, split
+from wearlaw_sweeps.points import OnDisk, Points, Varying, outer_product, split
+from wearlaw_sweeps.wear_profile import SHARE, check_shares
 from wearlaw_tables import Column, Table, open_table
 
 Columns = Mapping[str, str]
@@ -24,42 +26,37 @@ Columns = Mapping[str, str]
 
 
 @contextmanager
-def from_table(
+def operating_points(
+    predict: Pipeline[...],
     source: Any,
     conditions: Mapping[str, Any],
-    *,
-    columns: Columns | None = None,
-    keep: Columns | None = None,
-    sep: str | None = None,
-    decimal: str = ".",
-    check: Callable[[Mapping[str, Any]], None] = lambda _: None,
-    on_disk: Path | None = None,
+    columns: Columns | None,
+    keep: Columns | None,
+    as_csv: Mapping[str, Any],
+    store: str | os.PathLike[str] | None,
+    summed: bool,
 ) -> Iterator[Points]:
-    """Give the operating points in the rows of a table, with further conditions that all rows share.
+    """Give the operating points of a sweep: combinations of conditions, or rows of a table that share conditions.
 
-    Parameters
-    ----------
-    source : path, pandas.DataFrame or xarray.Dataset
-        As in `read_table`.
-    conditions : mapping of str to object
-        Conditions that are the same in all rows.
-    columns, keep, sep, decimal
-        As in `sweep`.
-    check : callable
-        Called with the names of all conditions before the rows are read; it raises an error for wrong ones.
-    on_disk : Path, optional
-        A path in whose folder the numbers of a file are kept while the context lasts. By default they are kept in
-        memory.
+    Arguments are those of `sweep`; `as_csv` has `sep` and `decimal`. If the points are to be summed, the kept column
+    `SHARE` has their shares. The numbers of a file that need not fit into memory, since there is a store or only a sum,
+    are kept in a temporary file while the context lasts.
 
     Raises
     ------
     DataError
         If this is not a table, or a column is wrong.
     """
+    if source is None:
+        for name, value in {"columns": columns, "keep": keep}.items():
+            if value is not None:
+                raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
+        yield outer_product(conditions)
+        return
     fixed, arrays = split(conditions)
     for name in arrays:
         raise DataError(f"{name}: beside a table it must be one value; add it to the table as a column")
-    table = open_table(source, sep=sep, decimal=decimal)
+    table = open_table(source, **as_csv)
     kept, given = _chosen(table, columns, keep)
     for name in given:
         if name in fixed or name in kept:
@@ -67,7 +64,7 @@ def from_table(
     if not given:
         raise DataError(f"{table.label}: none of its columns is a condition; name them in columns={{...}}")
     try:
-        check({**fixed, **given})
+        predict.rig.check_names({**fixed, **given})
     except ConditionsError as error:
         name = str(error).partition(": ")[0]
         if name not in given:
@@ -77,12 +74,14 @@ def from_table(
     origin = f" of {Path(source).name}" if file else ""
     every = [*kept.values(), *given.values()]
     with ExitStack() as stack:
-        collected = _read(table, every, kept, _files(on_disk, len(every), stack) if file else None)
+        beside = Path(tempfile.gettempdir()) if store is None else Path(store).parent
+        on_disk = file and (summed or store is not None)
+        collected = _read(table, every, kept, _files(beside, len(every), stack) if on_disk else None)
         found = {
             one.name: Varying(table.dim, values, one.unit, file * f"{'-' * (one.sign < 0)}{one.head}{origin}")
             for one, values in zip(every, collected, strict=True)
         }
-        yield Points(
+        points = Points(
             fixed,
             {name: found[name] for name in given},
             {dim: labels for dim, labels in table.labels.items() if dim == table.dim},
@@ -90,6 +89,9 @@ def from_table(
             file=table if file else Table(table.label),
             numbers=range(found[next(iter(given))].values.size),
         )
+        if summed and keep is not None:
+            check_shares(points, keep[SHARE])
+        yield points
 
 
 def _chosen(table: Table, columns: Columns | None, keep: Columns | None) -> tuple[dict[str, Column], dict[str, Column]]:
@@ -119,12 +121,10 @@ def _chosen(table: Table, columns: Columns | None, keep: Columns | None) -> tupl
     return kept, given
 
 
-def _files(beside: Path | None, count: int, stack: ExitStack) -> list[IO[bytes]] | None:
-    """Return files without a name, which end with the context; None to keep the numbers in memory."""
-    if beside is None:
-        return None
-    beside.parent.mkdir(parents=True, exist_ok=True)
-    return [cast(IO[bytes], stack.enter_context(tempfile.TemporaryFile(dir=beside.parent))) for _ in range(count)]
+def _files(folder: Path, count: int, stack: ExitStack) -> list[IO[bytes]]:
+    """Return files without a name, which end with the context."""
+    folder.mkdir(parents=True, exist_ok=True)
+    return [cast(IO[bytes], stack.enter_context(tempfile.TemporaryFile(dir=folder))) for _ in range(count)]
 
 
 def _read(

@@ -14,13 +14,14 @@ from pydantic import TypeAdapter
 
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, DataError, shown
+from wearlaw.errors import ConditionsError, DataError, InputError, shown
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.units.quantities import Q, coefficient
+from wearlaw.units.quantities import Q, QuantityLike, coefficient
+from wearlaw.units.variables import VARIABLES
 from wearlaw_output.notes import caught_warnings
 from wearlaw_output.wear_profile import PATCH, POSITION
-from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
+from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs, unsolved
 from wearlaw_sweeps.points import Block, Points
 from wearlaw_sweeps.provenance import digest, provenance_of
 from wearlaw_sweeps.results import COMPLETE, Target, attributes, labels_of
@@ -66,17 +67,34 @@ class ProfileJob(Job):
     summed: bool
 
     @classmethod
-    def of(cls, pipeline: Pipeline[...], problem: Problem, body: str, at: Array, summed: bool) -> ProfileJob:
-        """Return the job of a pipeline whose rig poses such problems."""
+    def of(
+        cls, pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool
+    ) -> ProfileJob:
+        """Return the job of a pipeline, after a prediction at the first operating point.
+
+        Raises
+        ------
+        InputError
+            If the body or the positions are wrong.
+        """
+        if at is None:
+            raise InputError('at: "wear_profile" needs positions, such as at=Q(np.arange(-60, 60, 0.25), "mm")')
+        unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
         turns = bool(np.isfinite(pipeline.rig.bodies[body].rolling_radius).any())
         units = {name: unit for name, unit in UNITS[0 if turns else 1].items() if summed or name != "mass"}
-        return cls(pipeline, units, problem.dims, body=body, at=at, summed=summed)
+        positions = VARIABLES[POSITION].expected.si(at, "at")
+        return cls(pipeline, units, first.dims, body=body, at=positions, summed=summed)
 
     @property
     def labels(self) -> Mapping[str, Sequence[str | int | float]]:
         """The axes of the outputs: those of the rig but for patches, and the positions [mm]."""
         own = {name: labels for name, labels in self.dims.items() if name != PATCH}
         return {**own, POSITION: tuple((1e3 * self.at).tolist())}
+
+    @property
+    def _patches(self) -> int:
+        """The axis of the patches, from the end."""
+        return list(self.dims).index(PATCH) - len(self.dims)
 
     @property
     def settings(self) -> dict[str, str]:
@@ -97,7 +115,7 @@ class ProfileJob(Job):
         problem = super().posed(conditions)
         if not self.summed:
             return problem
-        if problem.exists is not None and PATCH in problem.dims and not _any(problem).all():
+        if problem.exists is not None and PATCH in problem.dims and not problem.exists.any(self._patches).all():
             wrong = "no normal forces balance this state, as where friction holds a flange"
         elif np.any(getattr(problem, "climbs", False)):
             wrong = "the wheel climbs its rail, beyond the steepest place of its flange; its wear is none of service"
@@ -109,7 +127,7 @@ class ProfileJob(Job):
 
     def outputs(self, prediction: Prediction, part: Points) -> Outputs:
         """Return the depth and the sliding distance, (points, *sides, positions), or the sums of these and the mass."""
-        with caught_warnings():  # `checked_profile` has given those of the law and the body
+        with caught_warnings():  # `of` has given those of the law and the body
             across = prediction.wear_profile(self.body, at=Q(1e3 * self.at, "mm"))
         found = {
             name: Q(across[name].values, across[name].attrs["units"]).m_as(unit)
@@ -120,18 +138,13 @@ class ProfileJob(Job):
             return found
         mass = prediction.mass_lost("1 km" if "km" in self.units["mass"] else "1 m", self.body).m_as("mg")
         if PATCH in self.dims:
-            mass = np.nansum(mass, axis=list(self.dims).index(PATCH) - len(self.dims))
+            mass = np.nansum(mass, axis=self._patches)
         share = part.kept[SHARE]
         shares = coefficient(share.given(share.values), SHARE, positive=False)
         return {
             name: np.asarray(np.tensordot(shares, one, axes=1), np.float64)
             for name, one in {**found, "mass": mass}.items()
         }
-
-
-def _any(problem: Problem) -> Any:
-    """Return whether any patch exists along the axis of patches."""
-    return np.asarray(problem.exists).any(axis=list(problem.dims).index(PATCH) - len(problem.dims))
 
 
 class Sum(Target):
@@ -188,8 +201,8 @@ class Sum(Target):
             name: (tuple(coordinates)[: values.ndim], values, self.job.attributes(name))
             for name, values in self._totals.items()
         }
-        found = xarray.Dataset(data, coordinates)
-        found = found.assign_attrs(attributes(COMPLETE, provenance_of(self.job, self.points), notes))
+        attrs = attributes(COMPLETE, provenance_of(self.job, self.points), notes)
+        found = xarray.Dataset(data, coordinates, attrs)
         if self._parts is not None:
             self._parts.finish(found)
         return found

@@ -90,16 +90,8 @@ def in_processes(workers: int, job: bytes, store: str | None, points: Points, bl
     waiting, deaths = deque(blocks), 0
     while waiting:
         pool = loky.get_reusable_executor(workers, timeout=IDLE_S, initializer=_leave_ctrl_c_to_the_parent)
-        pending: dict[Future[tuple[Outputs, BlockRecord]], Block] = {}
         try:
-            while waiting or pending:
-                while waiting and len(pending) < AHEAD * workers:
-                    part = points.part(waiting[0].slices)
-                    future = pool.submit(_evaluated_elsewhere, job, waiting[0], part, store)
-                    pending[future] = waiting.popleft()
-                for future in wait(pending, return_when=FIRST_COMPLETED).done:
-                    outputs, record = future.result()
-                    yield pending.pop(future), outputs, record
+            yield from _in_pool(pool, lambda: workers, job, store, points, waiting)
         except BrokenProcessPool:
             deaths += 1
             if deaths == DEATHS:
@@ -108,7 +100,6 @@ def in_processes(workers: int, job: bytes, store: str | None, points: Points, bl
                     " there is?"
                 ) from None
             warnings.warn("a worker process died; its blocks are evaluated again", WorkerWarning, stacklevel=4)
-            waiting.extendleft(reversed(pending.values()))
         except BaseException:  # nobody waits for the blocks in work
             pool.shutdown(kill_workers=True)
             raise
@@ -121,34 +112,36 @@ def _leave_ctrl_c_to_the_parent() -> None:
 def on_cluster(client: Any, job: bytes, store: str | None, points: Points, blocks: Iterable[Block]) -> Evaluated:
     """Evaluate blocks on a cluster of dask.distributed.
 
-    A task of the cluster is a block with the values along its dimensions; the worker expands them to operating points.
     If a worker dies, the cluster tries its block again, as often as the setting
     `distributed.scheduler.allowed-failures` allows.
     """
-    distributed = sys.modules["distributed"]  # the client comes from there
-    left = iter(blocks)
-    pending: dict[Any, Block] = {}
-    waiting: Any = distributed.as_completed([])
-
-    def hand_out() -> None:
-        threads = max(1, sum(client.nthreads().values()))
-        while len(pending) < AHEAD * threads and (block := next(left, None)) is not None:
-            part = points.part(block.slices)
-            future = client.submit(_evaluated_elsewhere, job, block, part, store, pure=False)
-            pending[future] = block
-            waiting.add(future)
-
-    hand_out()
+    killed = sys.modules["distributed"].KilledWorker  # the client comes from there
+    pool = client.get_executor(pure=False)
     try:
-        for future in waiting:
-            block = pending.pop(future)
-            try:
-                outputs, record = future.result()
-            except distributed.KilledWorker as error:
-                raise SweepError(
-                    f"block {block.number} was given up by the cluster, since its workers died: {error}"
-                ) from None
-            hand_out()
-            yield block, outputs, record
+        yield from _in_pool(pool, lambda: sum(client.nthreads().values()), job, store, points, deque(blocks))
+    except killed as error:
+        raise SweepError(f"a block was given up by the cluster, since its workers died: {error}") from None
     finally:
-        client.cancel(list(pending))
+        pool.shutdown(wait=False)  # nobody waits for the blocks in work
+
+
+def _in_pool(
+    pool: Any, workers: Callable[[], int], job: bytes, store: str | None, points: Points, waiting: deque[Block]
+) -> Evaluated:
+    """Evaluate blocks in the workers of an executor; if it fails, those that are not finished wait again.
+
+    A task is a block with the values along its dimensions; the worker expands them to operating points.
+    """
+    pending: dict[Future[tuple[Outputs, BlockRecord]], Block] = {}
+    try:
+        while waiting or pending:
+            ahead = AHEAD * max(1, workers())
+            while waiting and len(pending) < ahead:
+                part = points.part(waiting[0].slices)
+                future = pool.submit(_evaluated_elsewhere, job, waiting[0], part, store)
+                pending[future] = waiting.popleft()
+            for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                outputs, record = future.result()
+                yield pending.pop(future), outputs, record
+    finally:
+        waiting.extendleft(reversed(pending.values()))

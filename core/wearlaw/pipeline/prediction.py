@@ -182,10 +182,9 @@ class Prediction:
                 return value
         if any(name == law.outcome.name for law in self.laws):
             return self.outcome(name)
-        known = [*outcome_units(self.laws), *default_variables(self)]
+        known = dict.fromkeys([*outcome_units(self.laws), *default_variables(self)])
         raise CompositionError(
-            f"there is no variable {shown(name)} here{did_you_mean(name, known)} There are:"
-            f" {', '.join(dict.fromkeys(known))}"
+            f"there is no variable {shown(name)} here{did_you_mean(name, known)} There are: {', '.join(known)}"
         )
 
     def __iter__(self) -> Iterator[Prediction]:

@@ -106,6 +106,11 @@ def with_magnitude(quantity: Any, magnitude: Any) -> Any:
     return quantity_class(quantity._REGISTRY).of(magnitude, quantity._units)
 
 
+def magnitude(quantity: pint.Quantity[Any], unit: str) -> Any:
+    """Return the number of a quantity in a unit, whose text is parsed once and not at each use."""
+    return quantity.m_as(parse_unit(quantity._REGISTRY, unit))
+
+
 def from_si(value: Any, unit: str) -> pint.Quantity[Any]:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
     cls, container, factor = _shown_in(application_registry(), unit)

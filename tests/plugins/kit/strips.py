@@ -131,34 +131,3 @@ def on_strips(model: Any) -> Any:
 
 StripsOnStrips: Any = on_strips(Strips)
 """The right model on given strips alone."""
-
-
-class Means(wl.CreepForceModel):
-    """Shen, Hedrick and Elkins's forces: those of linear theory times one factor, so that they reach μN and no more."""
-
-    name: ClassVar[str] = "means"
-    source: ClassVar[str] = "Z. Y. Shen, J. K. Hedrick, J. A. Elkins, Vehicle System Dynamics 12 (1983) 79-83"
-
-    @property
-    def exemptions(self) -> Any:
-        return {"stick": "one node slips as a whole"}
-
-    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
-        known = wl.kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
-        ab, lateral, spin = problem.a * problem.b, problem.lateral_creepage, problem.spin
-        along, across, turning = (
-            problem.shear_modulus * ab * linear
-            for linear in (
-                known.c11 * problem.longitudinal_creepage,
-                known.c22 * lateral + np.sqrt(ab) * known.c23 * spin,
-                ab * known.c33 * spin - np.sqrt(ab) * known.c23 * lateral,
-            )
-        )
-        reduced = np.hypot(along, across) / (problem.friction_coefficient * problem.normal_force)
-        left = np.minimum(reduced, 3.0) / 3.0
-        factor = self.factor(problem, reduced) * (1.0 - left + left**2 / 3.0) * 3.0 / np.maximum(reduced, 3.0)
-        return wl.CreepForces(longitudinal=factor * along, lateral=factor * across, spin_moment=factor * turning)
-
-    def factor(self, problem: wl.Problem, reduced: Any) -> Any:
-        """Return the factor of the forces; `reduced` is the force of linear theory over μN."""
-        return np.ones_like(reduced)

@@ -35,13 +35,6 @@ def test_no_point_of_a_drawn_ellipse_slips_more_than_it_rolls() -> None:
     assert {*np.sign(problem.spin)} == {-1.0, 0.0, 1.0}
 
 
-def test_drawn_lines_are_of_hertz() -> None:
-    problem = random_lines(48)
-    # p0 = E* a/(2R) ties the parts of a problem together (Johnson, Contact Mechanics, section 4.2)
-    expected = problem.effective_modulus * problem.half_width / (2.0 * problem.relative_radius)
-    np.testing.assert_allclose(problem.max_pressure, expected, rtol=1e-14)
-
-
 @settings(max_examples=10)
 @given(contact=..., problem=..., ellipse=elliptic_problems())
 def test_typed_arguments_are_drawn_by_hypothesis(contact: Contact, problem: Problem, ellipse: Problem) -> None:

@@ -13,8 +13,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.kit.cells import Cells
 from tests.plugins.kit.strips import Strips
-from tests.plugins.kit.wrong_contacts import Wrapped, changed
-from tests.plugins.kit.wrong_laws import OF_RATE, Linear, NoReason, UnknownClaim
+from tests.plugins.kit.wrong_laws import OF_RATE, Linear
 from tests.plugins.kit.wrong_rigs import Weight
 from tests.plugins.kit.wrong_stages import Lubricated
 from wearlaw_kit import checks, conformance
@@ -63,13 +62,6 @@ def test_what_pytest_shows_of_expected_failures_exemptions_and_counter_examples(
 def test_an_expected_failure_is_a_check_and_has_a_reason(reason: dict[str, str]) -> None:
     with pytest.raises(wl.InputError, match="no_slip_no_wear"):
         conformance(wl.wear_law("usfd"), expected_failures=reason)
-
-
-@pytest.mark.parametrize("model", [UnknownClaim(), NoReason()], ids=lambda model: type(model).__name__)
-def test_an_exemption_names_a_claim_and_has_a_reason(model: Any) -> None:
-    check = {check.name: check for check in checks(model)}["exemptions_are_claims"]
-    with pytest.raises(AssertionError, match="each_node_wears_by_itself"):
-        check()
 
 
 def exempt(base: Any, claim: str) -> Any:
@@ -139,28 +131,3 @@ def test_a_failure_names_the_shape_and_the_first_example_that_fails_alone() -> N
     with pytest.raises(AssertionError, match=r"^on an ellipse: the model raised ZeroDivisionError") as failure:
         finite()
     assert "example=Problem(geometry='ellipse'" in "\n".join(failure.value.__notes__)
-
-
-def shaped_by_creepage(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
-    """Give the force an axis too many at small creepages."""
-    if problem.creepage.max() > 1e-4:
-        return contact
-    return contact.replaced(tangential_force=contact.tangential_force[..., None])
-
-
-def test_after_a_wrong_shape_no_other_check_is_run_which_might_fill_the_memory() -> None:
-    failures, model = {}, changed(Wrapped, shaped_by_creepage)()
-    for check in checks(model):
-        try:
-            check()
-        except AssertionError as error:
-            failures[check.name] = str(error)
-    assert {*failures, "exemptions_are_claims"} == {check.name for check in checks(model)}
-    assert len({*failures.values()}) == 1
-
-
-def test_a_model_that_raises_has_no_wrong_shape() -> None:
-    found = {check.name: check for check in checks(OF_RATE["Raises"]())}
-    with pytest.raises(AssertionError, match="the model raised ZeroDivisionError: no slip"):
-        found["no_slip_no_wear"]()
-    found["declared_names_are_variables"]()

@@ -123,10 +123,6 @@ WRONG_RATES: dict[str, tuple[str, Rate]] = {
     "PointDiffers": ("batching_does_not_matter", lambda c: c.wear_index_density * (1 + 1e-9 * (c.pressure.size == 1))),
     "NodeOrder": ("listing_of_nodes_does_not_matter", lambda c: np.cumsum(c.wear_index_density, axis=-1)),
     "CountsNodes": ("listing_of_nodes_does_not_matter", lambda c: c.wear_index_density / c.area.shape[-1]),
-    "PlainMean": (
-        "listing_of_nodes_does_not_matter",
-        lambda c: np.broadcast_to(c.wear_index_density.mean(axis=-1, keepdims=True), c.slip.shape),
-    ),
     "NeighbourLeak": ("each_node_wears_by_itself", of_neighbours),
     "NaNAtCorner": ("rate_is_finite", nan_at_corner),
     "SinglePrecision": ("precision_is_double", lambda c: c.wear_index_density.astype(np.float32).astype(np.float64)),

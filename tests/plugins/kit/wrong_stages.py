@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -169,27 +169,6 @@ class SingleDamage(Damage):
         return super().rate(contact, p).astype(np.float32).astype(np.float64)
 
 
-class Conducting(wl.Material):
-    """A material with a conductivity."""
-
-    conductivity: Annotated[wl.Quantity, wl.Unit("W/m/K")]
-    """Thermal conductivity [W/m/K]."""
-
-
-class Flash(wl.Law):
-    """A temperature of the patch from the frictional power and the material."""
-
-    name: ClassVar[str] = "flash"
-    source: ClassVar[str] = "test"
-    outcome = wl.Outcome("temperature_rise", unit="K", of="patch")
-    example_material: ClassVar[wl.Material | None] = Conducting(**dict(wl.steel()), conductivity=wl.parse("50 W/m/K"))
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        material: Any = contact.body(self.body).material
-        power = contact.wear_index * contact.rolling_speed / contact.patch_area
-        return power * contact.half_width / wl.scalar_si(material.conductivity, "W/m/K")
-
-
 class Power(wl.Law):
     """Frictional power over area."""
 
@@ -213,48 +192,6 @@ class RunningIn(wl.WearLaw):
         return 1e-9 * (1.0 + share) * contact.wear_index_density
 
 
-class Switch(wl.WearLaw):
-    """Wear that starts at a frictional power density."""
-
-    name: ClassVar[str] = "switch"
-    source: ClassVar[str] = "test"
-    border: Annotated[wl.Quantity, wl.Unit("W/mm^2")] = Field(default="5 W/mm^2", validate_default=True)
-    """Power at which wear starts [W/m²]."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        above = contact.frictional_power_density >= p["border"]
-        return np.where(above, 1e-9 * contact.wear_index_density, 0.0)
-
-    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
-        return {"frictional_power_density": (p["border"],)}
-
-    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
-        return self.breakpoints(p)
-
-
-class PvLimit(wl.WearLaw):
-    """Wear in proportion to q·s, ten times as much above a limit of pressure times slip speed."""
-
-    name: ClassVar[str] = "pv_limit"
-    source: ClassVar[str] = "test"
-
-    limit: Annotated[wl.Quantity, wl.Unit("W/mm^2")] = wl.Q(12.0, "W/mm^2")
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        severe = contact.pressure * contact.slip_speed >= p["limit"]
-        return 5e-9 * np.where(severe, 10.0, 1.0) * contact.wear_index_density
-
-    @property
-    def own_variables(self) -> Mapping[str, Callable[[wl.Contact], Array]]:
-        return {"pv": lambda contact: contact.pressure * contact.slip_speed}
-
-    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
-        return {"pv": (p["limit"],)}
-
-    def jumps(self, p: wl.Numbers) -> wl.BreakpointMap:
-        return self.breakpoints(p)
-
-
 class Behind(wl.WearLaw):
     """Twice the wear far behind the leading edge; a right one."""
 
@@ -271,9 +208,7 @@ class Behind(wl.WearLaw):
         return 5e-9 * contact.wear_index_density * np.where(contact.x < 1e-3, 1.0, 2.0)
 
 
-RIGHT: list[Any] = [
-    *(Lubricated(), wl.patch_mean(), Damage(), AreaMean(), Flash(), Power(), RunningIn(), Switch(), PvLimit(), Behind())
-]
+RIGHT: list[Any] = [*(Lubricated(), wl.patch_mean(), Damage(), AreaMean(), Power(), RunningIn(), Behind())]
 """Stages and laws that pass."""
 
 CAUGHT: dict[Any, str] = {

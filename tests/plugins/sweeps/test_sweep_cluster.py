@@ -46,18 +46,15 @@ def test_a_cluster_can_also_hand_results_back(client: Any) -> None:
     xr.testing.assert_identical(swept, wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
 
 
-@pytest.mark.parametrize("error", ["SystemExit"])
-def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers_live_on(
-    client: Any, error: str
-) -> None:
+def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers_live_on(client: Any) -> None:
     client.wait_for_workers(2)  # one may have died before
     before = set(client.nthreads())
-    with pytest.raises(wl.ModelError, match=f"{error}: 0"):
-        wl.sweep(ending(error), **CONDITIONS, client=client)
+    with pytest.raises(wl.ModelError, match="SystemExit: 0"):
+        wl.sweep(ending(), **CONDITIONS, client=client)
     assert set(client.nthreads()) == before
 
 
 def test_a_block_at_which_every_worker_of_the_cluster_dies_is_given_up(client: Any, tmp_path: Path) -> None:
     client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
-    with pytest.raises(wl.SweepError, match=r"block \d was given up by the cluster, since its workers died"):
+    with pytest.raises(wl.SweepError, match="given up by the cluster, since its workers died"):
         wl.sweep(deadly(tmp_path / "marker", always=True), **CONDITIONS, client=client)
