@@ -13,8 +13,7 @@ import pytest
 import wearlaw as wl
 from tests.cases import files, wearlaw
 from tests.core.distributions import Install
-from tests.core.test_stages import PLUGIN
-from tests.plugins.fits.cli_data import CREEPAGE, FIT, HEAD, listed, rates, rows, write_tests
+from tests.plugins.fits.cli_data import CREEPAGE, FIT, HEAD, PLUGIN, listed, rates, rows, write_tests
 from wearlaw import Q
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")

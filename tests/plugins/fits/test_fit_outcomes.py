@@ -13,7 +13,7 @@ from scipy import stats
 import wearlaw as wl
 from tests.core.distributions import Install
 from tests.core.outcome_laws import CONDITIONS, MIXED, Damage, Heat, Volume
-from tests.core.test_stages import PLUGIN
+from tests.plugins.fits.cli_data import PLUGIN
 from tests.plugins.fits.fits import EXACT, refused, sloping
 from wearlaw import Q
 
