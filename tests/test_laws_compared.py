@@ -1,4 +1,4 @@
-"""The laws side by side: curves against the formulas of the papers, and each number in the words about them."""
+"""The laws side by side: curves against the formulas of the papers, and the table of them."""
 
 from __future__ import annotations
 
@@ -46,11 +46,6 @@ def due(case: Case, label: str, w: Array) -> Array:
     return 1e9 * 7850.0 * math.pi * 1e-12 * section / index
 
 
-def at(case: Case, density: float) -> dict[str, float]:
-    """Return the mass per energy [µg/J] by law and set at one Tγ/A [N/mm²]."""
-    return {one.label: float(one.rate[0]) for one in curves(case, np.array([density]))}
-
-
 @pytest.fixture(scope="module")
 def drawn() -> dict[Case, dict[str, Curve]]:
     """Return the curves of the picture by their labels."""
@@ -71,27 +66,3 @@ def test_the_table_is_what_is_computed() -> None:
     assert committed == laws_compared.table(), "renew it with: python -m docs.laws_compared"
     rows = list(csv.DictReader(committed.splitlines()))
     assert next(row for row in rows if row["law and set"] == "usfd, global")["wheel on rail, 5 N/mm²"] == "(5.3)"
-
-
-def test_the_words_have_the_numbers_of_the_curves() -> None:
-    mild, severe = at(DISCS, 10.0), at(DISCS, 70.0)
-    border, tested = ({case: case.friction * pressure(case) * limit for case in CASES} for limit in (0.2, 0.197))
-    size = {case: 1e-6 * 100.0 / AREA[case] for case in CASES}
-    said = [
-        f"USFD wears {mild['usfd, global']:.3g} µg/J, BRR {mild['brr']:.3g} µg/J, and KTH {mild['kth, mid']:.3g} µg/J",
-        f"from {mild['kth, low']:.3g} to {mild['kth, high']:.3g} µg/J",
-        f"At 70 N/mm² on discs USFD wears {severe['usfd, global']:.3g} µg/J, KTH {severe['kth, mid']:.3g} µg/J and BRR"
-        f" {severe['brr']:.3g} µg/J, {severe['brr'] / severe['usfd, global']:.0f} times as much",
-        f"KTH jumps by a factor of {at(DISCS, 109.0)['kth, mid'] / at(DISCS, 108.0)['kth, mid']:.2g} at a slip speed",
-        f"That is {border[DISCS]:.3g} N/mm² on discs, but {border[VEHICLE] / 20.0:.3g} N/mm² under the wheel",
-        f"at {size[DISCS]:.3g} N/mm² on discs and at {size[VEHICLE]:.3g} N/mm² under the wheel",
-        f"a slip of {100.0 * 0.197 / 20.0:.3g} %, and {tested[VEHICLE] / 20.0:.3g} N/mm² under the wheel",
-        f"of the {tested[DISCS]:.3g} N/mm² on discs",
-        f"mean pressure p | {pressure(DISCS):.0f} MPa, of 1500 MPa at most | {pressure(VEHICLE):.0f} MPa, under 80 kN",
-        f"area A | {1e6 * AREA[DISCS]:.3g} mm² | {1e6 * AREA[VEHICLE]:.3g} mm²",
-    ]
-    for words in said:
-        assert words in PAGE, words
-    values = [mild["usfd, global"], mild["brr"], mild["kth, mid"]]
-    assert max(values) < 2.0 * min(values)
-    assert tested[DISCS] / (tested[VEHICLE] / 20.0) == pytest.approx(40.0, abs=2.0)  # "a fortieth"

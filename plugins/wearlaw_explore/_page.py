@@ -62,8 +62,7 @@ def patch_figures(predictions: Mapping[str, wl.Prediction]) -> list[wl.FigureDat
         if prediction.problem.geometry == "line":
             panel = wl.Panel(along, wl.PlotAxis(label(name)), (wl.Curve(law, found["x"].values, found[of].values),))
         else:
-            x, y, cell = raster(prediction)
-            drawn = Map("", x, y, np.where(cell < 0, np.nan, found[of].values.ravel()[cell]))
+            drawn = Map("", *raster(prediction, found[of].values))
             panel = wl.Panel(along, wl.PlotAxis("y [mm]"), (), equal=True, map=drawn)
         title = f"{label(name)} by {law}" if name == "wear_rate" else label(name)
         figures.append(wl.FigureData(name, title, (panel,)))

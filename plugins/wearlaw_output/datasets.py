@@ -14,7 +14,7 @@ from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import InputError, shown
 from wearlaw.extras import needed_for
 from wearlaw.models.contact_model import LineContactModel
-from wearlaw.models.law import named_outcomes
+from wearlaw.models.law import Law, named_outcomes
 from wearlaw.numerics.solving import Solver
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.selection import axis_names
@@ -97,19 +97,20 @@ def to_dataframe(prediction: Prediction, solution: Solution, names: Sequence[str
 
 def profile(solution: Solution) -> xarray.Dataset:
     """Return the fields and the outcomes of laws along the patches of lines; see `Prediction.profile`."""
-    problem, contact = solution.problem, _cells(solution)
-    columns = {
-        name: (getattr(contact, name), UNITS[name]) for name in ("x", "pressure", "traction", "traction_bound", "slip")
-    }
-    for name, index in named_outcomes(solution.laws).items():
-        law = solution.laws[index]
-        if law.outcome.of == "area mean":
-            columns[name] = law.checked_rate(contact), law.outcome.unit
+    problem = solution.problem
+    columns = fields(_cells(solution), solution.laws, ("x", "pressure", "traction", "traction_bound", "slip"))
     if problem.exists is not None:
         columns = {name: (problem.unflatten(values), unit) for name, (values, unit) in columns.items()}
     batch = axis_names(problem)
     data = data_of([*batch, "cell"] if batch else ["x"], columns)
     return labelled(problem, {"x": data.pop("x")}, data)
+
+
+def fields(contact: Contact, laws: Sequence[Law], names: Iterable[str]) -> dict[str, tuple[Array, str]]:
+    """Return fields of a contact, and the outcomes that laws have at each of its cells, with their units."""
+    local = {name: laws[index] for name, index in named_outcomes(laws).items() if laws[index].outcome.of == "area mean"}
+    rates = {name: (law.checked_rate(contact), law.outcome.unit) for name, law in local.items()}
+    return {name: (getattr(contact, name), UNITS[name]) for name in names} | rates
 
 
 def _cells(solution: Solution) -> Contact:

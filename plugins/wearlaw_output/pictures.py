@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import pyplot
-from matplotlib.collections import PolyCollection
-from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
@@ -22,10 +20,10 @@ from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
-from wearlaw.units.variables import UNITS, name_of
+from wearlaw.units.variables import name_of
 from wearlaw_output.conditions import Conditions
 from wearlaw_output.curves import OUTSIDE, Curve
-from wearlaw_output.datasets import data_of, dataset, labelled
+from wearlaw_output.datasets import data_of, dataset, fields, labelled
 from wearlaw_output.drawing import PALE, THIN, plot_curve
 from wearlaw_output.labels import in_words, label, readable
 
@@ -48,8 +46,8 @@ ALONG = ("pressure", "traction", "traction_bound")
 FIELDS = ("traction", "pressure", "slip")
 """Fields of a patch that is not a line; the first is shown if none is named."""
 
-SIDE = 9
-"""Corners along each side of a cell."""
+PIXELS = (401, 301)
+"""Points along and across a patch that is not a line."""
 
 
 def draw(prediction: Prediction, solution: Solution, name: str | None, x: str | None, ax: Axes | None) -> Axes:
@@ -177,8 +175,8 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
             ' such as wl.contact_model("exact") for discs and wl.contact_model("strip_theory") for wheels'
         )
     line = prediction.problem.geometry == "line"
-    fields = fields_of(prediction)
-    every = [str(one) for one in fields.data_vars]
+    found = fields_of(prediction)
+    every = [str(one) for one in found.data_vars]
     if name is not None and name not in every:
         raise InputError(
             f"plot: there is one operating point, and {shown(name)} is no field of its patch"
@@ -187,19 +185,16 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
     if not line:
         variable = name or FIELDS[0]
         axes: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
-        look: dict[str, Any] = {"edgecolors": "face", "linewidths": 0.3}  # no seams between cells
-        drawn_cells = PolyCollection([*cells(prediction)], array=fields[variable].values.ravel(), **look)
-        axes.add_collection(drawn_cells)
-        axes.figure.colorbar(drawn_cells, ax=axes, shrink=0.8, label=_label(fields[variable]))
-        axes.autoscale_view()
-        axes.set(xlabel=_label(fields["x"]), ylabel=_label(fields["y"]), aspect="equal")
+        mesh = axes.pcolormesh(*raster(prediction, found[variable].values, *PIXELS), rasterized=True)
+        axes.figure.colorbar(mesh, ax=axes, shrink=0.8, label=_label(found[variable]))
+        axes.set(xlabel=_label(found["x"]), ylabel=_label(found["y"]), aspect="equal")
         return axes
     names = list(ALONG) if name is None else [name]
-    table = fields.to_dataframe().reset_index()
+    table = found.to_dataframe().reset_index()
     style = ["--" if one == "traction_bound" else "-" for one in names]
     labels = [name_of(one) for one in names]
     drawn: Axes = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
-    drawn.set(xlabel=_label(fields["x"]), ylabel=_label(fields[names[0]]) if name else label("pressure", "traction"))
+    drawn.set(xlabel=_label(found["x"]), ylabel=_label(found[names[0]]) if name else label("pressure", "traction"))
     return drawn
 
 
@@ -211,38 +206,16 @@ def fields_of(prediction: Prediction) -> xarray.Dataset:
     if prediction.problem.geometry == "line":
         return prediction.profile
     contact = prediction.contact
-    columns = {name: (getattr(contact, name), UNITS[name]) for name in ("x", "y", *FIELDS)}
-    for name, index in named_outcomes(prediction.laws).items():
-        law = prediction.laws[index]
-        if law.outcome.of == "area mean":
-            columns[name] = law.checked_rate(contact), law.outcome.unit
-    shape = contact.pressure.shape
+    columns, shape = fields(contact, prediction.laws, ("x", "y", *FIELDS)), contact.pressure.shape
     shaped = {name: (np.broadcast_to(one, shape).reshape(shape[-2:]), unit) for name, (one, unit) in columns.items()}
     data = data_of(("node", "strip"), shaped)
     return labelled(prediction.problem.replaced(dims={}), {name: data.pop(name) for name in ("x", "y")}, data)
 
 
-def cells(prediction: Prediction) -> Array:
-    """Return the outlines of the cells of a patch [mm], of shape (cells, corners, 2), which fill it up to its edge.
+def raster(prediction: Prediction, field: Array, columns: int = 81, rows: int = 51) -> tuple[Array, Array, Array]:
+    """Return x and y of a grid over a patch [mm], and a field at its points: that of the nearest node, NaN outside.
 
-    Their sides are bent like the edge: that of an ellipse, or else a smooth one through the ends of the strips.
-    """
-    nodes, length, strips, width = _strips(prediction)
-    left, right = _ends(nodes, length)
-    low, high = _ends(strips, width)
-    bend = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, SIDE))[:, None]
-    y = low + (high - low) * bend
-    stretch = _edge(prediction, y) / np.maximum(0.5 * length.sum(axis=0), np.finfo(float).tiny)
-    y, stretch = y[:, None], stretch[:, None]  # (places along a side, nodes, strips)
-    sides = [np.stack(np.broadcast_arrays(end * stretch, y), axis=-1) for end in (left, right)]
-    outlines = np.concatenate([sides[0], sides[1][::-1]])
-    return 1e3 * np.moveaxis(outlines, 0, -2).reshape(-1, len(outlines), 2)
-
-
-def raster(prediction: Prediction, columns: int = 81, rows: int = 51) -> tuple[Array, Array, NDArray[np.intp]]:
-    """Return x and y of a grid over a patch [mm], and the index of the cell at each of its points, -1 outside.
-
-    The cells are those of `cells`, whose sides lie here halfway between nodes.
+    The edge is that of an ellipse, or else a smooth one through the ends of the strips.
     """
     nodes, length, strips, width = _strips(prediction)
     low, high = _ends(strips, width)
@@ -252,7 +225,7 @@ def raster(prediction: Prediction, columns: int = 81, rows: int = 51) -> tuple[A
     strip = np.abs(y[:, None] - strips).argmin(axis=1)
     stretch = edge / np.maximum(0.5 * length.sum(axis=0)[strip], np.finfo(float).tiny)
     node = np.abs(x[:, None] - stretch[:, None, None] * nodes.T[strip, None]).argmin(axis=-1)
-    return 1e3 * x, 1e3 * y, np.where(np.abs(x) <= edge[:, None], node * strips.size + strip[:, None], -1)
+    return 1e3 * x, 1e3 * y, np.where(np.abs(x) <= edge[:, None], field[node, strip[:, None]], np.nan)
 
 
 def _strips(prediction: Prediction) -> tuple[Array, Array, Array, Array]:
@@ -279,16 +252,14 @@ def _edge(prediction: Prediction, y: Array) -> Array:
     return half_length
 
 
-def _ends(middle: Array, size: Array) -> tuple[Array, Array]:
-    """Return the ends of cells that lie side by side along the first axis, each about its node."""
-    order = np.argsort(middle, axis=0)
-    sizes, nodes = np.take_along_axis(size, order, axis=0), np.take_along_axis(middle, order, axis=0)
-    ends = np.cumsum(sizes, axis=0)
-    whole = np.maximum(ends[-1], np.finfo(float).tiny)
-    ends = ends + ((nodes - (ends - 0.5 * sizes)) * sizes).sum(axis=0) / whole
-    back = np.argsort(order, axis=0)
-    after = np.take_along_axis(ends, back, axis=0)
-    return after - size, after
+def _ends(strips: Array, width: Array) -> tuple[Array, Array]:
+    """Return the ends of strips that lie side by side, each about its middle."""
+    order = np.argsort(strips)
+    sizes = width[order]
+    ends = np.cumsum(sizes)
+    ends += ((strips[order] - (ends - 0.5 * sizes)) * sizes).sum() / ends[-1]
+    after = ends[np.argsort(order)]
+    return after - width, after
 
 
 def _look(ax: Axes | None) -> dict[str, Any]:

@@ -20,11 +20,9 @@ from packaging.specifiers import InvalidSpecifier, SpecifierSet
 from pydantic import (
     AfterValidator,
     Field,
-    SerializerFunctionWrapHandler,
     TypeAdapter,
     ValidationInfo,
     field_validator,
-    model_serializer,
     model_validator,
 )
 
@@ -99,10 +97,6 @@ def _unmet(name: str, versions: str) -> str:
 def _section(name: str) -> str:
     loader.installed().find("section", name)
     return name
-
-
-LISTS = ("stages", "laws", "wear_laws")
-"""The lists of models that may be empty; a case that is written down leaves empty ones out."""
 
 
 class Case(Configuration):
@@ -230,17 +224,10 @@ class Case(Configuration):
         of_laws = {f"{name}{end}": outcome.unit for name, outcome in self.outcomes.items() for end in endings}
         return {**UNITS, **of_laws, **self.units}
 
-    @model_serializer(mode="wrap")
-    def _without_empty_lists(self, serialize: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        fields: dict[str, Any] = serialize(self)
-        return {name: value for name, value in fields.items() if value or name not in LISTS}
-
     @model_validator(mode="after")
     def _consistent(self) -> Case:
-        wrong = [*self._wrong_names(), *self._wrong_units()]
-        if not wrong:  # the others need labels and units
-            wrong = [*self._wrong_others()]
-        if wrong:
+        # the others need labels and units
+        if wrong := [*self._wrong_names(), *self._wrong_units()] or [*self._wrong_others()]:
             raise ConfigurationError(self.subject(), wrong)
         return self
 

@@ -11,7 +11,6 @@ import click
 
 from wearlaw.cli import Stopped
 from wearlaw.errors import OutputError, shown
-from wearlaw.version import __version__
 from wearlaw_output.commands import folder_for, print_notes, print_results, print_table
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import written_formats
@@ -19,7 +18,7 @@ from wearlaw_output.folder import results_folder
 from wearlaw_output.notes import Notes, grouped
 from wearlaw_studies.case import load_case
 from wearlaw_studies.report.tables import summaries
-from wearlaw_studies.study import Study, evaluations, used
+from wearlaw_studies.study import evaluations
 from wearlaw_studies.study import run as run_case
 from wearlaw_studies.uncertainty import UNCERTAINTY, uncertainty_of, write_uncertainty
 from wearlaw_studies.written import RESULTS, check_room, without_csv, write
@@ -32,11 +31,6 @@ from wearlaw_sweeps.progress import Bar
 @click.option("--overwrite", is_flag=True, help="Replace the files of an earlier run in that folder; others stay.")
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
 @click.option("--resume", is_flag=True, help="Go on from the finished blocks of an interrupted run, in FOLDER.partial.")
-@click.option(
-    "--csv/--no-csv",
-    default=None,
-    help="Write results.csv or leave it out [default: write it up to 1 048 575 rows, those that Excel reads].",
-)
 @written_formats
 def run(
     case: str,
@@ -44,7 +38,6 @@ def run(
     overwrite: bool,
     workers: int,
     resume: bool,
-    csv: bool | None,
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
 ) -> None:
@@ -62,7 +55,7 @@ def run(
     partial = _partial(folder, resume)
     try:
         with results_folder(folder, overwrite, RESULTS) as fresh:
-            left_out = without_csv(loaded, csv)
+            left_out = without_csv(loaded)
             check_room(loaded, folder, left_out is None)
             with Bar(evaluations(loaded)) as bar, notes.of("run"):
                 study = run_case(loaded, bar, workers, partial, resume)
@@ -79,7 +72,6 @@ def run(
     for table in summaries(study):
         click.echo(f"{table.title}: {table.frame.columns[0]}")
         print_table(table.frame.set_index(table.frame.columns[0]).rename_axis(None))
-    _print_used(study)
     print_results(folder, names)
 
 
@@ -106,18 +98,6 @@ def _discard(partial: Path) -> None:
         shutil.rmtree(store, ignore_errors=True)
     with suppress(OSError):  # it does not exist, or other files are in it
         partial.rmdir()
-
-
-def _print_used(study: Study) -> None:
-    """Print the version of wearlaw, and each other distribution with the models it provided."""
-    provided: dict[str, list[str]] = {f"wearlaw {__version__}": []}
-    for kind, names in used(study.case).items():
-        for name, distribution in names.items():
-            provided.setdefault(distribution, []).append(f"{kind} {name}")
-    (ours, _), *others = provided.items()
-    click.echo(f"Computed with {ours}")
-    for distribution, things in others:
-        click.echo(f"  and {distribution}: {', '.join(things)}")
 
 
 @click.command()

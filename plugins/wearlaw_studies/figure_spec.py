@@ -9,7 +9,6 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, Fault
 from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT
-from wearlaw.units.quantities import Unit, from_si
 
 OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")
 """Variables along the patch of a line contact; the creepage of the operating point is a horizontal line."""
@@ -124,20 +123,3 @@ class FigureSpec(Window):
         common = {name: getattr(self, name) for name in inherited}
         own = [{name: value for name, value in panel if value is not None} for panel in self.panels] or [{}]
         return tuple(Window(**{**common, **window}) for window in own)
-
-
-def ends(variable: str, unit: str, given: Range) -> tuple[float, float]:
-    """Return the ends of an axis in the unit of its variable.
-
-    Raises
-    ------
-    UnitError
-        If an end lacks a unit, or has one of another dimension.
-    """
-    expected = Unit(unit, positive=False)
-    plain = [isinstance(end, float) and not unit for end in given]
-    low, high = (
-        end if bare else from_si(expected.si(end, variable), unit).magnitude
-        for end, bare in zip(given, plain, strict=True)
-    )
-    return float(low), float(high)

@@ -18,11 +18,11 @@ import xarray
 from wearlaw.errors import ConfigurationError, Fault, UnitError, did_you_mean, shown
 from wearlaw.models.law import WEAR
 from wearlaw.pipeline.variables import MASS
-from wearlaw.units.quantities import Q
+from wearlaw.units.quantities import Q, Unit, from_si
 from wearlaw.units.variables import UNITS, name_of
 from wearlaw_output.curves import BLACK, OUTSIDE, Curve, FigureData, Map, Panel, PlotAxis, Shade
-from wearlaw_output.labels import label, readable
-from wearlaw_studies.figure_spec import ACROSS, COMMON, OF_PROFILE, FigureSpec, Range, Scale, Window, ends
+from wearlaw_output.labels import in_words, label, readable
+from wearlaw_studies.figure_spec import ACROSS, COMMON, OF_PROFILE, FigureSpec, Range, Scale, Window
 from wearlaw_studies.measured import known_variables, measured_points
 from wearlaw_studies.results import (
     LIMITS,
@@ -31,7 +31,6 @@ from wearlaw_studies.results import (
     along,
     axes_of,
     beyond_limits,
-    in_words,
     labelled_by,
     main_axis,
     outcomes_of,
@@ -112,8 +111,7 @@ def _main_figure(results: Results) -> FigureData | None:
         pairs = pairs[:MOST_MAIN_MAPS] if plane else pairs
         more = f" Only {' and '.join(pairs) if plane else f'the pairs with {first}'} are shown; the results hold all."
     file = "main" if "main" not in results.case.figures else "main_result"
-    shown = {"pairs": tuple(pairs), "measured": _has_tests(results, sweep, spec.x, outcome)}
-    figure = _figure(results, file, spec.model_copy(update=shown))
+    figure = _figure(results, file, spec.model_copy(update={"pairs": tuple(pairs)}))
     if patch_axes(whole):
         more += f" {'The sum over' if outcome == MASS else 'The largest of'} all patches."
     return replace(figure, caption=figure.caption + more)
@@ -145,13 +143,11 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
             across = (axis,) if patch_axes(sweep) else ("wear_index", axis)  # each patch has an index of its own
             specs += [_over(results, name, outcome.name, x) for x in across]
             for spec in specs:
-                measured = _has_tests(results, sweep, spec.x, outcome.name)
                 up = f"_and_{spec.shown[0]}" if spec.map else ""
-                yield f"{name}_{outcome.name}_over_{spec.x}{up}", spec.model_copy(update={"measured": measured})
+                yield f"{name}_{outcome.name}_over_{spec.x}{up}", spec
         if axis == creepage:
             spec = _over(results, name, "traction_coefficient", axis)
-            shown = {"measured": _has_tests(results, sweep, axis, "traction_coefficient"), "y_scale": "linear"}
-            yield f"{name}_traction_over_{axis}", spec.model_copy(update=shown)
+            yield f"{name}_traction_over_{axis}", spec.model_copy(update={"y_scale": "linear"})
     for name, profile in results.profiles.items():
         if "y" in profile:
             bodies = [body for body in results.case.rig.bodies if f"{body}_depth" in profile]
@@ -161,21 +157,16 @@ def _usual(results: Results) -> Iterator[tuple[str, FigureSpec]]:
             yield f"{name}_along_the_patch", FigureSpec(profile=name, panels=tuple(Window(y=y) for y in ALONG))
 
 
-def _has_tests(results: Results, sweep: xarray.Dataset, *names: str) -> bool:
-    """Return whether the tests of a case hold variables of a figure of a sweep over creepage."""
-    tests, creepage = results.case.measured, results.case.rig.creepage
-    return tests is not None and main_axis(sweep, creepage) == creepage and {*names} <= {*known_variables(tests.data)}
-
-
 def _over(results: Results, name: str, y: str, x: str, plane: tuple[str, str] | None = None) -> FigureSpec:
     """Return the figure of a variable over an axis, or the map over two, with scales that suit the values."""
     if plane:
         return FigureSpec(sweep=name, x=plane[0], y=(plane[1],), map=y)
-    sweep, axis = results.sweeps[name], main_axis(results.sweeps[name], results.case.rig.creepage)
-    outcome = results.case.outcomes.get(y)
+    sweep, creepage, tests = results.sweeps[name], results.case.rig.creepage, results.case.measured
+    axis, outcome = main_axis(sweep, creepage), results.case.outcomes.get(y)
     log = not (outcome and outcome.signed) and fit_for_log(along(sweep, axis)[y].values)
     scale = results.case.sweeps[name].spacing(axis)
-    return FigureSpec(sweep=name, x=x, y=(y,), x_scale=scale, y_scale="log" if log else "linear")
+    measured = tests is not None and axis == creepage and {x, y} <= {*known_variables(tests.data)}
+    return FigureSpec(sweep=name, x=x, y=(y,), x_scale=scale, y_scale="log" if log else "linear", measured=measured)
 
 
 def _plane(sweep: xarray.Dataset, creepage: str | None) -> tuple[str, str] | None:
@@ -529,8 +520,13 @@ def _ends(path: str, variable: str, units: Mapping[str, str], window: Window) ->
     given: Range | None = getattr(window, f"{path}_range")
     if given is None:
         return None
+    unit = units[variable]
     try:
-        low, high = ends(variable, units[variable], given)
+        low, high = (
+            end if isinstance(end, float) and not unit
+            else float(from_si(Unit(unit, positive=False).si(end, variable), unit).magnitude)
+            for end in given
+        )  # fmt: skip
     except UnitError as error:
         raise ConfigurationError("figure", [Fault((f"{path}_range",), str(error))]) from None
     if low >= high or (getattr(window, f"{path}_scale") == "log" and low <= 0.0):

@@ -15,7 +15,6 @@ from pydantic import BeforeValidator, Field, model_validator
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.errors import (
-    ConfigurationError,
     Fault,
     InputError,
     UnitError,
@@ -25,9 +24,10 @@ from wearlaw.errors import (
     shown,
 )
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw.units.quantities import Q, Quantity, parse
+from wearlaw.units.quantities import Q, parse
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
+from wearlaw_output.conditions import Known
 from wearlaw_sweeps.points import Points, Varying
 
 MOST_POINTS = 10_000_000
@@ -80,16 +80,17 @@ class Axis(Configuration):
 
 
 def _condition(value: Any) -> Any:
-    """Make an axis from a table; raise an error unless this is an axis, a value or a list of values."""
-    if isinstance(value, Axis):
-        return value
+    """Make an axis from a table; raise an error unless this is an axis, a value, or values of one dimension."""
     if isinstance(value, dict):
-        return Axis(**value)
-    if not isinstance(value, (list, tuple)):
+        value = Axis(**value)
+    elif isinstance(value, (list, tuple)):
+        if not value:
+            raise InputError("is empty; give at least one value")
+        value = tuple(_value(item) for item in value)
+    elif not isinstance(value, Axis):
         return _value(value)
-    if not value:
-        raise InputError("is empty; give at least one value")
-    return tuple(_value(item) for item in value)
+    _values(value)
+    return value
 
 
 Condition = Annotated[float | str | tuple[float | str, ...] | Axis, BeforeValidator(_condition)]
@@ -116,16 +117,7 @@ class Grid(Conditions):
     __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     @model_validator(mode="after")
-    def _has_axes(self) -> Grid:
-        """Check the axes by themselves; the rig checks the conditions later."""
-        wrong = []
-        for name, value in self.given.items():
-            try:
-                _values(value)
-            except InputError as error:
-                wrong.append(Fault((name,), str(error)))
-        if wrong:
-            raise ConfigurationError("Grid", wrong)
+    def _has_room(self) -> Grid:
         if self.size > MOST_POINTS:
             raise InputError(f"the axes make a grid of {self.size} points; at most {MOST_POINTS} are possible")
         return self
@@ -148,8 +140,8 @@ class Grid(Conditions):
     def first(self) -> Grid:
         """Return the grid of the first value of each axis."""
         first = {name: (float(axis.values[0]), axis.unit) for name, axis in self._axes.items()}
-        given = {name: (f"{value!r} {unit}" if unit else value,) for name, (value, unit) in first.items()}
-        return Grid(**{**self.given, **given})
+        points = {name: (f"{value!r} {unit}" if unit else value,) for name, (value, unit) in first.items()}
+        return Grid(**{**self.given, **points})
 
     def faults(self, rig: Rig) -> list[Fault]:
         """Return what a rig finds wrong at the ends of the axes, one fault for each condition."""
@@ -169,7 +161,8 @@ class Grid(Conditions):
         return {name: unit for name, unit in self._written().items() if unit}
 
     def _written(self) -> dict[str, str | None]:
-        return {name: self._axes[name].unit if name in self._axes else _unit(self.given[name]) for name in self.given}
+        known = {name: self._axes.get(name) or Known.of(value) for name, value in self.given.items()}
+        return {name: None if one is None else one.unit for name, one in known.items()}
 
     def spacing(self, name: str) -> Literal["log", "linear"]:
         """Return how the values of an axis are spaced; a list is logarithmic if its ratios differ less than its steps.
@@ -211,11 +204,10 @@ class Grid(Conditions):
         if name in self._axes:
             axis = self._axes[name]
             return float(_converted(name, axis.values[axis.values.size // 2], axis.unit, units[name])[0])
-        value = self.given[name]
-        quantity = _quantity(value)
-        if quantity is None:
-            return value  # type: ignore[no-any-return]
-        return float(_converted(name, quantity.magnitude, _symbol(quantity), units[name])[0])
+        known = Known.of(self.given[name])
+        if known is None:
+            return self.given[name]  # type: ignore[no-any-return]
+        return float(_converted(name, known.values, known.unit or "", units[name])[0])
 
     def problem(self, rig: Rig) -> Any:
         """Return the contact problem of the first operating point."""
@@ -284,26 +276,7 @@ def _in_one_unit(values: tuple[float | str, ...]) -> tuple[Array, str | None]:
         if not quantity.is_compatible_with(quantities[0]):
             raise UnitError(f"{shown(texts[0])} and {shown(text)} are not of one dimension")
     numbers = [quantity.to(quantities[0].units).magnitude for quantity in quantities]
-    return np.array(numbers, dtype=np.float64), _symbol(quantities[0])
-
-
-def _quantity(value: Any) -> Quantity | None:
-    """Return a value as a quantity, or None for a text that is none, such as a name."""
-    try:
-        return parse(value) if isinstance(value, str) else Q(value, "")
-    except UnitError:
-        return None
-
-
-def _unit(value: Any) -> str | None:
-    """Return the unit of a value as written."""
-    quantity = _quantity(value) if isinstance(value, str) else None
-    return None if quantity is None else _symbol(quantity)
-
-
-def _symbol(quantity: Quantity) -> str:
-    """Return the unit of a quantity in the notation of `variables.UNITS`."""
-    return symbol(quantity.units, "~C")
+    return np.array(numbers, dtype=np.float64), symbol(quantities[0].units, "~C")
 
 
 def _converted(name: str, values: Any, unit: str | None, wanted: str) -> tuple[Any, str | None]:

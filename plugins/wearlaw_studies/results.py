@@ -15,7 +15,7 @@ from wearlaw.pipeline.composition import fitted_to_other_body
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.variables import UNITS
 from wearlaw_fits.pairs import Pair, compose
-from wearlaw_output.labels import in_words as in_words
+from wearlaw_output.labels import in_words
 from wearlaw_output.notes import Notes
 from wearlaw_studies.case import Case
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-import textwrap
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -17,7 +16,7 @@ import xarray
 
 from wearlaw import loader
 from wearlaw.arrays import Array, steady
-from wearlaw.configuration import LINE, known_name
+from wearlaw.configuration import known_name
 from wearlaw.contact.material import Material
 from wearlaw.errors import (
     ConfigurationError,
@@ -40,7 +39,7 @@ from wearlaw_fits.pairs import Pair
 from wearlaw_output.notes import Notes
 from wearlaw_studies.case import Case
 from wearlaw_studies.figures import figures_of, wrong_figures
-from wearlaw_studies.results import LIMITS, PATCH_AXES, Results, axes_of, pairs_of
+from wearlaw_studies.results import LIMITS, PATCH_AXES, Results, pairs_of
 from wearlaw_studies.sections import Section
 from wearlaw_sweeps.evaluation import weight
 from wearlaw_sweeps.evaluator import Evaluator
@@ -86,24 +85,10 @@ class Study(Results):
         return figures_of(self)
 
     def __repr__(self) -> str:
-        sweeps = [
-            f"{name} ({', '.join(f'{axis} {one.sizes[axis]}' for axis in axes_of(one)) or 'one point'})"
-            for name, one in self.sweeps.items()
-        ]
-        rows = {
-            "pairs": [pair.label for pair in self.pairs],
-            "sweeps": sweeps,
-            "profiles": [name for name, profile in self.profiles.items() if profile],
-            "sections": [section.title for section in self.sections],
-            "notes": [str(len(self.notes))] if self.notes else [],
-        }
-        indent = 13 * " "
-        parts = [
-            textwrap.fill(", ".join(those), LINE, initial_indent=f"  {row:11}", subsequent_indent=indent)
-            for row, those in rows.items()
-            if those
-        ]
-        return "\n".join([f"Study of {shown(self.case.title)}", *parts])
+        pairs, profiles = [pair.label for pair in self.pairs], [name for name, one in self.profiles.items() if one]
+        rows = {"pairs": pairs, "sweeps": self.sweeps, "profiles": profiles, "sections": self.case.sections}
+        parts = [f"  {row}: {', '.join(those)}" for row, those in rows.items() if those]
+        return "\n".join([f"Study of {shown(self.case.title)}, with {len(self.notes)} notes", *parts])
 
 
 @steady
@@ -269,14 +254,13 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
         | {axis: (axis, list(labels)) for axis, labels in first.dims.items()}
         | {"pair": [pair.label for pair in usable], "contact_model": list(contacts)}
         | {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
-        | {f"pair_{kind}": ("pair", labels) for kind, labels in _labels_of_laws(case, usable).items()}
+        | {"pair_wear_law": ("pair", [pair.law if pair.outcome.name == WEAR else "" for pair in usable])}
+        | (
+            {"pair_law": ("pair", [pair.law if pair.outcome.name != WEAR else "" for pair in usable])}
+            if case.laws
+            else {}
+        )
     )
-
-
-def _labels_of_laws(case: Case, pairs: list[Pair]) -> dict[str, list[str]]:
-    """Return the labels of the wear laws of pairs, and of their laws of other outcomes if the case has any."""
-    found = {"wear_law": [pair.law if pair.outcome.name == WEAR else "" for pair in pairs]}
-    return found | ({"law": [pair.law if pair.outcome.name != WEAR else "" for pair in pairs]} if case.laws else {})
 
 
 def _of_pair(pair: Pair, problem: Any) -> tuple[str, ...]:
@@ -341,19 +325,17 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
 def _band(
     key: str, pair: Pair, points: Points, dims: Dims, found: dict[str, Array], evaluator: Evaluator
 ) -> dict[str, Array]:
-    """Return the ends of the outcome over the published range of the law's parameters."""
-    ends, outcome = [], pair.outcome.name
-    for end, one in zip(_band_names(pair), _band_ends(pair.pipeline), strict=False):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band gave them already
-            ends.append(evaluator(f"{key}-{end}", one, points, [outcome], dims)[outcome])
-    return dict(zip(_band_names(pair), ends or [found[outcome]] * 2, strict=False))
-
-
-def _band_names(pair: Pair) -> tuple[str, ...]:
-    """Return the names of the ends of a band; wear rates have them in any case."""
-    name = pair.outcome.name
-    return (f"{name}_low", f"{name}_high") if name == WEAR or _band_ends(pair.pipeline) else ()
+    """Return the ends of the outcome over the published range of the law's parameters; wear rates have them anyway."""
+    outcome, ends = pair.outcome.name, _band_ends(pair.pipeline)
+    names = (f"{outcome}_low", f"{outcome}_high")
+    if not ends:
+        return dict.fromkeys(names, found[outcome]) if outcome == WEAR else {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band gave them already
+        return {
+            name: evaluator(f"{key}-{name}", end, points, [outcome], dims)[outcome]
+            for name, end in zip(names, ends, strict=True)
+        }
 
 
 def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:

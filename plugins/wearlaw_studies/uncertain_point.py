@@ -89,7 +89,9 @@ class UncertainPoint(Conditions):
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as arguments of `uncertainty`."""
-        return {name: _distribution(value) for name, value in self.given.items()}
+        return {
+            name: value.distribution() if isinstance(value, Spread) else value for name, value in self.given.items()
+        }
 
     def varies(self, law: str) -> bool:
         """Return whether a condition, or a parameter of this law, is distributed."""
@@ -97,7 +99,8 @@ class UncertainPoint(Conditions):
 
     def parameters(self, law: str) -> dict[str, Distribution | PublishedRange]:
         """Return the distributed parameters of a law."""
-        return {name: _parameter(value) for name, value in self.laws.get(law, {}).items()}
+        given = self.laws.get(law, {}).items()
+        return {name: value.distribution() if isinstance(value, Spread) else published_range() for name, value in given}
 
     def wrong_laws(self, known: Mapping[str, Law]) -> Iterator[Fault]:
         """Yield the unknown laws, and the unknown or impossible parameters of the others."""
@@ -111,11 +114,3 @@ class UncertainPoint(Conditions):
                     parameter(name, given, known[law])
                 except InputError as error:
                     yield Fault(("laws", law, name), str(error).removeprefix(f"{name}: "))
-
-
-def _distribution(value: Any) -> Any:
-    return value.distribution() if isinstance(value, Spread) else value
-
-
-def _parameter(value: Spread | Literal["published_range"]) -> Distribution | PublishedRange:
-    return value.distribution() if isinstance(value, Spread) else published_range()

@@ -14,25 +14,14 @@ from wearlaw.errors import InputError
 from wearlaw.models.law import WEAR
 from wearlaw.units.quantities import WEAR_RATE
 from wearlaw.units.variables import name_of
-from wearlaw_fits.pairs import Pair
 from wearlaw_fits.uncertainty import CONFIDENCE, Uncertainty, uncertainty
-from wearlaw_output.curves import FigureFormat
+from wearlaw_output.curves import FigureData, FigureFormat
 from wearlaw_output.files import write_files
 from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
 from wearlaw_studies.case import Case, written
 from wearlaw_studies.results import pairs_of
 from wearlaw_studies.study import provenance
-
-
-@dataclass(frozen=True)
-class UncertainPair:
-    """The uncertainty of one outcome of a pair at an operating point."""
-
-    point: str
-    pair: Pair
-    uncertainty: Uncertainty
-
 
 UNCERTAINTY = "uncertainty.json"
 
@@ -43,7 +32,8 @@ class CaseUncertainty:
 
     Attributes
     ----------
-    pairs : tuple of UncertainPair
+    figures : dict of str to FigureData
+        The samples of each operating point and pair, by the name of a file, such as "scatter_usfd_on_exact".
     wear_rates : pandas.DataFrame
         Median and interval for each operating point and pair. If there are other outcomes than wear, they have rows
         here too, and columns say which outcome and unit each row has.
@@ -55,7 +45,7 @@ class CaseUncertainty:
         Remarks for the reader.
     """
 
-    pairs: tuple[UncertainPair, ...]
+    figures: dict[str, FigureData]
     wear_rates: pd.DataFrame
     indices: pd.DataFrame
     samples: int
@@ -79,8 +69,7 @@ def uncertainty_of(
             "nothing in the case is uncertain; add a table such as [uncertainty.scatter] in which some conditions are"
             ' distributions, as in creepage = {uniform = ["0.5 %", "1.5 %"]}'
         )
-    found: list[UncertainPair] = []
-    rates, indices = [], []
+    figures, rates, indices, used = {}, [], [], samples
     for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
         subject = f"{name}, {pair.label}"
         if not point.varies(pair.law):
@@ -90,7 +79,7 @@ def uncertainty_of(
         with notes.of(subject):
             law = point.parameters(pair.law)
             one = uncertainty(pair.pipeline, law=law, samples=samples, seed=seed, **point.conditions())
-            each = [one.of(outcome) for outcome in one.outcomes]
+            each, used = [one.of(outcome) for outcome in one.outcomes], one.samples
             rates += [{"point": name, "pair": pair.label, **_interval(single)} for single in each]
         for single in each:
             (outcome,) = single.outcomes
@@ -99,7 +88,10 @@ def uncertainty_of(
             else:
                 where = {"point": name, "pair": pair.label, "outcome": outcome}
                 indices.append(single.sobol().reset_index().assign(**where))
-            found.append(UncertainPair(name, pair, single))
+            words = name_of(outcome)
+            title = f"{words[:1].upper()}{words[1:]} by {pair.label}: {name}"
+            file = re.sub(r"\W+", "_", f"{name} {pair.label} {outcome if len(each) > 1 else ''}").strip("_")
+            figures[file] = replace(single.figure_data(), title=title)
         on_pair(1)
     only_wear = all(row["outcome"] == WEAR for row in rates)
     front = ["point", "pair"] if only_wear else ["point", "pair", "outcome"]
@@ -109,7 +101,7 @@ def uncertainty_of(
     if only_wear:
         ends = {name: f"{name} [{readable(WEAR_RATE)}]" for name in medians.columns.drop(["point", "pair"])}
         medians = medians.drop(columns=["outcome", "unit"]).rename(columns=ends)
-    return CaseUncertainty(tuple(found), medians, shares, found[0].uncertainty.samples, tuple(notes.texts))
+    return CaseUncertainty(figures, medians, shares, used, tuple(notes.texts))
 
 
 def _interval(one: Uncertainty) -> dict[str, str | float]:
@@ -130,22 +122,4 @@ def write_uncertainty(
     """Write the uncertainty of a case, and the case itself, into an empty folder, and return the names of the files."""
     record = {"samples": found.samples, "seed": seed, "provenance": provenance(case), "notes": list(found.notes)}
     tables = {"wear_rates": found.wear_rates, **({"sobol_indices": found.indices} if len(found.indices) else {})}
-    figures = {}
-    for file, one in zip(figure_files(found.pairs), found.pairs, strict=True):
-        name = name_of(one.uncertainty.outcomes[0])
-        title = f"{name[:1].upper()}{name[1:]} by {one.pair.label}: {one.point}"
-        figures[file] = replace(one.uncertainty.figure_data(), title=title)
-    return write_files(folder, UNCERTAINTY, record, tables, figures, figure_formats, latex, written(case))
-
-
-def figure_files(pairs: Sequence[UncertainPair]) -> list[str]:
-    """Return a file name for each figure, such as "scatter_usfd_on_exact" for an operating point called "scatter".
-
-    Pairs with several outcomes add the outcome.
-    """
-    labels = [f"{one.point} {one.pair.label}" for one in pairs]
-    names = [
-        label if labels.count(label) == 1 else f"{label} {one.uncertainty.outcomes[0]}"
-        for label, one in zip(labels, pairs, strict=True)
-    ]
-    return [re.sub(r"\W+", "_", name).strip("_") for name in names]
+    return write_files(folder, UNCERTAINTY, record, tables, found.figures, figure_formats, latex, written(case))

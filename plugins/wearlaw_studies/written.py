@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-import h5netcdf
 import pandas as pd
 import xarray
 
@@ -36,11 +34,7 @@ COPIES = 2
 ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
 """Bytes of a row of the table of results in memory (measured) and as CSV."""
 MOST_ROWS = 2**20 - 1
-"""Most rows of a table of results that is written unasked: those that a sheet of Excel holds below the head."""
-SPARE = 2**20
-"""Bytes of a netCDF file beside its numbers, at most."""
-PIECE = 2**20
-"""Bytes written at a time to a file that reserves its room."""
+"""Most rows of a table of results: those that a sheet of Excel holds below the head."""
 T = TypeVar("T")
 
 
@@ -51,17 +45,12 @@ def rows_of(case: Case) -> int:
     return points * patches * len(case.contact_models) * len(case.laws_by_label)
 
 
-def without_csv(case: Case, asked: bool | None) -> str | None:
-    """Return a note on why results.csv is left out, or None if it is written: if asked for, or up to `MOST_ROWS`."""
-    if asked is False:
-        return f"{CSV} is left out, as --no-csv asks; {RESULTS} holds all numbers"
+def without_csv(case: Case) -> str | None:
+    """Return a note on why results.csv is left out, or None if it is written."""
     rows = rows_of(case)
-    if asked is None and rows > MOST_ROWS:
-        return (
-            f"{CSV} is left out, since it would have up to {rows} rows, and Excel reads {MOST_ROWS}; {RESULTS} holds"
-            " all numbers, and --csv writes the table too"
-        )
-    return None
+    if rows <= MOST_ROWS:
+        return None
+    return f"{CSV} is left out, since it would have up to {rows} rows, and Excel reads {MOST_ROWS}; see {RESULTS}"
 
 
 def check_room(case: Case, folder: Path, csv: bool = True) -> None:
@@ -90,30 +79,17 @@ def write(
         table(study).to_csv(folder / CSV, index=False, encoding="utf-8", errors="replace")
     for name, text in case_files.items():
         (folder / name).write_text(text, encoding="utf-8")
-    names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files, *_write_tables(study, folder, latex)]
-    names += _write_figures(study, folder, figure_formats, on_stage)
-    on_stage("writing the report")
-    (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
-    return names
-
-
-def _write_tables(study: Study, folder: Path, latex: bool) -> list[str]:
-    names = []
+    names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files]
     (folder / TABLES).mkdir()
     for name, one in _by_name("table", ((one.name, one) for one in tables(study))).items():
         names += save_table(one.frame, folder, f"{TABLES}/{name}", latex, one.footnotes)
-    return names
-
-
-def _write_figures(
-    study: Study, folder: Path, formats: Sequence[FigureFormat], on_stage: Callable[[str], None]
-) -> list[str]:
-    names = []
     (folder / FIGURES).mkdir()
     every = (*study.figures, *(figure for section in study.sections for figure in section.figures))
     for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
         on_stage(f"drawing {name}")
-        names += save_figure(figure, folder, f"{FIGURES}/{name}", formats)
+        names += save_figure(figure, folder, f"{FIGURES}/{name}", figure_formats)
+    on_stage("writing the report")
+    (folder / REPORT).write_text(report(study, case_files[CASE_FILE]), encoding="utf-8")
     return names
 
 
@@ -132,20 +108,7 @@ def write_netcdf(study: Study, path: Path) -> None:
     """Write all datasets into one netCDF file, each in a group: sweeps/NAME and profiles/NAME."""
     groups = {f"sweeps/{name}": dataset for name, dataset in study.sweeps.items()}
     groups |= {f"profiles/{name}": dataset for name, dataset in study.profiles.items() if dataset}
-    tree = xarray.DataTree.from_dict(groups)
-    h5netcdf.File(path, "w").close()
-    _reserve(path, tree.nbytes + SPARE)  # HDF5 crashes if it finds the disk full; it cuts the file to what it needs
-    tree.to_netcdf(path, mode="a", engine="h5netcdf")
-
-
-def _reserve(path: Path, size: int) -> None:
-    """Extend a file to a size that has its room on the disk; raise an `OSError` if the disk is full."""
-    with path.open("ab") as file:
-        if hasattr(os, "posix_fallocate"):
-            os.posix_fallocate(file.fileno(), 0, size)
-        else:
-            for start in range(file.tell(), size, PIECE):
-                file.write(bytes(min(PIECE, size - start)))
+    xarray.DataTree.from_dict(groups).to_netcdf(path, engine="h5netcdf")
 
 
 def table(study: Study) -> pd.DataFrame:

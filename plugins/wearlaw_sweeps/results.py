@@ -80,7 +80,7 @@ class Memory(Target):
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
         """Take over a finished block."""
         for name, values in outputs.items():
-            self._arrays[name][block.slices] = np.reshape(values, block.shape + self.job.own_shape)
+            self._arrays[name][block.slices] = values.reshape(block.shape + self.job.own_shape)
         self.done[block.number] = record
 
     def arrays(self) -> dict[str, Array]:

@@ -52,6 +52,34 @@ LAB = """
         }
 """
 
+RUBBED_AND_TIRED = """
+from typing import ClassVar
+import wearlaw as wl
+
+class Rubbed(wl.Stage):
+    "More friction."
+    name: ClassVar[str] = "rubbed"
+    source: ClassVar[str] = "test"
+    factor: float = 1.5
+
+    def altered(self, problem, forces):
+        return problem.replaced(friction_coefficient=self.factor * problem.friction_coefficient)
+
+class Tired(wl.Law):
+    "Damage."
+    name: ClassVar[str] = "tired"
+    source: ClassVar[str] = "test"
+    outcome = wl.Outcome("damage", unit="", of="patch")
+
+    def rate(self, contact, p):
+        return contact.wear_index
+
+@wl.hookimpl
+def wearlaw_models():
+    return [Rubbed, Tired]
+"""
+"""A plugin with a stage and a law of damage."""
+
 Install = Callable[..., None]
 
 

@@ -20,7 +20,7 @@ from wearlaw_output.styled import html_table
 from wearlaw_studies.report.interactive import plotly_figure
 from wearlaw_studies.report.tables import main_table, models, of_section, parameters, profiles, summaries
 from wearlaw_studies.results import axes_of
-from wearlaw_studies.sections import VERDICTS, CheckedClaim, Verdict
+from wearlaw_studies.sections import VERDICTS, CheckedClaim
 from wearlaw_studies.study import Study, used
 
 
@@ -58,7 +58,6 @@ def _template() -> Template:
         undefined=StrictUndefined,
     )
     environment.filters.update(
-        heading=_heading,
         paragraphs=paragraphs,
         plotly=plotly_figure,
         strip=has_strip,
@@ -69,17 +68,10 @@ def _template() -> Template:
 
 
 def counted(claims: Sequence[CheckedClaim]) -> str:
-    """Return how many claims there are of each verdict, in words."""
+    """Return how many claims there are of each verdict, such as "3 claims (holds: 2, does not hold: 1)"."""
     verdicts = Counter(claim.verdict for claim in claims)
-    each = ", ".join(f"{verdicts[one]} {_of_many(one, verdicts[one])}" for one in VERDICTS if one in verdicts)
-    return f"{len(claims)} {'claim' if len(claims) == 1 else 'claims'}: {each}"
-
-
-def _of_many(verdict: Verdict, count: int) -> str:
-    """Return a verdict as a predicate: "holds" of one claim, "hold" and "do not hold" of several."""
-    if count == 1:
-        return verdict
-    return verdict.replace("holds", "hold").replace("does", "do")
+    each = ", ".join(f"{one}: {verdicts[one]}" for one in VERDICTS if one in verdicts)
+    return f"{len(claims)} claims ({each})"
 
 
 def has_strip(figure: FigureData) -> bool:
@@ -90,8 +82,3 @@ def has_strip(figure: FigureData) -> bool:
 def paragraphs(text: str) -> list[str]:
     """Split a text into paragraphs at blank lines."""
     return [part for part in re.split(r"\n\s*\n", text.strip()) if part]
-
-
-def _heading(figure: FigureData, study: Study) -> str:
-    """Return the title of a figure, or its name in words if the title is that of the study."""
-    return figure.title if figure.title != study.case.title else figure.name.replace("_", " ").capitalize()

@@ -18,34 +18,6 @@ LAW = "usfd:fitted_for=exact"
 FIT = ("fit", "tests.csv", "--contact", "exact", "--law", LAW, "--free", "m_m,q_s", "--bootstrap", "0")
 COMPARE = ("compare", "tests.csv", "--contacts", "global,exact", "--laws", "usfd,kth,brr")
 
-PLUGIN = """
-from typing import ClassVar
-import wearlaw as wl
-
-class Rubbed(wl.Stage):
-    "More friction."
-    name: ClassVar[str] = "rubbed"
-    source: ClassVar[str] = "test"
-    factor: float = 1.5
-
-    def altered(self, problem, forces):
-        return problem.replaced(friction_coefficient=self.factor * problem.friction_coefficient)
-
-class Tired(wl.Law):
-    "Damage."
-    name: ClassVar[str] = "tired"
-    source: ClassVar[str] = "test"
-    outcome = wl.Outcome("damage", unit="", of="patch")
-
-    def rate(self, contact, p):
-        return contact.wear_index
-
-@wl.hookimpl
-def wearlaw_models():
-    return [Rubbed, Tired]
-"""
-"""A plugin with a stage and a law of another outcome than wear."""
-
 
 def rates() -> Any:
     """Return the measurements of tests without scatter."""

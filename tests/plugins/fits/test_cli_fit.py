@@ -12,8 +12,8 @@ import pytest
 
 import wearlaw as wl
 from tests.cases import files, wearlaw
-from tests.core.distributions import Install
-from tests.plugins.fits.cli_data import CREEPAGE, FIT, HEAD, PLUGIN, listed, rates, rows, write_tests
+from tests.core.distributions import RUBBED_AND_TIRED, Install
+from tests.plugins.fits.cli_data import CREEPAGE, FIT, HEAD, listed, rates, rows, write_tests
 from wearlaw import Q
 
 pytestmark = pytest.mark.usefixtures("blank_figures", "folder_with_tests")
@@ -93,7 +93,7 @@ def test_a_friction_coefficient_that_the_tests_hold_too_is_noted_and_not_used() 
 
 
 def test_a_stage_and_a_law_of_another_outcome_are_fitted_from_the_command_line(install: Install) -> None:
-    install("own", PLUGIN)
+    install("own", RUBBED_AND_TIRED)
     law = wl.law("tired")
     predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.stage("rubbed", factor=0.8) | law
     found = predict(max_pressure="1500 MPa", creepage=Q(CREEPAGE, "%"), friction_coefficient=0.46)

@@ -11,9 +11,8 @@ import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.core.distributions import Install
+from tests.core.distributions import RUBBED_AND_TIRED, Install
 from tests.core.outcome_laws import CONDITIONS, MIXED, Damage, Heat, Volume
-from tests.plugins.fits.cli_data import PLUGIN
 from tests.plugins.fits.fits import EXACT, refused, sloping
 from wearlaw import Q
 
@@ -159,7 +158,7 @@ def test_columns_of_outcomes_are_read_where_a_law_predicts_them(tmp_path: Path) 
 
 
 def test_outcomes_of_plugins_are_known_when_tests_are_read(install: Install, tmp_path: Path) -> None:
-    install("own", PLUGIN)
+    install("own", RUBBED_AND_TIRED)
     text = "creepage [%],normal_force [kN],friction_coefficient,damage\n1,7.4,0.4,2\n2,7.4,0.4,\n"
     tests = read(tmp_path, text)
     assert tests.outcomes.keys() == {"damage"}

@@ -66,9 +66,8 @@ def test_the_profile_of_a_contact_alone_has_no_wear_and_that_of_patch_means_one_
     assert float(means.profile["wear_rate"][0]) == pytest.approx(means.wear_rate.magnitude, rel=4 * EPS)
 
 
-@pytest.mark.parametrize("model", ["exact", "fastsim", "global"])
-def test_the_profile_writes_to_netcdf_and_back(model: str, tmp_path: Path) -> None:
-    profile = (RIG | wl.contact_model(model))(creepage=Q([1.0, 2.0], "%"), **CONDITIONS).profile
+def test_the_profile_writes_to_netcdf_and_back(tmp_path: Path) -> None:
+    profile = (RIG | wl.contact_model("exact"))(creepage=Q([1.0, 2.0], "%"), **CONDITIONS).profile
     profile.to_netcdf(tmp_path / "profile.nc", engine="h5netcdf")
     with xarray.open_dataset(tmp_path / "profile.nc", engine="h5netcdf") as read:
         xarray.testing.assert_identical(read.load(), profile)

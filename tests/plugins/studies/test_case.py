@@ -72,7 +72,6 @@ OWN_RIG: dict[str, Any] = {
 }
 ACCEPTED = {
     "small": table(),
-    "one name": table(contact_models=["exact"], wear_laws=[{"model": "usfd"}], profiles={}),
     "own rig": table(rig=OWN_RIG),
     "preset, overridden": table(
         rig={
@@ -83,7 +82,6 @@ ACCEPTED = {
             "rolling_speed": "1 m/s",
         }
     ),
-    "preset, the mean speed": table(rig={"preset": "suros", "speed_of": "mean"}),
     "rig, the speed of disc 1": table(rig={**OWN_RIG, "speed_of": "disc_1"}),
     "preset, disc by disc": table(
         rig={"preset": "suros", "disc_1": OWN_RIG["disc_1"], "disc_2": OWN_RIG["disc_2"], "rotational_speed": "600 rpm"}
@@ -142,9 +140,7 @@ def test_the_shipped_case_keeps_the_schema_and_reads_back_the_same(tmp_path: Pat
 @pytest.mark.parametrize(
     "models",
     [
-        ["exact", "exact"],
         ["exact", {"model": "exact"}],
-        ["exact", {"model": "exact", "slip": "consistent"}],
         ["global", "exact", {"model": "global", "total_from": {"model": "exact"}}],
     ],
 )

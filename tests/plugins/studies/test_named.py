@@ -22,12 +22,6 @@ POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficie
 RIG = wl.TwinDisc.suros()
 
 
-def test_the_steel_and_the_study_come_from_a_plugin_like_any_other() -> None:
-    assert wl.material("steel") == wl.steel()
-    assert list(wl.materials()) == ["R200", "R220", "R260", "R260Mn", "R320Cr", "R350HT", "R350LHT", "steel"]
-    assert loader.installed()["case"].origin("tassini2010").entry_point == "sheffield"
-
-
 def test_a_parameter_set_is_looked_up_like_a_law_and_takes_options(install: Install) -> None:
     install("lab", LAB)
     law = wl.wear_law("lab_2026")
@@ -52,14 +46,6 @@ def test_a_parameter_set_says_what_it_was_fitted_for_and_its_range(
     assert law.valid_range == {"wear_index_density": (0.0, 40e6)}
     with pytest.warns(wl.RangeWarning, match=r"from 0.000 N/mm² to 40.00 N/mm²"):
         predict(**{**POINT, "creepage": "10 %"})
-
-
-def test_a_law_with_a_calibration_of_its_own_survives_json(install: Install) -> None:
-    install("lab", LAB)
-    predict = RIG | wl.contact_model("exact") | wl.wear_law("lab_2026")
-    again: wl.Pipeline[...] = wl.Pipeline.model_validate_json(predict.model_dump_json())
-    assert again == predict
-    assert hash(again) == hash(predict)
 
 
 def test_case_files_name_parameter_sets_and_materials(install: Install) -> None:
@@ -91,7 +77,7 @@ LAB_STUDY = """
 """
 
 
-def test_the_provenance_names_where_a_set_a_material_and_a_case_come_from(install: Install) -> None:
+def test_the_provenance_names_where_a_set_a_material_and_a_case_come_from(install: Install, tmp_path: Path) -> None:
     install("lab", LAB.replace("\"title = 'A study of the lab'\"", repr(LAB_STUDY)), version="1.2.3")
     loaded = load_case("lab_study")
     assert loaded == Case(**tomllib.loads(case_text("lab_study")))
@@ -101,39 +87,19 @@ def test_the_provenance_names_where_a_set_a_material_and_a_case_come_from(instal
         assert said["materials"] == {"soft_steel": "lab 1.2.3"}
         assert said["cases"] == {"lab_study": "lab 1.2.3"}
         assert said["wear_laws"] == {"kth": f"wearlaw {wl.__version__}", "usfd": f"wearlaw {wl.__version__}"}
-    (sweep,) = run(loaded).sweeps.values()
-    assert json.loads(sweep.attrs["provenance"]) == provenance(loaded)
-
-
-def test_the_case_of_a_run_has_the_same_provenance_as_the_run(install: Install, tmp_path: Path) -> None:
-    install("lab", LAB, version="1.2.3")
-    first = Case(**tomllib.loads(LAB_STUDY))
-    for name, text in written(first).items():
+    for name, text in written(loaded).items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     again = load_case(str(tmp_path / "case.toml"))
-    assert again == first
-    assert provenance(again) == provenance(first)
-    assert provenance(again)["parameter_sets"] == {"lab_2026": "lab 1.2.3"}
-    assert provenance(again)["materials"] == {"soft_steel": "lab 1.2.3"}
-
-
-@pytest.mark.usefixtures("blank_figures")
-def test_a_run_says_what_it_used(install: Install, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    install("lab", LAB, version="1.2.3")
-    (tmp_path / "own.toml").write_text(LAB_STUDY)
-    monkeypatch.chdir(tmp_path)
-    printed = wearlaw("run", "own.toml").stdout.splitlines()
-    start = printed.index(f"Computed with wearlaw {wl.__version__}")
-    assert printed[start + 1] == "  and lab 1.2.3: parameter set lab_2026, material soft_steel"
-    assert printed[start + 2] == "Results in own-results:"
+    assert again == loaded
+    assert provenance(again) == {**said, "cases": {}}
+    (sweep,) = run(loaded).sweeps.values()
+    assert json.loads(sweep.attrs["provenance"]) == provenance(loaded)
 
 
 @pytest.mark.parametrize(
     ("old", "new", "cause"),
     [
-        ('"soft_steel"', '"soft steel"', "the name of a material must be an identifier, got 'soft steel'"),
         ("wl.steel(youngs_modulus=", "dict(youngs_modulus=", "material 'soft_steel' must be a Material or a class"),
-        ("\"title = 'A study of the lab'\"", "3", "case 'lab_study' must be a str, got 3"),
         ('"lab_tests"', '"lab-tests"', "the name of a test set must be an identifier, got 'lab-tests'"),
     ],
 )

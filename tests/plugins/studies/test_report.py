@@ -76,20 +76,6 @@ def page(written: str) -> Page:
     return Page(written)
 
 
-def test_the_order_is_results_first_and_where_they_come_from_last(page: Page) -> None:
-    headings = [attributes["id"] for tag, attributes in page.elements if tag == "h2"]
-    expected = [
-        "title-one",
-        "contents",
-        "figures",
-        "claims",
-        "results",
-        "section-1",
-        "parameters",
-    ]
-    assert headings == [*expected, "notes", "case", "provenance"]
-
-
 def test_the_page_begins_with_title_main_figure_and_a_table(study: wl.Study, page: Page) -> None:
     tags = [tag for tag, _ in page.elements]
     assert tags.index("h1") < tags.index("figure") < tags.index("table") < tags.index("nav") < tags.index("main")
@@ -97,8 +83,6 @@ def test_the_page_begins_with_title_main_figure_and_a_table(study: wl.Study, pag
         "Least and most over the sweep 'creepage', with the creepage there"
     ]
     assert page.within("header/div/div/table/tbody/tr/th") == [pair.label for pair in study.pairs]
-    first = json.loads(page.within("figure/div/script")[0])
-    assert first == json.loads(json.dumps(plotly_figure(ONE)))
 
 
 def test_the_contents_lead_to_every_part(page: Page) -> None:
@@ -106,8 +90,13 @@ def test_the_contents_lead_to_every_part(page: Page) -> None:
     assert len(set(identifiers)) == len(identifiers)
     targets = {link.removeprefix("#") for link in page.attributes("href")}
     assert {target for target in targets if not target.endswith(".csv")} <= set(identifiers)
-    parts = {str(attributes["id"]) for tag, attributes in page.elements if tag == "h2"} - {"contents"}
-    assert (parts - {"title-one"}) | {"main", "figure-three"} <= targets
+    parts = ["figures", "claims", "results", "section-1", "parameters", "notes", "case", "provenance"]
+    assert [str(attributes["id"]) for tag, attributes in page.elements if tag == "h2"] == [
+        "title-one",
+        "contents",
+        *parts,
+    ]
+    assert {"main", "figure-three", *parts} <= targets
 
 
 def test_nothing_is_loaded_and_plotly_stands_in_the_page_once(page: Page, written: str) -> None:
@@ -145,8 +134,7 @@ def test_the_numbers_of_every_figure_stand_in_the_page(page: Page) -> None:
 
 
 def test_claims_are_a_table_with_theirs_ours_verdict_and_why(page: Page) -> None:
-    assert "2 claims: 1 holds, 1 does not hold." in page.text
-    assert any(one.endswith(": 2 claims: 1 holds, 1 does not hold") for one in page.within("table/caption"))
+    assert "2 claims (holds: 1, does not hold: 1)." in page.text
     head = "Theirs Ours Verdict Why"
     row = "USFD and BRR agree in mild wear. (section 5.2) within 16 % up to 3 N/mm² ✓ holds Within 20 %."
     literal = " ".join(EVIL.split())

