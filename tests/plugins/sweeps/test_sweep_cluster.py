@@ -47,7 +47,7 @@ def test_a_cluster_can_also_hand_results_back(client: Any) -> None:
 
 
 def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers_live_on(client: Any) -> None:
-    client.wait_for_workers(2)  # one may have died before
+    client.wait_for_workers(2, timeout=60)  # one may have died before
     before = set(client.nthreads())
     with pytest.raises(wl.ModelError, match="SystemExit: 0"):
         wl.sweep(ending(), **CONDITIONS, client=client)
