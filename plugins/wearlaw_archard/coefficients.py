@@ -121,31 +121,28 @@ def wear_coefficient(
         result = _scalar(value, source.unit, "value") * target.factor / source.factor
     except wl.UnitError as error:
         raise wl.UnitError(f"{form}, {source.formula}: {error}") from None
-    missing = []
-    for name, given in {"hardness": hardness, "density": density, "friction_coefficient": friction_coefficient}.items():
-        exponent = getattr(target, name) - getattr(source, name)
-        known = None if given is None else _scalar(given, UNITS[name], name)
-        if exponent and known is None:
-            missing.append(EXAMPLES[name])
-        elif exponent and known is not None:
-            result *= known**exponent
+    given = {"hardness": hardness, "density": density, "friction_coefficient": friction_coefficient}
+    known = {name: _scalar(one, EXAMPLES[name][1], name) for name, one in given.items() if one is not None}
+    powers = {name: getattr(target, name) - getattr(source, name) for name in given}
+    missing = [EXAMPLES[name][0] for name, power in powers.items() if power and name not in known]
     if missing:
         raise wl.InputError(
             f"{to}, {target.formula}, from {form}, {source.formula}, needs values of your source: {', '.join(missing)}"
         )
+    result *= math.prod(known[name] ** power for name, power in powers.items() if power)
     if not 0.0 < result < math.inf:
         raise wl.InputError(f"value: as {to}, {target.formula}, it is too small or too large; check the values")
-    return wl.Q(result / wl.scalar_si(wl.Q(1.0, target.unit), target.unit), target.unit) if target.unit else result
+    if not target.unit:
+        return result
+    return wl.Q(result / wl.scalar_si(wl.Q(1.0, target.unit), target.unit), target.unit)
 
-
-UNITS = {"hardness": "GPa", "density": "kg/m^3", "friction_coefficient": ""}
 
 EXAMPLES = {
-    "hardness": 'hardness="2.6 GPa"',
-    "density": 'density="7850 kg/m^3"',
-    "friction_coefficient": "friction_coefficient=0.45",
+    "hardness": ('hardness="2.6 GPa"', "GPa"),
+    "density": ('density="7850 kg/m^3"', "kg/m^3"),
+    "friction_coefficient": ("friction_coefficient=0.45", ""),
 }
-"""Arguments in messages."""
+"""The arguments as messages show them, with their units."""
 
 
 def _form(form: str, argument: str) -> _Form:

@@ -52,37 +52,40 @@ def excess_dissipation(creepage: Array, *others: Any) -> Array:
         ξ, μ, p0, a, E* and the threshold in SI, of one shape; all but the first may be numbers.
     """
     if not creepage.ndim:
-        reduced, threshold, unit = _reduced(*map(float, (creepage, *others)))
-        zone, _, _, square = of_point = _maximum(OF_FLOATS, reduced)
-        level = threshold / zone if zone else math.inf
-        above = _above(OF_FLOATS, level, *of_point) if level * level < square else 0.0
+        zone, mean, level, unit = _reduced(OF_FLOATS, *map(float, (creepage, *others)))
+        crest, square = _maximum(OF_FLOATS, zone, mean)
+        above = _above(OF_FLOATS, level, zone, mean, crest, square) if level * level < square else 0.0
         of_patch: Any = np.float64(zone * zone * above * unit)
         return of_patch  # type: ignore[no-any-return]
     with np.errstate(over="ignore", divide="ignore"):  # a threshold may lie infinitely far above all values
-        reduced, threshold, unit = _reduced(creepage, *others)
-        zone, _, _, square = of_points = _maximum(OF_ARRAYS, reduced)
-        level = threshold / zone
-        reached = np.nonzero(level * level < square)
-    excess = np.zeros(creepage.shape)
-    excess[reached] = _above(OF_ARRAYS, level[reached], *(values[reached] for values in of_points))
-    energy: Array = zone * zone * excess * unit
+        zone, mean, level, unit = _reduced(OF_ARRAYS, creepage, *others)
+    excess, near = np.zeros(creepage.shape), np.nonzero(level < mean + 0.5 * zone)  # f nowhere exceeds A + h/2
+    if not near[0].size:
+        return excess
+    zone, mean, level = zone[near], mean[near], level[near]
+    crest, square = _maximum(OF_ARRAYS, zone, mean)
+    above, reached = np.zeros(zone.shape), np.nonzero(level * level < square)
+    above[reached] = _above(OF_ARRAYS, *(values[reached] for values in (level, zone, mean, crest, square)))
+    excess[near] = zone * zone * above
+    energy: Array = excess * unit
     return energy
 
 
 def _reduced(
-    creepage: Any, friction: Any, max_pressure: Any, half_width: Any, modulus: Any, threshold: Any
-) -> tuple[Any, Any, Any]:
-    """Return d, the threshold over μp0 μa/R, and the unit of the energy [N/m]."""
+    of: Functions, creepage: Any, friction: Any, max_pressure: Any, half_width: Any, modulus: Any, threshold: Any
+) -> tuple[Any, Any, Any, Any]:
+    """Return h, A, the threshold in the unit of f, and that of the energy over h² [N/m]."""
     saturation = 2.0 * friction * max_pressure / modulus
-    scale = friction * max_pressure * saturation
-    return creepage / saturation, threshold / scale, scale * half_width
+    scale, reduced = friction * max_pressure * saturation, creepage / saturation
+    zone = of.minimum(reduced, 1.0)
+    level = threshold / (scale * zone) if of is OF_ARRAYS or zone else math.inf
+    return zone, of.maximum(2.0 - reduced, reduced), level, scale * half_width
 
 
-def _maximum(of: Functions, reduced: Number) -> tuple[Number, Number, Number, Number]:
-    """Return h, A, the t at which f has its maximum, c, and the square of the maximum."""
-    zone, mean = of.minimum(reduced, 1.0), of.maximum(2.0 - reduced, reduced)
+def _maximum(of: Functions, zone: Number, mean: Number) -> tuple[Number, Number]:
+    """Return the t at which f has its maximum, c, and the square of the maximum."""
     crest = 2.0 * zone / (of.sqrt(mean * mean + 8.0 * zone * zone) + mean)
-    return zone, mean, crest, (mean + zone * crest) ** 2 * (1.0 - crest) * (1.0 + crest)
+    return crest, (mean + zone * crest) ** 2 * (1.0 - crest) * (1.0 + crest)
 
 
 def _above(of: Functions, level: Number, zone: Number, mean: Number, crest: Number, highest: Number) -> Number:

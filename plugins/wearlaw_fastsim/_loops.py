@@ -110,6 +110,34 @@ def slipping(
 ROWS, NODES = "float64[:, ::1]", "float64[:, :, ::1]"
 
 
+@wl.compiled_loop(f"void(boolean, {ROWS}, {ROWS}, float64[::1], float64[::1], int64, {NODES})")
+def stick_loop(
+    elliptic: bool, strips: Array, start: Array, share: Array, weight: Array, first: int, nodes: Array
+) -> None:
+    """Fill the nodes of zones that stick, from the node `first` on.
+
+    `start` holds the distance of the zones from the leading edge, their length, and the traction where they start.
+    """
+    along, across, turning, half_length, greatest = strips[0], strips[1], strips[2], strips[3], strips[4]
+    before, span, from_x, from_y = start[0], start[1], start[2], start[3]
+    for k in range(share.size):
+        row = first + k
+        x, length, bound, traction_x, traction_y = (
+            nodes[0, row],
+            nodes[1, row],
+            nodes[2, row],
+            nodes[3, row],
+            nodes[4, row],
+        )
+        nodes[5:, row] = 0.0
+        for i in range(x.size):
+            u = before[i] + share[k] * span[i]
+            q_x, q_y = stuck(along[i], across[i], turning[i], from_x[i], from_y[i], before[i], u)
+            level, q_x, q_y = sticking(elliptic, q_x, q_y, u)
+            x[i], length[i] = half_length[i] * (u - 1.0), half_length[i] * (weight[k] * span[i])
+            bound[i], traction_x[i], traction_y[i] = greatest[i] * level, greatest[i] * q_x, greatest[i] * q_y
+
+
 @wl.compiled_loop(f"void(boolean, {', '.join([ROWS] * 5)})")
 def lag_loop(elliptic: bool, strips: Array, tangent: Array, left: Array, kappa: Array, lagged: Array) -> None:
     """Fill in -κ and w across for the steps from node to node."""

@@ -253,6 +253,10 @@ def _stick(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) 
     zone = Nodes(*nodes[:, part])
     share, weight = _gauss(len(zone.x))
     span = end - start.u
+    if strips.compiled:
+        begin = np.stack([start.u, span, start.x, start.y])
+        loops.stick_loop(strips.elliptic, _flat(strips.rows), _flat(begin), share, weight, part.start, _flat(nodes, 2))
+        return
     along, across, turning, half_length, greatest, *_ = strips.rows
     u = start.u + np.multiply.outer(share, span)
     traction = loops.stuck(along, across, turning, start.x, start.y, start.u, u)

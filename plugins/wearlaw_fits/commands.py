@@ -13,7 +13,6 @@ import click
 from wearlaw.errors import FitError, PlasticityWarning, shown
 from wearlaw.models.law import Law
 from wearlaw.parameters import numbers
-from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 from wearlaw_fits.comparison import Comparison, Names, Predictor, compare_named
@@ -154,7 +153,8 @@ def fit(
         for text in stages:
             predict = predict | stage(text)
         if law is not None:
-            predict = _with_law(predict, law_of(law, given), names, notes)
+            predict = predict | law_of(law, given)
+            _note_fixed(predict.laws[0], names, notes)
         with notes.of("fit"), Bar(bootstrap) as bar:
             bar.stage("fitting")
             settings |= {"friction_coefficient": friction, "bounds": _bounds(bounds), "bootstrap": bootstrap}
@@ -177,8 +177,8 @@ def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | flo
     return found
 
 
-def _with_law(contact: Pipeline[...], law: Law, free: list[str], notes: Notes) -> Pipeline[...]:
-    """Return the pipeline with the law to fit, and note the values of its fixed parameters."""
+def _note_fixed(law: Law, free: list[str], notes: Notes) -> None:
+    """Note the numbers of a law that are not fitted."""
     kept = [
         f"{name} = {value!r}"
         for name, value in numbers(law.explicit()).items()
@@ -186,7 +186,6 @@ def _with_law(contact: Pipeline[...], law: Law, free: list[str], notes: Notes) -
     ]
     if kept:
         notes.add(f"fit: not fitted, {', '.join(kept)}")
-    return contact.with_law(law)
 
 
 @click.command()

@@ -308,12 +308,13 @@ def compare_named(
     unit = _law(given[0], outcome).outcome.unit
     tests = tests.measuring([name for one in given for name in named_outcomes(_pipeline(one).laws)])
     notes = Notes()
-    there, name = ~np.isnan(tests.measured(outcome, unit)), name_of(outcome)
+    measured, name = tests.measured(outcome, unit), name_of(outcome)
+    there = ~np.isnan(measured)
     if not there.any():
         raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
     if not there.all():
         notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out")
-    task = _Task(tests[there], outcome, friction_coefficient, notes)
+    task = _Task(tests[there], outcome, unit, measured[there], friction_coefficient, notes)
     compared = [task.compared(*one) for one in named]
     how = ""
     if cross_validate is not None:
@@ -398,28 +399,29 @@ def _labels(models: Sequence[Model]) -> list[str]:
 
 @dataclass(frozen=True)
 class _Task:
-    """The tests with an outcome, on which predictors are compared; `notes` collects remarks."""
+    """The tests with an outcome, measured in SI, on which predictors are compared; `notes` collects remarks."""
 
     tests: WearTests
     outcome: str
+    unit: str
+    measured: Array
     friction: Any
     notes: Notes
 
     def compared(self, names: Names, predictor: Predictor) -> Compared:
         """Return a predictor with its predictions."""
-        law = _law(predictor, self.outcome)
-        measured = self.tests.measured(self.outcome, law.outcome.unit)
         predicted = self._predicted(names.label, predictor, self.tests, self.friction, self.notes)
-        errors = agreement(predicted, measured)
+        errors = agreement(predicted, self.measured)
         if errors.without_ratio:
-            sign = "zero or negative" if ((predicted < 0) | (measured < 0)).any() else "zero"
+            sign = "zero or negative" if ((predicted < 0) | (self.measured < 0)).any() else "zero"
             self.notes.add(
                 f"{names.label}: either the predicted or the measured {name_of(self.outcome)} is {sign} in"
                 f" {errors.without_ratio} of {len(self.tests)} tests, which no factor can express; these count first in"
                 " the ranking"
             )
-        known = set(law.calibration.tests if law.calibration else ())
-        seen = sum(digest in known for digest in self.tests.digests(self.outcome, law.outcome.unit)) if known else 0
+        calibration = _law(predictor, self.outcome).calibration
+        known = set(calibration.tests if calibration else ())
+        seen = sum(digest in known for digest in self.tests.digests(self.outcome, self.unit))
         found = Compared(names, _pipeline(predictor), predicted, errors, seen)
         return self._with_aic(found, predictor) if isinstance(predictor, Fit) else found
 
@@ -440,8 +442,7 @@ class _Task:
                     " of folds, or free fewer parameters"
                 ) from error
             bar(1)
-        measured = self.tests.measured(self.outcome, _law(fit, self.outcome).outcome.unit)
-        return replace(old, predicted=predicted, agreement=agreement(predicted, measured), in_sample=0)
+        return replace(old, predicted=predicted, agreement=agreement(predicted, self.measured), in_sample=0)
 
     def folds(self, given: Sequence[Predictor], how: Folds) -> tuple[list[NDArray[np.intp]], str]:
         """Return the indices of the tests in each fold, and the way in words.
@@ -499,9 +500,8 @@ class _Task:
 
     def _with_aic(self, found: Compared, fit: Fit) -> Compared:
         """Return a predictor with the AIC of its fit; add a note if it was not fitted to exactly these tests."""
-        fitted_to = fit.tests.measuring([self.outcome])
-        there = ~np.isnan(fitted_to.measured(self.outcome, _law(fit, self.outcome).outcome.unit))
-        if [one.observable for one in fit.observations] != [self.outcome] or fitted_to[there] != self.tests:
+        digests, *others = (one.tests.digests(one.observable, one.unit) for one in fit.observations)
+        if others or digests != self.tests.digests(self.outcome, self.unit):
             self.notes.add(f"{found.names.label}: was fitted to other tests or measurements, so its AIC is left blank")
             return found
         free = len(fit.parameters)

@@ -11,7 +11,7 @@ import scipy
 
 from wearlaw.arrays import Array
 from wearlaw.errors import InputError, UnitError, shown
-from wearlaw.units.quantities import Q, Quantity, QuantityLike, coefficient, parse, real_array, text_of
+from wearlaw.units.quantities import Q, Quantity, QuantityLike, parse, real_array, text_of
 
 Value = Quantity | float
 """A quantity, or a plain number if it has no unit."""
@@ -88,14 +88,10 @@ def lognormal(median: QuantityLike | float, geometric_standard_deviation: float)
         A factor above 1. Two thirds of the values lie within it of the median.
     """
     name = "geometric_standard_deviation"
-    try:
-        factor = coefficient(geometric_standard_deviation, name)
-    except UnitError:
-        factor = np.zeros(())
-    if not (factor.ndim == 0 and factor > 1.0):
-        given = shown(geometric_standard_deviation)
-        raise InputError(f"{name}: must be a factor above 1, such as 1.2; got {given}")
-    return Distribution("lognormal", _value(median, "median"), float(factor))
+    factor = _value(geometric_standard_deviation, name)
+    if isinstance(factor, pint.Quantity) or not factor > 1.0:
+        raise InputError(f"{name}: must be a factor above 1, such as 1.2; got {shown(geometric_standard_deviation)}")
+    return Distribution("lognormal", _value(median, "median"), factor)
 
 
 def published_range() -> PublishedRange:

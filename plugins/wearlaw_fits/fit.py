@@ -333,10 +333,10 @@ def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Seq
     at_places = {place: float(values[name][0]) for name, place in task.free.places.items()}
     for one in observations:
         nothing = one.predicted(values)[0] <= FLOOR
-        if one.law is not None and one.scatter == "relative" and nothing.any():
+        if one.scatter == "relative" and nothing.any():
             raise FitError(
                 f"the best fit predicts no {name_of(one.observable)} in {test_names(one.tests, nothing)}; leave these"
-                " tests out"
+                ' tests out, or fit with scatter="absolute"'
             )
     try:
         stages = changed_parts(given.stages, "stage", at_places)

@@ -133,17 +133,33 @@ def observe(
     """
     of_contact = free.of_contact
     check_loads_stay(pipeline, "fit", of_contact)
+    tests = dataclasses.replace(
+        tests, labels=tuple(label or f"number {number}" for number, label in enumerate(tests.labels, 1))
+    )
     outcomes: dict[str, int | None] = {**named_outcomes(pipeline.laws), TRACTION: None}
     found = []
     for name, index in outcomes.items():
         law = None if index is None else pipeline.laws[index]
         values = tests.measured(name, UNITS[TRACTION] if law is None else law.outcome.unit)
-        measured = not np.isnan(values).all()
+        there = ~np.isnan(values)
         needed = FRICTION in free.names if index is None else index in free.freed_laws
-        if needed and not measured:
+        if needed and not there.any():
             raise FitError(f"tests: none of the {len(tests)} tests has a {name_of(name)}, which is fitted")
-        if needed or (of_contact and measured):
-            found.append(_observe(name, index, values, pipeline, tests, free, friction, scatter))
+        if not (needed or (of_contact and there.any())):
+            continue
+        selected, measured = tests[there], values[there]
+        conditions = selected.conditions(pipeline.contact_model, friction, pipeline.rig)
+        if FRICTION in free.names:
+            conditions[FRICTION] = friction
+        if of_contact:  # else the measured traction would replace the one that follows from the parameters
+            conditions.pop(TRACTION, None)
+        problem = pipeline.posed(conditions, of_one_patch="fit")
+        stated = name == WEAR and tests.wear_rate_uncertainty is not None
+        chosen: Scatter = "uncertainty" if stated else scatter
+        divisor = _divisor(name, selected, measured, chosen)
+        found.append(
+            Observations(name, index, pipeline, free.places, selected, measured, conditions, problem, chosen, divisor)
+        )
     if not found:
         raise FitError(
             f"tests: none of the {len(tests)} tests has a measured {' or '.join(map(name_of, outcomes))}, to which"
@@ -152,49 +168,25 @@ def observe(
     return found
 
 
-def _observe(
-    observable: str,
-    index: int | None,
-    values: Array,
-    pipeline: Pipeline[...],
-    tests: WearTests,
-    free: FreeParameters,
-    friction: float | None,
-    scatter: Literal["relative", "absolute"],
-) -> Observations:
-    there = ~np.isnan(values)
-    labels = tuple(label or f"number {number}" for number, label in enumerate(tests.labels, 1))
-    selected, measured = dataclasses.replace(tests, labels=labels)[there], values[there]
-    stated = observable == WEAR and tests.wear_rate_uncertainty is not None
-    chosen: Scatter = "uncertainty" if stated else scatter
-    conditions = selected.conditions(pipeline.contact_model, friction, pipeline.rig)
-    if FRICTION in free.names:
-        conditions = {**conditions, FRICTION: friction}
-    if free.of_contact:  # else the measured traction would replace the one that follows from the parameters
-        conditions.pop(TRACTION, None)
-    problem = pipeline.posed(conditions, of_one_patch="fit")
-    divisor = np.ones_like(measured)
-    if chosen == "relative":
-        zero = measured <= 0.0
-        if index is None or pipeline.laws[index].zero_in_stick:
-            zero = zero | (problem.rigid_slip == 0.0)
-        if zero.any():
-            raise FitError(
-                f"{observable}: is zero or negative, or the creepage is zero, in {test_names(selected, zero)}, which no"
-                ' scatter by a factor can express; leave these tests out, or fit with scatter="absolute"'
-            )
-    elif chosen == "absolute":
-        divisor = np.full_like(measured, np.sqrt(np.mean(measured**2)) or 1.0)
-    else:
-        divisor = selected.columns["wear_rate_uncertainty"]
+def _divisor(observable: str, tests: WearTests, measured: Array, scatter: Scatter) -> Array:
+    """Return the divisor of the residuals, (n,), or raise an error if measurements cannot scatter in that way."""
+    if scatter == "absolute":
+        return np.full_like(measured, np.sqrt(np.mean(measured**2)) or 1.0)
+    if scatter == "uncertainty":
+        divisor = tests.columns["wear_rate_uncertainty"]
         if np.isnan(divisor).any():
             raise FitError(
-                f"wear_rate_uncertainty: is missing in {test_names(selected, np.isnan(divisor))}; give it for all tests"
+                f"wear_rate_uncertainty: is missing in {test_names(tests, np.isnan(divisor))}; give it for all tests"
                 " with a wear rate, or for none"
             )
-    return Observations(
-        observable, index, pipeline, free.places, selected, measured, conditions, problem, chosen, divisor
-    )
+        return divisor
+    zero = measured <= 0.0
+    if zero.any():
+        raise FitError(
+            f"{observable}: is zero or negative in {test_names(tests, zero)}, which no scatter by a factor can express;"
+            ' leave these tests out, or fit with scatter="absolute"'
+        )
+    return np.ones_like(measured)
 
 
 def test_names(tests: WearTests, which: NDArray[np.bool_]) -> str:

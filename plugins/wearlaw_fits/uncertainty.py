@@ -106,8 +106,6 @@ def uncertainty(
     expect_pipeline(pipeline)
     if not pipeline.laws:
         pipeline.wear_law  # noqa: B018  raises
-    of_fits = {name: value for one in inputs for name, value in one.at(np.array(0.5)).items() if isinstance(name, str)}
-    pipeline.rig.check_names({**conditions, **of_fits})
     of_stages = of_numbers(pipeline, "stage", stage or {})
     check_loads_stay(pipeline, "uncertainty", [one.name for one in of_stages])
     distributed = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}

@@ -175,7 +175,7 @@ class WearTests:
         for name in COLUMNS:
             try:
                 if name in given:
-                    columns[name] = _in_si(name, given[name])
+                    columns[name] = _in_si(name, COLUMNS[name].unit, given[name])
             except UnitError as error:
                 wrong.append(f"{name}: {error}")
         others = {name: values for name, values in given.items() if name not in COLUMNS}
@@ -231,11 +231,10 @@ class WearTests:
         """
         if name not in self.outcomes:
             return self.columns.get(name, np.full(len(self), np.nan))
-        value = self.outcomes[name]
         try:
-            return plain(value) * si_factor(Q(1.0, _unit(value)), unit)
+            return _in_si(name, unit, self.outcomes[name])
         except UnitError as error:
-            raise DataError(f"{name}: the tests give it in {_unit(value) or 'no unit'}, {error}") from None
+            raise DataError(f"{name}: {error}") from None
 
     def digests(self, name: str, unit: str) -> tuple[str, ...]:
         """Return a digest of each test: of its conditions and one measurement as in `measured`."""
@@ -293,12 +292,11 @@ class WearTests:
         import pandas as pd
 
         named = {"label": self.labels} if any(self.labels) else {}
-        columns = {head(name): self._quantity(name).magnitude for name in self.columns}
-        others, outcomes = (
-            {f"{name} [{_unit(value) or '-'}]": plain(value) for name, value in some.items()}
-            for some in (self.other_conditions, self.outcomes)
-        )
-        return pd.DataFrame(named | others | columns | outcomes)
+        columns = {
+            head(name) if name in COLUMNS else f"{name} [{_unit(values) or '-'}]": plain(values)
+            for name, values in self._values().items()
+        }
+        return pd.DataFrame(named | columns)
 
     def __len__(self) -> int:
         return len(self.labels)
@@ -317,24 +315,9 @@ class WearTests:
     def __iter__(self) -> Iterator[Self]:
         return (self[i] for i in range(len(self)))
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, WearTests):
-            return NotImplemented
-        one, two = (
-            {**some.columns, **{(name, _unit(value)): plain(value) for name, value in some._as_given().items()}}
-            for some in (self, other)
-        )
-        return ((self.labels, self.source, one.keys()) == (other.labels, other.source, two.keys())) and all(
-            np.array_equal(values, two[name], equal_nan=True) for name, values in one.items()
-        )
-
     def __repr__(self) -> str:
-        every = {
-            **self.other_conditions,
-            **{name: self._quantity(name) for name in self.columns},
-            **self.outcomes,
-        }
-        lines = [f"{len(self)} test{'s' if len(self) > 1 else ''}", *(self._range(*one) for one in every.items())]
+        every = self._values().items()
+        lines = [f"{len(self)} test{'s' if len(self) > 1 else ''}", *(self._range(*one) for one in every)]
         return "\n  ".join(lines) + (f"\nfrom {self.source}" if self.source else "")
 
     def _range(self, name: str, values: Values) -> str:
@@ -347,8 +330,10 @@ class WearTests:
         counted = f" in {there.size}" if there.size < len(self) else ""
         return f"{name:22} {ends} {unit}".rstrip() + counted
 
-    def _as_given(self) -> dict[str, Values]:
-        return {**self.other_conditions, **self.outcomes}
+    def _values(self) -> dict[str, Values]:
+        """Return all columns: the conditions of discs in their usual units, the others as given."""
+        of_discs = {name: self._quantity(name) for name in self.columns}
+        return {**self.other_conditions, **of_discs, **self.outcomes}
 
     def _quantity(self, name: str) -> Quantity:
         missing = np.full(len(self), np.nan)
@@ -422,7 +407,7 @@ def _faulty_values(
 def _with_traction(columns: Mapping[str, Array]) -> dict[str, Array]:
     """Replace the columns from which the traction coefficient follows by the traction coefficient."""
     kept = {name: values for name, values in columns.items() if name not in (*MEASURED_FORCES, "rolling_speed")}
-    with np.errstate(divide="ignore", over="ignore", under="ignore"):  # `_faulty_values` reports the result
+    with np.errstate(divide="ignore"):  # `_faulty_values` reports the result
         force = columns.get("tangential_force")
         if "frictional_heat" in columns:
             force = columns["frictional_heat"] / (abs(columns["creepage"]) * columns["rolling_speed"])
@@ -431,9 +416,8 @@ def _with_traction(columns: Mapping[str, Array]) -> dict[str, Array]:
     return {name: kept[name] for name in COLUMNS if name in kept}
 
 
-def _in_si(name: str, values: Values) -> Array:
-    """Return a column as SI floats, NaN included."""
-    unit = COLUMNS[name].unit
+def _in_si(name: str, unit: str, values: Values) -> Array:
+    """Return a column as SI floats, NaN included, or raise a `UnitError` if `unit` is of another dimension."""
     if unit and not isinstance(values, pint.Quantity):
         raise UnitError(
             f"has no unit; give it in {unit} or another unit of that dimension, in a file as '{name} [{unit}]'"
@@ -442,8 +426,7 @@ def _in_si(name: str, values: Values) -> Array:
         factor = si_factor(Q(1.0, _unit(values)), unit)
     except UnitError as error:
         raise UnitError(f"got {_unit(values) or 'no unit'}, {error}; give it in {unit or 'plain numbers'}") from None
-    with np.errstate(over="ignore"):  # an overflow is reported as not finite
-        return plain(values) * factor
+    return plain(values) * factor
 
 
 def _values(value: object) -> Values:

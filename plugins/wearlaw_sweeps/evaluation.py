@@ -77,8 +77,7 @@ class Job:
 
     def outputs(self, prediction: Prediction, part: Points) -> Outputs:  # noqa: ARG002
         """Return the outputs of a prediction at some of the points."""
-        # At a single point, magnitudes are plain numbers.
-        return {name: np.ascontiguousarray(magnitude(prediction[name], unit)) for name, unit in self.units.items()}
+        return {name: np.asarray(magnitude(prediction[name], unit)) for name, unit in self.units.items()}
 
     def attributes(self, name: str) -> dict[str, str]:
         """Return the attributes of an output in results: its unit and its long name."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -101,6 +101,8 @@ class Candidates:
     @property
     def gaps(self) -> Array:
         """The samples at the present roll, not negative [m]."""
+        if not self.turned.any():
+            return self.samples
         return np.maximum(self.samples + self.tilts * self.turned[:, None], 0.0)
 
     def arc_at(self, offset: Array) -> Array:
@@ -162,8 +164,8 @@ class Candidates:
             array[rows] = values
 
     def joined(self, other: Candidates) -> tuple[Candidates, NDArray[np.intp]]:
-        """Return the places of both in the order of their positions, and which of this, then the other, each is."""
-        order = np.argsort(np.concatenate([self.point, other.point]), kind="stable")
+        """Return the places of both in the order of their wheels, and which of this, then the other, each is."""
+        order = np.argsort(np.concatenate([self.wheel, other.wheel]), kind="stable")
         found = {
             name: np.concatenate([getattr(self, name), getattr(other, name)])[order]
             for name in self.__dataclass_fields__
@@ -173,25 +175,29 @@ class Candidates:
         return Candidates(position=Position(*(np.concatenate(pair)[order] for pair in pairs)), **found), order
 
 
-def candidates(section: Section, position: Position, touching: Touching, spacing: Array, among: int = 0) -> Candidates:
-    """Return all places where wheels come close to their rails.
+def candidates(section: Section, position: Position, touching: Touching, spacing: Array) -> Candidates:
+    """Return all places where wheels come close to their rails, without samples yet.
 
-    Positions and spacings of samples [m] are of shape (positions, sides). `among` is the number of positions of the
-    task, as in `searched`.
+    Positions and spacings of samples [m] are of shape (positions, sides).
     """
     point, side, number = np.nonzero(~np.isnan(touching.arc))
     here = Position(*(array[point, side] for array in position))
     arc = touching.arc[point, side, number]
     place = placed(section, here, arc)
-    count = arc.size
-    samples, arcs = np.empty((2, count, SAMPLES))
-    found = Candidates(
+    step, none = spacing[point, side], np.empty((arc.size, 0))
+    return Candidates(
         point, side, number, here, arc, touching.gap[point, side, number], place.angle,
-        place.y + place.z * np.tan(place.angle), np.empty(count), np.empty(count), samples, arcs,
-        0.5 * curvature_along(section, here, place, arc), np.zeros((count, len(LINEAR))), np.zeros((count, SAMPLES)),
-        np.zeros(count),
+        place.y + place.z * np.tan(place.angle), -step * (SAMPLES // 2), step, none, none,
+        0.5 * curvature_along(section, here, place, arc), np.zeros((arc.size, len(LINEAR))), none, np.zeros(arc.size),
     )  # fmt: skip
-    sample(section, found, np.arange(count), spacing[point, side], among)
+
+
+def sampled(section: Section, found: Candidates, among: int = 0) -> Candidates:
+    """Return places with the gaps around them; `among` is the number of positions of the task, as in `searched`."""
+    count = found.arc.size
+    samples, arcs = np.empty((2, count, SAMPLES))
+    found = replace(found, samples=samples, arcs=arcs, tilts=np.zeros((count, SAMPLES)))
+    sample(section, found, np.arange(count), found.step, among)
     return found
 
 
@@ -244,14 +250,13 @@ def sample(section: Section, found: Candidates, rows: NDArray[np.intp], spacing:
         found.samples[some] = np.maximum(found.samples[some], 0.0)
 
 
-def separated(found: Candidates, saddle: Array, penetration: Array, share: Array, joins: bool) -> Candidates:
-    """Return the places that are patches of their own, each with the gap on its own side of the saddles between them.
-
-    Places with too few samples between two others belong to them.
+def distinct(found: Candidates, saddle: Array, penetration: Array, share: Array, joins: bool) -> NDArray[np.bool_]:
+    """Return which places are patches of their own.
 
     Parameters
     ----------
     found : Candidates
+        Places, with or without samples.
     saddle : ndarray
         Vertical gap of the saddle between each place and the first one of its wheel [m].
     penetration : ndarray
@@ -261,27 +266,36 @@ def separated(found: Candidates, saddle: Array, penetration: Array, share: Array
     joins : bool
         Whether places that lie nearly in the plane of the first one are one patch with it, whatever the saddle.
     """
-    own = (found.number == 0) | ((found.gap < SPARE * penetration) & (saddle > share * penetration))
+    own = (found.gap < SPARE * penetration) & (saddle > share * penetration)
     first = np.zeros(found.wheel.max(initial=-1) + 1, dtype=np.intp)
     first[found.wheel[found.number == 0]] = np.flatnonzero(found.number == 0)
     first = first[found.wheel]
     apart = np.abs(found.arc - found.arc[first])
-    own &= (found.number == 0) | (apart > SPACING)  # a place may be listed twice
+    own &= apart > SPACING  # a place may be listed twice
     if joins:
         level = np.abs(found.angle - found.angle[first]) < LEVEL_ANGLE
-        own &= (found.number == 0) | ~(level & (apart < 0.5 * SAMPLES * found.step[first]))
-    kept = found.part(own)
-    order = np.argsort(kept.wheel, kind="stable")
+        own &= ~(level & (apart < 0.5 * SAMPLES * found.step[first]))
+    return np.asarray(own | (found.number == 0))
+
+
+def separated(found: Candidates) -> Candidates:
+    """Return patches, each with the gap on its own side of the saddles between them; changes their samples.
+
+    Places with too few samples between two others belong to them.
+    """
+    wheel = found.wheel
+    several = np.flatnonzero(np.bincount(wheel)[wheel] > 1)
+    samples = found.samples[several]
+    order = several[np.argsort(wheel[several], kind="stable")]
     for shift in (1, 2):
         for one, other in ((order[shift:], order[:-shift]), (order[:-shift], order[shift:])):
-            same = kept.wheel[one] == kept.wheel[other]
-            _cut(kept, one[same], kept.arc[other[same]])
-    narrow = (np.isfinite(kept.samples).sum(axis=-1) < NEED) & (kept.number > 0)
-    if narrow.any():
-        wide = np.ones(found.number.shape, dtype=np.bool_)
-        wide[np.flatnonzero(own)[narrow]] = False
-        return separated(found.part(wide), saddle[wide], penetration[wide], share[wide], joins)
-    return kept
+            same = wheel[one] == wheel[other]
+            _cut(found, one[same], found.arc[other[same]])
+    narrow = several[(np.isfinite(found.samples[several]).sum(axis=-1) < NEED) & (found.number[several] > 0)]
+    if not narrow.size:
+        return found
+    found.samples[several] = samples
+    return separated(found.part(np.delete(np.arange(wheel.size), narrow)))
 
 
 def _cut(found: Candidates, rows: NDArray[np.intp], neighbour: Array) -> None:

@@ -28,7 +28,17 @@ from numpy.typing import NDArray
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_wheelset import _half_space, _normal
-from wearlaw_wheelset._candidates import SAMPLES, SEPARATE, SPACING, Candidates, candidates, sample, separated
+from wearlaw_wheelset._candidates import (
+    SAMPLES,
+    SEPARATE,
+    SPACING,
+    Candidates,
+    candidates,
+    distinct,
+    sample,
+    sampled,
+    separated,
+)
 from wearlaw_wheelset._motion import Creepages, Place, creepages, curvature_along, placed, roll_rate
 from wearlaw_wheelset._search import Position, Section, Touching, both_sides, searched, searched_again
 from wearlaw_wheelset._search_loops import LEAST_LEVER
@@ -367,18 +377,21 @@ class Balance:
         if known:
             np.maximum.at(spacing, self.found.wheel, self.found.step)
         position = both_sides(task.displacement[rows], roll, task.yaw[rows])
-        places = candidates(self.section, position, touching, spacing.reshape(-1, 2)[rows], self.roll.size)
+        places = candidates(self.section, position, touching, spacing.reshape(-1, 2)[rows])
         saddle = touching.saddle[places.point, places.side, places.number]
-        places = replace(places, point=rows[places.point])
-        first = np.flatnonzero(places.number == 0)
+        places, first = replace(places, point=rows[places.point]), places.number == 0
+        lowest = places.part(first)
         if not known:
-            self.whole[places.wheel[first]] = self._alone(places, first)
+            lowest = sampled(self.section, lowest, self.roll.size)
+            self.whole[lowest.wheel] = self._alone(lowest)
+            places.start[first], places.step[first] = lowest.start, lowest.step
         joins = self.pressure == "half_space"
-        kept = separated(places, saddle, self.whole[places.wheel], self.share[places.point], joins)
+        own = distinct(places, saddle, self.whole[places.wheel], self.share[places.point], joins)
+        kept = sampled(self.section, places.part(own if known else own & ~first), self.roll.size)
+        kept = separated(kept if known else lowest.joined(kept)[0])
         change = np.zeros(self.roll.shape)
         change[rows] = roll - self.sampled[rows]
         self.roll[rows], self.sampled[rows], self.height[rows] = roll, roll, touching.least
-        lowest = places.part(first)
         place = Place(*(array.reshape(-1, 2) for array in placed(self.section, lowest.position, lowest.arc)))
         self.lever[rows] = lowest.lever.reshape(-1, 2)
         if task.free:
@@ -448,13 +461,13 @@ class Balance:
                 f" {grip[point]:.4g} N*m under this load"
             )
 
-    def _alone(self, found: Candidates, rows: NDArray[np.intp]) -> Array:
+    def _alone(self, found: Candidates) -> Array:
         """Return the vertical penetration if one patch of each wheel carries the whole load, and widen its samples."""
-        penetration = self.whole[found.wheel[rows]]
-        open_ = np.arange(rows.size)
+        penetration = self.whole[found.wheel]
+        open_ = np.arange(found.wheel.size)
         widest = self._spacing if self.pressure == "half_space" else SPACING * 2.0**WIDENINGS
         while open_.size:
-            part = found.part(rows[open_])
+            part = found if open_.size == found.wheel.size else found.part(open_)
             load = self.task.load[part.point, part.side] / part.cosine
             depth, power, step, before = penetration[open_], np.full(open_.size, 1.5), 0.0 * load, 0.0 * load
             patch: Any = None
@@ -467,7 +480,7 @@ class Balance:
                 depth = depth * np.exp(step)
             penetration[open_], self.power[part.wheel] = depth, power
             open_ = open_[patch.narrow & (part.step < widest)]
-            sample(self.section, found, rows[open_], 2.0 * found.step[rows[open_]], self.roll.size)
+            sample(self.section, found, open_, 2.0 * found.step[open_], self.roll.size)
         return penetration
 
     def _penetrated(self, part: Candidates, depth: Array, strips: int) -> _normal.StripPatch:

@@ -37,6 +37,7 @@ def test_a_configuration_error_survives_pickling() -> None:
     ("word", "known", "meant"),
     [
         ("Exakt", ["fastsim", "exact"], "exact"),
+        ("KTH", ["usfd", "kth"], "kth"),
         ("creepage", ["normal_force", "longitudinal_creepage", "lateral_creepage"], "longitudinal_creepage"),
         ("friction", ["traction_coefficient", "friction_coefficient"], "friction_coefficient"),
         ("low_speed", ["coefficient.high_speed", "coefficient.low_speed"], "coefficient.low_speed"),

@@ -111,13 +111,6 @@ def test_mistakes_are_one_message_and_leave_no_folder(folder: Path) -> None:
     assert files(folder) - {"cut.mat"} == before
 
 
-def test_a_reader_is_shown_with_its_fields() -> None:
-    shown = wearlaw("show", "contact_mat").stdout
-    assert shown.startswith("contact_mat: a reader of wearlaw")
-    assert "  cksi = None\n      Longitudinal creepage as CONTACT prints it, CKSI [-]; None to derive it." in shown
-    assert_refused(wearlaw("check", "contact_mat"), "checks: needs a rig, a contact model, a stage or a law")
-
-
 def test_many_files_are_printed_in_blocks_as_wide_as_the_terminal(folder: Path) -> None:
     names = [f"flange.{number:04}.mat" for number in range(15)]
     for name in names:

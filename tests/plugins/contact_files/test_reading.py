@@ -186,14 +186,6 @@ def test_a_batch_of_files_has_the_results_of_each_of_them() -> None:
         assert one.wear_rate_error.m == pytest.approx(alone.wear_rate_error.m, rel=1e-12)
 
 
-def test_many_contacts_are_not_solved_block_by_block() -> None:
-    batch = wl.read_contact([FILES["tread"], FILES["flange"]] * 6)
-    found = wl.Prediction.of(batch, wl.wear_law("usfd"))
-    assert found.wear_rate.m == pytest.approx(np.tile(found.wear_rate.m[:2], 6), rel=1e-12)
-    assert found.mean_slip.m == pytest.approx(np.tile(found.mean_slip.m[:2], 6), rel=1e-12)
-    assert found.wear_rate_error.m == pytest.approx(np.tile(found.wear_rate_error.m[:2], 6), rel=1e-12)
-
-
 def test_files_that_do_not_fit_together_are_refused(install: Install, tmp_path: Path) -> None:
     with pytest.raises(wl.InputError, match=r"half_space.0001.mat': has no radius of 'wheel', but '.*flange"):
         wl.read_contact([FILES["tread"], FILES["half_space"]])
@@ -226,14 +218,7 @@ def test_laws_on_a_solved_contact_give_what_the_pipeline_gives() -> None:
         one = rig | wl.contact_model(model) | law
         found = one(**conditions)
         again = wl.Prediction.of(found.contact, law)
-        for name in (
-            "wear_rate",
-            "wear_index",
-            "cell_wear_index",
-            "mass_per_distance",
-            "longitudinal_force",
-            "stick_ratio",
-        ):
+        for name in ("wear_rate", "cell_wear_index", "mass_per_distance", "longitudinal_force", "stick_ratio"):
             assert again[name].m == pytest.approx(found[name].m, rel=1e-12), (model, name)
         assert again.scale == found.scale
     assert again.depth_per_distance("wheel").m == pytest.approx(found.depth_per_distance("wheel").m)

@@ -31,19 +31,16 @@ def replaced(line: int, column: int, text: str) -> Callable[[list[str]], list[st
 
 CHANGES: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
     "NaN": (replaced(20, 5, "NaN"), r"is wrong in:\n  line 20, column 5: 'NaN' is no finite number"),
-    "infinity": (replaced(20, 5, "Infinity"), r"line 20, column 5: 'Infinity' is no finite number"),
     "stars": (replaced(20, 5, "**************"), r"line 20, column 5: '\*+' is no finite number \(Fortran writes this"),
     "word": (replaced(21, 6, "high"), "line 21, column 6: 'high' is no finite number"),
     "newer version": (replaced(2, 11, "2520"), r"line 2, column 11 \(FMT\): must be at most 2410, .*, got 2520"),
     "old version": (replaced(2, 11, "1010"), r"line 2, column 11 \(FMT\): must be at least 1220: .*, got 1010"),
     "no version": (replaced(2, 11, "0.5"), r"line 2, column 11 \(FMT\): .* such as 2410; is it a file of CONTACT\?"),
     "cut in a line": (lambda lines: [*lines[:50], lines[50][:60]], "line 51: ends without a line break; .* cut short"),
-    "cut in a number": (lambda lines: [*lines[:50], lines[50][:-4]], "line 51: ends without a line break"),
     "cut and closed": (lambda lines: [*lines[:50], lines[50][:60] + "\n"], "line 51: has 6 cells, not 11"),
     "cut in the head": (lambda lines: lines[:8], "line 8: ends after 4 rows of numbers, but the head of version 2410"),
     "comments alone": (lambda lines: [line for line in lines if line[0] == "%"], "holds no numbers"),
     "cut after the head": (lambda lines: lines[:13], "line 12: no element is in contact; there is no wear"),
-    "missing column": (replaced(30, 11, ""), "line 30: has 10 cells, not 11"),
     "element of another grid": (
         replaced(31, 1, "700"), r"line 31, column 1 \(I\): must be a whole number from 1 to 688, .* 43 x 16 .*, got 700"
     ),

@@ -18,11 +18,10 @@ import panel as pn
 import pytest
 from selenium import webdriver
 from selenium.webdriver import Keys
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
 import wearlaw as wl
-from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, FLAGS, PATIENCE_S
+from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, PATIENCE_S, started
 from wearlaw_explore._page import Page, named, patch_figures  # private: the page without a browser
 from wearlaw_explore._subject import Subject  # private: a rig that is not installed
 from wearlaw_output.notes import Notes  # private: what the page shows as notes
@@ -58,20 +57,8 @@ def address() -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
-    assert BROWSER is not None
-    home = tmp_path_factory.mktemp("browser")
-    options = webdriver.ChromeOptions()
-    options.binary_location = BROWSER
     # Any other host than this one fails to resolve, as without a network.
-    for flag in (
-        *FLAGS,
-        f"--user-data-dir={home / 'profile'}",
-        "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE localhost",
-    ):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    places = dict.fromkeys(("HOME", "TMPDIR", "XDG_CONFIG_HOME", "XDG_CACHE_HOME"), str(home))
-    driver = webdriver.Chrome(options, Service(DRIVER, env={**os.environ, **places}))
+    driver = started(tmp_path_factory.mktemp("browser"), "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE localhost")
     yield driver
     driver.quit()
 

@@ -90,8 +90,6 @@ def test_a_friction_coefficient_that_the_tests_hold_too_is_noted_and_not_used() 
     assert (
         "note: --friction 0.3 is not used, since the tests have a column" in wearlaw(*FIT, "--friction", "0.3").stderr
     )
-    assert wearlaw(*FIT, "-o", "without").exit_code == 0
-    assert wl.read_law("without/law.toml") == wl.read_law("tests-fit/law.toml")
 
 
 def test_a_stage_and_a_law_of_another_outcome_are_fitted_from_the_command_line(install: Install) -> None:

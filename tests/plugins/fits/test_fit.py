@@ -138,8 +138,9 @@ def test_one_factor_is_fitted_as_a_weighted_mean(stated: bool, within: float) ->
     assert fit.scatter == ("uncertainty" if stated else "absolute")
     assert fit.rms.magnitude == pytest.approx(np.sqrt(np.mean(residual**2)), rel=1e-6)
     assert fit.rms.units == Q(1.0, "" if stated else "ug/m/mm^2").units
+    squares = residual**2 if stated else (residual / np.sqrt(np.mean(measured**2))) ** 2
+    assert fit.chi2 == pytest.approx(np.sum(squares), rel=1e-6)
     if stated:
-        assert fit.chi2 == pytest.approx(np.sum(residual**2), rel=1e-6)
         assert fit.aic == pytest.approx(fit.chi2 + 2.0)
 
 
@@ -179,8 +180,6 @@ def test_a_law_of_your_own_may_have_negative_parameters() -> None:
     slope, offset = np.polyfit(density, in_microgram(tests.wear_rate), 1)
     assert fit.parameters["offset"].magnitude == pytest.approx(offset, rel=1e-6)
     assert fit.parameters["slope"].magnitude == pytest.approx(slope, rel=1e-6)
-    line: Any = stats.linregress(density, in_microgram(tests.wear_rate))
-    assert fit.standard_errors["offset"].magnitude == pytest.approx(line.intercept_stderr, rel=1e-5)
     assert fit.provenance["laws"] == {"sloping": "not installed"}
 
 

@@ -10,9 +10,11 @@ import pytest
 from pydantic import Field
 
 import wearlaw as wl
+from tests.plugins.fits.comparisons import scattered
 from tests.plugins.fits.fits import (
     ALL,
     CREEPAGE,
+    EXACT,
     FRICTION,
     GLOBAL,
     PRESSURE,
@@ -122,12 +124,9 @@ def test_rates_of_zero_are_refused_where_scatter_is_by_a_factor() -> None:
     wl.fit(predict, zeros, free=["q_s"], scatter="absolute", bootstrap=0)
     still = np.where(np.arange(20) == 5, 0.0, CREEPAGE)
     conditions["creepage"] = Q(still, "%")
-    refused(
-        "test number 6",
-        predict,
-        wl.WearTests.from_arrays(**conditions, wear_rate=tests.wear_rate),
-        ["q_s"],
-    )
+    stuck = wl.WearTests.from_arrays(**conditions, wear_rate=tests.wear_rate)
+    refused("predicts no wear rate in test number 6", predict, stuck, ["q_s"])
+    refused("no traction .* in test number 6", GLOBAL, traction_tests(0.3, still), ["friction_coefficient"])
 
 
 def test_measurements_that_are_not_there_are_refused() -> None:
@@ -169,14 +168,8 @@ def test_parameters_that_the_tests_leave_open_are_refused(predict: Any, creepage
 @pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")
 def test_an_interval_ends_at_the_bounds() -> None:
     # The scatter is that of the largest rates, which hides the mild regime; the interval of its slope has no ends.
-    creepage = Q([0.2, 0.5, 1.0, 2.0, 5.0, 12.0, 16.0, 18.0, 20.0], "%")
-    conditions: Any = {"max_pressure": "1500 MPa", "creepage": creepage, "friction_coefficient": 0.46}
-    contact = wl.TwinDisc.suros() | wl.contact_model("exact")
-    law = wl.wear_law("usfd", fitted_for="exact")
-    scatter = [1.1, 0.9, 1.05, 0.97, 1.02, 0.93, 1.08, 0.99, 0.98]
-    tests = wl.WearTests.from_arrays(**conditions, wear_rate=(contact | law)(**conditions).wear_rate * scatter)
-    wide = law.model_copy(update={"m_c": "61.9 ug/m/N", "tr_sc": "77.26 N/mm^2"})
-    fit = wl.fit(contact | wide, tests, ["m_m", "q_s"], scatter="absolute", bootstrap=40, seed=7)
+    law = wl.wear_law("usfd", fitted_for="exact", m_c="61.9 ug/m/N", tr_sc="77.26 N/mm^2")
+    fit = wl.fit(EXACT | law, scattered(), ["m_m", "q_s"], scatter="absolute", bootstrap=40, seed=7)
     for intervals in (fit.intervals, fit.covariance_intervals):
         low, high = (end.to("ug/m/N").magnitude for end in intervals["m_m"])
         assert 5.3 / 100 * (1 - 1e-12) <= low <= high <= 5.3 * 100 * (1 + 1e-12)

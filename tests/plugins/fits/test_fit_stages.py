@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-import warnings
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -140,7 +139,6 @@ TWO, TWINS = EXACT | Softer() | Rubbed(), EXACT | Softer() | Softer(reduction=0.
     ("predict", "free", "bounds", "names"),
     [
         (TWO, ["reduction"], None, "free: .*'softer.reduction' or 'rubbed.reduction'"),
-        (TWO, ["shore"], None, "free: .*'share'"),
         (TWO, ["layers"], None, "free: .*'layers'"),
         (SOFT, ["reductio"], None, "free: .*'reduction'"),
         (SOFT, ["reduction", "softer.reduction"], None, "free: .*'softer.reduction'"),
@@ -166,26 +164,3 @@ def test_a_stage_needs_its_bounds_a_measurement_and_loads_that_stay() -> None:
     balanced = Balanced(**dict(RIG)) | EXACT.contact_model | Softer()
     with pytest.raises(wl.CompositionError, match=r"^fit: rig 'twin_disc' .* reduction"):
         wl.fit(balanced, made_up(), ["reduction"])
-
-
-def test_a_number_that_a_law_and_a_stage_share_is_named_in_full() -> None:
-    class Factor(wl.WearLaw):
-        """Wear in proportion to the dissipated energy."""
-
-        name: ClassVar[str] = "factor"
-        source: ClassVar[str] = "test"
-        reduction: float = 1e-9
-
-        def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-            return p["reduction"] * contact.wear_index_density
-
-    predict = SOFT | Factor()
-    tests = made_up(wear_rate=Q(np.geomspace(0.1, 5.0, 10), "ug/m/mm^2"))
-    refused("'softer.reduction' or 'factor.reduction'", predict, tests, ["reduction"])
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.FitWarning)
-        fit = wl.fit(predict, tests, ["softer.reduction", "factor.reduction"], bootstrap=0)
-    assert list(fit.parameters) == ["softer.reduction", "factor.reduction"]
-    assert fit.predict.stages[0] == Softer(reduction=fit.parameters["softer.reduction"].magnitude)
-    assert fit.law is not None
-    assert fit.law.numbers["reduction"] == fit.parameters["factor.reduction"].magnitude

@@ -33,8 +33,8 @@ def test_a_fitted_law_is_compared_under_its_label_and_still_knows_its_tests(law:
     laws = "usfd,fit/law.toml,fit/law.toml:label=again"
     result = wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", laws, "--friction", "0.46", "-o", "cmp")
     assert result.exit_code == 0, result.output
+    assert "note: fitted to these tests, which flatters their rank: our tests on exact (9 of 9)" in result.stderr
     ranking = pd.read_csv("cmp/ranking.csv").set_index("predictor")
-    assert set(ranking.index) == {"usfd on exact", "our tests on exact", "again on exact"}
     assert ranking.in_sample.to_dict() == {"usfd on exact": 0, "our tests on exact": 9, "again on exact": 9}
 
 

@@ -101,31 +101,6 @@ def test_variances_of_a_linear_law_add_up(errors: float, most: float) -> None:
     assert list(table.index) == ["first", "second"]
 
 
-@pytest.mark.validates(
-    "fitting",
-    "Sobol indices of a product of two uniform factors",
-    source="variance of a product, in closed form",
-    held_to="{errors:g} standard errors",
-    errors=8.0,
-)
-def test_inputs_of_a_product_share_a_part_of_the_variance(errors: float) -> None:
-    # In full slip, in the mild regime, the rate is m_m times something: of two uniform factors on 1 ± h the variance
-    # is v1 + v2 + v1 v2 with v = h²/3.
-    u = wl.uncertainty(
-        USFD,
-        max_pressure=Q(1500, "MPa"),
-        creepage=Q(2, "%"),
-        friction_coefficient=wl.uniform(0.2, 0.4),
-        law={"m_m": wl.uniform("2 ug/m/N", "4 ug/m/N")},
-        samples=2**12,
-    )
-    table = u.sobol()
-    v = np.full(2, (1 / 3) ** 2 / 3)
-    whole = v.sum() + v.prod()
-    assert np.all(np.abs(table["first_order"] - v / whole) < errors * table["first_order_error"])
-    assert np.all(np.abs(table["total_order"] - (v + v.prod()) / whole) < errors * table["total_order_error"])
-
-
 def test_the_published_range_of_kth_spans_its_band() -> None:
     predict = GLOBAL | wl.wear_law("kth")
     u = wl.uncertainty(

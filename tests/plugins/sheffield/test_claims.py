@@ -373,12 +373,15 @@ def study_of(**rig: Any) -> Any:
     return SimpleNamespace(case=SimpleNamespace(rig=wl.TwinDisc.suros(**rig)))
 
 
+WHEEL: Any = SimpleNamespace(case=SimpleNamespace(rig=wl.rig("wheel_rail", **wl.WheelRail.example_fields)))
+
+
 def test_the_bench_has_the_rig_of_the_study_and_the_borders_of_the_formulas(bench: Bench) -> None:
     assert Bench.of(study_of()) == bench
     assert Bench.of(study_of(speed_of="mean")).rig.speed_of == "mean"
-    for other in ({"rolling_speed": "2 m/s"}, {"diameter": "60 mm"}):
+    for other in (study_of(rolling_speed="2 m/s"), study_of(diameter="60 mm"), WHEEL):
         with pytest.raises(wl.InputError, match=r"^rig: "):
-            Bench.of(study_of(**other))
+            Bench.of(other)
     # The reference multiplies in another order: a few units in the last place.
     assert bench.patch_area == pytest.approx(AREA, rel=1e-14)
     assert bench.full_slip == pytest.approx(FULL_SLIP, rel=1e-14)

@@ -54,7 +54,7 @@ def test_a_case_can_be_written_with_its_tests_to_run_again_anywhere(tmp_path: Pa
     again = wl.load_case(str(elsewhere / "case.toml"))
     assert read.measured is not None
     assert again.measured is not None
-    assert again.measured.data == read.measured.data
+    assert again.measured.data.to_dataframe().equals(read.measured.data.to_dataframe())
     assert again.measured.data.source == "a test in µg"
     assert again.model_copy(update={"measured": None}) == read.model_copy(update={"measured": None})
 

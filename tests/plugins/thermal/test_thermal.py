@@ -6,6 +6,7 @@ import re
 import warnings
 from collections.abc import Callable
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -274,18 +275,6 @@ def test_no_heat_leaves_the_friction_to_the_bit() -> None:
     assert hot(thermal(hot_ratio=1.0), "exact", line()).friction_coefficient == 0.46
 
 
-class Counted:
-    """A function of μ that counts its evaluations."""
-
-    def __init__(self, function: Callable[[Array], Array]) -> None:
-        self.function = function
-        self.times = 0
-
-    def __call__(self, friction: Array) -> Array:
-        self.times += 1
-        return self.function(friction)
-
-
 @pytest.mark.parametrize(
     ("shape", "most"),
     [
@@ -297,10 +286,10 @@ class Counted:
 )
 def test_the_root_is_found_to_rounding(shape: Callable[[Array], Array], most: int) -> None:
     places = np.array([0.1, 0.11, 0.2, 0.37, 0.49, 0.5])
-    function = Counted(lambda friction: shape(friction - places))
+    function = Mock(side_effect=lambda friction: shape(friction - places))
     found = wearlaw_thermal._root(function, np.full(6, 0.1), np.full(6, 0.5))
     assert found == pytest.approx(places, rel=8 * EPS)
-    assert function.times <= most
+    assert function.call_count <= most
     assert found[[0, -1]].tolist() == [0.1, 0.5]  # the ends of the bracket to the bit
 
 
@@ -412,15 +401,13 @@ def test_heat_near_the_trailing_edge_warms_less_of_the_patch(of_saturation: floa
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"hot_ratio": 0.0}, "hot_ratio: input should be greater than 0, got 0.0"),
-        ({"hot_ratio": 1.2}, "hot_ratio: input should be less than or equal to 1, got 1.2"),
-        ({"temperature_range": "0 K"}, "temperature_range: must be greater than zero"),
-        ({"temperature_range": 400.0}, "temperature_range: got the bare number 400.0, which has no unit"),
-        ({"temperature_range": "400 degC"}, "temperature_range: got 400.0 °C, whose unit has an offset"),
-        ({"temperature_range": "400 m"}, "temperature_range: got 400.0 m"),
-        ({"onset": "-1 K"}, "onset: must not be negative"),
-        ({"body_1": {"conductivity": "0 W/m/K"}}, "conductivity: must be greater than zero"),
-        ({"body_2": {"heat": "1 J/kg/K"}}, "heat: unknown field"),
+        ({"hot_ratio": 0.0}, "hot_ratio: "),
+        ({"hot_ratio": 1.2}, "hot_ratio: "),
+        ({"hot_ratio": "0.5"}, "hot_ratio: "),
+        ({"temperature_range": "0 K"}, "temperature_range: "),
+        ({"temperature_range": "400 degC"}, "temperature_range: "),
+        ({"onset": "-1 K"}, "onset: "),
+        ({"body_1": {"conductivity": "0 W/m/K"}}, "body_1.conductivity: "),
     ],
 )
 def test_wrong_input_is_named(options: dict[str, Any], message: str) -> None:

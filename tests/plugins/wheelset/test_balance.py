@@ -17,6 +17,7 @@ from wearlaw_wheelset._candidates import (  # private: one step of the contact, 
     SPACING,
     candidates,
     sample,
+    sampled,
 )
 from wearlaw_wheelset._loads import BALANCED, ROUGH  # private: the accuracy that a search ends at
 from wearlaw_wheelset._search import both_sides, searched  # private: one step of the contact, against another way to it
@@ -71,7 +72,8 @@ def test_compiled_gaps_around_contact_points_are_those_of_numpy(spacing: float) 
     section, draw = wheelset()._section, np.random.default_rng(1)
     displacement, yaw = draw.uniform(-7e-3, 7e-3, 300), draw.uniform(-0.02, 0.02, 300)
     roll, touching = searched(section, displacement, yaw)
-    found = candidates(section, both_sides(displacement, roll, yaw), touching, np.full((displacement.size, 2), SPACING))
+    position, even = both_sides(displacement, roll, yaw), np.full((displacement.size, 2), SPACING)
+    found = sampled(section, candidates(section, position, touching, even))
     samples = []
     try:
         for on in (True, False):
