@@ -1,4 +1,4 @@
-"""Tables through pandas' Styler: as HTML with numbers at the right, and as LaTeX that a paper can include."""
+"""Tables as HTML with numbers at the right, and as LaTeX that a paper can include."""
 
 from __future__ import annotations
 
