@@ -83,11 +83,12 @@ def test_a_case_too_large_for_memory_or_disk_says_what_it_needs_before_it_starts
     million = {**LONG, "creepage": {"from": "0.1 %", "to": "10 %", "points": 10_000_000}}
     case = long_case(folder / "big.toml", sweeps={"long": million})
     monkeypatch.setattr(room, "available_memory", lambda: 2**30)
-    # 20 numbers of 8 bytes twice for each point, and no table, which would have too many rows: 10^7 x 320 / 2^30 GiB
-    assert_refused(wearlaw("run", case), "the results need 2.98 GiB of memory, but 1 GiB are free")
+    # 20 numbers twice and a row of the table of 800 bytes for each point: 10^7 (20 x 16 + 800) / 2^30 GiB
+    assert_refused(wearlaw("run", case, "--csv"), "the results need 10.4 GiB of memory, but 1 GiB are free")
+    assert_refused(wearlaw("run", case), "the results need 2.98 GiB of memory, but 1 GiB are free")  # no table
     monkeypatch.setattr(room, "available_memory", lambda: 2**40)
     monkeypatch.setattr("shutil.disk_usage", lambda _: type("Usage", (), {"free": 2**30}))
-    assert_refused(wearlaw("run", case), "the results need 2.98 GiB on disk, but")
+    assert_refused(wearlaw("run", case, "--csv"), "the results need 6.71 GiB on disk, but")
     assert [path.name for path in folder.iterdir()] == ["big.toml"]
 
 
