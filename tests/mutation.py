@@ -47,7 +47,7 @@ TESTS = {
     "wearlaw_kth": "plugins/kth/test_kth.py",
     "wearlaw_linear": "plugins/linear/test_linear.py",
     "wearlaw_polach": "plugins/polach/test_polach.py",
-    "wearlaw_sheffield": "plugins/sheffield/test_claims.py plugins/sheffield/test_table_4.py",
+    "wearlaw_sheffield": "plugins/sheffield/test_claims.py plugins/sheffield/test_tables.py",
     "wearlaw_shen_hedrick_elkins": "plugins/shen_hedrick_elkins/test_shen_hedrick_elkins.py",
     "wearlaw_thermal": "plugins/thermal/test_thermal.py",
     "wearlaw_third_body": "plugins/third_body/test_third_body.py",

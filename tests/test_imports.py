@@ -30,6 +30,7 @@ DEFERRED = {
     ("wearlaw_kit.kit", "pytest"): "is not needed to run the checks of the kit",
     ("wearlaw_fits.wear_tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
     ("wearlaw_life", "wearlaw_life"): "needs pandas and xarray, which looking up a plugin must not load",
+    ("wearlaw_life", "wearlaw_life._section"): "is needed for a report alone",
     ("wearlaw_life._line", "wearlaw_sweeps.folder"): "zarr takes as long to load as all else",
     ("wearlaw_wheelset", "wearlaw_wheelset._section"): "is needed for a report alone",
     (

@@ -3,8 +3,8 @@
 With d = ξ/g, where g = L μp2(0)/a × 2 (parabola) or × 1 (ellipse) is the slope of the bound times L, and v = (a - x)/a:
 
 parabola: q s = μp2(0) g P(v), P(v) = v (2-v) (1+d-v), over v < 2 min(d, 1). P rises from zero to its maximum at v = c,
-and then falls towards its next zero, min(2, 1+d). With r = √(d²+3)/3 it is at a level at
-v = c + r (1 - cos α ∓ √3 sin α) where its maximum less the level is 4 r³ sin²(3α/2): Viète's roots of a cubic.
+and then falls towards its next zero, min(2, 1+d). With r = √(d²+3)/3 P is at a level at v = c + r (1 - cos α ∓
+√3 sin α), where its maximum less the level is 4 r³ sin²(3α/2): Viète's roots of a cubic.
 ellipse: q s = μp2(0) g (d sin ψ + cos ψ) over ψ < 2 atan d, where x = a cos ψ: symmetric about its maximum √(1+d²)
 at ψ = atan d, and at least 1 everywhere in the slip zone.
 

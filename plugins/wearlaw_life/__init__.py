@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import wearlaw as wl
 
@@ -22,6 +23,19 @@ def __getattr__(name: str) -> object:
 
 
 @wl.hookimpl
+def wearlaw_resources() -> dict[str, dict[str, Any]]:
+    """Return a study of the life of a wheel on tangent track, and the section of its report."""
+    case = Path(__file__).with_name("wheel_life.toml").read_text(encoding="utf-8")
+    return {"case": {"wheel_life": case}, "section": {"life": _make_section}}
+
+
+@wl.hookimpl
 def wearlaw_commands() -> list[wl.Command]:
     """Return the command that wears a profile over a distance."""
     return [wl.Command("life", "wearlaw_life._command:life", "Wear a profile over a distance on a line.")]
+
+
+def _make_section(study: wl.Study) -> wl.Section:
+    from wearlaw_life._section import section
+
+    return section(study)

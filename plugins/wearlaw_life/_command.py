@@ -50,7 +50,7 @@ def life(
     """Wear a profile over a distance: CASE is a case file with a rig, LINE a table of states with their shares.
 
     \b
-    wearlaw life wheelset line.csv --over "20000 km"
+    wearlaw life wheel_life line.csv --over "20000 km"
     wearlaw life my-case.toml line.csv --over "100000 km" --until flange_thickness="25 mm" --set sides=each
 
     The first contact model and the first wear law of the case predict. The folder then holds life.csv, the measures

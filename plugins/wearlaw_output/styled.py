@@ -1,4 +1,4 @@
-r"""Tables as HTML for the page, and for LaTeX, to \input into a paper."""
+r"""Tables through pandas' Styler: as HTML for the page, and for LaTeX, to \input into a paper."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ import html
 import numbers
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from pandas.io.formats.style import Styler
 
 _MATHS = {
     "−": "-", "·": r"\cdot", "×": r"\times", "±": r"\pm", "≤": r"\le", "≥": r"\ge", "≠": r"\ne", "≈": r"\approx",
@@ -31,6 +32,9 @@ _SYMBOLS = str.maketrans({**{character: f"${command}$" for character, command in
 _SHIFTED = {"superscript": "⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "subscript": "₀₁₂₃₄₅₆₇₈₉ᵢᵣ"}
 LONG = 40
 """Letters beyond which a text column wraps."""
+
+UUID = "0"
+"""Identifier of a table, left out of the page, where tables would share it; Styler draws one by lot otherwise."""
 
 
 class Marked(float):
@@ -67,37 +71,37 @@ def cell(value: Any) -> tuple[str, str, str]:
 
 def html_table(frame: pd.DataFrame, caption: str) -> str:
     """Return a table for the page, with the first column as the heads of its rows, and numbers at the right."""
-    heads = [
-        _element("th", html.escape(str(head)), "number" if _holds_numbers(frame, number) else "")
-        for number, head in enumerate(frame.columns)
-    ]
-    rows = [
-        [_element("td" if number else "th", _html(value), _class(value)) for number, value in enumerate(row)]
-        for row in frame.itertuples(index=False, name=None)
-    ]
-    body = "\n".join(f"<tr>{''.join(row)}</tr>" for row in rows)
-    head = f"<caption>{html.escape(caption)}</caption>\n<thead><tr>{''.join(heads)}</tr></thead>"
-    return f"<table>\n{head}\n<tbody>\n{body}\n</tbody>\n</table>"
+    rows = list(frame.itertuples(index=False, name=None))
+    classes = pd.DataFrame([[_class(value) for value in row] for row in rows])
+    heads = [html.escape(str(head)) for head in frame.columns]
+    right = [any(is_number(row[number]) for row in rows) for number in range(len(heads))]
+    heads = [f'<span class="number">{head}</span>' if at_right else head
+             for head, at_right in zip(heads, right, strict=True)]  # fmt: skip
+    style = _styled(frame, _html, heads, first_as_index=True).set_td_classes(classes.iloc[:, 1:])
+    found: str = style.set_caption(html.escape(caption)).to_html()
+    return found[found.index("<table") :].replace(f' id="T_{UUID}"', "")
 
 
 def latex_table(frame: pd.DataFrame, footnotes: Iterable[str] = ()) -> str:
     """Return a table as a tabular, with the units in the heads of its columns, and footnotes below it."""
-    rows = [[_latex(str(head)) for head in frame.columns]]
-    rows += [[_latex(value) for value in row] for row in frame.itertuples(index=False, name=None)]
-    head, *body = (" & ".join(row) + r" \\" for row in rows)
-    columns = "".join(_column(frame, number) for number in range(frame.shape[1]))
-    lines = [r"% \usepackage{booktabs}", rf"\begin{{tabular}}{{{columns}}}", r"\toprule", head, r"\midrule", *body,
-             r"\bottomrule", r"\end{tabular}"]  # fmt: skip
-    lines += [rf"\par{{\footnotesize {escaped(note)}}}" for note in footnotes]
-    return "\n".join(lines) + "\n"
+    heads = [_guarded(escaped(str(head))) for head in frame.columns]
+    tabular = _styled(frame, _latex, heads).hide(axis="index").to_latex(column_format=_columns(frame), hrules=True)
+    below = (rf"\par{{\footnotesize {escaped(note)}}}" for note in footnotes)
+    return "\n".join([r"% \usepackage{booktabs}", tabular.rstrip("\n"), *below]) + "\n"
 
 
-def _holds_numbers(frame: pd.DataFrame, column: int) -> bool:
-    return any(map(is_number, frame.iloc[:, column]))
-
-
-def _element(tag: str, text: str, kind: str) -> str:
-    return f'<{tag} class="{kind}">{text}</{tag}>' if kind else f"<{tag}>{text}</{tag}>"
+def _styled(
+    frame: pd.DataFrame, source: Callable[[Any], str], heads: list[str], first_as_index: bool = False
+) -> Styler:
+    """Return a table whose cells and heads are their sources."""
+    shown = pd.DataFrame([[source(value) for value in row] for row in frame.itertuples(index=False, name=None)])
+    shown = shown.reindex(columns=range(frame.shape[1]))
+    firsts = shown[0].tolist()
+    if first_as_index:
+        shown = shown.drop(columns=0).rename_axis(columns=heads[0])
+    style = Styler(shown, uuid=UUID, cell_ids=False)
+    style = style.format_index(lambda number: heads[int(str(number))], axis="columns")
+    return style.format_index(lambda number: firsts[int(str(number))], axis="index")
 
 
 def _class(value: Any) -> str:
@@ -135,9 +139,12 @@ def _guarded(source: str) -> str:
     return "{}" + source if source.startswith(("[", "*")) else source
 
 
-def _column(frame: pd.DataFrame, number: int) -> str:
-    """Return the alignment of a column: numbers right, long texts wrapped."""
-    if _holds_numbers(frame, number):
-        return "r"
-    longest = max((len(str(value)) for value in frame.iloc[:, number]), default=0)
-    return rf"p{{{LONG / 100:g}\linewidth}}" if longest > LONG else "l"
+def _columns(frame: pd.DataFrame) -> str:
+    """Return the alignment of each column: numbers right, long texts wrapped."""
+    kinds = []
+    for number, dtype in enumerate(frame.dtypes):
+        longest = max((len(str(value)) for value in frame.iloc[:, number]), default=0)
+        text = rf"p{{{LONG / 100:g}\linewidth}}" if longest > LONG else "l"
+        marked = all(isinstance(value, Marked) for value in frame.iloc[:, number])
+        kinds.append("r" if marked or pd.api.types.is_numeric_dtype(dtype) else text)
+    return "".join(kinds)

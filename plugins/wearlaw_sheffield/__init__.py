@@ -19,13 +19,13 @@ def wearlaw_named() -> dict[str, wl.Material]:
 def wearlaw_resources() -> dict[str, dict[str, Any]]:
     """Return the study of Tassini et al., with sections of its report and measured traction.
 
-    The study is that of Wear 268 (2010) 660-667; the sections check its claims and fit its Table 4.
+    The study is that of Wear 268 (2010) 660-667; the sections show its tables, check its claims and fit its Table 4.
     The traction is that of Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478.
     """
     return {
         "case": {"tassini2010": _text("tassini2010.toml")},
         "test set": {"lewis2004": _text("lewis2004.csv")},
-        "section": {f"tassini2010_{name}": partial(_section, name) for name in ("claims", "table_4")},
+        "section": {f"tassini2010_{name}": partial(_section, name) for name in ("tables", "claims", "table_4")},
     }
 
 
@@ -34,6 +34,7 @@ def _text(file: str) -> str:
 
 
 def _section(name: str, study: wl.Study) -> wl.Section:
-    from wearlaw_sheffield import claims, table_4
+    from wearlaw_sheffield import claims, table_4, tables
 
-    return {"claims": claims.section, "table_4": table_4.section}[name](study)
+    make = {"tables": tables.section, "claims": claims.section, "table_4": table_4.section}[name]
+    return make(study)

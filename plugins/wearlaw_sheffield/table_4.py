@@ -13,9 +13,10 @@ import wearlaw as wl
 from wearlaw import Q
 from wearlaw_sheffield.bench import WEAR_RATE, Bench
 from wearlaw_sheffield.claims import SIMILAR, verdict
+from wearlaw_sheffield.tables import USFD_UNITS, number, shown_unit, usfd_parameters
 
-FREE = {"q_s": "ug/m/mm^2", "m_c": "ug/m/N", "tr_sc": "N/mm^2"}
-"""The parameters that the paper changed, with their units; it kept m_m."""
+FREE = ("q_s", "m_c", "tr_sc")
+"""The parameters that the paper changed; it kept m_m."""
 
 HIGHEST = (18.0, 20.5, 22.0, 25.0)
 """Creepages up to which parameters are fitted [%]."""
@@ -71,7 +72,7 @@ def fitted(bench: Bench, model: str, highest: float, norm: Norm) -> Fitted:
     """Return the fit for a contact model up to a creepage [%]."""
     creepage = np.linspace(highest / POINTS, highest, POINTS)
     target = bench.rate("global", wl.wear_law("usfd"), creepage)
-    law = wl.wear_law("usfd", fitted_for=model)
+    published = wl.wear_law("usfd", fitted_for=model)
     tests = wl.WearTests.from_arrays(
         creepage=Q(creepage, "%"),
         normal_force_per_width=bench.normal_force_per_width,
@@ -81,26 +82,20 @@ def fitted(bench: Bench, model: str, highest: float, norm: Norm) -> Fitted:
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.WearlawWarning)  # the study itself has already warned
-        predict = bench.rig | wl.contact_model(model) | law
-        found = wl.fit(predict, tests, free=[*FREE], scatter=norm, bootstrap=0, starts=0)
-    values = {name: found.parameters[name].m_as(unit) for name, unit in FREE.items()}
-    local = bench.rate(model, law, creepage)
+        predict = bench.rig | wl.contact_model(model) | published
+        found = wl.fit(predict, tests, free=FREE, scatter=norm, bootstrap=0, starts=0)
+    values = {name: number(found.parameters[name], USFD_UNITS[name]) for name in FREE}
+    local = bench.rate(model, published, creepage)
     apart = local - target if norm == "absolute" else np.log(local / target)
     return Fitted(model, highest, norm, values, float(found.rms.magnitude), float(np.sqrt(np.mean(apart**2))))
-
-
-def published(model: str) -> dict[str, float]:
-    """Return the paper's set for a contact model in the units of `FREE`."""
-    law = dict(wl.wear_law("usfd", fitted_for=model))
-    return {name: round(law[name].m_as(unit), 9) for name, unit in FREE.items()}  # without the noise of conversion
 
 
 def follows_from_a_fit(fits: list[Fitted]) -> wl.CheckedClaim:
     """Compare the paper's sets with the fits for other ranges and measures of the difference."""
     parts, ours = [], []
     for model, words in THEORY.items():
-        of_paper, of_model = published(model), [one for one in fits if one.model == model]
-        apart = [max(abs(one.parameters[name] / of_paper[name] - 1.0) for name in FREE) for one in of_model]
+        published, of_model = usfd_parameters(model), [one for one in fits if one.model == model]
+        apart = [max(abs(one.parameters[name] / published[name] - 1.0) for name in FREE) for one in of_model]
         near = sum(share < SIMILAR for share in apart)
         parts += [near > 0, near == len(of_model)]
         ours.append(f"{near} of {len(of_model)} fits similar, the closest to {100 * min(apart):.1f} % ({words})")
@@ -115,11 +110,11 @@ def follows_from_a_fit(fits: list[Fitted]) -> wl.CheckedClaim:
 
 def table(fits: list[Fitted]) -> pd.DataFrame:
     """Return the fits, a row each, with the paper's set of their model before them."""
-    heads = {name: f"{name} [{unit}]".replace("ug", "µg").replace("mm^2", "mm²") for name, unit in FREE.items()}
+    heads = {name: f"{name} [{shown_unit(name)}]" for name in FREE}
     rows: list[dict[str, object]] = []
     for model, words in THEORY.items():
-        of_paper = {heads[name]: value for name, value in published(model).items()}
-        rows.append({"contact model": words, "differences": "paper", **of_paper})
+        published = usfd_parameters(model)
+        rows.append({"contact model": words, "differences": "paper", **{heads[name]: published[name] for name in FREE}})
         rows += [
             {
                 "contact model": words,

@@ -15,7 +15,7 @@ from wearlaw_studies.case import case_schema, case_text
 def case(name: str) -> None:
     """Print a case file to start from.
 
-    NAME is two_discs, my_tests, wheel_on_rail, wheelset, tassini2010, or a path.
+    NAME is two_discs, my_tests, wheel_on_rail, wheelset, wheel_life, tassini2010, or a path.
     """
     echo_file(case_text(name))
 

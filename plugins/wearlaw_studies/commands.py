@@ -31,6 +31,11 @@ from wearlaw_sweeps.progress import Bar
 @click.option("--overwrite", is_flag=True, help="Replace the files of an earlier run in that folder; others stay.")
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
 @click.option("--resume", is_flag=True, help="Go on from the finished blocks of an interrupted run, in FOLDER.partial.")
+@click.option(
+    "--csv/--no-csv",
+    default=None,
+    help="Write results.csv or leave it out [default: write it up to 1 048 575 rows, those that Excel reads].",
+)
 @written_formats
 def run(
     case: str,
@@ -38,12 +43,13 @@ def run(
     overwrite: bool,
     workers: int,
     resume: bool,
+    csv: bool | None,
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
 ) -> None:
     """Run a study: CASE is a case file, or the name of a shipped one.
 
-    Shipped are two_discs, my_tests, wheel_on_rail, wheelset and tassini2010.
+    Shipped are two_discs, my_tests, wheel_on_rail, wheelset, wheel_life and tassini2010.
 
     Every contact model of the case is paired with every law. Results are written as report.html, a page to open in a
     browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
@@ -55,7 +61,7 @@ def run(
     partial = _partial(folder, resume)
     try:
         with results_folder(folder, overwrite, RESULTS) as fresh:
-            left_out = without_csv(loaded)
+            left_out = without_csv(loaded, csv)
             check_room(loaded, folder, left_out is None)
             with Bar(evaluations(loaded)) as bar, notes.of("run"):
                 study = run_case(loaded, bar, workers, partial, resume)

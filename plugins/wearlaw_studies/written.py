@@ -34,7 +34,7 @@ COPIES = 2
 ROW_IN_MEMORY, ROW_ON_DISK = 800, 400
 """Bytes of a row of the table of results in memory (measured) and as CSV."""
 MOST_ROWS = 2**20 - 1
-"""Most rows of a table of results: those that a sheet of Excel holds below the head."""
+"""Most rows of a table of results that is written unasked: those that a sheet of Excel holds below the head."""
 T = TypeVar("T")
 
 
@@ -45,12 +45,17 @@ def rows_of(case: Case) -> int:
     return points * patches * len(case.contact_models) * len(case.laws_by_label)
 
 
-def without_csv(case: Case) -> str | None:
-    """Return a note on why results.csv is left out, or None if it is written."""
+def without_csv(case: Case, asked: bool | None) -> str | None:
+    """Return a note on why results.csv is left out, or None if it is written: if asked for, or up to `MOST_ROWS`."""
+    if asked is False:
+        return f"{CSV} is left out, as --no-csv asks; {RESULTS} holds all numbers"
     rows = rows_of(case)
-    if rows <= MOST_ROWS:
+    if asked or rows <= MOST_ROWS:
         return None
-    return f"{CSV} is left out, since it would have up to {rows} rows, and Excel reads {MOST_ROWS}; see {RESULTS}"
+    return (
+        f"{CSV} is left out, since it would have up to {rows} rows, and Excel reads {MOST_ROWS}; {RESULTS} holds all"
+        " numbers, and --csv writes the table too"
+    )
 
 
 def check_room(case: Case, folder: Path, csv: bool = True) -> None:

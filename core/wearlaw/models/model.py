@@ -60,7 +60,7 @@ class Model(Configuration, ABC):
         return cls.name
 
     def _repr_html_(self) -> str:
-        """Return the model for a notebook: its name and fields."""
+        """Return the model for a notebook: its fields, with a drawing of a rig or the curve of a law."""
         shown: str = load("wearlaw_output.notebook", "html", "a notebook")(self)
         return shown
 

@@ -53,10 +53,11 @@ def test_html_has_row_heads_numbers_at_the_right_and_every_text_literally() -> N
     cells = [html.unescape(text) for text in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", shown)]
     assert cells[5:10] == ["a & b_1", "−1.5 × 10<sup>−7</sup><sup>†‡</sup>", "3", "yes", "γ ≤ 1 · 10⁻³ and cᵢ"]
     assert cells[10:13] == [EVIL, "", "12"]
-    assert re.findall(r"<tr><th[^>]*>(.*?)</th>", shown) == ["model &lt;i&gt;", "a &amp; b_1", html.escape(EVIL)]
+    assert shown.count('class="row_heading') == 2
     assert "<caption>&lt;caption&gt;</caption>" in shown
     assert shown.count('number"') == 2 + 3, "two heads and three numbers"
     assert "<script" not in shown
+    assert " id=" not in shown
 
 
 def test_latex_has_units_marks_footnotes_and_escaped_texts() -> None:

@@ -109,14 +109,17 @@ def test_the_main_table_has_the_most_wear_as_mass_and_as_depth(study: wl.Study, 
 
 
 @pytest.mark.usefixtures("blank_figures")
-def test_a_table_that_excel_cannot_read_is_left_out_and_it_is_said(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("most", "option", "left_out"), [(4, [], True), (4, ["--csv"], False), (5, ["--no-csv"], True)]
+)
+def test_a_table_that_excel_cannot_read_is_left_out_unless_asked_for(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, most: int, option: list[str], left_out: bool
 ) -> None:
-    monkeypatch.setattr("wearlaw_studies.written.MOST_ROWS", 4)  # private: less than a million rows
+    monkeypatch.setattr("wearlaw_studies.written.MOST_ROWS", most)  # private: less than a million rows
     write(folder / "c.toml", SMALL)
-    result = wearlaw("run", "c.toml", "-o", "out")
-    assert not (folder / "out" / "results.csv").exists()
-    assert "results.csv is left out" in result.stderr
+    result = wearlaw("run", "c.toml", "-o", "out", *option)
+    assert (folder / "out" / "results.csv").exists() != left_out
+    assert ("results.csv is left out" in result.stderr) == left_out
     assert (folder / "out" / "results.nc").is_file()
 
 

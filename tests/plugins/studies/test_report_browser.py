@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from axe_core_python.selenium import Axe
 from selenium import webdriver
-from selenium.webdriver import Keys
+from selenium.webdriver import ActionChains, Keys
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
@@ -43,21 +43,18 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def started(home: Path, *flags: str) -> webdriver.Chrome:
-    """Start a browser that keeps all its files in a folder."""
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
+    """Start a browser that keeps all its files in a temporary folder."""
     assert BROWSER is not None
+    home = tmp_path_factory.mktemp("browser")
     options = webdriver.ChromeOptions()
     options.binary_location = BROWSER
-    for flag in (*FLAGS, *flags, f"--user-data-dir={home / 'profile'}"):
+    for flag in (*FLAGS, f"--user-data-dir={home / 'profile'}"):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     places = dict.fromkeys(("HOME", "TMPDIR", "XDG_CONFIG_HOME", "XDG_CACHE_HOME"), str(home))
-    return webdriver.Chrome(options, Service(DRIVER, env={**os.environ, **places}))
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
-    driver = started(tmp_path_factory.mktemp("browser"))
+    driver = webdriver.Chrome(options, Service(DRIVER, env={**os.environ, **places}))
     yield driver
     driver.quit()
 
@@ -75,11 +72,25 @@ def open_page(browser: webdriver.Chrome, file: Path) -> None:
     browser.get(file.as_uri())
 
 
-@pytest.fixture
-def page(browser: webdriver.Chrome, file: Path) -> webdriver.Chrome:
-    """Open the page in bright colours."""
+@pytest.fixture(scope="module")
+def opened(browser: webdriver.Chrome, file: Path) -> webdriver.Chrome:
+    """Open the page once, since that takes longer than most tests."""
     open_page(browser, file)
     return browser
+
+
+@pytest.fixture
+def page(opened: webdriver.Chrome) -> webdriver.Chrome:
+    """Give the page to a test that leaves it as it was, but for its colours."""
+    scheme(opened, "light")
+    return opened
+
+
+@pytest.fixture
+def page_to_change(page: webdriver.Chrome, file: Path) -> Iterator[webdriver.Chrome]:
+    """Give the page to a test that changes it."""
+    yield page
+    open_page(page, file)
 
 
 SIZES = {"desktop": (1300, 900), "phone": (390, 800)}
@@ -95,6 +106,7 @@ def screen(request: pytest.FixtureRequest, browser: webdriver.Chrome, file: Path
     open_page(browser, file)
     yield width, height
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    open_page(browser, file)
 
 
 def scheme(browser: webdriver.Chrome, wanted: str) -> None:
@@ -110,8 +122,36 @@ def plot(page: webdriver.Chrome, name: str) -> Any:
     return element
 
 
+def visible(page: webdriver.Chrome, element: Any, name: str) -> list[Any]:
+    """Return whether each trace of a name is shown."""
+    script = "return arguments[0]._fullData.filter(t => t.name === arguments[1]).map(t => t.visible)"
+    return list(page.execute_script(script, element, name))
+
+
+def legend_entry(element: Any, name: str) -> Any:
+    (entry,) = (e for e in element.find_elements("css selector", ".legend .traces") if e.text == name)
+    return entry
+
+
 def wait(page: webdriver.Chrome, until: Any) -> None:
     WebDriverWait(page, PATIENCE_S, poll_frequency=0.05).until(lambda _: until())
+
+
+def hover_text(page: webdriver.Chrome, element: Any, x: float, y: float) -> str:
+    """Return what is shown when the mouse is over a point of the first panel, its lines without breaks."""
+    where = """
+        const {_fullLayout: {xaxis, yaxis}} = arguments[0], box = arguments[0].getBoundingClientRect();
+        return [box.x + xaxis._offset + xaxis.d2p(arguments[1]), box.y + yaxis._offset + yaxis.d2p(arguments[2])];
+    """
+    across, down = page.execute_script(where, element, x, y)
+    chain = ActionChains(page, duration=0)
+    mouse: Any = chain.w3c_actions.pointer_action
+    for step in (-3, 0):
+        mouse.move_to_location(round(across) + step, round(down))
+    chain.perform()
+    wait(page, lambda: element.find_elements("css selector", ".hoverlayer .hovertext"))
+    (shown,) = element.find_elements("css selector", ".hoverlayer .hovertext")
+    return str(shown.text).replace("\N{NO-BREAK SPACE}", " ")
 
 
 def test_the_page_opens_without_a_complaint_and_without_a_request(page: webdriver.Chrome) -> None:
@@ -135,6 +175,27 @@ def test_every_curve_is_drawn(page: webdriver.Chrome, figure: Any) -> None:
     assert len(element.find_elements("css selector", ".scatterlayer .js-fill")) == bands
 
 
+@pytest.mark.parametrize(("figure", "name", "count"), [(ONE, "falling", 1), (THREE, "rising", 6)])
+def test_a_click_in_the_legend_hides_a_curve_with_its_band_in_all_panels_and_shows_it_again(
+    page: webdriver.Chrome, figure: Any, name: str, count: int
+) -> None:
+    element = plot(page, figure.name)
+    others = page.execute_script("return arguments[0]._fullData.length", element) - count
+    assert visible(page, element, name) == [True] * count
+    for shown in ("legendonly", True):
+        legend_entry(element, name).find_element("css selector", ".legendtoggle").click()
+        wait(page, lambda shown=shown: visible(page, element, name) == [shown] * count)
+        states = page.execute_script("return arguments[0]._fullData.map(t => t.visible)", element)
+        assert states.count(True) == others + (count if shown is True else 0)
+    paths = ".scatterlayer .trace"
+    assert len(element.find_elements("css selector", paths)) == others + count
+
+
+def test_hovering_shows_the_value_with_its_unit(page: webdriver.Chrome) -> None:
+    element = plot(page, ONE.name)
+    assert hover_text(page, element, 10.0, 30.0) == "risingcreepage [%]: 10wear rate [µg/m/mm²]: 30from 20 to 40"
+
+
 def luminance(colour: str) -> float:
     """Return the relative luminance of an rgb colour (WCAG 2, definition of relative luminance)."""
     parts = np.array([float(part) for part in colour.split("(")[1].rstrip(")").split(",")[:3]]) / 255.0
@@ -149,24 +210,29 @@ def contrast(one: str, other: str) -> float:
 
 
 @pytest.mark.parametrize("wanted", ["light", "dark"])
-def test_figures_can_be_read_in_both_colour_schemes(page: webdriver.Chrome, wanted: str) -> None:
-    """Text needs a contrast of 4.5 (WCAG 2, criterion 1.4.3), and so have measured points; axe-core sees no figures."""
+def test_text_and_measured_points_can_be_read_in_both_colour_schemes(page: webdriver.Chrome, wanted: str) -> None:
+    """Text needs a contrast of 4.5, and what is drawn 3 (WCAG 2, criteria 1.4.3 and 1.4.11)."""
     element = plot(page, ONE.name)
     scheme(page, wanted)
     paper = page.find_element("tag name", "body").value_of_css_property("background-color")
     assert (luminance(paper) < 0.5) == (wanted == "dark")
-    script = """
-        const texts = arguments[0].querySelectorAll(".legendtext, .xtick text, .xtitle, .ytitle");
-        return [...texts].map(e => getComputedStyle(e).fill);
-    """
 
-    def readable() -> bool:
-        found = page.execute_script(script, element)
+    def styles(within: Any, selector: str, of: str) -> list[str]:
+        script = "return [...arguments[0].querySelectorAll(arguments[1])].map(e => getComputedStyle(e)[arguments[2]])"
+        return list(page.execute_script(script, within, selector, of))
+
+    def readable(selector: str) -> bool:
+        found = styles(element, selector, "fill")
         return bool(found) and all(contrast(colour, paper) >= 4.5 for colour in found)
 
-    wait(page, readable)
-    colour = page.execute_script("return arguments[0]._fullData.find(t => t.name === 'tests').marker.color", element)
-    assert contrast(f"rgb({', '.join(str(part) for part in bytes.fromhex(colour[1:]))})", paper) >= 4.5
+    wait(page, lambda: readable(".legendtext, .xtick text, .xtitle, .ytitle"))
+    body = page.find_element("tag name", "body")
+    for tag in ("h1", "h2", "td", "figcaption", "a", ".verdict", ".where"):
+        assert all(contrast(colour, paper) >= 4.5 for colour in styles(body, tag, "color"))
+    marker = "return arguments[0]._fullData.find(t => t.name === 'tests').marker.color"
+    colour = page.execute_script(marker, element)
+    rgb = f"rgb({', '.join(str(part) for part in bytes.fromhex(colour[1:]))})"
+    assert contrast(rgb, paper) >= 4.5
 
 
 def boxes(page: webdriver.Chrome, selector: str) -> list[tuple[str, float, float, float, float]]:
@@ -219,8 +285,9 @@ def test_panels_stand_below_each_other_on_a_phone_and_do_not_overlap(
 
 
 @pytest.mark.parametrize("wanted", ["light", "dark"])
-def test_a_checker_of_accessibility_finds_no_fault(page: webdriver.Chrome, wanted: str) -> None:
+def test_a_checker_of_accessibility_finds_no_fault(page_to_change: webdriver.Chrome, wanted: str) -> None:
     """The rules of axe-core: contrast, names, roles, headings, landmarks, focus."""
+    page = page_to_change
     scheme(page, wanted)
     found = Axe().run(page)
     faults = {fault["id"]: [node["html"][:200] for node in fault["nodes"]] for fault in found["violations"]}
@@ -228,12 +295,13 @@ def test_a_checker_of_accessibility_finds_no_fault(page: webdriver.Chrome, wante
     assert "color-contrast" in {rule["id"] for rule in found["passes"]}
 
 
-def test_all_controls_can_be_reached_with_the_tab_key_and_show_the_focus(page: webdriver.Chrome) -> None:
+def test_all_controls_can_be_reached_with_the_tab_key_and_show_the_focus(page_to_change: webdriver.Chrome) -> None:
+    page = page_to_change
     script = """
         const e = document.activeElement, style = getComputedStyle(e);
         return [e.tagName.toLowerCase(), style.outlineStyle, parseFloat(style.outlineWidth)];
     """
-    page.find_element("tag name", "body").send_keys(Keys.TAB)
+    page.execute_script("document.querySelector('.skip').focus()")
     reached = []
     for _ in range(200):
         tag, outline, width = page.execute_script(script)
@@ -244,12 +312,13 @@ def test_all_controls_can_be_reached_with_the_tab_key_and_show_the_focus(page: w
         assert width > 0.0, tag
         page.switch_to.active_element.send_keys(Keys.TAB)
     count = "return document.querySelectorAll(arguments[0]).length"
-    for tag, selector in (("a", "nav a, .skip"), ("div", ".wide")):
+    for tag, selector in (("a", "nav a, .skip"), ("summary", "summary"), ("button", "#open"), ("div", ".wide")):
         assert reached.count(tag) >= page.execute_script(count, selector)
     assert reached.count("g") == page.execute_script(count, ".legend .traces")
 
 
-def test_a_print_has_a_bright_page_without_navigation(page: webdriver.Chrome) -> None:
+def test_a_print_has_a_bright_page_without_navigation(page_to_change: webdriver.Chrome) -> None:
+    page = page_to_change
     scheme(page, "dark")
     record = """
         window.seen = [];

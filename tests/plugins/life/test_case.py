@@ -1,0 +1,54 @@
+"""The shipped case of a wheel's life with its section, and `wearlaw life`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from click.testing import CliRunner
+
+import wearlaw as wl
+import wearlaw_life
+from tests.plugins.life.test_life import line
+from wearlaw_life import _section  # private: a shorter distance
+from wearlaw_life._command import life  # private: the command
+
+TEXT = wearlaw_life.wearlaw_resources()["case"]["wheel_life"].replace('sections = ["life"]\n', "")
+
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    path = tmp_path / "case.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return path
+
+
+def test_section_has_the_life_and_which_states_wear_where(case: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_section, "OVER", wl.Q(100, "km"))
+    found = _section.section(wl.run(wl.load_case(str(case))))
+    assert "not a service rate" in found.text
+    assert found.tables["life"]["distance [km]"].iloc[-1] == pytest.approx(100.0)
+    _, states = found.figures
+    deepest = [[curve.x[curve.y.argmax()] for curve in panel.curves] for panel in states.panels]
+    left, right = deepest
+    assert right[-1] < -10.0 < right[0]  # towards the flange where the wheelset is displaced to that side
+    assert left == right[::-1]
+
+
+def test_command_writes_tables_a_figure_and_the_worn_profile(case: Path, tmp_path: Path) -> None:
+    table, folder = tmp_path / "line.csv", tmp_path / "out"
+    line(3).to_csv(table, index=False)
+    given = ["--set", "vertical_load=60 kN", "--set", "friction_coefficient=0.3", "--set", "sides=each"]
+    result = CliRunner().invoke(life, [str(case), str(table), "--over", "20 km", *given, "-o", str(folder)])
+    assert result.exit_code == 0, result.output
+    names = {"life.csv", "profiles.csv", "worn_left.csv", "worn_right.csv", "life.png", "life.json"}
+    assert {path.name for path in folder.iterdir()} >= names
+    measures = pd.read_csv(folder / "life.csv")
+    assert measures["distance [km]"].iloc[-1] == pytest.approx(20.0)
+    assert json.loads((folder / "life.json").read_text())["ended"] == "over"
+    assert not (tmp_path / "out.partial").exists()
+    assert "Life of a wheel: 20 km" in result.output
