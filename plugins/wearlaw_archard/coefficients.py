@@ -129,7 +129,7 @@ def wear_coefficient(
         raise wl.InputError(
             f"{to}, {target.formula}, from {form}, {source.formula}, needs values of your source: {', '.join(missing)}"
         )
-    result *= math.prod(known[name] ** power for name, power in powers.items() if power)
+    result *= float(math.prod(known[name] ** power for name, power in powers.items() if power))
     if not 0.0 < result < math.inf:
         raise wl.InputError(f"value: as {to}, {target.formula}, it is too small or too large; check the values")
     if not target.unit:
