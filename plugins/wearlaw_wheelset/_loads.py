@@ -345,13 +345,18 @@ class Balance:
         first = balance.found.part(balance.found.number == 0)
         radius = placed(section, first.position, first.arc).radius.reshape(-1, 2).mean(axis=-1)
         balance.rotation = task.speed / radius if task.rotation is None else task.rotation
-        balance = balance.solved(None)
-        if task.free:
-            before = balance.sampled.copy()
-            ahead = np.clip(-balance._lower() / balance._levers(), -WIDEST_ROLL, WIDEST_ROLL)
-            balance._turn(np.arange(count), balance.roll + ahead, SMALL)
-            balance._newton(None, balance.sampled != before, False)
-        return balance
+        if task.free:  # the roll needs only rough penetrations, since it is found again with the creep forces
+            balance._newton(None, np.ones(count, dtype=np.bool_), False, steps=1)
+            balance._level(SMALL)
+            balance = balance.solved(None)
+            balance._level(np.inf)
+            return balance
+        return balance.solved(None)
+
+    def _level(self, slight: float) -> None:
+        """Roll the wheelset, in place, until both wheels carry it at one height; `slight` as in `_turn`."""
+        ahead = np.clip(-self._lower() / self._levers(), -WIDEST_ROLL, WIDEST_ROLL)
+        self._turn(np.arange(self.roll.size), self.roll + ahead, slight)
 
     def _guessed(self) -> tuple[Array, Array]:
         """Return guesses of the penetration of each wheel [m] and of the rolls [rad], by Hertz where bodies touch."""
@@ -534,6 +539,7 @@ class Balance:
         chosen: NDArray[np.bool_],
         rolls: bool,
         known: bool = False,
+        steps: int = STEPS,
     ) -> None:
         """Balance the loads of some positions by Newton's method, in place; their rolls stay unless `rolls`.
 
@@ -547,7 +553,7 @@ class Balance:
         open_, unit = chosen.copy(), np.ones((count, 1, 4))
         step, before = np.zeros((2, count, 4))
         least, halved = np.full(count, np.inf), np.zeros(count)
-        for iteration in range(STEPS):
+        for iteration in range(steps):
             state = self._state(forces, open_, known and iteration == 0)
             if not rolls:
                 state.miss[:, 3] = 0.0
