@@ -344,9 +344,9 @@ class Balance:
         balance.penetration = balance.whole.copy()
         first = balance.found.part(balance.found.number == 0)
         radius = placed(section, first.position, first.arc).radius.reshape(-1, 2).mean(axis=-1)
-        balance.rotation = task.speed / radius if task.rotation is None else task.rotation
+        balance.rotation = task.speed / radius if task.rotation is None else task.rotation.copy()
         if task.free:  # the roll needs only rough penetrations, since it is found again with the creep forces
-            balance._newton(None, np.ones(count, dtype=np.bool_), False, steps=1)
+            balance._newton(None, np.ones(count, dtype=np.bool_), False, once=True)
             balance._level(SMALL)
             balance = balance.solved(None)
             balance._level(np.inf)
@@ -539,11 +539,11 @@ class Balance:
         chosen: NDArray[np.bool_],
         rolls: bool,
         known: bool = False,
-        steps: int = STEPS,
+        once: bool = False,
     ) -> None:
         """Balance the loads of some positions by Newton's method, in place; their rolls stay unless `rolls`.
 
-        If `known`, the present shapes of patches are taken for the first step.
+        If `known`, the present shapes of patches are taken for the first step; if `once`, there is no other.
 
         Broyden's method corrects the estimated rates, in Schubert's form, which keeps those that are zero. The speed
         of rotation and the roll count with the torque and the level that they change. Where the wheels are nearly
@@ -553,7 +553,7 @@ class Balance:
         open_, unit = chosen.copy(), np.ones((count, 1, 4))
         step, before = np.zeros((2, count, 4))
         least, halved = np.full(count, np.inf), np.zeros(count)
-        for iteration in range(steps):
+        for iteration in range(1 if once else STEPS):
             state = self._state(forces, open_, known and iteration == 0)
             if not rolls:
                 state.miss[:, 3] = 0.0

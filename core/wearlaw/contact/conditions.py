@@ -145,9 +145,11 @@ def friction_at(law: FrictionLaw, name: str, creep_speed: Array) -> Array:
 
 def is_friction_law(friction: object) -> TypeGuard[FrictionLaw]:
     """Return whether friction depends on the speed of sliding."""
-    # A test with isinstance(friction, FrictionLaw) takes a tenth of the time of a prediction. pint writes all numbers
-    # of a quantity into the error for an attribute that it lacks, so its class is asked.
-    return callable(getattr(type(friction), "coefficient", None))
+    # A test with isinstance(friction, FrictionLaw) would take a tenth of the time of a prediction; pint writes all
+    # numbers of a quantity into the error for an attribute that it lacks.
+    if isinstance(friction, Quantity | type):
+        return False
+    return callable(getattr(friction, "coefficient", None))
 
 
 def broadcast(arrays: Arrays) -> Arrays:
