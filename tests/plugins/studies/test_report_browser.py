@@ -43,18 +43,21 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
-    """Start a browser that keeps all its files in a temporary folder."""
+def started(home: Path, *flags: str) -> webdriver.Chrome:
+    """Start a browser that keeps all its files in a folder."""
     assert BROWSER is not None
-    home = tmp_path_factory.mktemp("browser")
     options = webdriver.ChromeOptions()
     options.binary_location = BROWSER
-    for flag in (*FLAGS, f"--user-data-dir={home / 'profile'}"):
+    for flag in (*FLAGS, *flags, f"--user-data-dir={home / 'profile'}"):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     places = dict.fromkeys(("HOME", "TMPDIR", "XDG_CONFIG_HOME", "XDG_CACHE_HOME"), str(home))
-    driver = webdriver.Chrome(options, Service(DRIVER, env={**os.environ, **places}))
+    return webdriver.Chrome(options, Service(DRIVER, env={**os.environ, **places}))
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
+    driver = started(tmp_path_factory.mktemp("browser"))
     yield driver
     driver.quit()
 
