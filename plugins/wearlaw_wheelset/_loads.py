@@ -345,13 +345,19 @@ class Balance:
         first = balance.found.part(balance.found.number == 0)
         radius = placed(section, first.position, first.arc).radius.reshape(-1, 2).mean(axis=-1)
         balance.rotation = task.speed / radius if task.rotation is None else task.rotation.copy()
+        left = balance.balanced.copy()
         if task.free:  # the roll needs only rough penetrations, since it is found again with the creep forces
-            balance._newton(None, np.ones(count, dtype=np.bool_), False, once=True)
+            balance._newton(None, left, False, once=True)
+            left, before = balance.imbalance > ROUGH, balance.sampled.copy()
             balance._level(SMALL)
-            balance = balance.solved(None)
+            left |= balance.sampled != before
+        balance._newton(None, left, False)
+        left = balance.imbalance > ROUGH
+        if left.any():
+            balance._bracketed(None, left)
+        if task.free:
             balance._level(np.inf)
-            return balance
-        return balance.solved(None)
+        return balance
 
     def _level(self, slight: float) -> None:
         """Roll the wheelset, in place, until both wheels carry it at one height; `slight` as in `_turn`."""
@@ -494,14 +500,13 @@ class Balance:
             part.start, part.step, part.gaps, part.curvature_x, self.elastic.modulus, depth, strips, self.roll.size,
         )  # fmt: skip
 
-    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, bounds: bool = True) -> Balance:
+    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces], bounds: bool = True) -> Balance:
         """Return the loads with penetrations and speeds of rotation that balance the creep forces.
 
         Parameters
         ----------
-        forces : callable or None
-            Returns the creep forces of a problem with one entry for each patch. None leaves out the creep forces; the
-            speed of rotation then stays as it is.
+        forces : callable
+            Returns the creep forces of a problem with one entry for each patch.
         bounds : bool
             Whether to search within bounds where Newton's method fails, which takes a hundred times as long. Otherwise
             these positions are marked as unbalanced.
@@ -512,9 +517,9 @@ class Balance:
         touching = Touching(*(array.copy() for array in self.touching))
         found = replace(self, touching=touching, shapes=dict(self.shapes), starts=dict(self.starts), **copies)
         found.found = self.found.part(np.arange(self.found.point.size))
-        rolls = self.task.free and forces is not None
-        found._newton(forces, every, rolls, known=forces is not None)
-        left = found.imbalance > (ROUGH if forces is None else STALLED)
+        rolls = self.task.free
+        found._newton(forces, every, rolls, known=True)
+        left = found.imbalance > STALLED
         if rolls:
             if left.any() and bounds:
                 found._rolled(forces, left)
