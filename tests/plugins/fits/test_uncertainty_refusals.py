@@ -96,6 +96,7 @@ def test_what_is_no_value_is_refused_where_a_distribution_is_made(name: str, mak
         (wl.normal, (0.3, np.nan), "standard deviation"),
         (wl.normal, (0.3, Q(1, "mm")), "one dimension"),
         (wl.lognormal, ("0 %", 1.2), "median"),
+        (wl.lognormal, (0.3, 0.9), "above 1"),
     ],
 )
 def test_impossible_distributions_are_refused(make: Any, given: Any, named: str) -> None:
