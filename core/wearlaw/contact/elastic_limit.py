@@ -222,7 +222,7 @@ def overload(
             known = worst is not None and worst.beyond_shakedown
             least = worst.ratio if worst is not None and known == beyond else 1.0
             if not known or beyond:  # beyond shakedown there is no need to check first yield
-                worst = _worse(worst, _furthest(measure, beyond, k, nu, friction, least, *flat))
+                worst = _worse(worst, _furthest(measure, k, nu, friction, least, *flat))
     return worst
 
 
@@ -256,15 +256,7 @@ def _most_stressed(poisson_ratio: float, friction_coefficient: _Value) -> _Value
 
 
 def _furthest(
-    measure: str,
-    beyond: bool,
-    k: float,
-    nu: float,
-    friction: float,
-    least: float,
-    max_pressure: Array,
-    traction: Array,
-    *more: Array,
+    measure: str, k: float, nu: float, friction: float, least: float, max_pressure: Array, traction: Array, *more: Array
 ) -> Overload | None:
     """Return the point with the greatest deciding shear stress, or None if none is above `least` k.
 
@@ -280,7 +272,9 @@ def _furthest(
         greatest = int(loads.argmax())
         if loads[greatest] > load:
             at, load = chosen[greatest], float(loads[greatest])
-    return Overload(beyond, load, float(max_pressure[at]), float(traction[at])) if load > least else None
+    if load <= least:
+        return None
+    return Overload(measure == "forward", load, float(max_pressure[at]), float(traction[at]))
 
 
 def _greatest(measure: str, nu: float, friction: float, *, line: bool) -> float:
