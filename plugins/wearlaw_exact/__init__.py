@@ -52,10 +52,13 @@ class Exact(wl.LineContactModel):
         k, length = 1.0 / inverse_k, _slip_length(problem, inverse_k)
         before, behind = nodes.from_trailing, nodes.from_leading  # a - x and x + a
         into = length - before  # x + a - 2c, the distance from the start of the slip zone
+        slipping = into > 0.0
         pressure = problem.max_pressure * np.sqrt(before * behind) / a
         bound = problem.friction_coefficient * pressure
-        slipping = into > 0.0
-        traction = bound if slipping.all() else np.where(slipping, bound, _stuck(problem, before, behind, length))
+        # μp - (c/a) μp0 √(1-((x+a-c)/c)²) as √A - √B = (A-B)/(√A + √B): no digits are lost, and it is never negative.
+        roots = np.sqrt(before) + np.sqrt(np.maximum(-into, 0.0))
+        growth = length * np.sqrt(behind) / np.maximum(roots, 1e-150)  # zero only at the trailing edge
+        stuck = problem.friction_coefficient * problem.max_pressure / a * growth
         everywhere = problem.creepage + k * nodes.x
         if self.slip == "as_printed":
             slip = everywhere
@@ -63,7 +66,7 @@ class Exact(wl.LineContactModel):
             slip = np.where(problem.creepage < k * a, k * np.sqrt(np.maximum(into, 0.0) * behind), everywhere)
         return wl.LineFields(
             pressure=pressure,
-            traction=traction,
+            traction=np.where(slipping, bound, stuck),
             slip=np.where(slipping, slip, 0.0),
             traction_bound=bound,
         )
@@ -100,17 +103,6 @@ class Exact(wl.LineContactModel):
             problem.effective_modulus,
             threshold,
         )
-
-
-def _stuck(problem: wl.Problem, before: Array, behind: Array, length: Array) -> Array:
-    """Return the traction in the stick zone [Pa], μp - (c/a) μp0 √(1-((x+a-c)/c)²).
-
-    As √A - √B = (A-B)/(√A + √B) it loses no digits, and it is never negative.
-    """
-    roots = np.sqrt(before) + np.sqrt(np.maximum(before - length, 0.0))
-    growth = length * np.sqrt(behind) / np.maximum(roots, 1e-150)  # zero only at the trailing edge
-    stuck: Array = problem.friction_coefficient * problem.max_pressure / problem.half_width * growth
-    return stuck
 
 
 def _inverse_k(problem: wl.Problem) -> Array:
