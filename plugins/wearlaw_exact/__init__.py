@@ -53,12 +53,13 @@ class Exact(wl.LineContactModel):
         before, behind = nodes.from_trailing, nodes.from_leading  # a - x and x + a
         into = length - before  # x + a - 2c, the distance from the start of the slip zone
         slipping = into > 0.0
-        pressure = problem.max_pressure * np.sqrt(before * behind) / a
+        root_before, root_behind, scale = np.sqrt(before), np.sqrt(behind), problem.max_pressure / a
+        pressure = scale * root_before * root_behind
         bound = problem.friction_coefficient * pressure
         # μp - (c/a) μp0 √(1-((x+a-c)/c)²) as √A - √B = (A-B)/(√A + √B): no digits are lost, and it is never negative.
-        roots = np.sqrt(before) + np.sqrt(np.maximum(-into, 0.0))
-        growth = length * np.sqrt(behind) / np.maximum(roots, 1e-150)  # zero only at the trailing edge
-        stuck = problem.friction_coefficient * problem.max_pressure / a * growth
+        roots = root_before + np.sqrt(np.maximum(-into, 0.0))
+        growth = length * root_behind / np.maximum(roots, 1e-150)  # zero only at the trailing edge
+        stuck = problem.friction_coefficient * scale * growth
         everywhere = problem.creepage + k * nodes.x
         if self.slip == "as_printed":
             slip = everywhere
