@@ -12,8 +12,8 @@ wheels sink together: with the heights of the axle at which either wheel touches
     height + h of the right wheel = height + h of the left wheel.
 
 Newton's method finds ln h, Ω and ρ together. It estimates the rates and learns from its steps, so that each step costs
-the creep forces once. Where it fails, because the load jumps, each unknown is found by the secant method within the
-bounds found so far, the roll outermost.
+the creep forces once. Where it fails, because the load jumps, humps of one patch become patches of their own. Where it
+fails again, each unknown is found by the secant method within the bounds found so far, the roll outermost.
 """
 
 from __future__ import annotations
@@ -520,20 +520,15 @@ class Balance:
         rolls = self.task.free
         found._newton(forces, every, rolls, known=True)
         left = found.imbalance > STALLED
-        if rolls:
-            if left.any() and bounds:
-                found._rolled(forces, left)
-                left &= found.imbalance > ROUGH
-            if left.any():  # one of two humps of a patch takes over from the other; let them share the load
-                rows = np.flatnonzero(left)
-                found.share[rows], found.correction[rows], found.apart[rows] = 0.0, 0.0, np.inf
-                found._turn(rows, found.roll[rows], 0.0)
-                found._newton(forces, left, rolls)
-                left &= found.imbalance > ROUGH
-            if left.any() and bounds:
-                found._rolled(forces, left)
-        elif left.any() and bounds:
-            found._bracketed(forces, left)
+        if rolls and left.any():  # one of two humps of a patch takes over from the other; let them share the load
+            found.penetration[left.repeat(2)] = self.penetration[left.repeat(2)]
+            found.rotation[left] = self.rotation[left]
+            found.share[left], found.correction[left], found.apart[left] = 0.0, 0.0, np.inf
+            found._turn(np.flatnonzero(left), self.roll[left], 0.0)
+            found._newton(forces, left, rolls)
+            left &= found.imbalance > ROUGH
+        if left.any() and bounds:
+            (found._rolled if rolls else found._bracketed)(forces, left)
         if not bounds:
             found.balanced = found.imbalance <= ROUGH
         return found
