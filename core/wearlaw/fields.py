@@ -114,6 +114,8 @@ def _rig(value: Any) -> Any:
     if not isinstance(value, Mapping):
         return value
     given = dict(value)
+    if {"type", "preset"} <= given.keys():
+        raise InputError("give a type or a preset, not both")
     if "type" in given:
         return _named("rig", "type", given.pop("type"))(**given)
     if "preset" in given:

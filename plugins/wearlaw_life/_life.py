@@ -153,7 +153,7 @@ class Life:
         first, last = self.table.iloc[0], self.table.iloc[-1]
         along, unit = name_and_unit(self.table.columns[0])
         why = {"": ", interrupted", "over": ""}.get(self.ended, f", to the limit of {_words(self.ended)}")
-        steps = f"{len(self.table) - 1} steps"
+        steps = "1 step" if len(self.table) == 2 else f"{len(self.table) - 1} steps"
         lines = [f"Life of a {self.body}: {_number(last.iloc[0])} {unit or along}, {steps}{why}"]
         for one in map(str, self.table.columns[1:]):
             if not one.startswith("factor") and np.isfinite(last[one]):
