@@ -115,7 +115,7 @@ def _rig(value: Any) -> Any:
         return value
     given = dict(value)
     if {"type", "preset"} <= given.keys():
-        raise InputError("give a type or a preset, not both")
+        raise ConfigurationError("rig", [Fault(("preset",), "stands beside a type; keep one of them")])
     if "type" in given:
         return _named("rig", "type", given.pop("type"))(**given)
     if "preset" in given:
