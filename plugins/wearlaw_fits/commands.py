@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -38,7 +37,7 @@ from wearlaw_output.commands import (
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import CommandT, named, write_files, written_formats
 from wearlaw_output.folder import results_folder
-from wearlaw_output.notes import Notes
+from wearlaw_output.notes import Notes, caught_warnings
 from wearlaw_sweeps.progress import Bar
 
 FIT, COMPARISON, LAW = "fit.json", "comparison.json", "law.toml"
@@ -302,8 +301,8 @@ def _fits(
         for pair in pairs:
             names = Names(f"{pair.law} fitted on {pair.contact_model}", f"{pair.law} fitted", pair.contact_model)
             try:
-                with notes.of(names.label), warnings.catch_warnings():
-                    warnings.simplefilter("ignore", PlasticityWarning)  # the comparison says it once, of the tests
+                # The comparison says once of the tests that they are beyond the elastic limit.
+                with notes.of(names.label), caught_warnings(PlasticityWarning):
                     found.append((names, fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)))
             except FitError as error:
                 refused.append(f"{names.label} is left out: {error}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import Annotated, Any, Literal, Self
@@ -19,7 +18,6 @@ from wearlaw.errors import (
     InputError,
     UnitError,
     WearlawError,
-    WearlawWarning,
     did_you_mean,
     shown,
 )
@@ -28,6 +26,7 @@ from wearlaw.units.quantities import Q, parse
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
 from wearlaw_output.conditions import Known
+from wearlaw_output.notes import caught_warnings
 from wearlaw_sweeps.points import Points, Varying
 
 MOST_POINTS = 10_000_000
@@ -236,8 +235,7 @@ def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
 
 def _quietly(rig: Rig, conditions: Mapping[str, Any]) -> Any:
     """Return the rig's problem without its warnings, which running the case repeats."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", WearlawWarning)
+    with caught_warnings():
         return rig.checked_problem(conditions)
 
 

@@ -6,7 +6,6 @@ Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 from __future__ import annotations
 
 import itertools
-import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ import xarray
 from numpy.typing import NDArray
 
 from wearlaw.configuration import Configuration, field_docstrings
-from wearlaw.errors import InputError, WearlawWarning
+from wearlaw.errors import InputError
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.model import Blame, Model
 from wearlaw.pipeline.variables import MASS
@@ -29,6 +28,7 @@ from wearlaw.units.variables import UNITS, VARIABLES, name_of
 from wearlaw_fits.pairs import Pair
 from wearlaw_output.labels import label as label_of
 from wearlaw_output.labels import labelled, readable
+from wearlaw_output.notes import caught_warnings
 from wearlaw_output.styled import Marked
 from wearlaw_studies.figures import main_result
 from wearlaw_studies.results import (
@@ -121,8 +121,7 @@ def _as_mass_and_depth(study: Study, name: str, pair: Pair, point: Mapping[str, 
     """Return the wear at an operating point as mass and as depth, such as "35 mg/km; wheel 12 µm in 1000 km"."""
     at = {axis: Q(value.item(), value.attrs["units"]) for axis, value in point.items()}
     pipeline, law = pair.pipeline, pair.pipeline.laws[0]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", WearlawWarning)  # the study has them
+    with caught_warnings():  # the study has them
         found = pipeline.predict(pipeline.posed({**study.case.sweeps[name].given, **at}))
         parts = [f"{_compact(Q(float(found.mass_per_distance.m_as('g/km')), 'g'))}/km"]
         body = law.body or next(iter(study.case.rig.bodies), None)
