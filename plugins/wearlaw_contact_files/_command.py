@@ -22,7 +22,7 @@ from wearlaw_output.commands import (
     print_table,
 )
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import named, write_files, written_formats
+from wearlaw_output.files import write_files, written_formats
 from wearlaw_output.folder import results_folder
 from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
@@ -102,7 +102,7 @@ def wear(
                 "laws": [specification(law) for law in chosen],
                 "notes": list(notes.texts),
             }
-            names = write_files(fresh, WEAR, record, tables, named(figure), figure_formats, latex)
+            names = write_files(fresh, WEAR, record, tables, [figure] if figure else [], figure_formats, latex)
     print_notes(notes.texts)
     _print(table)
     print_results(folder, names)

@@ -35,7 +35,7 @@ from wearlaw_output.commands import (
     values,
 )
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import CommandT, named, write_files, written_formats
+from wearlaw_output.files import CommandT, write_files, written_formats
 from wearlaw_output.folder import results_folder
 from wearlaw_output.notes import Notes, caught_warnings
 from wearlaw_sweeps.progress import Bar
@@ -331,7 +331,7 @@ def _write_fit(
     if fit.law is not None:
         fit.to_toml(folder / LAW)
     tables = {"parameters": fit.table(), "residuals": fit.residuals}
-    names = write_files(folder, FIT, record, tables, named(fit.figure_data()), figure_formats, latex)
+    names = write_files(folder, FIT, record, tables, [fit.figure_data()], figure_formats, latex)
     return [LAW, *names] if fit.law is not None else names
 
 
@@ -347,7 +347,7 @@ def _write_comparison(
         "notes": list(notes),
     }
     tables = {"ranking": comparison.table(), "predictions": comparison.predictions()}
-    return write_files(folder, COMPARISON, record, tables, named(comparison.figure_data()), figure_formats, latex)
+    return write_files(folder, COMPARISON, record, tables, [comparison.figure_data()], figure_formats, latex)
 
 
 def _rig(path: Path | None, notes: Notes) -> Any:

@@ -73,8 +73,7 @@ def life(
             )  # fmt: skip
         laws = [repr(law) for law in found.pipeline.laws]
         record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": notes.texts}
-        figures = {"life": found.figure()}
-        names = write_files(fresh, LIFE, record, _tables(found), figures, figure_formats, latex)
+        names = write_files(fresh, LIFE, record, _tables(found), [found.figure()], figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
     print_notes(notes.texts)
     click.echo(repr(found))

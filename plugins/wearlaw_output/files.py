@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -41,25 +41,20 @@ def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[F
     return list(files.values())
 
 
-def named(figure: FigureData | None) -> dict[str, FigureData]:
-    """Return a figure, if there is one, by its name."""
-    return {} if figure is None else {figure.name: figure}
-
-
 def write_files(
     folder: Path,
     marker: str,
     record: Mapping[str, Any],
     tables: Mapping[str, pd.DataFrame],
-    figures: Mapping[str, FigureData],
+    figures: Iterable[FigureData],
     figure_formats: Sequence[FigureFormat],
     latex: bool,
     texts: Mapping[str, str] | None = None,
 ) -> list[str]:
-    """Write tables, figures and texts by the names of their files, and a JSON record."""
+    """Write tables and texts by the names of their files, figures by their own, and a JSON record."""
     names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
-    for name, figure in figures.items():
-        names += save_figure(figure, folder, name, figure_formats)
+    for figure in figures:
+        names += save_figure(figure, folder, figure.name, figure_formats)
     record_text = json.dumps(record, indent=2, ensure_ascii=False) + "\n"
     for name, text in {**(texts or {}), marker: record_text}.items():
         (folder / name).write_text(text, encoding="utf-8")

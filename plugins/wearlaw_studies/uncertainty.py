@@ -32,8 +32,8 @@ class CaseUncertainty:
 
     Attributes
     ----------
-    figures : dict of str to FigureData
-        The samples of each operating point and pair, by the name of a file, such as "scatter_usfd_on_exact".
+    figures : list of FigureData
+        The samples of each operating point and pair; their names are such as "scatter_usfd_on_exact".
     wear_rates : pandas.DataFrame
         Median and interval for each operating point and pair. If there are other outcomes than wear, they have rows
         here too, and columns say which outcome and unit each row has.
@@ -45,7 +45,7 @@ class CaseUncertainty:
         Remarks for the reader.
     """
 
-    figures: dict[str, FigureData]
+    figures: list[FigureData]
     wear_rates: pd.DataFrame
     indices: pd.DataFrame
     samples: int
@@ -69,7 +69,7 @@ def uncertainty_of(
             "nothing in the case is uncertain; add a table such as [uncertainty.scatter] in which some conditions are"
             ' distributions, as in creepage = {uniform = ["0.5 %", "1.5 %"]}'
         )
-    figures, rates, indices, used = {}, [], [], samples
+    figures, rates, indices, used = [], [], [], samples
     for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
         subject = f"{name}, {pair.label}"
         if not point.varies(pair.law):
@@ -91,7 +91,7 @@ def uncertainty_of(
             words = name_of(outcome)
             title = f"{words[:1].upper()}{words[1:]} by {pair.label}: {name}"
             file = re.sub(r"\W+", "_", f"{name} {pair.label} {outcome if len(each) > 1 else ''}").strip("_")
-            figures[file] = replace(single.figure_data(), title=title)
+            figures.append(replace(single.figure_data(), name=file, title=title))
         on_pair(1)
     only_wear = all(row["outcome"] == WEAR for row in rates)
     front = ["point", "pair"] if only_wear else ["point", "pair", "outcome"]

@@ -34,7 +34,7 @@ from wearlaw_studies.figures import main_result
 from wearlaw_studies.results import (
     LIMITS,
     SHAKEDOWN,
-    along_main_axis,
+    along,
     axes_of,
     beyond_limits,
     labelled_by,
@@ -191,7 +191,7 @@ def _marks(outside: Any, beyond: Mapping[str, xarray.DataArray], model: str) -> 
 def _fixed(sweep: xarray.Dataset, creepage: str | None) -> str:
     """Return the values of the other axes at which a sweep is shown, in words."""
     main = main_axis(sweep, creepage)
-    line = along_main_axis(sweep, creepage)
+    line = along(sweep, main)
     others = [axis for axis in axes_of(sweep) if axis != main]
     at = (f"{name_of(axis)} {line[axis].item():.4g} {line[axis].attrs['units']}".rstrip() for axis in others)
     return f" at {', '.join(at)}" if others else ""
@@ -203,7 +203,7 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
     If the rig makes several patches, there is a row for each of them, or one for the sum of `MASS` over all.
     """
     axis = main_axis(sweep, creepage)
-    line = along_main_axis(sweep, creepage)
+    line = along(sweep, axis)
     count = line.sizes[axis]
     line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
     rows: dict[str, Any] = {}
@@ -219,8 +219,8 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
         rows |= {label: list(map(Marked, each.values, marks)) for label, each in values.items()}
     heads = [_four_digits(value) for value in line[axis].values]
     frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
-    what, along = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
-    frame.insert(0, f"{what} by {along}", list(rows))
+    what, over = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
+    frame.insert(0, f"{what} by {over}", list(rows))
     return frame
 
 
@@ -230,15 +230,16 @@ def profiles(study: Study) -> list[NamedTable]:
     for name, profile in study.profiles.items():
         if "y" not in profile:
             continue
+        depths = {body: profile[f"{body}_depth"] for body in study.case.rig.bodies if f"{body}_depth" in profile}
         rows = [(pair, patch) for pair in profile.pair.values.tolist() for patch in patches_of(profile)]
         columns: dict[str, Any] = {"pair": [labelled_by(patch, pair) for pair, patch in rows]}
-        for body in _worn(profile, study):
-            unit = readable(profile[f"{body}_depth"].attrs["units"])
+        for body, depth in depths.items():
+            unit = readable(depth.attrs["units"])
             deepest = [_deepest(study, profile.sel(patch), pair, body) for pair, patch in rows]
             columns[f"{body}: greatest depth [{unit}]"], columns[f"{body}: at y [mm]"] = zip(*deepest, strict=True)
-        title = f"Profile '{name}': wear across the patch, {_per(profile, study)}"
+        per = ", ".join(f"{body} {depth.attrs['long_name']}" for body, depth in depths.items())
         frame = pd.DataFrame({head: np.array(values, dtype=object) for head, values in columns.items()})
-        found.append(_marked(f"profile_{name}", title, frame))
+        found.append(_marked(f"profile_{name}", f"Profile '{name}': wear across the patch, {per}", frame))
     return found
 
 
@@ -252,16 +253,6 @@ def _deepest(study: Study, profile: xarray.Dataset, pair: str, body: str) -> tup
     place = profile.y.sel(contact_model=model) if "contact_model" in profile.y.dims else profile.y
     deepest = int(np.nanargmax(depth.values))
     return Marked(depth[deepest].item(), marks), place[deepest].item()
-
-
-def _per(profile: xarray.Dataset, study: Study) -> str:
-    """Return the reference of each body's depth, such as per metre rolled."""
-    return ", ".join(f"{body} {profile[f'{body}_depth'].attrs['long_name']}" for body in _worn(profile, study))
-
-
-def _worn(profile: xarray.Dataset, study: Study) -> list[str]:
-    """Return the bodies whose wear a profile shows."""
-    return [body for body in study.case.rig.bodies if f"{body}_depth" in profile]
 
 
 def _four_digits(value: float) -> str:
