@@ -35,7 +35,7 @@ from wearlaw_output.commands import (
     values,
 )
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import CommandT, write_files, written_formats
+from wearlaw_output.files import CommandT, write_files, writes_results
 from wearlaw_output.folder import results_folder
 from wearlaw_output.notes import Notes, caught_warnings
 from wearlaw_sweeps.progress import Bar
@@ -47,10 +47,6 @@ FIT, COMPARISON, LAW = "fit.json", "comparison.json", "law.toml"
 def common(command: CommandT) -> CommandT:
     """Add the options that both commands share."""
     for option in (
-        written_formats,
-        click.option(
-            "--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay."
-        ),
         click.option(
             "--scatter",
             type=click.Choice(["relative", "absolute"]),
@@ -104,7 +100,7 @@ stages_option = click.option(
 @click.option("--bootstrap", type=int, default=1000, show_default=True, help="Replicates; 0 for quick intervals.")
 @click.option("--confidence", type=float, default=0.95, show_default=True, help="Of the intervals.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of the random numbers.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-fit].")
+@writes_results("TESTS-fit")
 def fit(
     tests: str,
     contact: str,
@@ -136,7 +132,7 @@ def fit(
     The folder then holds law.toml, the fitted law, to be used wherever a law is asked for; parameters.csv with
     confidence intervals; residuals.csv; a figure; and fit.json with all that the fit comes from.
     """  # noqa: D301
-    folder = output if output is not None else folder_for(tests, "fit")
+    folder = output or folder_for(tests, "fit")
     notes = Notes()
     with results_folder(folder, overwrite, FIT) as fresh:
         names, given = listed("--free", free), values("--fixed", fixed)
@@ -202,9 +198,7 @@ def _note_fixed(law: Law, free: list[str], notes: Notes) -> None:
 )
 @common
 @bounds_option
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-comparison]."
-)
+@writes_results("TESTS-comparison")
 def compare(
     tests: str,
     contacts: str,
@@ -238,7 +232,7 @@ def compare(
     contact. The folder then holds ranking.csv, the table that is printed; predictions.csv; a figure of measured against
     predicted wear rates; and comparison.json with all models.
     """  # noqa: D301
-    folder = output if output is not None else folder_for(tests, "comparison")
+    folder = output or folder_for(tests, "comparison")
     parts: Any = int(cross_validate) if cross_validate and cross_validate.isdecimal() else cross_validate
     if parts and not free:
         raise click.UsageError("--cross-validate: say which parameters are free, as in --free usfd=q_s,m_c")

@@ -62,8 +62,11 @@ def write_files(
     return names
 
 
-def written_formats(command: CommandT) -> CommandT:
-    """Add the options `figure_formats`, `latex` and `--verbose` to a command that writes results and prints notes."""
+def writes_results(default: str) -> Callable[[CommandT], CommandT]:
+    """Return what adds the options of a command that writes results and prints notes; `default` names their folder.
+
+    The arguments are `output`, `overwrite`, `figure_formats` and `latex`; `print_notes` obeys `--verbose`.
+    """
     formats = click.option(
         "--figure-format",
         "figure_formats",
@@ -73,5 +76,9 @@ def written_formats(command: CommandT) -> CommandT:
         show_default=True,
         help="Format of the figures; may be repeated.",
     )
+    folder = f"Folder for the results [default: {default}]."
+    output = click.option("-o", "--output", type=click.Path(path_type=Path), help=folder)
+    replaced = "Replace the files of this command in that folder; others stay."
+    overwrite = click.option("--overwrite", is_flag=True, help=replaced)
     latex = click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
-    return formats(latex(verbose(command)))
+    return lambda command: output(overwrite(formats(latex(verbose(command)))))
