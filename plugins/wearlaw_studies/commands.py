@@ -13,16 +13,19 @@ from wearlaw.cli import Stopped
 from wearlaw.errors import OutputError, shown
 from wearlaw_output.commands import folder_for, print_notes, print_results, print_table
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import writes_results
+from wearlaw_output.files import write_files, writes_results
 from wearlaw_output.folder import results_folder
 from wearlaw_output.notes import Notes, grouped
-from wearlaw_studies.case import load_case
+from wearlaw_studies.case import load_case, written
 from wearlaw_studies.report.tables import summaries
-from wearlaw_studies.study import evaluations
+from wearlaw_studies.study import evaluations, provenance
 from wearlaw_studies.study import run as run_case
-from wearlaw_studies.uncertainty import UNCERTAINTY, uncertainty_of, write_uncertainty
+from wearlaw_studies.uncertainty import uncertainty_of
 from wearlaw_studies.written import RESULTS, check_room, without_csv, write
 from wearlaw_sweeps.progress import Bar
+
+UNCERTAINTY = "uncertainty.json"
+"""The file with the record of an uncertainty, which tells its folder from others."""
 
 
 @click.command()
@@ -132,7 +135,14 @@ def uncertainty(
         found = uncertainty_of(loaded, samples, seed, bar)
         bar.stage("writing results")
         with notes.of("figures"):
-            names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)
+            record = {"samples": found.samples, "seed": seed, "provenance": provenance(loaded), "notes": found.notes}
+            tables = {
+                "wear_rates": found.wear_rates,
+                **({"sobol_indices": found.indices} if len(found.indices) else {}),
+            }
+            names = write_files(
+                fresh, UNCERTAINTY, record, tables, found.figures, figure_formats, latex, written(loaded)
+            )
     if found.samples != samples:
         click.echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
     print_notes(grouped([*found.notes, *notes.texts]))

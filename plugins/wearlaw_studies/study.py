@@ -10,7 +10,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray
@@ -19,6 +19,7 @@ from wearlaw import loader
 from wearlaw.arrays import steady
 from wearlaw.configuration import known_name
 from wearlaw.contact.material import Material
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import (
     ConfigurationError,
     InputError,
@@ -42,7 +43,7 @@ from wearlaw_studies.case import Case
 from wearlaw_studies.figures import figures_of, wrong_figures
 from wearlaw_studies.results import LIMITS, PATCH_AXES, Results, pairs_of
 from wearlaw_studies.sections import Section
-from wearlaw_sweeps.evaluation import Job, weight
+from wearlaw_sweeps.evaluation import Job
 from wearlaw_sweeps.points import Points
 from wearlaw_sweeps.provenance import parts
 from wearlaw_sweeps.sweep import check_importable, kept, target_of
@@ -52,9 +53,6 @@ if TYPE_CHECKING:
     from wearlaw.loader import Shelf
     from wearlaw_output.curves import FigureData
     from wearlaw_studies.grid import Grid
-
-Dims: TypeAlias = Mapping[str, tuple[str | int, ...]]
-"""The axes that a rig adds for several patches, with their labels."""
 
 PROFILE_STRIPS = 101
 """Strips of a profile across the patch, if the contact model can choose them."""
@@ -224,11 +222,12 @@ class _Evaluator:
     blocks: int = 0
 
     def __call__(
-        self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str], dims: Dims
+        self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str], first: Problem
     ) -> xarray.Dataset:
-        """Return outputs in their usual units; `key` names the store of the sweep, `dims` are the rig's own axes."""
+        """Return outputs in their usual units; `key` names the store of the sweep, `first` is its first problem."""
         units = {**UNITS, **outcome_units(pipeline.laws)}
-        job = Job(pipeline, {name: units[name] for name in outputs}, dims)
+        job = Job(pipeline, {name: units[name] for name in outputs}, first.dims)
+        points = replace(points, weight=job.weight(first))
         blocks = len(points.blocks())
         workers = min(self.workers, blocks)
         check_importable(pipeline, workers)
@@ -240,14 +239,14 @@ class _Evaluator:
             for warning in run_sweep(target, self.on_block, workers):
                 warnings.warn(warning, stacklevel=2)
             arrays = target.arrays()
-        data = {v: ((*points.dims, *dims), arrays[v], {"units": units[v]}) for v in outputs}
-        return xarray.Dataset(data, attrs={PATCH_AXES: " ".join(dims)} if dims else {})
+        data = {v: ((*points.dims, *first.dims), arrays[v], {"units": units[v]}) for v in outputs}
+        return xarray.Dataset(data, attrs={PATCH_AXES: " ".join(first.dims)} if first.dims else {})
 
 
 def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: _Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
     first, units = grid.problem(case.rig), case.result_units
-    points = replace(grid.points(case.units), weight=weight(first))
+    points = grid.points(case.units)
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
     levels = {v: grid.level(v, case.units) for v in grid.given}
     fixed = {v: level for v, level in levels.items() if isinstance(level, float)}
@@ -266,8 +265,8 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
         with notes.of(f"sweep '{name}'"):
             warn_of_unlike_materials(pair.pipeline.contact_model, first)
             outputs = [*of_pair, *of_contact, *of_point]
-            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first.dims)
-        band = _band(f"{name}-{number}", pair, points, first.dims, found, evaluator)
+            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first)
+        band = _band(f"{name}-{number}", pair, points, first, found, evaluator)
         of_pairs[pair.label] = found[of_pair].assign(band)
         contacts.setdefault(pair.contact_model, found[of_contact])
         of_points = of_points.assign(found[of_point].data_vars)
@@ -294,7 +293,7 @@ def _side_by_side(of_pairs: Mapping[str, xarray.Dataset], contacts: Mapping[str,
     return xarray.merge(found, join="outer", compat="no_conflicts")
 
 
-def _of_pair(pair: Pair, problem: Any) -> list[str]:
+def _of_pair(pair: Pair, problem: Problem) -> list[str]:
     """Return the variables of a pair: its outcome, the error of a mean over the patch, and whether it is outside.
 
     With several patches there is also the mass lost at each, since wear rates cannot be added.
@@ -304,7 +303,7 @@ def _of_pair(pair: Pair, problem: Any) -> list[str]:
     return [pair.outcome.name, *error, "outside_range", *mass]
 
 
-def _of_contact(pair: Pair, problem: Any, case: Case, given: Collection[str]) -> tuple[list[str], list[str]]:
+def _of_contact(pair: Pair, problem: Problem, case: Case, given: Collection[str]) -> tuple[list[str], list[str]]:
     """Return the variables of a contact model but those given, and those of the points, which do not depend on it.
 
     If the rig balances its loads, all depend on it.
@@ -332,7 +331,7 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
 
 
 def _band(
-    key: str, pair: Pair, points: Points, dims: Dims, found: xarray.Dataset, evaluator: _Evaluator
+    key: str, pair: Pair, points: Points, first: Problem, found: xarray.Dataset, evaluator: _Evaluator
 ) -> dict[str, xarray.DataArray]:
     """Return the ends of the outcome over the published range of the law's parameters; wear rates have them anyway."""
     outcome, ends = pair.outcome.name, _band_ends(pair.pipeline)
@@ -341,7 +340,7 @@ def _band(
         return dict.fromkeys(names, found[outcome]) if outcome == WEAR else {}
     with caught_warnings():  # the middle of the band gave them already
         return {
-            name: evaluator(f"{key}-{name}", end, points, [outcome], dims)[outcome]
+            name: evaluator(f"{key}-{name}", end, points, [outcome], first)[outcome]
             for name, end in zip(names, ends, strict=True)
         }
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -15,15 +14,11 @@ from wearlaw.models.law import WEAR
 from wearlaw.units.quantities import WEAR_RATE
 from wearlaw.units.variables import name_of
 from wearlaw_fits.uncertainty import CONFIDENCE, Uncertainty, uncertainty
-from wearlaw_output.curves import FigureData, FigureFormat
-from wearlaw_output.files import write_files
+from wearlaw_output.curves import FigureData
 from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
-from wearlaw_studies.case import Case, written
+from wearlaw_studies.case import Case
 from wearlaw_studies.results import pairs_of
-from wearlaw_studies.study import provenance
-
-UNCERTAINTY = "uncertainty.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,17 +104,3 @@ def _interval(one: Uncertainty) -> dict[str, str | float]:
     ends = {"median": one.median, f"{50 - 50 * CONFIDENCE:g} %": low, f"{50 + 50 * CONFIDENCE:g} %": high}
     values = {name: float(value.to(one.unit or "dimensionless").magnitude) for name, value in ends.items()}
     return {"outcome": one.outcomes[0], "unit": one.unit or "-", **values}
-
-
-def write_uncertainty(
-    case: Case,
-    found: CaseUncertainty,
-    seed: int,
-    folder: Path,
-    figure_formats: Sequence[FigureFormat] = ("png",),
-    latex: bool = False,
-) -> list[str]:
-    """Write the uncertainty of a case, and the case itself, into an empty folder, and return the names of the files."""
-    record = {"samples": found.samples, "seed": seed, "provenance": provenance(case), "notes": list(found.notes)}
-    tables = {"wear_rates": found.wear_rates, **({"sobol_indices": found.indices} if len(found.indices) else {})}
-    return write_files(folder, UNCERTAINTY, record, tables, found.figures, figure_formats, latex, written(case))

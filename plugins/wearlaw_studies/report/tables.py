@@ -217,7 +217,7 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
         if low in one and (one[high] > one[low]).any():
             values |= {f"{label}, low end": one[low], f"{label}, high end": one[high]}
         rows |= {label: list(map(Marked, each.values, marks)) for label, each in values.items()}
-    heads = [_four_digits(value) for value in line[axis].values]
+    heads = [np.format_float_positional(at, precision=4, fractional=False, trim="-") for at in line[axis].values]
     frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
     what, over = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
     frame.insert(0, f"{what} by {over}", list(rows))
@@ -253,10 +253,6 @@ def _deepest(study: Study, profile: xarray.Dataset, pair: str, body: str) -> tup
     place = profile.y.sel(contact_model=model) if "contact_model" in profile.y.dims else profile.y
     deepest = int(np.nanargmax(depth.values))
     return Marked(depth[deepest].item(), marks), place[deepest].item()
-
-
-def _four_digits(value: float) -> str:
-    return np.format_float_positional(value, precision=4, fractional=False, trim="-")
 
 
 def parameters(study: Study) -> NamedTable:
