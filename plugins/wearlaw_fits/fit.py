@@ -262,7 +262,7 @@ def _first_friction(tests: WearTests, given: float | None) -> float:
     traction = tests.columns.get("traction_coefficient")
     if traction is None or np.isnan(traction).all():
         raise FitError(
-            "free: the friction coefficient is fitted to measured traction, and the tests hold none; add a column"
+            "free: the friction coefficient is fitted to measured traction, and the tests have none; add a column"
             " 'traction_coefficient', 'tangential_force [N]' or 'frictional_heat [W]', or give friction_coefficient"
         )
     if given is not None:
