@@ -219,7 +219,7 @@ class _Task:
     def model(self, theta: Array) -> Array:
         """Return the weighted residuals (sets, n) of scaled parameters (sets, p)."""
         values = self.free.columns(theta)
-        return np.concatenate([one.residuals(values) for one in self.observations], axis=-1) * self.weights
+        return np.concatenate([one.compare(one.predicted(values)) for one in self.observations], axis=-1) * self.weights
 
     def residuals(self, best: Solutions) -> Array:
         """Return the residuals of a fit without their weights, (n,)."""

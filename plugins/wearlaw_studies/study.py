@@ -5,12 +5,12 @@ from __future__ import annotations
 import itertools
 import json
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray
@@ -19,6 +19,7 @@ from wearlaw import loader
 from wearlaw.arrays import steady
 from wearlaw.configuration import known_name
 from wearlaw.contact.material import Material
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import (
     ConfigurationError,
     InputError,
@@ -42,7 +43,7 @@ from wearlaw_studies.case import Case
 from wearlaw_studies.figures import figures_of, wrong_figures
 from wearlaw_studies.results import LIMITS, PATCH_AXES, Results, pairs_of
 from wearlaw_studies.sections import Section
-from wearlaw_sweeps.evaluation import Job, weight
+from wearlaw_sweeps.evaluation import Job
 from wearlaw_sweeps.points import Points
 from wearlaw_sweeps.provenance import parts
 from wearlaw_sweeps.sweep import check_importable, kept, target_of
@@ -52,9 +53,6 @@ if TYPE_CHECKING:
     from wearlaw.loader import Shelf
     from wearlaw_output.curves import FigureData
     from wearlaw_studies.grid import Grid
-
-Dims: TypeAlias = Mapping[str, tuple[str | int, ...]]
-"""The axes that a rig adds for several patches, with their labels."""
 
 PROFILE_STRIPS = 101
 """Strips of a profile across the patch, if the contact model can choose them."""
@@ -224,11 +222,12 @@ class _Evaluator:
     blocks: int = 0
 
     def __call__(
-        self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str], dims: Dims
+        self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str], first: Problem
     ) -> xarray.Dataset:
-        """Return outputs in their usual units; `key` names the store of the sweep, `dims` are the rig's own axes."""
+        """Return outputs in their usual units; `key` names the store of the sweep, `first` is its first problem."""
         units = {**UNITS, **outcome_units(pipeline.laws)}
-        job = Job(pipeline, {name: units[name] for name in outputs}, dims)
+        job = Job(pipeline, {name: units[name] for name in outputs}, first.dims)
+        points = replace(points, weight=job.weight(first))
         blocks = len(points.blocks())
         workers = min(self.workers, blocks)
         check_importable(pipeline, workers)
@@ -240,16 +239,18 @@ class _Evaluator:
             for warning in run_sweep(target, self.on_block, workers):
                 warnings.warn(warning, stacklevel=2)
             arrays = target.arrays()
-        data = {v: ((*points.dims, *dims), arrays[v], {"units": units[v]}) for v in outputs}
-        return xarray.Dataset(data, attrs={PATCH_AXES: " ".join(dims)} if dims else {})
+        data = {v: ((*points.dims, *first.dims), arrays[v], {"units": units[v]}) for v in outputs}
+        return xarray.Dataset(data, attrs={PATCH_AXES: " ".join(first.dims)} if first.dims else {})
 
 
 def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: _Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
     first, units = grid.problem(case.rig), case.result_units
-    points = replace(grid.points(case.units), weight=weight(first))
+    points = grid.points(case.units)
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
-    found_in = _variables(grid, case, usable)
+    levels = {v: grid.level(v, case.units) for v in grid.given}
+    fixed = {v: level for v, level in levels.items() if isinstance(level, float)}
+    given = fixed if first.dims else points.varying  # a condition for all patches is not the variable of one of them
     of_pairs: dict[str, xarray.Dataset] = {}
     contacts: dict[str, xarray.Dataset] = {}
     of_points = xarray.Dataset(
@@ -257,20 +258,23 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
         | {axis: list(labels) for axis, labels in first.dims.items()}
     )
     for number, pair in enumerate(usable):
+        known = pair.contact_model in contacts
         of_pair = _of_pair(pair, first)
-        of_contact = [] if pair.contact_model in contacts else found_in.of_contact[pair.contact_model]
-        of_point = [] if contacts else found_in.of_point
+        of_contact, of_every = ([], []) if known else _of_contact(pair, first, case, given)
+        of_point = [v for v in of_every if v not in of_points]
         with notes.of(f"sweep '{name}'"):
             warn_of_unlike_materials(pair.pipeline.contact_model, first)
             outputs = [*of_pair, *of_contact, *of_point]
-            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first.dims)
-        band = _band(f"{name}-{number}", pair, points, first.dims, found, evaluator)
+            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first)
+        band = _band(f"{name}-{number}", pair, points, first, found, evaluator)
         of_pairs[pair.label] = found[of_pair].assign(band)
         contacts.setdefault(pair.contact_model, found[of_contact])
         of_points = of_points.assign(found[of_point].data_vars)
-    fixed = {v: (points.dims, np.full(points.shape, level), {"units": units[v]})
-             for v, level in found_in.conditions.items()}  # fmt: skip
-    dataset = _side_by_side(of_pairs, contacts).assign(of_points.variables).assign(fixed)
+    dataset = _side_by_side(of_pairs, contacts).assign(of_points.variables)
+    dataset = dataset.assign(
+        {v: (points.dims, np.full(points.shape, level), {"units": units[v]})
+         for v, level in fixed.items() if v not in dataset}
+    )  # fmt: skip
     return dataset.assign_coords(
         {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
         | {"pair_wear_law": ("pair", [pair.law if pair.outcome.name == WEAR else "" for pair in usable])}
@@ -289,7 +293,7 @@ def _side_by_side(of_pairs: Mapping[str, xarray.Dataset], contacts: Mapping[str,
     return xarray.merge(found, join="outer", compat="no_conflicts")
 
 
-def _of_pair(pair: Pair, problem: Any) -> list[str]:
+def _of_pair(pair: Pair, problem: Problem) -> list[str]:
     """Return the variables of a pair: its outcome, the error of a mean over the patch, and whether it is outside.
 
     With several patches there is also the mass lost at each, since wear rates cannot be added.
@@ -299,39 +303,18 @@ def _of_pair(pair: Pair, problem: Any) -> list[str]:
     return [pair.outcome.name, *error, "outside_range", *mass]
 
 
-class _Variables(NamedTuple):
-    """Variables of a sweep besides the rates of its pairs."""
+def _of_contact(pair: Pair, problem: Problem, case: Case, given: Collection[str]) -> tuple[list[str], list[str]]:
+    """Return the variables of a contact model but those given, and those of the points, which do not depend on it.
 
-    of_contact: dict[str, list[str]]
-    """For each contact model, those of its predictions; also those of the points if the rig balances its loads."""
-    of_point: list[str]
-    """Those of the operating points, which do not depend on the contact model."""
-    conditions: dict[str, float]
-    """Conditions that are the same at all points."""
-
-
-def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
-    """Return the variables of a sweep, found by predicting its first operating point."""
-    problem, axes = grid.problem(case.rig), grid.axes()
-    levels = {name: grid.level(name, case.units) for name in grid.given}
-    conditions = {name: level for name, level in levels.items() if isinstance(level, float)}
-    given = conditions if problem.dims else axes  # a condition for all patches is not the variable of one of them
-    of_contact: dict[str, list[str]] = {}
-    of_point: dict[str, None] = {}
-    for pair in {pair.contact_model: pair for pair in pairs}.values():
-        with caught_warnings():  # the sweep repeats them
-            prediction = pair.pipeline.without_law().predict(problem)
-        of_contact[pair.contact_model] = [v for v in offered(prediction, OF_CONTACT) if v not in given]
-        # A rig may use the name of a variable for something else.
-        same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
-        new = [v for v in same if v not in given]
-        if type(case.rig).balanced is Rig.balanced:
-            of_point |= dict.fromkeys(new)
-        else:
-            of_contact[pair.contact_model] += new
-    known = {*axes, *of_point, *(v for variables in of_contact.values() for v in variables)}
-    fixed = {name: level for name, level in conditions.items() if name not in known}
-    return _Variables(of_contact, [v for v in (*OF_POINT, *OF_PATCH) if v in of_point], fixed)
+    If the rig balances its loads, all depend on it.
+    """
+    with caught_warnings():  # the sweep repeats them
+        prediction = pair.pipeline.without_law().predict(problem)
+    of_contact = [v for v in offered(prediction, OF_CONTACT) if v not in given]
+    # A rig may use the name of a variable for something else.
+    same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
+    of_point = [v for v in same if v not in given]
+    return (of_contact, of_point) if type(case.rig).balanced is Rig.balanced else (of_contact + of_point, [])
 
 
 def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
@@ -348,7 +331,7 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
 
 
 def _band(
-    key: str, pair: Pair, points: Points, dims: Dims, found: xarray.Dataset, evaluator: _Evaluator
+    key: str, pair: Pair, points: Points, first: Problem, found: xarray.Dataset, evaluator: _Evaluator
 ) -> dict[str, xarray.DataArray]:
     """Return the ends of the outcome over the published range of the law's parameters; wear rates have them anyway."""
     outcome, ends = pair.outcome.name, _band_ends(pair.pipeline)
@@ -357,7 +340,7 @@ def _band(
         return dict.fromkeys(names, found[outcome]) if outcome == WEAR else {}
     with caught_warnings():  # the middle of the band gave them already
         return {
-            name: evaluator(f"{key}-{name}", end, points, [outcome], dims)[outcome]
+            name: evaluator(f"{key}-{name}", end, points, [outcome], first)[outcome]
             for name, end in zip(names, ends, strict=True)
         }
 
