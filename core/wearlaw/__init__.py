@@ -288,7 +288,9 @@ def __getattr__(name: str) -> object:
     for module, names in _LATE.items():
         if name in names:
             return _load(module, name, f"wearlaw.{name}")
-    raise AttributeError(f"module 'wearlaw' has no attribute {name!r}")
+    of_wheelsets = name in ("Wheelset", "Profile", "read_profile", "write_profile")
+    hint = f"; it is wearlaw_wheelset.{name}" if of_wheelsets else ""
+    raise AttributeError(f"module 'wearlaw' has no attribute {name!r}{hint}")
 
 
 def __dir__() -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import sys
+import warnings
 from io import TextIOWrapper
 from typing import IO, Any
 
@@ -68,12 +69,16 @@ class _Commands(click.Group):
             formatter.write_dl([(name, command.help) for name, command in commands().items()])
 
     def invoke(self, ctx: click.Context) -> Any:
+        before = warnings.formatwarning  # it shows the place in the code, which helps nobody at a prompt
+        warnings.formatwarning = lambda message, category, *_, **__: f"{category.__name__}: {message}\n"
         try:
             return super().invoke(ctx)
         except WearlawError as error:
             raise click.ClickException("\n".join([str(error), *getattr(error, "__notes__", [])])) from None
         except KeyboardInterrupt:
             raise Stopped("Stopped") from None
+        finally:
+            warnings.formatwarning = before
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -240,7 +240,7 @@ def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
         return f"unknown field{hint} The fields are: {', '.join(known) or 'none'}"
     if details["type"] == "missing":
         return "is missing"
-    if details["type"] == "tuple_type":
-        return f"must be a list, got {shown(details['input'])}"
+    if details["type"] in ("tuple_type", "dict_type", "model_type"):
+        return f"must be a {'list' if details['type'] == 'tuple_type' else 'table'}, got {shown(details['input'])}"
     message = details["msg"]
     return f"{message[0].lower()}{message[1:]}, got {shown(details['input'])}"

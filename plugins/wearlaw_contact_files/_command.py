@@ -22,7 +22,7 @@ from wearlaw_output.commands import (
     print_table,
 )
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import named, write_files, written_formats
+from wearlaw_output.files import write_files, writes_results
 from wearlaw_output.folder import results_folder
 from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
@@ -56,9 +56,7 @@ WEAR = "wear.json"
     help="Set a field of the reader, such as density; may be repeated. wearlaw show NAME lists them.",
 )
 @click.option("--patch-mean", is_flag=True, help="Replace each contact by its means, for laws stated for them.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: FILE-wear].")
-@click.option("--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay.")
-@written_formats
+@writes_results("FILE-wear")
 def wear(
     files: tuple[str, ...],
     laws: tuple[str, ...],
@@ -81,7 +79,7 @@ def wear(
     printed; a table and a figure of the wear across each patch; and wear.json with the laws and the notes.
     """  # noqa: D301
     first, *others = files
-    folder = output if output is not None else folder_for(first, "wear")
+    folder = output or folder_for(first, "wear")
     notes, chosen = Notes(), [law_of(text) for text in laws]
     given = fields("--option", options)
     labels = _labels(files)
@@ -102,7 +100,7 @@ def wear(
                 "laws": [specification(law) for law in chosen],
                 "notes": list(notes.texts),
             }
-            names = write_files(fresh, WEAR, record, tables, named(figure), figure_formats, latex)
+            names = write_files(fresh, WEAR, record, tables, [figure] if figure else [], figure_formats, latex)
     print_notes(notes.texts)
     _print(table)
     print_results(folder, names)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from html import escape
@@ -25,7 +24,7 @@ from wearlaw_output.commands import values
 from wearlaw_output.conditions import Known
 from wearlaw_output.curves import BLACK, Map
 from wearlaw_output.labels import in_words, label
-from wearlaw_output.notes import Notes
+from wearlaw_output.notes import Notes, caught_warnings
 from wearlaw_output.pictures import fields_of, raster
 from wearlaw_studies.case import load_case
 from wearlaw_studies.report.interactive import plotly_figure
@@ -143,8 +142,7 @@ class Page:
             self._update()
 
     def _update(self, *_: Any) -> None:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wl.WearlawWarning)  # there are notes of them
+        with caught_warnings():  # there are notes of them
             self._show(self.model.value, self.laws.value)
 
     def _show(self, model: str, laws: list[str]) -> None:

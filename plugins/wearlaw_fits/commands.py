@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -36,9 +35,9 @@ from wearlaw_output.commands import (
     values,
 )
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import CommandT, named, write_files, written_formats
+from wearlaw_output.files import CommandT, write_files, writes_results
 from wearlaw_output.folder import results_folder
-from wearlaw_output.notes import Notes
+from wearlaw_output.notes import Notes, caught_warnings
 from wearlaw_sweeps.progress import Bar
 
 FIT, COMPARISON, LAW = "fit.json", "comparison.json", "law.toml"
@@ -48,10 +47,6 @@ FIT, COMPARISON, LAW = "fit.json", "comparison.json", "law.toml"
 def common(command: CommandT) -> CommandT:
     """Add the options that both commands share."""
     for option in (
-        written_formats,
-        click.option(
-            "--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay."
-        ),
         click.option(
             "--scatter",
             type=click.Choice(["relative", "absolute"]),
@@ -105,7 +100,7 @@ stages_option = click.option(
 @click.option("--bootstrap", type=int, default=1000, show_default=True, help="Replicates; 0 for quick intervals.")
 @click.option("--confidence", type=float, default=0.95, show_default=True, help="Of the intervals.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of the random numbers.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-fit].")
+@writes_results("TESTS-fit")
 def fit(
     tests: str,
     contact: str,
@@ -137,7 +132,7 @@ def fit(
     The folder then holds law.toml, the fitted law, to be used wherever a law is asked for; parameters.csv with
     confidence intervals; residuals.csv; a figure; and fit.json with all that the fit comes from.
     """  # noqa: D301
-    folder = output if output is not None else folder_for(tests, "fit")
+    folder = output or folder_for(tests, "fit")
     notes = Notes()
     with results_folder(folder, overwrite, FIT) as fresh:
         names, given = listed("--free", free), values("--fixed", fixed)
@@ -203,9 +198,7 @@ def _note_fixed(law: Law, free: list[str], notes: Notes) -> None:
 )
 @common
 @bounds_option
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: TESTS-comparison]."
-)
+@writes_results("TESTS-comparison")
 def compare(
     tests: str,
     contacts: str,
@@ -239,7 +232,7 @@ def compare(
     contact. The folder then holds ranking.csv, the table that is printed; predictions.csv; a figure of measured against
     predicted wear rates; and comparison.json with all models.
     """  # noqa: D301
-    folder = output if output is not None else folder_for(tests, "comparison")
+    folder = output or folder_for(tests, "comparison")
     parts: Any = int(cross_validate) if cross_validate and cross_validate.isdecimal() else cross_validate
     if parts and not free:
         raise click.UsageError("--cross-validate: say which parameters are free, as in --free usfd=q_s,m_c")
@@ -302,8 +295,8 @@ def _fits(
         for pair in pairs:
             names = Names(f"{pair.law} fitted on {pair.contact_model}", f"{pair.law} fitted", pair.contact_model)
             try:
-                with notes.of(names.label), warnings.catch_warnings():
-                    warnings.simplefilter("ignore", PlasticityWarning)  # the comparison says it once, of the tests
+                # The comparison says once of the tests that they are beyond the elastic limit.
+                with notes.of(names.label), caught_warnings(PlasticityWarning):
                     found.append((names, fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)))
             except FitError as error:
                 refused.append(f"{names.label} is left out: {error}")
@@ -332,7 +325,7 @@ def _write_fit(
     if fit.law is not None:
         fit.to_toml(folder / LAW)
     tables = {"parameters": fit.table(), "residuals": fit.residuals}
-    names = write_files(folder, FIT, record, tables, named(fit.figure_data()), figure_formats, latex)
+    names = write_files(folder, FIT, record, tables, [fit.figure_data()], figure_formats, latex)
     return [LAW, *names] if fit.law is not None else names
 
 
@@ -348,7 +341,7 @@ def _write_comparison(
         "notes": list(notes),
     }
     tables = {"ranking": comparison.table(), "predictions": comparison.predictions()}
-    return write_files(folder, COMPARISON, record, tables, named(comparison.figure_data()), figure_formats, latex)
+    return write_files(folder, COMPARISON, record, tables, [comparison.figure_data()], figure_formats, latex)
 
 
 def _rig(path: Path | None, notes: Notes) -> Any:

@@ -219,7 +219,7 @@ class _Task:
     def model(self, theta: Array) -> Array:
         """Return the weighted residuals (sets, n) of scaled parameters (sets, p)."""
         values = self.free.columns(theta)
-        return np.concatenate([one.residuals(values) for one in self.observations], axis=-1) * self.weights
+        return np.concatenate([one.compare(one.predicted(values)) for one in self.observations], axis=-1) * self.weights
 
     def residuals(self, best: Solutions) -> Array:
         """Return the residuals of a fit without their weights, (n,)."""
@@ -262,7 +262,7 @@ def _first_friction(tests: WearTests, given: float | None) -> float:
     traction = tests.columns.get("traction_coefficient")
     if traction is None or np.isnan(traction).all():
         raise FitError(
-            "free: the friction coefficient is fitted to measured traction, and the tests hold none; add a column"
+            "free: the friction coefficient is fitted to measured traction, and the tests have none; add a column"
             " 'traction_coefficient', 'tangential_force [N]' or 'frictional_heat [W]', or give friction_coefficient"
         )
     if given is not None:

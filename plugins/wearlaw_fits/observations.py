@@ -95,10 +95,6 @@ class Observations:
             ) from error
         return found.reshape(sets, points)
 
-    def residuals(self, values: Mapping[str, Array]) -> Array:
-        """Return the residuals (sets, n) for parameters in SI, (sets,) each."""
-        return self.compare(self.predicted(values))
-
     def compare(self, predicted: Array) -> Array:
         """Return the residuals of predictions (..., n)."""
         if self.scatter == "relative":

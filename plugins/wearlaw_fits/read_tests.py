@@ -82,7 +82,9 @@ def parse_tests(
     text: str, name: str, outcomes: Collection[str] = (), sep: str | None = None, decimal: str = "."
 ) -> WearTests:
     """Return the tests of a CSV text; its `name` stands in errors, and for the source of tests that state none."""
-    return _checked(wl.read_table(io.StringIO(text), sep=sep, decimal=decimal), name, outcomes)
+    file = io.StringIO(text)
+    file.name = name
+    return _checked(wl.read_table(file, sep=sep, decimal=decimal), name, outcomes)
 
 
 def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:

@@ -272,7 +272,7 @@ class WearTests:
         friction = friction_coefficient if self.friction_coefficient is None else self.friction_coefficient
         if friction is None and not self.other_conditions and (not taken or "friction_coefficient" in taken):
             raise ConditionsError(
-                "friction_coefficient: the tests do not hold it; add a column of that name, or give it:"
+                "friction_coefficient: is missing; add a column of that name, or give"
                 " friction_coefficient=0.46 in Python, --friction 0.46 on the command line"
             )
         conditions: dict[str, Any] = {

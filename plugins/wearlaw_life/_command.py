@@ -13,7 +13,7 @@ import wearlaw as wl
 from wearlaw_life._life import Life
 from wearlaw_output.commands import folder_for, print_notes, print_results, value, values
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import write_files, written_formats
+from wearlaw_output.files import write_files, writes_results
 from wearlaw_output.folder import results_folder
 from wearlaw_output.notes import Notes
 from wearlaw_studies.case import load_case
@@ -31,9 +31,7 @@ LIFE = "life.json"
               help="Condition of all states, or argument of wl.wear_out, such as sides=each.")  # fmt: skip
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
 @click.option("--resume", is_flag=True, help="Go on from the finished steps of an interrupted life, in FOLDER.partial.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: LINE-life].")
-@click.option("--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay.")
-@written_formats
+@writes_results("LINE-life")
 def life(
     case: str,
     line: Path,
@@ -57,7 +55,7 @@ def life(
     at every step; profiles.csv; a figure; the worn profile, worn.csv (or that of each side, worn_left.csv and
     worn_right.csv); and life.json.
     """  # noqa: D301
-    folder = output if output is not None else folder_for(str(line), "life")
+    folder = output or folder_for(str(line), "life")
     partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
     loaded, notes = load_case(case), Notes()
     given: dict[str, Any] = values("--set", settings)
@@ -73,8 +71,7 @@ def life(
             )  # fmt: skip
         laws = [repr(law) for law in found.pipeline.laws]
         record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": notes.texts}
-        figures = {"life": found.figure()}
-        names = write_files(fresh, LIFE, record, _tables(found), figures, figure_formats, latex)
+        names = write_files(fresh, LIFE, record, _tables(found), [found.figure()], figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
     print_notes(notes.texts)
     click.echo(repr(found))

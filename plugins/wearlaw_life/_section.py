@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 import pandas as pd
 
 import wearlaw as wl
 from wearlaw_life._wear_out import wear_out
+from wearlaw_output.notes import caught_warnings
 
 LINE = "line"
 """The sweep whose states make up the line."""
@@ -37,8 +36,7 @@ def section(study: wl.Study) -> wl.Section:
     unit = f"{values.units:~C}"
     states = pd.DataFrame({f"{name} [{unit}]": values.magnitude, "share": 1.0 / values.size})
     predict = study.pairs[0].pipeline
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)  # the sweep of the study has said them
+    with caught_warnings():  # the sweep of the study has said them
         found = wear_out(predict, states, over=OVER, **given)
         figures = (found.figure(), _states(predict, name, values, given))
     return wl.Section(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -41,25 +41,20 @@ def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[F
     return list(files.values())
 
 
-def named(figure: FigureData | None) -> dict[str, FigureData]:
-    """Return a figure, if there is one, by its name."""
-    return {} if figure is None else {figure.name: figure}
-
-
 def write_files(
     folder: Path,
     marker: str,
     record: Mapping[str, Any],
     tables: Mapping[str, pd.DataFrame],
-    figures: Mapping[str, FigureData],
+    figures: Iterable[FigureData],
     figure_formats: Sequence[FigureFormat],
     latex: bool,
     texts: Mapping[str, str] | None = None,
 ) -> list[str]:
-    """Write tables, figures and texts by the names of their files, and a JSON record."""
+    """Write tables and texts by the names of their files, figures by their own, and a JSON record."""
     names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
-    for name, figure in figures.items():
-        names += save_figure(figure, folder, name, figure_formats)
+    for figure in figures:
+        names += save_figure(figure, folder, figure.name, figure_formats)
     record_text = json.dumps(record, indent=2, ensure_ascii=False) + "\n"
     for name, text in {**(texts or {}), marker: record_text}.items():
         (folder / name).write_text(text, encoding="utf-8")
@@ -67,8 +62,11 @@ def write_files(
     return names
 
 
-def written_formats(command: CommandT) -> CommandT:
-    """Add the options `figure_formats`, `latex` and `--verbose` to a command that writes results and prints notes."""
+def writes_results(default: str) -> Callable[[CommandT], CommandT]:
+    """Return what adds the options of a command that writes results and prints notes; `default` names their folder.
+
+    The arguments are `output`, `overwrite`, `figure_formats` and `latex`; `print_notes` obeys `--verbose`.
+    """
     formats = click.option(
         "--figure-format",
         "figure_formats",
@@ -78,5 +76,9 @@ def written_formats(command: CommandT) -> CommandT:
         show_default=True,
         help="Format of the figures; may be repeated.",
     )
+    folder = f"Folder for the results [default: {default}]."
+    output = click.option("-o", "--output", type=click.Path(path_type=Path), help=folder)
+    replaced = "Replace the files of this command in that folder; others stay."
+    overwrite = click.option("--overwrite", is_flag=True, help=replaced)
     latex = click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
-    return formats(latex(verbose(command)))
+    return lambda command: output(overwrite(formats(latex(verbose(command)))))

@@ -5,14 +5,13 @@ Drawings are SVG in the colour of the text, written by hand, so that nothing els
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from html import escape
 
 import numpy as np
 
 from wearlaw import loader
-from wearlaw.errors import WearlawError, WearlawWarning
+from wearlaw.errors import WearlawError
 from wearlaw.models.law import Law
 from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Pipeline, Rig
@@ -22,6 +21,7 @@ from wearlaw.units.quantities import Q
 from wearlaw.units.variables import name_of
 from wearlaw_output.conditions import Conditions
 from wearlaw_output.labels import long_name, readable
+from wearlaw_output.notes import caught_warnings
 
 WIDTH, HEIGHT = 280, 160
 """Of a drawing, in pixels."""
@@ -88,8 +88,7 @@ def law_curve(law: Law) -> str:
     """Return the outcome of a law over the wear index on logarithmic axes, or "" if it cannot be had on two discs."""
     rig, model = loader.rig("twin_disc", **DISCS), loader.contact_model("global")
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", WearlawWarning)
+        with caught_warnings():
             of_any = law.model_copy(update={"body": None})
             found = Pipeline(rig=rig, contact_model=model, laws=(of_any,)).predict(rig.checked_problem(CONDITIONS))
         x, y = found.wear_index.m_as("N"), found[law.outcome.name].m_as(law.outcome.unit or "")

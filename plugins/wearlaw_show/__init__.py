@@ -75,7 +75,7 @@ def explain(name: str) -> str:
     """
     if is_law_file(name):
         law = read_law(name)
-        return describe(type(law), f"{name}: a file of a law, for", law)
+        return describe(type(law), f"{name}: parameters for", law)
     found = loader.installed()
     kinds = [kind for kind, shelf in found.shelves.items() if name in shelf.providers]
     if not kinds:

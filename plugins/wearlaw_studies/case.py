@@ -46,7 +46,7 @@ from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.model import Model
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig, RigField
-from wearlaw.text_files import LARGEST, beside, parse_toml, read_text, reading
+from wearlaw.text_files import LARGEST, parse_toml, read_text, reading
 from wearlaw.units.variables import UNITS
 from wearlaw_output.labels import labelled, labels
 from wearlaw_studies.figure_spec import FigureSpec
@@ -440,19 +440,9 @@ def load_case(name_or_path: str) -> Case:
         if name_or_path in loader.installed()["case"].providers:
             return known_as(name_or_path, Case(**fields))
         with reading(name_or_path):
-            return Case(**_beside(fields))
+            return Case(**fields)
     except ConfigurationError as error:
         raise CaseError(with_problems(f"case {shown(Path(name_or_path))} is wrong in:", error.problems)) from None
-
-
-def _beside(fields: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields of a case, with the path of its tests made relative to here instead of to the case file."""
-    measured = fields.get("measured")
-    if isinstance(measured, dict):
-        tests = measured.get("tests")
-        if isinstance(tests, str) and tests not in loader.installed()["test set"].providers:
-            return {**fields, "measured": {**measured, "tests": str(beside(tests))}}
-    return fields
 
 
 def written(case: Case) -> dict[str, str]:

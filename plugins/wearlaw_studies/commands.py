@@ -13,22 +13,23 @@ from wearlaw.cli import Stopped
 from wearlaw.errors import OutputError, shown
 from wearlaw_output.commands import folder_for, print_notes, print_results, print_table
 from wearlaw_output.curves import FigureFormat
-from wearlaw_output.files import written_formats
+from wearlaw_output.files import write_files, writes_results
 from wearlaw_output.folder import results_folder
 from wearlaw_output.notes import Notes, grouped
-from wearlaw_studies.case import load_case
+from wearlaw_studies.case import load_case, written
 from wearlaw_studies.report.tables import summaries
-from wearlaw_studies.study import evaluations
+from wearlaw_studies.study import evaluations, provenance
 from wearlaw_studies.study import run as run_case
-from wearlaw_studies.uncertainty import UNCERTAINTY, uncertainty_of, write_uncertainty
+from wearlaw_studies.uncertainty import uncertainty_of
 from wearlaw_studies.written import RESULTS, check_room, without_csv, write
 from wearlaw_sweeps.progress import Bar
+
+UNCERTAINTY = "uncertainty.json"
+"""The file with the record of an uncertainty, which tells its folder from others."""
 
 
 @click.command()
 @click.argument("case")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-results].")
-@click.option("--overwrite", is_flag=True, help="Replace the files of an earlier run in that folder; others stay.")
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
 @click.option("--resume", is_flag=True, help="Go on from the finished blocks of an interrupted run, in FOLDER.partial.")
 @click.option(
@@ -36,7 +37,7 @@ from wearlaw_sweeps.progress import Bar
     default=None,
     help="Write results.csv or leave it out [default: write it up to 1 048 575 rows, those that Excel reads].",
 )
-@written_formats
+@writes_results("CASE-results")
 def run(
     case: str,
     output: Path | None,
@@ -56,7 +57,7 @@ def run(
     spelt out.
     """
     loaded = load_case(case)
-    folder = output if output is not None else folder_for(case, "results")
+    folder = output or folder_for(case, "results")
     notes = Notes()
     partial = _partial(folder, resume)
     try:
@@ -110,11 +111,7 @@ def _discard(partial: Path) -> None:
 @click.argument("case")
 @click.option("--samples", type=int, default=2**14, show_default=True, help="How many, rounded up to a power of two.")
 @click.option("--seed", type=int, default=0, show_default=True, help="The same seed gives the same samples.")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="Folder for the results [default: CASE-uncertainty]."
-)
-@click.option("--overwrite", is_flag=True, help="Replace the files of this command in that folder; others stay.")
-@written_formats
+@writes_results("CASE-uncertainty")
 def uncertainty(
     case: str,
     samples: int,
@@ -131,14 +128,21 @@ def uncertainty(
     pair, such as scatter_usfd_on_exact.png for the table [uncertainty.scatter].
     """
     loaded = load_case(case)
-    folder = output if output is not None else folder_for(case, "uncertainty")
+    folder = output or folder_for(case, "uncertainty")
     total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
     notes = Notes()
     with results_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as bar:
         found = uncertainty_of(loaded, samples, seed, bar)
         bar.stage("writing results")
         with notes.of("figures"):
-            names = write_uncertainty(loaded, found, seed, fresh, figure_formats, latex)
+            record = {"samples": found.samples, "seed": seed, "provenance": provenance(loaded), "notes": found.notes}
+            tables = {
+                "wear_rates": found.wear_rates,
+                **({"sobol_indices": found.indices} if len(found.indices) else {}),
+            }
+            names = write_files(
+                fresh, UNCERTAINTY, record, tables, found.figures, figure_formats, latex, written(loaded)
+            )
     if found.samples != samples:
         click.echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
     print_notes(grouped([*found.notes, *notes.texts]))

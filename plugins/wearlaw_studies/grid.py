@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import Annotated, Any, Literal, Self
@@ -19,15 +18,14 @@ from wearlaw.errors import (
     InputError,
     UnitError,
     WearlawError,
-    WearlawWarning,
-    did_you_mean,
     shown,
 )
-from wearlaw.pipeline.pipeline import Rig
+from wearlaw.pipeline.pipeline import Rig, unknown_condition
 from wearlaw.units.quantities import Q, parse
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
 from wearlaw_output.conditions import Known
+from wearlaw_output.notes import caught_warnings
 from wearlaw_sweeps.points import Points, Varying
 
 MOST_POINTS = 10_000_000
@@ -128,6 +126,11 @@ class Grid(Conditions):
         read = ((name, _values(value)) for name, value in self.given.items())
         return {name: Varying(name, *found) for name, found in read if found is not None}
 
+    @cached_property
+    def _known(self) -> dict[str, Varying | Known | None]:
+        """All conditions; None for what is no number."""
+        return {name: self._axes.get(name) or Known.of(value) for name, value in self.given.items()}
+
     def axes(self) -> dict[str, int]:
         """Return the number of values of each axis, in the order of the grid."""
         return {name: axis.values.size for name, axis in self._axes.items()}
@@ -154,15 +157,11 @@ class Grid(Conditions):
 
     def units(self) -> dict[str, str]:
         """Return the units of the conditions in results: the usual unit of a known variable, else as written."""
-        return {name: shown_unit(name, unit) for name, unit in self._written().items()}
+        return {name: shown_unit(name, None if one is None else one.unit) for name, one in self._known.items()}
 
     def written_units(self) -> dict[str, str]:
         """Return the unit in which the grid gives each condition; plain numbers and names have none here."""
-        return {name: unit for name, unit in self._written().items() if unit}
-
-    def _written(self) -> dict[str, str | None]:
-        known = {name: self._axes.get(name) or Known.of(value) for name, value in self.given.items()}
-        return {name: None if one is None else one.unit for name, one in known.items()}
+        return {name: one.unit for name, one in self._known.items() if one and one.unit}
 
     def spacing(self, name: str) -> Literal["log", "linear"]:
         """Return how the values of an axis are spaced; a list is logarithmic if its ratios differ less than its steps.
@@ -201,13 +200,11 @@ class Grid(Conditions):
 
     def level(self, name: str, units: Mapping[str, str]) -> float | str:
         """Return the value of a condition in the given unit, or its text; for an axis, its middle value."""
-        if name in self._axes:
-            axis = self._axes[name]
-            return float(_converted(name, axis.values[axis.values.size // 2], axis.unit, units[name])[0])
-        known = Known.of(self.given[name])
+        known = self._known[name]
         if known is None:
             return self.given[name]  # type: ignore[no-any-return]
-        return float(_converted(name, known.values, known.unit or "", units[name])[0])
+        middle = np.ravel(known.values)[known.values.size // 2]
+        return float(_converted(name, middle, known.unit or "", units[name])[0])
 
     def problem(self, rig: Rig) -> Any:
         """Return the contact problem of the first operating point."""
@@ -220,9 +217,7 @@ def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
     known = rig.conditions()
     unknown = [name for name in given if known and name not in known]
     missing = [name for name, condition in known.items() if condition.required and name not in given]
-    for name in unknown:
-        hint = did_you_mean(name, known)
-        yield Fault((name,), f"unknown condition{hint} The conditions of the rig are: {', '.join(known)}")
+    yield from (Fault((name,), unknown_condition(name, known)) for name in unknown)
     yield from (Fault((name,), "is missing") for name in missing)
     if unknown or missing:
         return
@@ -236,8 +231,7 @@ def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
 
 def _quietly(rig: Rig, conditions: Mapping[str, Any]) -> Any:
     """Return the rig's problem without its warnings, which running the case repeats."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", WearlawWarning)
+    with caught_warnings():
         return rig.checked_problem(conditions)
 
 

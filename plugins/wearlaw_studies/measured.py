@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import AfterValidator, model_validator
 
 from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError
 from wearlaw.pipeline.pipeline import Rig
+from wearlaw.text_files import beside
 from wearlaw.units.quantities import from_si, in_unit
 from wearlaw.units.variables import UNITS
 from wearlaw_fits.read_tests import parse_tests, text_of_tests
@@ -27,12 +28,20 @@ OF_TRACTION = (
 """Variables of tests with a measured traction."""
 
 
+def _shipped(tests: str) -> bool:
+    return tests in loader.installed()["test set"].providers
+
+
+def _found(tests: str) -> str:
+    return tests if _shipped(tests) else str(beside(tests))
+
+
 class MeasuredTests(Configuration):
     """Measured tests, to show beside the predictions."""
 
     label: str
     """Their name in the legend."""
-    tests: str
+    tests: Annotated[str, AfterValidator(_found)]
     """The name of shipped tests, or the path of a CSV file relative to the case file."""
     sep: str | None = None
     """What separates the cells of the file; None for the first of semicolon, tab and comma that its header has."""
@@ -58,7 +67,7 @@ class MeasuredTests(Configuration):
     @property
     def shipped(self) -> bool:
         """Whether a plugin ships the tests, rather than a file holding them."""
-        return self.tests in loader.installed()["test set"].providers
+        return _shipped(self.tests)
 
 
 def known_variables(tests: WearTests) -> tuple[str, ...]:

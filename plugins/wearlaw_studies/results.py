@@ -156,11 +156,6 @@ def main_axis(sweep: xarray.Dataset, creepage: str | None) -> str:
     return max(axes, key=lambda axis: sweep.sizes[axis])
 
 
-def along_main_axis(sweep: xarray.Dataset, creepage: str | None) -> xarray.Dataset:
-    """Return a sweep along its main axis, at the middle of the other axes."""
-    return along(sweep, main_axis(sweep, creepage))
-
-
 def along(sweep: xarray.Dataset, axis: str) -> xarray.Dataset:
     """Return a sweep along an axis, at the middle of the others; a single point becomes an axis of length 1."""
     line = sweep.isel({other: sweep.sizes[other] // 2 for other in axes_of(sweep) if other != axis})

@@ -5,25 +5,27 @@ from __future__ import annotations
 import itertools
 import json
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray
 
 from wearlaw import loader
-from wearlaw.arrays import Array, steady
+from wearlaw.arrays import steady
 from wearlaw.configuration import known_name
 from wearlaw.contact.material import Material
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import (
     ConfigurationError,
     InputError,
     ModelError,
+    ResumeWarning,
     WearlawError,
-    WearlawWarning,
     described,
     shown,
 )
@@ -32,27 +34,25 @@ from wearlaw.models.model import Model
 from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
-from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered
+from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered, outcome_units
 from wearlaw.units.variables import UNITS
 from wearlaw.version import __version__
 from wearlaw_fits.pairs import Pair
-from wearlaw_output.notes import Notes
+from wearlaw_output.notes import Notes, caught_warnings
 from wearlaw_studies.case import Case
 from wearlaw_studies.figures import figures_of, wrong_figures
 from wearlaw_studies.results import LIMITS, PATCH_AXES, Results, pairs_of
 from wearlaw_studies.sections import Section
-from wearlaw_sweeps.evaluation import weight
-from wearlaw_sweeps.evaluator import Evaluator
+from wearlaw_sweeps.evaluation import Job
 from wearlaw_sweeps.points import Points
 from wearlaw_sweeps.provenance import parts
+from wearlaw_sweeps.sweep import check_importable, kept, target_of
+from wearlaw_sweeps.sweep import run as run_sweep
 
 if TYPE_CHECKING:
     from wearlaw.loader import Shelf
     from wearlaw_output.curves import FigureData
     from wearlaw_studies.grid import Grid
-
-Dims: TypeAlias = Mapping[str, tuple[str | int, ...]]
-"""The axes that a rig adds for several patches, with their labels."""
 
 PROFILE_STRIPS = 101
 """Strips of a profile across the patch, if the contact model can choose them."""
@@ -117,12 +117,13 @@ def run(
     if not isinstance(case, Case):
         raise InputError(f"case: must be a wearlaw.Case, as from wl.load_case; got {shown(case)}")
     notes, of_profiles = Notes(), Notes()
-    evaluator = Evaluator(on_block, workers, store, resume)
+    evaluator = _Evaluator(on_block, workers, store, resume)
     pairs = pairs_of(case, notes)
     profiles = {name: _profile(name, grid, case, pairs, of_profiles) for name, grid in case.profiles.items()}
     _check_figures(case, pairs, profiles)
     sweeps = {name: _sweep(name, grid, case, pairs, notes, evaluator) for name, grid in case.sweeps.items()}
-    evaluator.warn_if_resumed()
+    if store is not None and 0 < evaluator.kept < evaluator.blocks:
+        warnings.warn(kept(evaluator.kept, evaluator.blocks, store), ResumeWarning, stacklevel=3)
     for text in of_profiles.texts:
         notes.add(text)
     for dataset in (*sweeps.values(), *profiles.values()):
@@ -139,9 +140,8 @@ def _check_figures(case: Case, pairs: list[Pair], profiles: dict[str, xarray.Dat
     """
     if not case.figures:
         return
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", WearlawWarning)  # the sweeps repeat them
-        once = Evaluator(lambda _: None, 1, None, False)
+    with caught_warnings():  # the sweeps repeat them
+        once = _Evaluator(lambda _: None)
         first = {name: _sweep(name, grid.first(), case, pairs, Notes(), once) for name, grid in case.sweeps.items()}
         wrong = list(wrong_figures(Results(case, tuple(pairs), first, profiles)))
     if wrong:
@@ -210,50 +210,73 @@ def used(case: Case) -> dict[str, dict[str, str]]:
     return {kind: dict(sorted(names.items())) for kind, names in origins.items()}
 
 
-def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: Evaluator) -> xarray.Dataset:
+@dataclass
+class _Evaluator:
+    """Evaluates pipelines at the points of sweeps, with the arguments of `run`, and counts the blocks kept there."""
+
+    on_block: Callable[[int], None]
+    workers: int = 1
+    store: Path | None = None
+    resume: bool = False
+    kept: int = 0
+    blocks: int = 0
+
+    def __call__(
+        self, key: str, pipeline: Pipeline[...], points: Points, outputs: Sequence[str], first: Problem
+    ) -> xarray.Dataset:
+        """Return outputs in their usual units; `key` names the store of the sweep, `first` is its first problem."""
+        units = {**UNITS, **outcome_units(pipeline.laws)}
+        job = Job(pipeline, {name: units[name] for name in outputs}, first.dims)
+        points = replace(points, weight=job.weight(first))
+        blocks = len(points.blocks())
+        workers = min(self.workers, blocks)
+        check_importable(pipeline, workers)
+        store = self.store / f"{key}.zarr" if self.store is not None and blocks > 1 else None
+        with closing(target_of(job, points, store, self.resume)) as target:
+            if self.resume and store is not None:
+                self.kept += len(target.done)
+                self.blocks += blocks
+            for warning in run_sweep(target, self.on_block, workers):
+                warnings.warn(warning, stacklevel=2)
+            arrays = target.arrays()
+        data = {v: ((*points.dims, *first.dims), arrays[v], {"units": units[v]}) for v in outputs}
+        return xarray.Dataset(data, attrs={PATCH_AXES: " ".join(first.dims)} if first.dims else {})
+
+
+def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: _Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
-    first = grid.problem(case.rig)
-    points = replace(grid.points(case.units), weight=weight(first))
-    axes = points.dims
+    first, units = grid.problem(case.rig), case.result_units
+    points = grid.points(case.units)
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
-    found_in = _variables(grid, case, usable)
-    rates: list[dict[str, Array]] = []
-    contacts: dict[str, dict[str, Array]] = {}
+    levels = {v: grid.level(v, case.units) for v in grid.given}
+    fixed = {v: level for v, level in levels.items() if isinstance(level, float)}
+    given = fixed if first.dims else points.varying  # a condition for all patches is not the variable of one of them
+    of_pairs: dict[str, xarray.Dataset] = {}
+    contacts: dict[str, xarray.Dataset] = {}
+    of_points = xarray.Dataset(
+        coords={axis: (axis, one.values, {"units": units[axis]}) for axis, one in points.varying.items()}
+        | {axis: list(labels) for axis, labels in first.dims.items()}
+    )
     for number, pair in enumerate(usable):
-        new = found_in.of_contact[pair.contact_model] if pair.contact_model not in contacts else ()
-        outputs = [*_of_pair(pair, first), *new, *(found_in.of_point if not contacts else ())]
+        known = pair.contact_model in contacts
+        of_pair = _of_pair(pair, first)
+        of_contact, of_every = ([], []) if known else _of_contact(pair, first, case, given)
+        of_point = [v for v in of_every if v not in of_points]
         with notes.of(f"sweep '{name}'"):
             warn_of_unlike_materials(pair.pipeline.contact_model, first)
-            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first.dims)
-        contacts.setdefault(pair.contact_model, found)
-        band = _band(f"{name}-{number}", pair, points, first.dims, found, evaluator)
-        rates.append({v: found[v] for v in _of_pair(pair, first)} | band)
-    any_contact = next(iter(contacts.values()))
-    of_patches = (*axes, *first.dims)
-    missing = np.full(points.shape + tuple(map(len, first.dims.values())), np.nan)
-    variables: dict[str, Any] = {
-        **{
-            v: (("pair", *of_patches), np.stack([rate.get(v, missing) for rate in rates]))
-            for v in dict.fromkeys(v for rate in rates for v in rate)
-        },
-        **{
-            v: (("contact_model", *of_patches), np.stack([c.get(v, missing) for c in contacts.values()]))
-            for v in (*OF_CONTACT, *OF_POINT, *OF_PATCH)
-            if any(v in offered for offered in found_in.of_contact.values())
-        },
-        **{v: (of_patches, any_contact[v]) for v in found_in.of_point},
-        **{v: (axes, np.full(points.shape, level)) for v, level in found_in.conditions.items()},
-    }
-    units = case.result_units
-    dataset = xarray.Dataset(
-        {v: (dims, values, {"units": units[v]}) for v, (dims, values) in variables.items()},
-        attrs={PATCH_AXES: " ".join(first.dims)} if first.dims else {},
-    )
+            outputs = [*of_pair, *of_contact, *of_point]
+            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first)
+        band = _band(f"{name}-{number}", pair, points, first, found, evaluator)
+        of_pairs[pair.label] = found[of_pair].assign(band)
+        contacts.setdefault(pair.contact_model, found[of_contact])
+        of_points = of_points.assign(found[of_point].data_vars)
+    dataset = _side_by_side(of_pairs, contacts).assign(of_points.variables)
+    dataset = dataset.assign(
+        {v: (points.dims, np.full(points.shape, level), {"units": units[v]})
+         for v, level in fixed.items() if v not in dataset}
+    )  # fmt: skip
     return dataset.assign_coords(
-        {axis: (axis, one.values, {"units": units[axis]}) for axis, one in points.varying.items()}
-        | {axis: (axis, list(labels)) for axis, labels in first.dims.items()}
-        | {"pair": [pair.label for pair in usable], "contact_model": list(contacts)}
-        | {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
+        {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
         | {"pair_wear_law": ("pair", [pair.law if pair.outcome.name == WEAR else "" for pair in usable])}
         | (
             {"pair_law": ("pair", [pair.law if pair.outcome.name != WEAR else "" for pair in usable])}
@@ -263,50 +286,35 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
     )
 
 
-def _of_pair(pair: Pair, problem: Any) -> tuple[str, ...]:
+def _side_by_side(of_pairs: Mapping[str, xarray.Dataset], contacts: Mapping[str, xarray.Dataset]) -> xarray.Dataset:
+    """Return the variables of pairs and of contact models in one dataset; what one of them lacks is NaN."""
+    along = (("pair", of_pairs), ("contact_model", contacts))
+    found = [xarray.concat([*every.values()], xarray.Variable(dim, [*every]), join="outer") for dim, every in along]
+    return xarray.merge(found, join="outer", compat="no_conflicts")
+
+
+def _of_pair(pair: Pair, problem: Problem) -> list[str]:
     """Return the variables of a pair: its outcome, the error of a mean over the patch, and whether it is outside.
 
     With several patches there is also the mass lost at each, since wear rates cannot be added.
     """
-    error = (f"{pair.outcome.name}{ERROR}",) if pair.outcome.of == "area mean" else ()
-    mass = (MASS,) if problem.dims and pair.outcome.name == WEAR else ()
-    return (pair.outcome.name, *error, "outside_range", *mass)
+    error = [f"{pair.outcome.name}{ERROR}"] if pair.outcome.of == "area mean" else []
+    mass = [MASS] if problem.dims and pair.outcome.name == WEAR else []
+    return [pair.outcome.name, *error, "outside_range", *mass]
 
 
-class _Variables(NamedTuple):
-    """Variables of a sweep besides the rates of its pairs."""
+def _of_contact(pair: Pair, problem: Problem, case: Case, given: Collection[str]) -> tuple[list[str], list[str]]:
+    """Return the variables of a contact model but those given, and those of the points, which do not depend on it.
 
-    of_contact: dict[str, list[str]]
-    """For each contact model, those of its predictions; also those of the points if the rig balances its loads."""
-    of_point: list[str]
-    """Those of the operating points, which do not depend on the contact model."""
-    conditions: dict[str, float]
-    """Conditions that are the same at all points."""
-
-
-def _variables(grid: Grid, case: Case, pairs: list[Pair]) -> _Variables:
-    """Return the variables of a sweep, found by predicting its first operating point."""
-    problem, axes = grid.problem(case.rig), grid.axes()
-    levels = {name: grid.level(name, case.units) for name in grid.given}
-    conditions = {name: level for name, level in levels.items() if isinstance(level, float)}
-    given = conditions if problem.dims else axes  # a condition for all patches is not the variable of one of them
-    of_contact: dict[str, list[str]] = {}
-    of_point: dict[str, None] = {}
-    for pair in {pair.contact_model: pair for pair in pairs}.values():
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", WearlawWarning)  # the sweep repeats them
-            prediction = pair.pipeline.without_law().predict(problem)
-        of_contact[pair.contact_model] = [v for v in offered(prediction, OF_CONTACT) if v not in given]
-        # A rig may use the name of a variable for something else.
-        same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
-        new = [v for v in same if v not in given]
-        if type(case.rig).balanced is Rig.balanced:
-            of_point |= dict.fromkeys(new)
-        else:
-            of_contact[pair.contact_model] += new
-    known = {*axes, *of_point, *(v for variables in of_contact.values() for v in variables)}
-    fixed = {name: level for name, level in conditions.items() if name not in known}
-    return _Variables(of_contact, [v for v in (*OF_POINT, *OF_PATCH) if v in of_point], fixed)
+    If the rig balances its loads, all depend on it.
+    """
+    with caught_warnings():  # the sweep repeats them
+        prediction = pair.pipeline.without_law().predict(problem)
+    of_contact = [v for v in offered(prediction, OF_CONTACT) if v not in given]
+    # A rig may use the name of a variable for something else.
+    same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
+    of_point = [v for v in same if v not in given]
+    return (of_contact, of_point) if type(case.rig).balanced is Rig.balanced else (of_contact + of_point, [])
 
 
 def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
@@ -323,17 +331,16 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
 
 
 def _band(
-    key: str, pair: Pair, points: Points, dims: Dims, found: dict[str, Array], evaluator: Evaluator
-) -> dict[str, Array]:
+    key: str, pair: Pair, points: Points, first: Problem, found: xarray.Dataset, evaluator: _Evaluator
+) -> dict[str, xarray.DataArray]:
     """Return the ends of the outcome over the published range of the law's parameters; wear rates have them anyway."""
     outcome, ends = pair.outcome.name, _band_ends(pair.pipeline)
     names = (f"{outcome}_low", f"{outcome}_high")
     if not ends:
         return dict.fromkeys(names, found[outcome]) if outcome == WEAR else {}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", WearlawWarning)  # the middle of the band gave them already
+    with caught_warnings():  # the middle of the band gave them already
         return {
-            name: evaluator(f"{key}-{name}", end, points, [outcome], dims)[outcome]
+            name: evaluator(f"{key}-{name}", end, points, [outcome], first)[outcome]
             for name, end in zip(names, ends, strict=True)
         }
 
@@ -349,8 +356,7 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
     """Return the profile of the patch: fields of each contact model, and the outcomes of each pair."""
     problem = grid.problem(case.rig)
     contacts: dict[str, xarray.Dataset] = {}
-    of_pairs: list[xarray.Dataset] = []
-    shown: list[str] = []
+    of_pairs: dict[str, xarray.Dataset] = {}
     usable = _usable(f"profile '{name}'", grid, pairs, notes)
     resolved = [pair for pair in usable if pair.pipeline.scale == "cells"]
     if not resolved:
@@ -371,15 +377,8 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
         before = contacts.get(pair.contact_model, of_contact)  # laws of the two bodies show a part each
         more = [v for v in before.data_vars if v not in of_contact]
         contacts[pair.contact_model] = of_contact.merge(before[more]) if more else of_contact
-        of_pairs.append(whole.drop_vars(of_contact.data_vars))
-        shown.append(pair.label)
-    if not shown:
-        return xarray.Dataset()
-    # A model with nodes of its own has NaN at the nodes of others.
-    dataset = xarray.concat(list(contacts.values()), xarray.Variable("contact_model", list(contacts)), join="outer")
-    if problem.dims:
-        dataset.attrs[PATCH_AXES] = " ".join(problem.dims)
-    return dataset.assign(xarray.concat(of_pairs, "pair", join="outer").data_vars).assign_coords(pair=shown)
+        of_pairs[pair.label] = whole.drop_vars(of_contact.data_vars)
+    return _side_by_side(of_pairs, contacts) if of_pairs else xarray.Dataset()
 
 
 def _by_patch(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
@@ -402,7 +401,8 @@ def _by_patch(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Datas
             numbered = one.assign_coords(node=range(one.sizes["node"]))
             each.append(numbered.expand_dims({axis: [label] for axis, label in patch.items()}))
     found = xarray.merge(each, join="outer", compat="no_conflicts")
-    return of_law, found.reindex({axis: np.array(labels) for axis, labels in axes.items()})
+    found = found.reindex({axis: np.array(labels) for axis, labels in axes.items()})
+    return of_law, found.assign_attrs({PATCH_AXES: " ".join(axes)})
 
 
 def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:

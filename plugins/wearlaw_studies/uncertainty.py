@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -15,15 +14,11 @@ from wearlaw.models.law import WEAR
 from wearlaw.units.quantities import WEAR_RATE
 from wearlaw.units.variables import name_of
 from wearlaw_fits.uncertainty import CONFIDENCE, Uncertainty, uncertainty
-from wearlaw_output.curves import FigureData, FigureFormat
-from wearlaw_output.files import write_files
+from wearlaw_output.curves import FigureData
 from wearlaw_output.labels import readable
 from wearlaw_output.notes import Notes
-from wearlaw_studies.case import Case, written
+from wearlaw_studies.case import Case
 from wearlaw_studies.results import pairs_of
-from wearlaw_studies.study import provenance
-
-UNCERTAINTY = "uncertainty.json"
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +27,8 @@ class CaseUncertainty:
 
     Attributes
     ----------
-    figures : dict of str to FigureData
-        The samples of each operating point and pair, by the name of a file, such as "scatter_usfd_on_exact".
+    figures : list of FigureData
+        The samples of each operating point and pair; their names are such as "scatter_usfd_on_exact".
     wear_rates : pandas.DataFrame
         Median and interval for each operating point and pair. If there are other outcomes than wear, they have rows
         here too, and columns say which outcome and unit each row has.
@@ -45,7 +40,7 @@ class CaseUncertainty:
         Remarks for the reader.
     """
 
-    figures: dict[str, FigureData]
+    figures: list[FigureData]
     wear_rates: pd.DataFrame
     indices: pd.DataFrame
     samples: int
@@ -69,7 +64,7 @@ def uncertainty_of(
             "nothing in the case is uncertain; add a table such as [uncertainty.scatter] in which some conditions are"
             ' distributions, as in creepage = {uniform = ["0.5 %", "1.5 %"]}'
         )
-    figures, rates, indices, used = {}, [], [], samples
+    figures, rates, indices, used = [], [], [], samples
     for name, point, pair in ((name, point, pair) for name, point in case.uncertainty.items() for pair in pairs):
         subject = f"{name}, {pair.label}"
         if not point.varies(pair.law):
@@ -91,7 +86,7 @@ def uncertainty_of(
             words = name_of(outcome)
             title = f"{words[:1].upper()}{words[1:]} by {pair.label}: {name}"
             file = re.sub(r"\W+", "_", f"{name} {pair.label} {outcome if len(each) > 1 else ''}").strip("_")
-            figures[file] = replace(single.figure_data(), title=title)
+            figures.append(replace(single.figure_data(), name=file, title=title))
         on_pair(1)
     only_wear = all(row["outcome"] == WEAR for row in rates)
     front = ["point", "pair"] if only_wear else ["point", "pair", "outcome"]
@@ -109,17 +104,3 @@ def _interval(one: Uncertainty) -> dict[str, str | float]:
     ends = {"median": one.median, f"{50 - 50 * CONFIDENCE:g} %": low, f"{50 + 50 * CONFIDENCE:g} %": high}
     values = {name: float(value.to(one.unit or "dimensionless").magnitude) for name, value in ends.items()}
     return {"outcome": one.outcomes[0], "unit": one.unit or "-", **values}
-
-
-def write_uncertainty(
-    case: Case,
-    found: CaseUncertainty,
-    seed: int,
-    folder: Path,
-    figure_formats: Sequence[FigureFormat] = ("png",),
-    latex: bool = False,
-) -> list[str]:
-    """Write the uncertainty of a case, and the case itself, into an empty folder, and return the names of the files."""
-    record = {"samples": found.samples, "seed": seed, "provenance": provenance(case), "notes": list(found.notes)}
-    tables = {"wear_rates": found.wear_rates, **({"sobol_indices": found.indices} if len(found.indices) else {})}
-    return write_files(folder, UNCERTAINTY, record, tables, found.figures, figure_formats, latex, written(case))

@@ -79,7 +79,9 @@ def write(
     """
     case_files = written(study.case)
     on_stage("writing results")
-    write_netcdf(study, folder / RESULTS)
+    groups = {f"sweeps/{name}": dataset for name, dataset in study.sweeps.items()}
+    groups |= {f"profiles/{name}": dataset for name, dataset in study.profiles.items() if dataset}
+    xarray.DataTree.from_dict(groups).to_netcdf(folder / RESULTS, engine="h5netcdf")
     if csv:
         table(study).to_csv(folder / CSV, index=False, encoding="utf-8", errors="replace")
     for name, text in case_files.items():
@@ -107,13 +109,6 @@ def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:
             raise OutputError(f"output: the {kind} {shown(name)} cannot be written: {fault}")
         found[name] = thing
     return found
-
-
-def write_netcdf(study: Study, path: Path) -> None:
-    """Write all datasets into one netCDF file, each in a group: sweeps/NAME and profiles/NAME."""
-    groups = {f"sweeps/{name}": dataset for name, dataset in study.sweeps.items()}
-    groups |= {f"profiles/{name}": dataset for name, dataset in study.profiles.items() if dataset}
-    xarray.DataTree.from_dict(groups).to_netcdf(path, engine="h5netcdf")
 
 
 def table(study: Study) -> pd.DataFrame:

@@ -68,8 +68,12 @@ class Job:
         return {}
 
     def weight(self, problem: Problem) -> float:
-        """Return the size of an operating point compared with a single line or ellipse."""
-        return weight(problem)
+        """Return the size of an operating point compared with a single line or ellipse.
+
+        Four numbers of a strip count as one of 16 for a patch.
+        """
+        strips = 0 if problem.strips is None else problem.strips.y.shape[-1]
+        return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
 
     def posed(self, conditions: Mapping[str, Any]) -> Problem:
         """Return the problem of conditions."""
@@ -82,12 +86,6 @@ class Job:
     def attributes(self, name: str) -> dict[str, str]:
         """Return the attributes of an output in results: its unit and its long name."""
         return {"units": self.units[name], "long_name": long_name(name, self.pipeline.laws)}
-
-
-def weight(problem: Problem) -> float:
-    """Return the size of an operating point of a problem; four numbers of a strip count as one of 16 for a patch."""
-    strips = 0 if problem.strips is None else problem.strips.y.shape[-1]
-    return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
 
 
 @dataclass(frozen=True)

@@ -204,20 +204,6 @@ class Points:
         return np.broadcast_to(one.values.reshape(shape), self.shape).reshape(-1)
 
 
-def outer_product(conditions: Mapping[str, Any]) -> Points:
-    """Return all combinations of the conditions that are arrays, in the order given.
-
-    Raises
-    ------
-    ConditionsError
-        If a condition has more than one axis or an empty one, or none is an array.
-    """
-    fixed, varying = split(conditions)
-    if not varying:
-        raise ConditionsError('no condition is an axis; give at least one as an array, such as creepage=Q([1, 2], "%")')
-    return Points(fixed, varying)
-
-
 def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Varying]]:
     """Separate conditions of one value, as given, from axes; a condition of None counts as not given.
 

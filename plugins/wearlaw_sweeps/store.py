@@ -61,12 +61,13 @@ class Store(Target):
     def _lay_out(self) -> None:
         """Write the coordinates, and the arrays of outputs that are missing."""
         points, job = self.points, self.job
-        group = zarr.open_group(self.store, mode="r+")
+        group = zarr.open_group(self.store, mode="r+", zarr_format=3)
+        there = set(group) if self.resumed else set()
         for name in job.units:
-            if name not in group:
+            if name not in there:
                 shape, chunks = points.shape + job.own_shape, points.block_shape + job.own_shape
                 _add_array(group, name, shape, chunks, (*points.dims, *job.labels), job.attributes(name))
-        if RECORDS not in group:
+        if not self.resumed or RECORDS not in group:
             group.create_array(RECORDS, shape=(len(points.blocks()),), chunks=(1,), dtype=str, compressors=CHECKED)
         small = dataset(points, {}, job, attributes(INCOMPLETE, self._folder.provenance))
         small = small.drop_vars(job.units, errors="ignore")  # a case keeps some of its conditions as outputs
@@ -80,7 +81,7 @@ class Store(Target):
     def _write_large(self, name: str, column: Varying) -> None:
         """Write a coordinate that is too large for memory, piece by piece."""
         step = dict(zip(self.points.dims, self.points.block_shape, strict=True))[column.dim]
-        group = zarr.open_group(self.store, mode="r+")
+        group = zarr.open_group(self.store, mode="r+", zarr_format=3)
         array = _add_array(group, name, column.values.shape, (step,), (column.dim,), {"units": column.unit or ""})
         for start in range(0, column.values.size, step):
             array[start : start + step] = column.values[start : start + step]
@@ -117,8 +118,10 @@ class Store(Target):
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Mark the store as complete and open it; values are read when used."""
-        zarr.open_group(self.store, mode="r+").attrs.update(attributes(COMPLETE, self._folder.provenance, notes))
-        found: xarray.Dataset = xarray.open_zarr(self.store, chunks=None, consolidated=False)
+        zarr.open_group(self.store, mode="r+", zarr_format=3).attrs.update(
+            attributes(COMPLETE, self._folder.provenance, notes)
+        )
+        found: xarray.Dataset = xarray.open_zarr(self.store, chunks=None, consolidated=False, zarr_format=3)
         return found
 
     def close(self) -> None:

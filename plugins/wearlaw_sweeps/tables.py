@@ -17,7 +17,7 @@ from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import Q
 from wearlaw.units.variables import VARIABLES
 from wearlaw_sweeps.located import advice
-from wearlaw_sweeps.points import OnDisk, Points, Varying, outer_product, split
+from wearlaw_sweeps.points import OnDisk, Points, Varying, split
 from wearlaw_sweeps.wear_profile import SHARE, check_shares
 from wearlaw_tables import Column, Table, open_table
 
@@ -51,9 +51,14 @@ def operating_points(
         for name, value in {"columns": columns, "keep": keep}.items():
             if value is not None:
                 raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
-        yield outer_product(conditions)
-        return
     fixed, arrays = split(conditions)
+    if source is None:
+        if not arrays:
+            raise ConditionsError(
+                'no condition is an axis; give at least one as an array, such as creepage=Q([1, 2], "%")'
+            )
+        yield Points(fixed, arrays)
+        return
     for name in arrays:
         raise DataError(f"{name}: beside a table it must be one value; add it to the table as a column")
     table = open_table(source, **as_csv)

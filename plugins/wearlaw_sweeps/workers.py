@@ -59,11 +59,11 @@ def _write(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> N
     import zarr
 
     for name, values in outputs.items():
-        array: Any = zarr.open_array(store, path=name, mode="r+").with_config(
+        array: Any = zarr.open_array(store, path=name, mode="r+", zarr_format=3).with_config(
             {"write_empty_chunks": True}
         )  # NaN is a result
         array[(*block.slices, ...)] = values.reshape(block.shape + values.shape[1:])
-    zarr.open_array(store, path=RECORDS, mode="r+")[block.number] = json.dumps(asdict(record))
+    zarr.open_array(store, path=RECORDS, mode="r+", zarr_format=3)[block.number] = json.dumps(asdict(record))
 
 
 def _evaluated_elsewhere(job: bytes, block: Block, part: Points, store: str | None) -> tuple[Outputs, BlockRecord]:

@@ -180,8 +180,13 @@ class Profile(wl.Configuration):
             given = _named(os.fspath(given))
         elif isinstance(given, Mapping) and "file" in given:
             return _File(**given).fields()
-        if isinstance(given, Mapping) and given.get("formula") in FORMULAS and "kind" not in given:
-            return {**given, "kind": FORMULAS[given["formula"]].kind}
+        if isinstance(given, Mapping) and (name := given.get("formula")) is not None:
+            if name not in FORMULAS:
+                near = did_you_mean(name, FORMULAS)
+                raise ValueError(
+                    f"formula: no profile is called {wl.shown(name)}{near} There are {', '.join(FORMULAS)}"
+                )
+            return {"kind": FORMULAS[name].kind, **given}
         return given
 
     @model_validator(mode="after")
@@ -189,11 +194,6 @@ class Profile(wl.Configuration):
         if self.formula is not None:
             if self.y is not None or self.z is not None or self.weights is not None:
                 raise ValueError("takes a formula or points, not both")
-            if self.formula not in FORMULAS:
-                near = did_you_mean(self.formula, FORMULAS)
-                raise ValueError(
-                    f"formula: no profile is called {wl.shown(self.formula)}{near} There are {', '.join(FORMULAS)}"
-                )
             if self.kind != (kind := FORMULAS[self.formula].kind):
                 raise ValueError(f"kind: '{self.formula}' is a {kind}, not a {self.kind}")
         elif self.y is None or self.z is None:

@@ -161,7 +161,8 @@ def broadcast(arrays: Arrays) -> Arrays:
         (shape,) = shapes if len(shapes) == 1 else (np.broadcast_shapes(*shapes),)
     except ValueError:
         shown = ", ".join(f"{name} {array.shape}" for name, array in arrays.items() if array.ndim)
-        raise ConditionsError(f"the shapes do not broadcast: {shown}") from None
+        column = "for all combinations, make one a column, as in Q([[1], [2]], ...)"
+        raise ConditionsError(f"the shapes do not broadcast: {shown}; {column}") from None
     if 0 in shape:
         empty = next(name for name, array in arrays.items() if array.size == 0)
         raise ConditionsError(f"{empty}: is empty; give at least one value")

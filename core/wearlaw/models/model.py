@@ -21,6 +21,12 @@ It is the name of a check of the conformance kit, such as "each_node_wears_by_it
 have several checks, such as "energy_balance" or "spin".
 """
 
+ORDER = (
+    "the order is rig | contact model | stages | laws, as in"
+    ' wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd")'
+)
+"""Hint for models that do not make a pipeline."""
+
 OF_ARRAYS = (
     "\nIn a fit or an uncertainty, its numbers are arrays of shape (points, 1), one value for each operating point."
     " Write its formulas with NumPy functions that broadcast: np.where instead of if, np.exp instead of math.exp"
@@ -69,13 +75,14 @@ class Model(Configuration, ABC):
         """The invariants that this model does not keep, each with the reason."""
         return {}
 
-    if not TYPE_CHECKING:  # checkers reject this order by themselves
+    if not TYPE_CHECKING:  # checkers reject both by themselves
 
         def __or__(self, other: object) -> object:
-            raise CompositionError(
-                f"{self.kind} '{self.name}' cannot start a pipeline; the order is rig | contact model | stages | laws,"
-                ' as in wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd")'
-            )
+            raise CompositionError(f"{self.kind} '{self.name}' cannot start a pipeline; {ORDER}")
+
+        def __call__(self, *_: object, **_conditions: object) -> object:
+            """Raise an error, because only a pipeline predicts."""
+            raise CompositionError(f"{self.kind} '{self.name}' predicts nothing by itself; {ORDER}")
 
 
 def fault(model: Model, what: str) -> ModelError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from threading import RLock
 from typing import Any
 
@@ -36,7 +37,7 @@ def application_registry() -> pint.UnitRegistry[Any]:
 def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
     """Return the unit of a text, or raise a `UnitError`."""
     try:
-        return registry.Unit(unit)
+        return registry.Unit(re.sub(r"\b([mkM]?)Nm\b", r"(\1N*m)", str(unit)))  # Nm is a count of yarn to pint
     except pint.UndefinedUnitError:
         raise UnitError(f"{shown(unit)} is not a known unit") from None
     except Exception:  # the registry's expression parser raises many types of error on malformed text

@@ -6,7 +6,6 @@ Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 from __future__ import annotations
 
 import itertools
-import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ import xarray
 from numpy.typing import NDArray
 
 from wearlaw.configuration import Configuration, field_docstrings
-from wearlaw.errors import InputError, WearlawWarning
+from wearlaw.errors import InputError
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.model import Blame, Model
 from wearlaw.pipeline.variables import MASS
@@ -29,12 +28,13 @@ from wearlaw.units.variables import UNITS, VARIABLES, name_of
 from wearlaw_fits.pairs import Pair
 from wearlaw_output.labels import label as label_of
 from wearlaw_output.labels import labelled, readable
+from wearlaw_output.notes import caught_warnings
 from wearlaw_output.styled import Marked
 from wearlaw_studies.figures import main_result
 from wearlaw_studies.results import (
     LIMITS,
     SHAKEDOWN,
-    along_main_axis,
+    along,
     axes_of,
     beyond_limits,
     labelled_by,
@@ -121,8 +121,7 @@ def _as_mass_and_depth(study: Study, name: str, pair: Pair, point: Mapping[str, 
     """Return the wear at an operating point as mass and as depth, such as "35 mg/km; wheel 12 µm in 1000 km"."""
     at = {axis: Q(value.item(), value.attrs["units"]) for axis, value in point.items()}
     pipeline, law = pair.pipeline, pair.pipeline.laws[0]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", WearlawWarning)  # the study has them
+    with caught_warnings():  # the study has them
         found = pipeline.predict(pipeline.posed({**study.case.sweeps[name].given, **at}))
         parts = [f"{_compact(Q(float(found.mass_per_distance.m_as('g/km')), 'g'))}/km"]
         body = law.body or next(iter(study.case.rig.bodies), None)
@@ -192,7 +191,7 @@ def _marks(outside: Any, beyond: Mapping[str, xarray.DataArray], model: str) -> 
 def _fixed(sweep: xarray.Dataset, creepage: str | None) -> str:
     """Return the values of the other axes at which a sweep is shown, in words."""
     main = main_axis(sweep, creepage)
-    line = along_main_axis(sweep, creepage)
+    line = along(sweep, main)
     others = [axis for axis in axes_of(sweep) if axis != main]
     at = (f"{name_of(axis)} {line[axis].item():.4g} {line[axis].attrs['units']}".rstrip() for axis in others)
     return f" at {', '.join(at)}" if others else ""
@@ -204,7 +203,7 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
     If the rig makes several patches, there is a row for each of them, or one for the sum of `MASS` over all.
     """
     axis = main_axis(sweep, creepage)
-    line = along_main_axis(sweep, creepage)
+    line = along(sweep, axis)
     count = line.sizes[axis]
     line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
     rows: dict[str, Any] = {}
@@ -218,10 +217,10 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
         if low in one and (one[high] > one[low]).any():
             values |= {f"{label}, low end": one[low], f"{label}, high end": one[high]}
         rows |= {label: list(map(Marked, each.values, marks)) for label, each in values.items()}
-    heads = [_four_digits(value) for value in line[axis].values]
+    heads = [np.format_float_positional(at, precision=4, fractional=False, trim="-") for at in line[axis].values]
     frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
-    what, along = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
-    frame.insert(0, f"{what} by {along}", list(rows))
+    what, over = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
+    frame.insert(0, f"{what} by {over}", list(rows))
     return frame
 
 
@@ -231,15 +230,16 @@ def profiles(study: Study) -> list[NamedTable]:
     for name, profile in study.profiles.items():
         if "y" not in profile:
             continue
+        depths = {body: profile[f"{body}_depth"] for body in study.case.rig.bodies if f"{body}_depth" in profile}
         rows = [(pair, patch) for pair in profile.pair.values.tolist() for patch in patches_of(profile)]
         columns: dict[str, Any] = {"pair": [labelled_by(patch, pair) for pair, patch in rows]}
-        for body in _worn(profile, study):
-            unit = readable(profile[f"{body}_depth"].attrs["units"])
+        for body, depth in depths.items():
+            unit = readable(depth.attrs["units"])
             deepest = [_deepest(study, profile.sel(patch), pair, body) for pair, patch in rows]
             columns[f"{body}: greatest depth [{unit}]"], columns[f"{body}: at y [mm]"] = zip(*deepest, strict=True)
-        title = f"Profile '{name}': wear across the patch, {_per(profile, study)}"
+        per = ", ".join(f"{body} {depth.attrs['long_name']}" for body, depth in depths.items())
         frame = pd.DataFrame({head: np.array(values, dtype=object) for head, values in columns.items()})
-        found.append(_marked(f"profile_{name}", title, frame))
+        found.append(_marked(f"profile_{name}", f"Profile '{name}': wear across the patch, {per}", frame))
     return found
 
 
@@ -253,20 +253,6 @@ def _deepest(study: Study, profile: xarray.Dataset, pair: str, body: str) -> tup
     place = profile.y.sel(contact_model=model) if "contact_model" in profile.y.dims else profile.y
     deepest = int(np.nanargmax(depth.values))
     return Marked(depth[deepest].item(), marks), place[deepest].item()
-
-
-def _per(profile: xarray.Dataset, study: Study) -> str:
-    """Return the reference of each body's depth, such as per metre rolled."""
-    return ", ".join(f"{body} {profile[f'{body}_depth'].attrs['long_name']}" for body in _worn(profile, study))
-
-
-def _worn(profile: xarray.Dataset, study: Study) -> list[str]:
-    """Return the bodies whose wear a profile shows."""
-    return [body for body in study.case.rig.bodies if f"{body}_depth" in profile]
-
-
-def _four_digits(value: float) -> str:
-    return np.format_float_positional(value, precision=4, fractional=False, trim="-")
 
 
 def parameters(study: Study) -> NamedTable:

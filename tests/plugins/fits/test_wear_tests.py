@@ -130,7 +130,7 @@ def test_friction_is_that_of_the_tests_before_that_of_the_argument_and_must_be_k
     for given_too in (None, 0.1):
         np.testing.assert_array_equal(holding.conditions(EXACT, given_too)["friction_coefficient"], [0.3, 0.4, 0.5])
     assert made().conditions(EXACT, 0.46)["friction_coefficient"] == 0.46
-    with pytest.raises(wl.ConditionsError, match="friction_coefficient: the tests do not hold it; add a column"):
+    with pytest.raises(wl.ConditionsError, match="friction_coefficient: is missing; add a column"):
         made().conditions(EXACT)
 
 

@@ -105,11 +105,10 @@ def test_wrong_sums_are_refused(options: dict[str, Any], message: str) -> None:
 
 
 def test_a_row_without_a_balance_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Few steps balance the loads in the middle of the track, and fail on the flange."""
-    monkeypatch.setattr("wearlaw_wheelset._loads.NEWTON_STEPS", 2)  # private: the accuracy that a search ends at
-    monkeypatch.setattr("wearlaw_wheelset._loads.STEPS", 1)  # private: the accuracy that a search ends at
-    table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 6.9], "yaw [mrad]": [0.0, 20.0], "share": 0.5})
-    with pytest.raises(wl.DataError, match=r"row 1 .*lateral_displacement = 6.9 mm.*no normal forces balance"):
+    """Few steps balance the loads in the middle of the track, and fail where the load jumps."""
+    monkeypatch.setattr("wearlaw_wheelset._loads.STEPS", 3)  # private: the accuracy that a search ends at
+    table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 6.31], "share": 0.5})
+    with pytest.raises(wl.DataError, match=r"row 1 .*lateral_displacement = 6.31 mm.*no normal forces balance"):
         wl.sweep(PREDICT, table, share="share", **GIVEN)
 
 
