@@ -114,6 +114,8 @@ def _rig(value: Any) -> Any:
     if not isinstance(value, Mapping):
         return value
     given = dict(value)
+    if {"type", "preset"} <= given.keys():
+        raise ConfigurationError("rig", [Fault(("preset",), "stands beside a type; keep one of them")])
     if "type" in given:
         return _named("rig", "type", given.pop("type"))(**given)
     if "preset" in given:

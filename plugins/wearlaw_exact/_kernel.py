@@ -120,12 +120,12 @@ def _behind(of: Functions, drop: Number, curvature: Number, growth: Number, zone
 def _ahead(of: Functions, square: Number, share: Number, zone: Number, base: Number, parabola: Number) -> Number:
     """Return the v = 1 + t ahead of the maximum where f² = v (2-v) (A-h + h v)² is `square`, by Halley's method.
 
-    The guess takes 2v (A-h + hv)² next to v = 0, a cube at d = 1, and a parabola through the maximum next to that.
+    Next to v = 0 the guess solves 2v ((A-h)² + u²) = `square`, where u is the v at d = 1, and next to the maximum it is
+    that of a parabola through the maximum.
     """
     half = 0.5 * square
-    cube = half * zone
-    size = of.cbrt(cube)
-    v = half / (base + 3.0 * cube / (size * (3.0 * size + 2.0 * base) + base * base + LEAST) + LEAST) ** 2
+    at_one = of.cbrt(half)
+    v = half / (base * base + at_one * at_one + LEAST)
     v = v + share * (parabola - v)
     for _ in range(STEPS):
         line, circle, slope = base + zone * v, v * (2.0 - v), 2.0 - 2.0 * v

@@ -47,10 +47,11 @@ def parabolic_excess(creepage: Array, *others: Any) -> Array:
     creepage, *others : ndarray
         ξ, g, μp2(0), a and the threshold in SI, of one shape; all but the first may be numbers.
     """
-    if creepage.size == 1:
-        reduced, level, unit = _reduced(float(creepage.item()), *map(_number, others))
+    if not creepage.ndim:
+        reduced, level, unit = _reduced(*map(float, (creepage, *others)))
         *of_point, highest = _maximum(OF_FLOATS, reduced)
-        return np.full(creepage.shape, unit * _above(OF_FLOATS, level, *of_point) if level < highest else 0.0)
+        of_patch: Any = np.float64(unit * _above(OF_FLOATS, level, *of_point) if level < highest else 0.0)
+        return of_patch  # type: ignore[no-any-return]
     with np.errstate(over="ignore"):  # a threshold may lie infinitely far above all values
         reduced, level, unit = _reduced(creepage, *others)
     *of_points, highest = _maximum(OF_ARRAYS, reduced)
@@ -72,43 +73,35 @@ def elliptic_excess(creepage: Array, *others: Any) -> Array:
     return energy
 
 
-def _number(value: Any) -> float:
-    return float(value.item() if isinstance(value, np.ndarray) else value)
-
-
 def _reduced(creepage: Any, slope: Any, centre: Any, half_width: Any, threshold: Any) -> tuple[Any, Any, Any]:
     """Return d, the threshold over μp2(0) g, and the unit of the energy [N/m]."""
     scale = slope * centre
     return creepage / slope, threshold / scale, scale * half_width
 
 
-def _maximum(of: Functions, reduced: Number) -> tuple[Number, Number, Number, Number, Number, Number]:
-    """Return the end of the slip zone, 1+d, r, c, and the v of the maximum in the zone with its P."""
-    end, more, root = 2.0 * of.minimum(reduced, 1.0), 1.0 + reduced, of.sqrt(reduced * reduced + 3.0)
+def _maximum(of: Functions, reduced: Number) -> tuple[Number, Number, Number, Number, Number]:
+    """Return the v where the slip zone begins, beyond the patch at full slip, 1+d, r, c, and the greatest P in it."""
+    start, more, root = 2.0 * reduced, 1.0 + reduced, of.sqrt(reduced * reduced + 3.0)
     top = 2.0 * more / (2.0 + more + root)
-    crest = of.minimum(top, end)
-    return end, more, root / 3.0, top, crest, crest * (2.0 - crest) * (more - crest)
+    return start, more, root / 3.0, top, _density(more, of.minimum(top, start))
 
 
-def _above(of: Functions, level: Number, end: Number, more: Number, size: Number, top: Number, crest: Number) -> Number:
+def _above(of: Functions, level: Number, start: Number, more: Number, size: Number, top: Number) -> Number:
     """Return ∫ max(P - level, 0) dv over the slip zone, for a level below the maximum there."""
-    drop = top * (2.0 - top) * (more - top) - level
-    angle = 2.0 / 3.0 * of.arcsin(of.sqrt(of.minimum(of.maximum(drop, 0.0) / (4.0 * size * size * size), 1.0)))
+    drop = of.maximum(_density(more, top) - level, 0.0)
+    angle = 2.0 / 3.0 * of.arcsin(of.sqrt(of.minimum(drop / (4.0 * size * size * size), 1.0)))
     middle, apart = top + size * (1.0 - of.cos(angle)), math.sqrt(3.0) * size * of.sin(angle)
-    trailing = middle - apart
-    trailing = of.minimum(trailing - _change(more, level, trailing), crest)  # keeps its digits next to zero
-    leading = of.minimum(of.maximum(middle + apart, crest), end)
+    trailing, leading = middle - apart, of.minimum(middle + apart, start)
+    trailing = trailing - (_density(more, trailing) - level) / (2.0 * more)  # keeps its digits next to zero
     above: Number = of.maximum(_energy(more, leading) - _energy(more, trailing) - level * (leading - trailing), 0.0)
     return above
+
+
+def _density(more: Number, v: Number) -> Number:
+    """Return P, whose slope is 2 (1+d) at v = 0."""
+    return v * (2.0 - v) * (more - v)
 
 
 def _energy(more: Number, v: Number) -> Number:
     """Return ∫ P from 0 to v."""
     return v * v * (more - v * ((2.0 + more) / 3.0 - 0.25 * v))
-
-
-def _change(more: Number, level: Number, v: Number) -> Number:
-    """Return Halley's step towards P = level."""
-    line, arch, slope = more - v, v * (2.0 - v), 2.0 - 2.0 * v
-    value, first = arch * line - level, slope * line - arch
-    return value * first / (first * first + value * (slope + line) + 1e-300)  # all are zero at the maximum itself

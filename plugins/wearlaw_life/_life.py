@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 SIDES = {1: ("",), 2: ("_left", "_right")}
 """Ends of the names of columns: of one profile for both sides, or of each side."""
 
-MOST_CURVES = 6
+MOST_CURVES = 4
 """Most profiles in a picture."""
 
 SEEN = 10.0
@@ -134,11 +134,12 @@ class Life:
                 panels.append(wl.Panel(x, y, curves, f"{title}, {what}", equal=name == "z"))
         for beginning, label in CURVES.items():
             measures = self.table.filter(regex=f"^{beginning}").dropna(axis=1, how="all")
-            if beginning == "flange":
-                measures = measures - measures.iloc[0]
+            if len(self.worn_profiles[0]) == 1:
+                measures = measures.drop(columns=measures.filter(regex="_left|_right"))
+            several = measures.shape[1] > 1  # the label of the axis names one alone
             curves = tuple(
-                wl.Curve(_words(str(name)), distances, values.to_numpy(), colour=number)
-                for number, (name, values) in enumerate(measures.items())
+                wl.Curve(_words(str(name)) if several else "", distances, values.to_numpy(), colour=number * several)
+                for number, (name, values) in enumerate(measures.items(), MOST_CURVES)
             )
             if curves:
                 panels.append(wl.Panel(wl.PlotAxis(column), wl.PlotAxis(label), curves))
@@ -153,7 +154,7 @@ class Life:
         first, last = self.table.iloc[0], self.table.iloc[-1]
         along, unit = name_and_unit(self.table.columns[0])
         why = {"": ", interrupted", "over": ""}.get(self.ended, f", to the limit of {_words(self.ended)}")
-        steps = f"{len(self.table) - 1} steps"
+        steps = "1 step" if len(self.table) == 2 else f"{len(self.table) - 1} steps"
         lines = [f"Life of a {self.body}: {_number(last.iloc[0])} {unit or along}, {steps}{why}"]
         for one in map(str, self.table.columns[1:]):
             if not one.startswith("factor") and np.isfinite(last[one]):

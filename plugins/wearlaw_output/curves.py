@@ -25,7 +25,7 @@ class Curve:
     Attributes
     ----------
     label : str
-        Its name in the legend.
+        Its name in the legend; "" leaves it out.
     x, y : ndarray, (points,)
         In the units of the axis labels.
     colour, dash : int

@@ -18,10 +18,9 @@ from wearlaw.errors import (
     InputError,
     UnitError,
     WearlawError,
-    did_you_mean,
     shown,
 )
-from wearlaw.pipeline.pipeline import Rig
+from wearlaw.pipeline.pipeline import Rig, unknown_condition
 from wearlaw.units.quantities import Q, parse
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
@@ -218,9 +217,7 @@ def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
     known = rig.conditions()
     unknown = [name for name in given if known and name not in known]
     missing = [name for name, condition in known.items() if condition.required and name not in given]
-    for name in unknown:
-        hint = did_you_mean(name, known)
-        yield Fault((name,), f"unknown condition{hint} The conditions of the rig are: {', '.join(known)}")
+    yield from (Fault((name,), unknown_condition(name, known)) for name in unknown)
     yield from (Fault((name,), "is missing") for name in missing)
     if unknown or missing:
         return

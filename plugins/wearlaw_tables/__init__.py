@@ -397,6 +397,8 @@ class CsvTable(Table):
                 for _ in range(self._skip):
                     file.readline()
                 yield file
+        except FileNotFoundError:
+            raise DataError(f"{self.label}: there is no such file") from None
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise self._failed(error) from None
 

@@ -12,8 +12,9 @@ wheels sink together: with the heights of the axle at which either wheel touches
     height + h of the right wheel = height + h of the left wheel.
 
 Newton's method finds ln h, Ω and ρ together. It estimates the rates and learns from its steps, so that each step costs
-the creep forces once. Where it fails, because the load jumps, humps of one patch become patches of their own. Where it
-fails again, each unknown is found by the secant method within the bounds found so far, the roll outermost.
+the creep forces once. Where it fails, because the load jumps, it tries again with the humps of a patch as patches of
+their own. Where that fails too, each unknown is found by the secant method within the bounds found so far, the roll
+outermost.
 """
 
 from __future__ import annotations
@@ -94,6 +95,9 @@ WIDEST_STEP, MOST_TURN, WIDEST_ROLL = 1.0, 0.01, 1e-3
 
 HUMP = 0.1
 """Bulge of the gap within a patch, over half the penetration, from which strips are warned of."""
+
+FLATTEST = 1e-3
+"""Least curvature across the rolling direction that is tried, over that along it."""
 
 LEVEL = 1e-10
 """Greatest difference between the heights at which both wheels carry the axle [m]."""
@@ -521,17 +525,25 @@ class Balance:
         found._newton(forces, every, rolls, known=True)
         left = found.imbalance > STALLED
         if rolls and left.any():  # one of two humps of a patch takes over from the other; let them share the load
-            found.penetration[left.repeat(2)] = self.penetration[left.repeat(2)]
-            found.rotation[left] = self.rotation[left]
-            found.share[left], found.correction[left], found.apart[left] = 0.0, 0.0, np.inf
-            found._turn(np.flatnonzero(left), self.roll[left], 0.0)
+            found._restart(self, left, 0.0)
             found._newton(forces, left, rolls)
             left &= found.imbalance > ROUGH
         if left.any() and bounds:
-            (found._rolled if rolls else found._bracketed)(forces, left)
+            if rolls:
+                found._restart(self, left, SEPARATE)
+                found._rolled(forces, left)
+            else:
+                found._bracketed(forces, left)
         if not bounds:
             found.balanced = found.imbalance <= ROUGH
         return found
+
+    def _restart(self, begun: Balance, left: NDArray[np.bool_], share: float) -> None:
+        """Put some positions back to where they began, in place, with another `share` of the penetration."""
+        wheels = left.repeat(2)
+        self.penetration[wheels], self.rotation[left] = begun.penetration[wheels], begun.rotation[left]
+        self.share[left], self.correction[left], self.apart[left] = share, 0.0, np.inf
+        self._turn(np.flatnonzero(left), begun.roll[left], 0.0)
 
     def _newton(
         self,
@@ -891,7 +903,9 @@ class Balance:
         skew = 0.5 * (wheel - circle) * turn / (1.0 + turn**2)
         more = np.hypot(0.5 * (along - across), skew) - np.abs(0.5 * (along - across))
         more = np.where(along > across, more, -more)
-        return _normal.hertz(along + more, across - more, self.elastic.modulus, np.ones(across.shape))
+        along, across = along + more, across - more
+        across = np.maximum(across, FLATTEST * along)  # a place that is only followed may pass an inflection
+        return _normal.hertz(along, across, self.elastic.modulus, np.ones(across.shape))
 
 
 @dataclass(frozen=True)

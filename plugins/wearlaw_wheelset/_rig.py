@@ -453,10 +453,11 @@ class Wheelset(wl.Rig):
         left = np.where(balance.balanced, balance.imbalance, 0.0)
         if (left > IMBALANCE).any():
             point = int(left.argmax())
+            advice = "see imbalance of the problem" if self.pressure == "half_space" else 'take pressure="half_space"'
             warnings.warn(
                 f"the loads of {np.count_nonzero(left > IMBALANCE)} of {left.size} positions do not balance: at a"
                 f" lateral displacement of {1e3 * balance.task.displacement[point]:.4g} mm, {left[point]:.2g} of the"
-                " load is left over, as where a patch joins another one; see imbalance of the problem",
+                f" load is left over, as where a patch joins another one; {advice}",
                 wl.RangeWarning,
                 stacklevel=4,
             )

@@ -227,10 +227,7 @@ class Rig(Model):
             return
         for name in conditions:
             if name not in known:
-                hint = did_you_mean(name, known)
-                if hint == ".":
-                    hint = did_you_mean(OTHER_NAMES.get(name.lower(), name), known)
-                raise ConditionsError(f"{name}: unknown condition{hint} The conditions are: {', '.join(known)}")
+                raise ConditionsError(f"{name}: {unknown_condition(name, known)}")
         for names in cls.choices:
             given = [name for name in names if conditions.get(name) is not None]
             if len(given) != 1:
@@ -267,6 +264,14 @@ class Rig(Model):
                 ' for example rig | wl.contact_model("fastsim") | wl.wear_law("usfd")'
             )
         return Pipeline(rig=self, contact_model=model)
+
+
+def unknown_condition(name: str, known: Iterable[str]) -> str:
+    """Return what is wrong with a condition that a rig does not have."""
+    hint = did_you_mean(name, known)
+    if hint == ".":
+        hint = did_you_mean(OTHER_NAMES.get(name.lower(), name), known)
+    return f"unknown condition{hint} The conditions are: {', '.join(known)}"
 
 
 @cache

@@ -171,7 +171,7 @@ def _traces(curve: Curve, panel: Panel, number: str, dash: str) -> list[Json]:
         "line": {"color": colour, "dash": dash, "width": 2},
         "marker": marker,
         "hovertemplate": _hover(curve, panel),
-        "showlegend": True,
+        "showlegend": curve.label != "",
     }
     if 0 < len(lone) < np.isfinite(curve.y).sum():
         line |= {"selectedpoints": lone, "unselected": {"marker": {"opacity": 0}}}
@@ -243,7 +243,7 @@ def _map(shown: Map, number: str, ends: Ends) -> list[Json]:
 
 
 def _hover(curve: Curve, panel: Panel) -> str:
-    lines = [f"<b>{literal(curve.label)}</b>"]
+    lines = [f"<b>{literal(curve.label)}</b>"] if curve.label else []
     for axis, value in ((panel.x, "x"), (panel.y, "y")):
         lines.append(f"{literal(axis.label)}: %{{{value}:.4~g}}")
     if curve.low is not None:

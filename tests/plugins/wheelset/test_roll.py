@@ -184,12 +184,13 @@ def test_what_the_balance_leaves_over_is_in_the_result() -> None:
     assert one.problem.roll[0] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_balance_that_leaves_over_more_than_a_thousandth_warns() -> None:
-    # Where the flange takes the load from the tread, the creep forces jump.
-    pair: Any = wheelset()
-    with pytest.warns(wl.RangeWarning, match="do not balance"):
+@pytest.mark.parametrize(("pressure", "jump"), [("kpec", -6.293), ("hertz", -6.27)])
+def test_a_balance_that_leaves_over_more_than_a_thousandth_warns(pressure: Any, jump: float) -> None:
+    # Where the flange takes the load from the tread, the creep forces jump. Hertz's patch is nearly flat there.
+    pair: Any = wheelset(pressure=pressure)
+    with pytest.warns(wl.RangeWarning, match="1 of 2 positions do not balance: .* take pressure="):
         result = (pair | FASTSIM)(
-            lateral_displacement=Q([-6.293, -3.0], "mm"), vertical_load="90 kN", friction_coefficient=0.4
+            lateral_displacement=Q([jump, -3.0], "mm"), vertical_load="90 kN", friction_coefficient=0.4
         )
     assert np.nanmax(result.problem.imbalance[0]) > 1e-3 > 1e-6 > np.nanmax(result.problem.imbalance[1])
 
