@@ -233,7 +233,7 @@ class _Evaluator:
         check_importable(pipeline, workers)
         store = self.store / f"{key}.zarr" if self.store is not None and blocks > 1 else None
         with closing(target_of(job, points, store, self.resume)) as target:
-            if self.resume and store is not None:
+            if store is not None:
                 self.kept += len(target.done)
                 self.blocks += blocks
             for warning in run_sweep(target, self.on_block, workers):
