@@ -375,8 +375,7 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
             return xarray.Dataset()
         of_contact = whole.drop_vars(of_pair)
         before = contacts.get(pair.contact_model, of_contact)  # laws of the two bodies show a part each
-        more = [v for v in before.data_vars if v not in of_contact]
-        contacts[pair.contact_model] = of_contact.merge(before[more]) if more else of_contact
+        contacts[pair.contact_model] = of_contact.merge(before, join="outer", compat="override")
         of_pairs[pair.label] = whole.drop_vars(of_contact.data_vars)
     return _side_by_side(of_pairs, contacts) if of_pairs else xarray.Dataset()
 
