@@ -16,7 +16,6 @@ from wearlaw.errors import ConfigurationError, FitError, ModelError
 from wearlaw.models.law import WEAR, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, patch_area
 from wearlaw.pipeline.pipeline import Pipeline
-from wearlaw.units.quantities import in_unit
 from wearlaw.units.variables import UNITS, name_of
 from wearlaw_fits.free_parameters import FreeParameters, give_bounds
 from wearlaw_fits.named_numbers import FRICTION, Place, check_loads_stay, outcomes_at, traction_at
@@ -100,12 +99,6 @@ class Observations:
         if self.scatter == "relative":
             return np.log(np.maximum(predicted, FLOOR) / self.measured)
         return (predicted - self.measured) / self.divisor
-
-    def in_shown_unit(self, predicted: Array) -> Array:
-        """Return the residuals (n,) for tables, with absolute scatter in the unit of the measurement."""
-        if self.scatter == "absolute":
-            return in_unit(predicted - self.measured, self.unit)
-        return self.compare(predicted)
 
 
 def wear_index_density(pipeline: Pipeline[...], problem: Problem) -> Array:

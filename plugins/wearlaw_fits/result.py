@@ -168,13 +168,15 @@ class Fit:
             predicted = self.fitted(one)
             ratio = np.full(predicted.shape, np.nan)
             np.divide(predicted, one.measured, out=ratio, where=(predicted > 0.0) & (one.measured > 0.0))
+            absolute = one.scatter == "absolute"
+            residual = in_unit(predicted - one.measured, one.unit) if absolute else one.compare(predicted)
             columns = {
                 "label": one.tests.labels,
                 "observable": f"{one.observable} [{one.unit}]" if one.unit else one.observable,
                 "creepage [%]": in_unit(one.problem.creepage, UNITS["creepage"]),
                 "measured": in_unit(one.measured, one.unit),
                 "predicted": in_unit(predicted, one.unit),
-                "residual": one.in_shown_unit(predicted),
+                "residual": residual,
                 "predicted/measured": ratio,
             }
             frames.append(pd.DataFrame(columns))

@@ -20,7 +20,7 @@ STATES = 7
 
 
 def section(study: wl.Study) -> wl.Section:
-    """Return the section about the life of a wheel, on the states of the sweep "line", which count alike.
+    """Return the section about the life of a wheel, on the states of the sweep "line", with equal shares.
 
     Raises
     ------
@@ -41,8 +41,8 @@ def section(study: wl.Study) -> wl.Section:
         figures = (found.figure(), _states(predict, name, values, given))
     return wl.Section(
         title="The life of a wheel",
-        text=f"{found!r}\n\nAn example, not a service rate: the {values.size} states of the sweep '{LINE}' count alike,"
-        f" over {OVER:~P}. Real lines have curves, in which flanges wear.",
+        text=f"An example, not a service rate: {OVER:~P} with equal shares of the {values.size} states of the sweep"
+        f" '{LINE}'. Real lines have curves, in which flanges wear.",
         tables={"life": found.table},
         figures=figures,
     )

@@ -312,10 +312,9 @@ def case_schema() -> dict[str, Any]:
         *({**table, "required": ["model"]} for table in _tables(sets, definitions)),
     ]
     schema["anyOf"] = [{"required": [name], "properties": {name: {"minItems": 1}}} for name in ("wear_laws", "laws")]
-    for window in ("FigureSpec", "Window"):
-        _add_outcomes(
-            definitions[window]["properties"]["y"], [law.outcome.name for law in found["law"].items().values()]
-        )
+    outcomes = [law.outcome.name for law in found["law"].items().values()]
+    for window, field in (("FigureSpec", "y"), ("FigureSpec", "map"), ("Window", "y")):
+        _add_outcomes(definitions[window]["properties"][field], outcomes)
     properties["sections"]["items"] = {"enum": list(found["section"].items())}
     rigs = found["rig"].items()
     bare = [name for name, rig in rigs.items() if not any(one.is_required() for one in rig.model_fields.values())]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-from pydantic import AfterValidator, model_validator
+from pydantic import field_validator, model_validator
 
 from wearlaw import loader
 from wearlaw.arrays import Array
@@ -28,25 +28,22 @@ OF_TRACTION = (
 """Variables of tests with a measured traction."""
 
 
-def _shipped(tests: str) -> bool:
-    return tests in loader.installed()["test set"].providers
-
-
-def _found(tests: str) -> str:
-    return tests if _shipped(tests) else str(beside(tests))
-
-
 class MeasuredTests(Configuration):
     """Measured tests, to show beside the predictions."""
 
     label: str
     """Their name in the legend."""
-    tests: Annotated[str, AfterValidator(_found)]
+    tests: str
     """The name of shipped tests, or the path of a CSV file relative to the case file."""
     sep: str | None = None
     """What separates the cells of the file; None for the first of semicolon, tab and comma that its header has."""
     decimal: str = "."
     """The decimal mark of the file."""
+
+    @field_validator("tests")
+    @classmethod
+    def _beside(cls, tests: str) -> str:
+        return tests if tests in loader.installed()["test set"].providers else str(beside(tests))
 
     @model_validator(mode="after")
     def _readable(self) -> MeasuredTests:
@@ -67,7 +64,7 @@ class MeasuredTests(Configuration):
     @property
     def shipped(self) -> bool:
         """Whether a plugin ships the tests, rather than a file holding them."""
-        return _shipped(self.tests)
+        return self.tests in loader.installed()["test set"].providers
 
 
 def known_variables(tests: WearTests) -> tuple[str, ...]:

@@ -233,7 +233,7 @@ class _Evaluator:
         check_importable(pipeline, workers)
         store = self.store / f"{key}.zarr" if self.store is not None and blocks > 1 else None
         with closing(target_of(job, points, store, self.resume)) as target:
-            if self.resume and store is not None:
+            if store is not None:
                 self.kept += len(target.done)
                 self.blocks += blocks
             for warning in run_sweep(target, self.on_block, workers):
@@ -375,8 +375,7 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
             return xarray.Dataset()
         of_contact = whole.drop_vars(of_pair)
         before = contacts.get(pair.contact_model, of_contact)  # laws of the two bodies show a part each
-        more = [v for v in before.data_vars if v not in of_contact]
-        contacts[pair.contact_model] = of_contact.merge(before[more]) if more else of_contact
+        contacts[pair.contact_model] = of_contact.merge(before, join="outer", compat="override")
         of_pairs[pair.label] = whole.drop_vars(of_contact.data_vars)
     return _side_by_side(of_pairs, contacts) if of_pairs else xarray.Dataset()
 

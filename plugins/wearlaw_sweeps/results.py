@@ -9,14 +9,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import pint
 import xarray
 
 from wearlaw.arrays import Array
-from wearlaw.contact.conditions import is_friction_law
-from wearlaw.units.quantities import parse
-from wearlaw.units.registry import symbol
 from wearlaw.units.variables import VARIABLES
+from wearlaw_output.conditions import Known
 from wearlaw_sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_sweeps.points import ITEM, Block, Points
 from wearlaw_sweeps.provenance import Provenance, provenance_of
@@ -104,11 +101,11 @@ def dataset(points: Points, variables: Mapping[str, Array], job: Job, attrs: Map
     for name, one in points.coordinates().items():
         if not one.on_disk:
             coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
-    numbers = {name: _number(value) for name, value in points.fixed.items()}
-    coordinates |= {name: number for name, number in numbers.items() if number is not None}
+    fixed = {name: Known.of(value) for name, value in points.fixed.items()}
+    coordinates |= {name: ((), float(one.values), {"units": one.unit or ""}) for name, one in fixed.items() if one}
     dims = (*points.dims, *job.labels)
     data = {name: (dims, values, job.attributes(name)) for name, values in variables.items()}
-    others = {name: str(points.fixed[name]) for name, number in numbers.items() if number is None}
+    others = {name: str(points.fixed[name]) for name, one in fixed.items() if one is None}
     return xarray.Dataset(data, coordinates, {**others, **attrs})
 
 
@@ -120,13 +117,3 @@ def labels_of(job: Job) -> dict[str, Any]:
         attrs = {"units": VARIABLES[name].unit} if name in VARIABLES else {}
         found[name] = (name, np.array(labels, dtype=object) if numbers is None else numbers, attrs)
     return found
-
-
-def _number(value: Any) -> Any:
-    """Return a condition as a scalar coordinate, or None for a law of friction."""
-    if is_friction_law(value):
-        return None
-    quantity = parse(value) if isinstance(value, str) else value
-    if isinstance(quantity, pint.Quantity):
-        return (), float(quantity.magnitude), {"units": symbol(quantity.units, "~C")}
-    return (), float(quantity), {"units": ""}

@@ -46,11 +46,6 @@ TAPING = "WheelDiameterTaperline"
 """Key of a MiniProf file for the distance of the taping line from the back of the flange."""
 
 
-OF_NO_KIND = (
-    'it does not say whether it is a wheel or a rail; give kind="rail", in a case {file = "rail.csv", kind = "rail"}'
-)
-
-
 class FileError(wl.InputError):
     """A file of a profile is wrong; the message has no name of the file yet."""
 
@@ -89,7 +84,8 @@ def points_of(
         raise FileError(f"the ending {wl.shown(ending)} is not known; give a file that ends in {', '.join(ENDINGS)}")
     sure = kind or by_ending or found.kind
     if sure is None:
-        raise FileError(OF_NO_KIND)
+        given = 'give kind="rail", in a case {file = "rail.csv", kind = "rail"}'
+        raise FileError(f"it does not say whether it is a wheel or a rail; {given}")
     told = {"the argument kind": kind, "its ending": by_ending, "its header": found.kind}
     if not {*told.values()} <= {sure, None}:
         says = ", ".join(f"{source} says {one}" for source, one in told.items() if one)
@@ -258,8 +254,6 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
     outwards from the back of the flange, and its Y positive towards the flange, so down. X of a rail is positive
     towards the gauge side, and its Y positive up.
     """
-    if not kind:
-        raise FileError(OF_NO_KIND)
     header: dict[str, str] = {}
     table, ended = _Table(), False
     columns = ["X", "Y"]

@@ -587,6 +587,7 @@ class Balance:
             rates /= unit[rows]
             moved = step[rows] * unit[rows, 0]
             unforeseen = miss - before[rows] - ((rates + self.correction[rows]) @ moved[..., None])[..., 0]
+            unforeseen[:, :2][miss[:, :2] <= np.log(LEAST_SHARE)] = 0.0  # a load that is lost tells nothing of its rate
             own = moved[:, None, :] * COUPLED  # steps below BALANCED only show rounding
             self.correction[rows] += (
                 unforeseen[..., None] * own / np.maximum((own**2).sum(axis=-1), BALANCED**2)[..., None]

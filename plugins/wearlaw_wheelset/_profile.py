@@ -451,11 +451,7 @@ class Profile(wl.Configuration):
 
     def __repr__(self) -> str:
         if self.formula is not None:
-            text = (
-                f"Profile.{self.formula}()"
-                if self.formula in ("s1002", "uic60")
-                else f"Profile.named('{self.formula}')"
-            )
+            text = f"Profile.named('{self.formula}')"
         else:
             assert self.y is not None
             low, high = 1e3 * _si(self.y).min(), 1e3 * _si(self.y).max()
@@ -466,9 +462,6 @@ class Profile(wl.Configuration):
         text += f".turned('{np.rad2deg(turn):.6g} deg')" if turn else ""
         text += f".shifted(y='{1e3 * y:.6g} mm', z='{1e3 * z:.6g} mm')" if y or z else ""
         return text
-
-    def __str__(self) -> str:
-        return repr(self)
 
 
 def _si(value: wl.Quantity) -> Array:

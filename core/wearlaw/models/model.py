@@ -21,10 +21,7 @@ It is the name of a check of the conformance kit, such as "each_node_wears_by_it
 have several checks, such as "energy_balance" or "spin".
 """
 
-ORDER = (
-    "the order is rig | contact model | stages | laws, as in"
-    ' wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd")'
-)
+ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
 """Hint for models that do not make a pipeline."""
 
 OF_ARRAYS = (

@@ -32,7 +32,7 @@ from wearlaw.extras import load
 from wearlaw.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.models.contact_model import ContactModel, Scale, Stage
 from wearlaw.models.law import WEAR, Law
-from wearlaw.models.model import Blame, Model, fault
+from wearlaw.models.model import ORDER, Blame, Model, fault
 from wearlaw.numerics.integrate import Forces, prepared
 from wearlaw.numerics.solving import check_problem
 from wearlaw.numerics.staged import staged
@@ -54,8 +54,6 @@ from wearlaw.units.registry import with_magnitude
 
 if TYPE_CHECKING:
     from wearlaw_sweeps.several import Pipelines
-
-ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
 
 OTHER_NAMES = {"mu": "friction_coefficient", "cof": "friction_coefficient", "load": "normal_force", "slip": "creepage"}
 """What people call conditions, and the names that most rigs have for them."""
@@ -259,10 +257,7 @@ class Rig(Model):
             pipelines: Pipelines[P] = _several(self, model)
             return pipelines
         if not isinstance(model, ContactModel):
-            raise CompositionError(
-                f"a rig is followed by a contact model, not by {shown(model)};"
-                ' for example rig | wl.contact_model("fastsim") | wl.wear_law("usfd")'
-            )
+            raise CompositionError(f"a rig is followed by a contact model, not by {shown(model)}; {ORDER}")
         return Pipeline(rig=self, contact_model=model)
 
 

@@ -136,9 +136,7 @@ class Solution:
         """Return the circumference of a body that turns [m]."""
         radius = np.asarray(self.problem.body(body).rolling_radius)
         if np.isinf(radius).any():
-            fix = "name the other body"
-            if self.problem.geometry != "line":
-                fix = f'take wear_profile("{body}"), which is per passage'
+            fix = f'name the other body, or take wear_profile("{body}"), which is per passage'
             raise InputError(f"body: {body} makes no revolutions; {fix}")
         return 2.0 * np.pi * radius
 

@@ -133,7 +133,7 @@ def test_measurements_that_are_not_there_are_refused() -> None:
     predict = usfd("exact")
     only_traction = traction_tests(np.full(5, 0.4), np.linspace(3.0, 9.0, 5), friction_coefficient=0.4)
     refused("none of the 5 tests has a wear rate", predict, only_traction, ["q_s"])
-    refused("fitted to measured traction, and the tests hold none", predict, made_up(predict), ["friction_coefficient"])
+    refused("fitted to measured traction, and the tests have none", predict, made_up(predict), ["friction_coefficient"])
     with pytest.raises(wl.ConditionsError, match=r"friction_coefficient=0\.46"):
         wl.fit(predict, traction_tests(np.full(5, 0.4), np.arange(1.0, 6.0), wear_rate="5 ug/m/mm^2"), free=["q_s"])
     uncertainty = Q([1.0, np.nan, 1.0, 1.0, 1.0], "ug/m/mm^2")

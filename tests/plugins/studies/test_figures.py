@@ -322,6 +322,10 @@ def test_the_schema_or_the_loader_refuses_a_figure_that_no_case_can_have(changes
             validator.validate(table(figures={"one": spec}))
 
 
+def test_the_schema_accepts_a_map_of_the_outcome_of_a_law(validator: Any) -> None:
+    validator.validate(table(figures={"one": {**WEAR, "map": "rcf_damage"}}))
+
+
 # Measured tests
 
 TESTS = """creepage [%],normal_force [kN],tangential_force [N],wear_rate [ug/m/mm^2],wear_rate_uncertainty [ug/m/mm^2]

@@ -85,3 +85,14 @@ def test_compiled_gaps_around_contact_points_are_those_of_numpy(spacing: float) 
     assert np.isinf(samples[0]).any()
     # Gaps are differences of heights near 0.46 m, with a few roundings of 5e-17 m each; cosines enlarge them tenfold.
     np.testing.assert_allclose(samples[0], samples[1], rtol=1e-12, atol=5e-15)
+
+
+def test_a_flange_that_friction_holds_warns() -> None:
+    # For some steps the right wheel carries no load. If its rate were learnt as zero there, the rates were singular.
+    rig = wheelset(rail_cant="1:20", rolling_speed=Q(8.72446282923011, "m/s"))
+    with pytest.warns(wl.RangeWarning, match="do not balance"):
+        (rig | wl.contact_model("strip_theory")).posed({
+            "lateral_displacement": Q(6.448224844814366, "mm"), "yaw": Q(-17.756389346242024, "mrad"),
+            "vertical_load": Q(24.14399725188602, "kN"), "friction_coefficient": 0.4907271308702819,
+            "angular_speed": Q(18.806972104059227, "rad/s"),
+        })  # fmt: skip

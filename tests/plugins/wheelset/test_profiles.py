@@ -480,14 +480,14 @@ def test_a_profile_is_short_where_it_can_be() -> None:
     assert json.loads(PROFILES[2].model_dump_json()) == {"formula": "uic60", "turn": "-0.025 rad", "shift_y": "1.0 mm"}
     assert json.loads(PROFILES[4].model_dump_json()).keys() == {"kind", "y", "z"}
     assert [repr(one) for one in PROFILES] == [
-        "Profile.s1002()",
-        "Profile.uic60()",
-        "Profile.uic60().turned('-1.43239 deg').shifted(y='1 mm', z='0 mm')",
-        "Profile.uic60().mirrored()",
+        "Profile.named('s1002')",
+        "Profile.named('uic60')",
+        "Profile.named('uic60').turned('-1.43239 deg').shifted(y='1 mm', z='0 mm')",
+        "Profile.named('uic60').mirrored()",
         f"Profile(wheel, {COUNT} points from y = -70 to 60 mm)",
         f"Profile(wheel, {COUNT} points from y = -70 to 60 mm, smoothing=10.0 µm)",
     ]
-    assert str(WHEEL) == "Profile.s1002()"
+    assert str(WHEEL) == "Profile.named('s1002')"
 
 
 class Vehicle(wl.Configuration):
@@ -512,7 +512,7 @@ def test_a_field_takes_a_name_a_path_or_a_table(tmp_path: Path) -> None:
         assert vehicle.wheel == expected
         assert Vehicle.model_validate_json(vehicle.model_dump_json()) == vehicle
     assert json.loads(Vehicle(wheel=WHEEL).model_dump_json()) == {"wheel": "s1002", "rail": "uic60"}
-    assert repr(Vehicle(wheel=WHEEL)) == "Vehicle(wheel=Profile.s1002(), rail=Profile.uic60())"
+    assert repr(Vehicle(wheel=WHEEL)) == "Vehicle(wheel=Profile.named('s1002'), rail=Profile.named('uic60'))"
 
 
 @pytest.mark.parametrize(
