@@ -355,7 +355,7 @@ class Law(Model):
         if low < 0.0 and (value < -error()).any():
             of = self.outcome.name.replace("_", " ")
             shown = from_si(low, self.outcome.unit)
-            raise fault(self, f"gives a negative {of}, {shown!r}; see its parameters")
+            raise fault(self, f"gives a negative {of}, {shown!r}; see its parameters and the wear index")
 
     def _warn_of_calibration(self, contact: Contact, scale: Scale) -> None:
         """Warn if the parameters were fitted for another kind of contact, as far as the contact shows its kind."""
