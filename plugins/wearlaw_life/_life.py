@@ -134,6 +134,8 @@ class Life:
                 panels.append(wl.Panel(x, y, curves, f"{title}, {what}", equal=name == "z"))
         for beginning, label in CURVES.items():
             measures = self.table.filter(regex=f"^{beginning}").dropna(axis=1, how="all")
+            if beginning == "flange":
+                measures = measures - measures.iloc[0]
             if len(self.worn_profiles[0]) == 1:
                 measures = measures.drop(columns=measures.filter(regex="_left|_right"))
             several = measures.shape[1] > 1  # the label of the axis names one alone
