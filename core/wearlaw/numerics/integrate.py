@@ -437,7 +437,7 @@ def _sliding(solver: Solver, laws: Sequence[Law], contact: Contact) -> Array | N
     sliding = problem.friction_coefficient * np.abs(contact.integral(contact.pressure, contact.slip))
     energy = contact.wear_index
     ratio: Array = np.divide(sliding, energy, out=np.ones_like(energy), where=energy > 0.0)
-    return ratio
+    return ratio[()]  # a number for one point, which checks faster
 
 
 def _arrays(p: Numbers, function: Callable[[Array], Array]) -> Numbers:

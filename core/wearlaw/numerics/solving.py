@@ -270,6 +270,8 @@ def _product(one: Array, other: Array) -> float:
 
     This is the fastest test for finite entries. The sum can also overflow for finite entries.
     """
+    if one.size <= ONE_THREAD:
+        return float(np.vdot(one, other))
     first, second = one.ravel(order="K"), other.ravel(order="K")
     total = 0.0
     for start in range(0, first.size, ONE_THREAD):
