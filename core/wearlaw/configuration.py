@@ -240,7 +240,8 @@ def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
         return f"unknown field{hint} The fields are: {', '.join(known) or 'none'}"
     if details["type"] == "missing":
         return "is missing"
-    if details["type"] in ("tuple_type", "dict_type", "model_type"):
-        return f"must be a {'list' if details['type'] == 'tuple_type' else 'table'}, got {shown(details['input'])}"
+    tables = {"tuple_type": "list", "dict_type": "table", "model_type": "table"}
+    if details["type"] in tables and not isinstance(details["input"], BaseModel):  # such as a law for a contact model
+        return f"must be a {tables[details['type']]}, got {shown(details['input'])}"
     message = details["msg"]
     return f"{message[0].lower()}{message[1:]}, got {shown(details['input'])}"
