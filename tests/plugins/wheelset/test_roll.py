@@ -202,3 +202,12 @@ def test_rolls_are_found_within_bounds_where_newtons_method_fails() -> None:
         vertical_load="60 kN", friction_coefficient=0.3,
     )  # fmt: skip
     assert problem.imbalance[1, 0] < 1e-3
+
+
+def test_two_humps_share_the_load_where_one_takes_over_from_the_other() -> None:
+    # As patches of their own they balance. As one patch, they leave over 40 % of the load.
+    problem = posed(
+        wheelset(), lateral_displacement="6.25 mm", yaw="-8 mrad", vertical_load="50 kN", friction_coefficient=0.4
+    )
+    assert problem.imbalance[1, 0] <= BALANCED
+    assert problem.exists[1].sum() == 2
