@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 OTHER_NAMES = {"mu": "friction_coefficient", "cof": "friction_coefficient", "load": "normal_force", "slip": "creepage"}
 """What people call conditions, and the names that most rigs have for them."""
 
-TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere under these conditions; check the conditions"
+TOUCH_NOWHERE = "rig '{}': the bodies touch nowhere, or their loads have no balance; check the conditions"
 
 P = ParamSpec("P")
 
