@@ -50,8 +50,8 @@ def parabolic_excess(creepage: Array, *others: Any) -> Array:
     if not creepage.ndim:
         reduced, level, unit = _reduced(*map(float, (creepage, *others)))
         *of_point, highest = _maximum(OF_FLOATS, reduced)
-        of_patch: Any = np.float64(unit * _above(OF_FLOATS, level, *of_point) if level < highest else 0.0)
-        return of_patch  # type: ignore[no-any-return]
+        of_patch: Array = np.asarray(unit * _above(OF_FLOATS, level, *of_point) if level < highest else 0.0)[()]
+        return of_patch
     with np.errstate(over="ignore"):  # a threshold may lie infinitely far above all values
         reduced, level, unit = _reduced(creepage, *others)
     *of_points, highest = _maximum(OF_ARRAYS, reduced)

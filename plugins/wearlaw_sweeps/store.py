@@ -118,9 +118,8 @@ class Store(Target):
 
     def finish(self, notes: Sequence[str]) -> xarray.Dataset:
         """Mark the store as complete and open it; values are read when used."""
-        zarr.open_group(self.store, mode="r+", zarr_format=3).attrs.update(
-            attributes(COMPLETE, self._folder.provenance, notes)
-        )
+        group = zarr.open_group(self.store, mode="r+", zarr_format=3)
+        group.attrs.update(attributes(COMPLETE, self._folder.provenance, notes))
         found: xarray.Dataset = xarray.open_zarr(self.store, chunks=None, consolidated=False, zarr_format=3)
         return found
 

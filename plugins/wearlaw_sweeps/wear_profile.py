@@ -118,7 +118,7 @@ class ProfileJob(Job):
         if problem.exists is not None and PATCH in problem.dims and not problem.exists.any(self._patches).all():
             wrong = "no normal forces balance this state, as where friction holds a flange"
         elif np.any(getattr(problem, "climbs", False)):
-            wrong = "the wheel climbs its rail, beyond the steepest point of its flange, as none does in service"
+            wrong = "the wheel climbs its rail, beyond the steepest point of its flange, as no wheel does in service"
         else:
             return problem
         raise ConditionsError(
