@@ -106,7 +106,7 @@ def test_wrong_sums_are_refused(options: dict[str, Any], message: str) -> None:
 
 def test_a_row_without_a_balance_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few steps balance the loads in the middle of the track, and fail where the load jumps."""
-    monkeypatch.setattr("wearlaw_wheelset._loads.STEPS", 3)  # private: the accuracy that a search ends at
+    monkeypatch.setattr("wearlaw_wheelset._loads.STEPS", 3)  # private: the steps of a search
     table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 6.31], "share": 0.5})
     with pytest.raises(wl.DataError, match=r"row 1 .*lateral_displacement = 6.31 mm.*no normal forces balance"):
         wl.sweep(PREDICT, table, share="share", **GIVEN)
