@@ -6,15 +6,17 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
 from wearlaw.arrays import Array, steady
-from wearlaw.contact.conditions import is_friction_law
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, ConditionsError
 from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.units.quantities import Quantity, QuantityLike, Unit, coefficient, from_si
+from wearlaw.units.registry import unit_in_si
+from wearlaw_output.notes import caught_warnings
 from wearlaw_sweeps.evaluation import expect_pipeline
 
 if TYPE_CHECKING:
@@ -25,8 +27,8 @@ if TYPE_CHECKING:
 SMALLEST = 1e-30
 """Smallest creepage of the search; a smaller one counts as zero."""
 
-TRIED = np.geomspace(1e-5, 1.0, 40, endpoint=False)
-"""Creepages at which the search checks whether the traction of an elliptic contact keeps rising."""
+TRIED = np.array([SMALLEST, *np.geomspace(1e-5, 1.0, 41)])
+"""Creepages at which the search computes the traction first, as shares of the largest one."""
 
 ROUNDED = 1e-12
 """Rounding error of a sum over some thousand nodes, as a share of the friction force."""
@@ -41,10 +43,11 @@ def creepage_for(
     traction_coefficient: ArrayLike | None = None,
     **conditions: Any,
 ) -> Quantity:
-    """Return the longitudinal creepage at which a contact transmits a traction [-], with the sign of the traction.
+    """Return the smallest creepage at which a contact transmits a traction [-], with the sign of the traction.
 
-    The result is the longitudinal creepage of the problem and has the broadcast shape. `Rig.creepage` names the
-    condition that sets it. The rest of the problem stays as the rig makes it with that condition at zero.
+    The result has the broadcast shape. It is a value of the rig's longitudinal creepage, the condition that
+    `Rig.creepage` names. If friction falls with the creep speed or as the contact heats up, two creepages can transmit
+    the same traction; the result is then on the rising branch.
 
     Parameters
     ----------
@@ -61,71 +64,144 @@ def creepage_for(
     Raises
     ------
     ConditionsError
-        If no creepage, or more than one, transmits the traction. None does at full slip and above or, with lateral
-        creepage, above the share of friction left for the longitudinal direction. Several can if friction falls with
-        the creep speed.
+        If no creepage transmits the traction, with the greatest traction that there is. At full slip and above none
+        does or, with lateral creepage, above the share of friction left for the longitudinal direction. Also if the
+        contact transmits more already without longitudinal creepage.
     CompositionError
         If the rig has no condition for the creepage.
     """
     expect_pipeline(predict)
     if (tangential_force is None) == (traction_coefficient is None):
         raise ConditionsError("give either tangential_force or traction_coefficient")
-    if is_friction_law(conditions.get("friction_coefficient")):
-        raise ConditionsError(
-            "friction_coefficient: must be a number here; with friction that falls with the creep speed, two creepages"
-            " can transmit the same force"
-        )
-    problem = _at_rest(predict, conditions)
-    if tangential_force is None:
-        assert traction_coefficient is not None
-        target = coefficient(traction_coefficient, "traction_coefficient", positive=False)
-    else:
-        target = Unit("N", positive=False).si(tangential_force, "tangential_force") / problem.normal_force
-    try:
-        shape = np.broadcast_shapes(target.shape, problem.batch_shape)
-    except ValueError:
-        raise ConditionsError(
-            f"the shapes of the traction {target.shape} and of the conditions {problem.batch_shape} do not broadcast"
-        ) from None
-    flat = problem.broadcast_to(shape).flatten()
-    wanted = np.broadcast_to(target, shape).reshape(-1)
-    size, sign = np.abs(wanted), np.copysign(1.0, wanted)
+    with caught_warnings():  # the search visits contacts that nobody asked for
+        search = _Search(predict, conditions, tangential_force, traction_coefficient)
+        creepage = search.creepage()
+    search.traction(creepage, np.arange(creepage.size))  # raises the warnings about the result
+    return from_si(creepage.reshape(search.shape), "%")
 
-    def shortfall(log_creepage: Array, point: Array) -> Array:
-        """Return by how much T/N falls short; `find_root` passes the indices of the points as floats."""
+
+class _Search:
+    """The search for the creepage at all operating points at once.
+
+    Attributes
+    ----------
+    shape : tuple of int
+        The shape of the result; all other arrays have one axis for the operating points.
+    size, sign : ndarray
+        Magnitude and sign of the wanted T/N [-].
+    rounded : ndarray
+        Rounding error of T/N [-].
+    """
+
+    def __init__(
+        self,
+        predict: Pipeline[...],
+        conditions: Mapping[str, Any],
+        tangential_force: QuantityLike | None,
+        traction_coefficient: ArrayLike | None,
+    ) -> None:
+        self.predict, self.conditions = predict, conditions
+        self.name, self.largest = _condition(predict.rig, conditions)
+        problem = self._posed(np.zeros(()))
+        if tangential_force is None:
+            assert traction_coefficient is not None
+            wanted = coefficient(traction_coefficient, "traction_coefficient", positive=False)
+        else:
+            wanted = Unit("N", positive=False).si(tangential_force, "tangential_force") / problem.normal_force
+        try:
+            self.shape = np.broadcast_shapes(wanted.shape, problem.batch_shape)
+        except ValueError:
+            raise ConditionsError(
+                f"the shapes of the traction {wanted.shape} and of the conditions {problem.batch_shape} do not"
+                " broadcast"
+            ) from None
+        wanted = np.broadcast_to(wanted, self.shape).reshape(-1)
+        self.size, self.sign = np.abs(wanted), np.copysign(1.0, wanted)
+        self.rounded = ROUNDED * np.broadcast_to(problem.friction_coefficient, self.shape).reshape(-1)
+
+    def creepage(self) -> Array:
+        """Return the smallest creepage [-] that transmits the traction, with its sign, (points,)."""
+        points = np.arange(self.size.size, dtype=np.float64)
+        tried = np.repeat(np.log(TRIED * self.largest)[:, None], points.size, axis=1)
+        short = self._sampled(tried)
+        self._move_to_peaks(tried, short)
+        reached = short < -self.rounded
+        for first in np.flatnonzero(reached[0])[:1]:
+            raise ConditionsError(
+                f"no creepage transmits a traction coefficient of {self._where(first, self.sign * self.size)}: without"
+                " longitudinal creepage the contact transmits more already"
+            )
+        for first in np.flatnonzero(~reached.any(axis=0))[:1]:
+            raise ConditionsError(self._out_of_reach(first, tried[:, first], short[:, first]))
+        creepage = np.zeros(points.size)
+        # With a wanted force of zero, the sum over the nodes may be off by rounding.
+        point = np.flatnonzero(short[0] > np.where(self.size == 0.0, self.rounded, 0.0))
+        if point.size:
+            after = reached.argmax(axis=0)[point]
+            bracket = tried[after - 1, point], tried[after, point]
+            creepage[point] = np.exp(elementwise.find_root(self._shortfall, bracket, args=(points[point],)).x)
+        return np.copysign(creepage, self.sign)
+
+    def traction(self, creepage: Array, index: NDArray[np.intp]) -> Array:
+        """Return T/N [-] of operating points at their creepages [-]."""
+        everywhere = np.zeros(self.size.size)
+        everywhere[index] = creepage
+        at = self._posed(everywhere.reshape(self.shape)).flatten()[index]
+        traction: Array = integrate_forces(self.predict.staged_model, at).longitudinal / at.normal_force
+        return traction
+
+    def _shortfall(self, log_creepage: Array, point: Array) -> Array:
+        """Return by how much T/N falls short; `elementwise` passes the indices of the points as floats."""
         index = point.astype(np.intp)
-        at = flat[index].replaced(longitudinal_creepage=sign[index] * np.exp(log_creepage))
-        return size[index] - sign[index] * integrate_forces(predict.staged_model, at).longitudinal / at.normal_force
+        creepage = np.minimum(np.exp(log_creepage), self.largest)  # rounding may exceed what the rig allows
+        sign = self.sign[index]
+        return self.size[index] - sign * self.traction(sign * creepage, index)
 
-    points = np.arange(size.size, dtype=np.float64)
-    start = np.full(size.size, np.log(SMALLEST))
-    at_start, short = shortfall(start, points), shortfall(np.zeros(size.size), points)
-    tried = np.stack([at_start, short])
-    if flat.geometry != "line":
-        between = [shortfall(np.full(size.size, np.log(one)), points) for one in TRIED]
-        tried = np.stack([at_start, *between, short])
-        short = tried.min(axis=0) + ROUNDED * flat.friction_coefficient
-    if (short >= 0.0).any():
-        first = np.flatnonzero(short >= 0.0)[0]
-        reached = size[first] - short[first]
-        raise ConditionsError(
-            f"no creepage transmits a traction coefficient of {_where(size, first, shape)}: with contact model"
-            f" '{predict.contact_model.name}' it stays below {reached:.6g} (full slip); give a smaller one"
+    def _sampled(self, tried: Array) -> Array:
+        """Return the shortfall at samples (samples, points), or NaN after the first that reaches the traction."""
+        short = np.full(tried.shape, np.nan)
+        point = np.arange(self.size.size)
+        for row, log_creepage in zip(short, tried, strict=True):
+            if point.size:
+                row[point] = self._shortfall(log_creepage[point], point.astype(np.float64))
+                point = point[row[point] >= -self.rounded[point]]
+        return short
+
+    def _move_to_peaks(self, tried: Array, short: Array) -> None:
+        """Move samples to the peak of the traction beside them where no sample before has the wanted one."""
+        for step in range(1, len(TRIED) - 1):
+            left, middle, right = short[step - 1 : step + 2]
+            before = (short[: step + 1] >= -self.rounded).all(axis=0)
+            point = np.flatnonzero(before & (middle < left - self.rounded) & (middle <= right))
+            if point.size:
+                bracket = tuple(tried[step + k, point] for k in (-1, 0, 1))
+                peak = elementwise.find_minimum(self._shortfall, bracket, args=(point.astype(np.float64),))
+                tried[step, point], short[step, point] = peak.x, peak.f_x
+
+    def _out_of_reach(self, point: int, tried: Array, short: Array) -> str:
+        """Return the message for the traction of a point that no sample reaches (samples,), with the greatest."""
+        best = short.argmin()
+        greatest = f"{self.size[point] - short[best]:.6g}"
+        if short[-1] <= short[best] + self.rounded[point]:
+            reached = f"it stays below {greatest} (full slip)"
+        else:
+            reached = f"the greatest is {greatest}, at a creepage of {100.0 * np.exp(tried[best]):.4g} %"
+        return (
+            f"no creepage transmits a traction coefficient of {self._where(point, self.size)}: with contact model"
+            f" '{self.predict.contact_model.name}' {reached}; give a smaller one"
         )
-    _refuse_several(tried, flat.friction_coefficient, wanted, shape)
-    creepage = np.zeros(size.size)
-    # With a wanted force of zero, the sum over the nodes may be off by rounding.
-    rounded = np.where(size == 0.0, ROUNDED * flat.friction_coefficient, 0.0)
-    search = np.flatnonzero(at_start > rounded)
-    if search.size:
-        root = elementwise.find_root(shortfall, (start[search], np.zeros(search.size)), args=(points[search],))
-        creepage[search] = np.exp(root.x)
-    return from_si(np.copysign(creepage.reshape(shape), target), "%")
+
+    def _posed(self, creepage: Array) -> Problem:
+        return self.predict.posed({**self.conditions, self.name: from_si(creepage, "")}, of_one_patch="creepage_for")
+
+    def _where(self, point: int, values: Array) -> str:
+        """Return the value of a point and, if there are several, its index."""
+        where = f" at index {[int(i) for i in np.unravel_index(point, self.shape)]}" if self.shape else ""
+        return f"{values[point]:.6g}{where}"
 
 
-def _at_rest(predict: Pipeline[...], conditions: Mapping[str, Any]) -> Problem:
-    """Return the problem at zero longitudinal creepage."""
-    rig = predict.rig
+def _condition(rig: Rig, conditions: Mapping[str, Any]) -> tuple[str, float]:
+    """Return the name of the condition that sets the creepage, and its largest value [-]."""
     if rig.creepage is None:
         raise CompositionError(
             f"creepage_for: no single condition of rig '{rig.name}' sets the creepage; sweep its conditions instead"
@@ -137,35 +213,6 @@ def _at_rest(predict: Pipeline[...], conditions: Mapping[str, Any]) -> Problem:
             f"creepage_for: rig '{rig.name}' balances its loads, which depend on the unknown creepage; sweep the"
             " creepage instead"
         )
-    return predict.posed({**conditions, rig.creepage: from_si(0.0, "")}, of_one_patch="creepage_for")
-
-
-def _refuse_several(tried: Array, friction: Array, wanted: Array, shape: tuple[int, ...]) -> None:
-    """Raise an error if a contact transmits a traction [-] at several creepages, or exceeds it without creepage.
-
-    Parameters
-    ----------
-    tried : ndarray, (creepages, points)
-        By how much T/N falls short at creepages in ascending order; the first creepage is practically zero.
-    friction, wanted : ndarray, (points,)
-        μ and the wanted tractions with their signs.
-    shape : tuple of int
-        The shape of the result.
-    """
-    exceeded = tried[0] < -ROUNDED * friction
-    crossed = np.abs(np.diff((tried > 0.0).astype(int), axis=0)).sum(axis=0) > 1
-    for wrong, why in (
-        (exceeded, "without longitudinal creepage the contact transmits more already"),
-        (crossed, "several creepages do, because the traction falls again as the creepage grows"),
-    ):
-        if wrong.any():
-            first = np.flatnonzero(wrong)[0]
-            raise ConditionsError(
-                f"no single creepage transmits a traction coefficient of {_where(wanted, first, shape)}: {why}"
-            )
-
-
-def _where(values: Array, first: int, shape: tuple[int, ...]) -> str:
-    """Return a value and, if it is one of several, its index."""
-    where = f" at index {[int(i) for i in np.unravel_index(first, shape)]}" if shape else ""
-    return f"{values[first]:.6g}{where}"
+    condition = rig.conditions().get(rig.creepage)
+    unit = None if condition is None else condition.unit
+    return rig.creepage, 1.0 if unit is None else min(1.0, unit.limit * unit_in_si(unit.unit))
