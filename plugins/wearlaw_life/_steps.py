@@ -23,7 +23,7 @@ START = 0.25
 """Share of `depth_step` of the first step, which has none before it to extrapolate from."""
 
 GROWTH = 2.0
-"""Largest ratio of the distances of two steps: the extrapolation then weighs the latest wear at most twice."""
+"""Largest ratio of the distances of two steps: the extrapolation then multiplies a wear by e at most."""
 
 CORRECTION = 2e3
 """Largest depth by which extrapolation may change the wear of a step anywhere, over the square of `depth_step` [1/m]:
@@ -100,7 +100,7 @@ class State(NamedTuple):
     step: float = 0.0
     """Distance of the last step."""
     wear: Wear | None = None
-    """Wear at the beginning of the last step, for each profile; None at the start."""
+    """Wear of both sides at the beginning of the last step; None at the start."""
     change: float = 0.0
     """Change of the conicity in the last step."""
 
@@ -130,8 +130,8 @@ class Steps:
         """Return the state after one more step."""
         at = positions(now.profiles, self.line.job.at.size)
         wear = self.line.wear(now.number, now.predict, at)
-        wear = wear._replace(depth=smoothed(self._of_profiles(wear.depth), at, self.smoothing))
-        deepest = float(wear.depth.max())
+        wear = wear._replace(depth=smoothed(wear.depth, at, self.smoothing))
+        deepest = float(self._of_profiles(wear.depth).max())
         if not deepest > 0.0:
             raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
         along, unit = self.along
@@ -149,11 +149,11 @@ class Steps:
 
     def _distance(self, now: State, wear: Wear) -> float:
         """Return the distance that a step tries first."""
-        distance = self.depth_step / float(wear.depth.max())
+        distance = self.depth_step / float(self._of_profiles(wear.depth).max())
         if now.wear is None:
             return START * distance
         distance = min(distance, GROWTH * now.step)
-        rise = float(np.abs(wear.depth - now.wear.depth).max())
+        rise = float(np.abs(self._of_profiles(wear.depth - now.wear.depth)).max())
         if rise > 0.0:
             distance = min(distance, self.depth_step * math.sqrt(2.0 * CORRECTION * now.step / rise))
         if now.change > 0.0:
@@ -166,7 +166,7 @@ class Steps:
         body = now.predict.rig.bodies[self.body]
         density, radius = wl.scalar_si(body.material.density, "kg/m^3"), float(np.asarray(body.rolling_radius))
         volumes = distance * self._of_profiles(middle.mass) / density
-        removals = zip(now.profiles, distance * middle.depth, volumes, strict=True)
+        removals = zip(now.profiles, distance * self._of_profiles(middle.depth), volumes, strict=True)
         worn = [conserving(profile, at, depth, float(volume), radius) for profile, depth, volume in removals]
         profiles, factors = zip(*worn, strict=True)
         along, unit = self.along
@@ -210,12 +210,18 @@ class Steps:
         return State(predict.model_copy(update={"rig": rig}), profiles, mass, row)
 
 
+@np.errstate(over="ignore")  # where hardly any wear is left, the exponential is zero
 def _of_middle(now: State, wear: Wear, distance: float) -> Wear:
-    """Return the wear in the middle of a step, extrapolated from its beginning and the step before."""
+    """Return the wear in the middle of a step, extrapolated from its beginning and the step before.
+
+    Depths change as exponentials with the relative rate of change that they have. Unlike straight lines, these never
+    fall below zero, where a clipped depth would leave a kink in the profile. The mass changes with the sum of the
+    depths.
+    """
     if now.wear is None:
         return wear
-    share = 0.5 * distance / now.step
-    middle = Wear(*(one + share * (one - before) for one, before in zip(wear, now.wear, strict=True)))
-    if (middle.mass < 0.5 * wear.mass).any():  # the wear has jumped
-        return wear
-    return middle._replace(depth=np.maximum(middle.depth, 0.0))
+    share, worn = 0.5 * distance / now.step, wear.depth > 0.0
+    change = np.divide(wear.depth - now.wear.depth, wear.depth, out=np.zeros_like(wear.depth), where=worn)
+    depth = wear.depth * np.exp(share * change)
+    sums = wear.depth.sum(axis=-1)
+    return Wear(depth, wear.mass * np.divide(depth.sum(axis=-1), sums, out=np.ones_like(sums), where=sums > 0.0))

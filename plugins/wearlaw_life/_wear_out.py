@@ -54,8 +54,9 @@ def wear_out(
 
     A step predicts the wear of all states across the profile and sums it with their shares. It smooths the sum,
     removes it along the normal over a distance that wears at most `depth_step`, and takes new points at even arc
-    lengths. The wear of a step is that of its middle, extrapolated from its beginning and from the step before
-    (Adams and Bashforth's method of second order), so that a step needs one prediction of the line.
+    lengths. The wear of a step is that of its middle, extrapolated from its beginning and from the step before. At
+    each place it changes as an exponential with its relative rate of change, a method of second order like that of
+    Adams and Bashforth. A step needs one prediction of the line.
 
     Parameters
     ----------
