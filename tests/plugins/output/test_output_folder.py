@@ -57,3 +57,56 @@ def test_what_wearlaw_did_not_write_is_refused_and_kept(overwrite: bool, tmp_pat
         with pytest.raises(wl.OutputError, match=f"^output: .*{message}"):
             fill(tmp_path / name, overwrite=overwrite)
     assert tree(tmp_path) == before
+
+
+def test_nothing_outside_is_removed_whatever_the_list_says(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out, outside = tmp_path / "out", tmp_path / "outside"
+    fill(out, "figures/old.png")
+    (outside / "deep").mkdir(parents=True)
+    for file in ("letter", "deep/letter", "results.csv"):
+        (outside / file).write_text("mine")
+    (out / "link").symlink_to(outside / "letter")
+    (out / "folder").symlink_to(outside)
+    (out / "circle").symlink_to("circle")
+    (out / "mine").mkdir()
+    wrong = ("../outside/letter", str(outside / "deep" / "letter"), "figures/../../outside/letter", "link",
+             "folder/letter", "mine", "circle/x", "a\0b", ".", "..", "", "x" * 300)  # fmt: skip
+    with (out / FILES).open("a") as listed:
+        listed.write("".join(f"{name}\n" for name in (*wrong, "gone.csv", FILES)))
+    before, inside = tree(outside), {"link", "folder", "circle", "mine"}
+    fill(out, overwrite=True)
+    assert tree(outside) == before
+    assert {path.name for path in out.iterdir()} == {RESULTS, "figures", FILES} | inside
+    assert not (out / "figures" / "old.png").exists()
+    head, *told = capsys.readouterr().err.splitlines()
+    assert head.startswith(f"note: {FILES} in '") and head.endswith("it was left alone:")
+    assert told == [f"  {name!r}" for name in wrong]
+    fill(out, overwrite=True)
+    assert not capsys.readouterr().err  # the new list has only what was written
+
+
+@pytest.mark.parametrize("kind", ["a file", "a folder", "a link", "a link to a folder", "a file for a folder"])
+def test_results_do_not_replace_what_wearlaw_did_not_write(kind: str, tmp_path: Path) -> None:
+    out, mine = tmp_path / "out", tmp_path / "mine"
+    fill(out)
+    mine.mkdir()
+    (mine / "new.csv").write_text("mine")
+    place = out / "tables" / "new.csv"
+    if "for a folder" in kind:
+        (out / "tables").write_text("mine")
+    elif kind == "a link to a folder":
+        (out / "tables").symlink_to(mine)
+    else:
+        place.parent.mkdir()
+        {"a file": place.touch, "a folder": place.mkdir, "a link": lambda: place.symlink_to(mine / "new.csv")}[kind]()
+    before = tree(tmp_path)
+    with pytest.raises(wl.OutputError, match=r"^output: '.*new\.csv' cannot be written, since something that wearlaw"):
+        fill(out, "tables/new.csv", overwrite=True)
+    assert tree(tmp_path) == before
+
+
+def test_a_list_of_another_encoding_is_told(tmp_path: Path) -> None:
+    fill(tmp_path)
+    (tmp_path / FILES).write_bytes(b"\x81\n")
+    with pytest.raises(wl.OutputError, match=r"cannot read '.*\.wearlaw-files': it is not text in UTF-8; .* with -o"):
+        fill(tmp_path, overwrite=True)
