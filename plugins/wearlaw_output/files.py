@@ -14,6 +14,7 @@ import pandas as pd
 from wearlaw_output.commands import verbose
 from wearlaw_output.curves import FigureData, FigureFormat
 from wearlaw_output.drawing import draw
+from wearlaw_output.spreadsheets import write_csv
 from wearlaw_output.styled import latex_table
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
@@ -24,7 +25,7 @@ METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"Creatio
 
 def save_table(frame: pd.DataFrame, folder: Path, name: str, latex: bool, footnotes: Sequence[str] = ()) -> list[str]:
     """Write a table as CSV, and for LaTeX with its footnotes if asked for, and return the names of the files."""
-    frame.to_csv(folder / f"{name}.csv", index=False, encoding="utf-8", errors="replace")
+    write_csv(frame, folder / f"{name}.csv")
     if not latex:
         return [f"{name}.csv"]
     (folder / f"{name}.tex").write_text(latex_table(frame, footnotes), encoding="utf-8")

@@ -49,6 +49,7 @@ from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.text_files import LARGEST, parse_toml, read_text, reading
 from wearlaw.units.variables import UNITS
 from wearlaw_output.labels import labelled, labels
+from wearlaw_output.spreadsheets import without_formulas
 from wearlaw_studies.figure_spec import FigureSpec
 from wearlaw_studies.grid import Condition, Grid
 from wearlaw_studies.measured import MeasuredTests, check_rig
@@ -453,5 +454,5 @@ def written(case: Case) -> dict[str, str]:
     files = {}
     if case.measured is not None and not case.measured.shipped:
         fields["measured"]["tests"] = TESTS_FILE
-        files[TESTS_FILE] = case.measured.text
+        files[TESTS_FILE] = without_formulas(case.measured.text)
     return {CASE_FILE: tomli_w.dumps(fields), **files}

@@ -14,6 +14,7 @@ from wearlaw.errors import OutputError, shown
 from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw_output.curves import FigureFormat
 from wearlaw_output.files import save_figure, save_table
+from wearlaw_output.spreadsheets import write_csv
 from wearlaw_studies.case import CASE_FILE, Case, written
 from wearlaw_studies.report.page import report
 from wearlaw_studies.report.tables import tables
@@ -83,7 +84,7 @@ def write(
     groups |= {f"profiles/{name}": dataset for name, dataset in study.profiles.items() if dataset}
     xarray.DataTree.from_dict(groups).to_netcdf(folder / RESULTS, engine="h5netcdf")
     if csv:
-        table(study).to_csv(folder / CSV, index=False, encoding="utf-8", errors="replace")
+        write_csv(table(study), folder / CSV)
     for name, text in case_files.items():
         (folder / name).write_text(text, encoding="utf-8")
     names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files]

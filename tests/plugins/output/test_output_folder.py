@@ -79,7 +79,8 @@ def test_nothing_outside_is_removed_whatever_the_list_says(tmp_path: Path, capsy
     assert {path.name for path in out.iterdir()} == {RESULTS, "figures", FILES} | inside
     assert not (out / "figures" / "old.png").exists()
     head, *told = capsys.readouterr().err.splitlines()
-    assert head.startswith(f"note: {FILES} in '") and head.endswith("it was left alone:")
+    assert head.startswith(f"note: {FILES} in '")
+    assert head.endswith("it was left alone:")
     assert told == [f"  {name!r}" for name in wrong]
     fill(out, overwrite=True)
     assert not capsys.readouterr().err  # the new list has only what was written
@@ -98,7 +99,12 @@ def test_results_do_not_replace_what_wearlaw_did_not_write(kind: str, tmp_path: 
         (out / "tables").symlink_to(mine)
     else:
         place.parent.mkdir()
-        {"a file": place.touch, "a folder": place.mkdir, "a link": lambda: place.symlink_to(mine / "new.csv")}[kind]()
+        if kind == "a file":
+            place.touch()
+        elif kind == "a folder":
+            place.mkdir()
+        else:
+            place.symlink_to(mine / "new.csv")
     before = tree(tmp_path)
     with pytest.raises(wl.OutputError, match=r"^output: '.*new\.csv' cannot be written, since something that wearlaw"):
         fill(out, "tables/new.csv", overwrite=True)
