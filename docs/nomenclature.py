@@ -29,6 +29,7 @@ SEVERE = {"mass_per_energy": "5 ug/J", "severe_mass_per_energy": "15 ug/J"}
 WITHOUT_DEFAULTS: dict[str, tuple[dict[str, Any], ...]] = {
     "archard": ({"coefficient": 1e-4, "hardness": "2.6 GPa"},),
     "energy": ({**SEVERE, "power_limit": "4 W/mm^2"}, {**SEVERE, "energy_limit": "10 N/mm^2"}),
+    "kth": ({"pressure_threshold": "2.1 GPa"},),
 }
 """Fields of wear laws that have no defaults; all fields of a law together have a row."""
 

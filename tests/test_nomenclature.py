@@ -132,7 +132,8 @@ def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dim
         for name, text in fields.items()
         if isinstance(text, str)
     }
-    values |= {("kth", field): wl.Q(1.0, "") for field in ("high_pressure", "low_speed", "mid_speed", "high_speed")}
+    of_kth = "high_pressure", "low_speed", "mid_speed", "high_speed", "threshold_over_hardness"
+    values |= {("kth", field): wl.Q(1.0, "") for field in of_kth}
     known = {*holders, *nomenclature.WITHOUT_DEFAULTS}
     units = {(one.where, one.name): one.unit for one in documented if one.where in known}
     of_known_unit = {place: value for place, value in values.items() if place[1] not in nomenclature.OF_ANY_UNIT}

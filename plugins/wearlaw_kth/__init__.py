@@ -27,6 +27,10 @@ class Coefficients(wl.Configuration):
     """Wear coefficient at and above the upper slip speed, k [-]."""
 
 
+THRESHOLD_OVER_HARDNESS = 0.8
+"""Pressure at which seizure begins, over the hardness, in the wear map of Jendel (2002). Tassini et al. (2010) print it
+as 2.1 GPa."""
+
 PUBLISHED = {
     "low": {"high_pressure": 300e-4, "low_speed": 1e-4, "mid_speed": 30e-4, "high_speed": 1e-4},
     "mid": {"high_pressure": 350e-4, "low_speed": 5.5e-4, "mid_speed": 35e-4, "high_speed": 5.5e-4},
@@ -57,9 +61,9 @@ def calibration() -> wl.Calibration:
 class KTH(wl.WearLaw):
     """Archard's law V = k N d / H with k from a map of pressure and slip speed; at a node, ρ k p s / H.
 
-    k is dimensionless, and H is the hardness. Some sources print V = k N d / (3H), with a k three times as large. If p
-    equals the pressure threshold, the law takes the upper field of the map; the published map leaves this case open.
-    The density ρ is that of the contact.
+    k is dimensionless, and H is the hardness. Some sources print V = k N d / (3H), with a k three times as large. The
+    border in pressure is a share of H, so that it moves with a hardness of your own. If p equals the border, the law
+    takes the upper field of the map; the published map leaves this case open. The density ρ is that of the contact.
 
     Notes
     -----
@@ -76,8 +80,10 @@ class KTH(wl.WearLaw):
     """The published values of k are ranges. Choose their low end, middle or high end, or give your own values."""
     hardness: wl.Stress = Field(default="2.625 GPa", validate_default=True)
     """Hardness, H [Pa]. Not printed in the paper; 2.1 GPa is 0.8 H in the wear map."""
-    pressure_threshold: wl.Stress = Field(default="2.1 GPa", validate_default=True)
-    """Pressure at which seizure begins [Pa]."""
+    threshold_over_hardness: Annotated[float, Field(gt=0.0, strict=True)] = THRESHOLD_OVER_HARDNESS
+    """Pressure at which seizure begins, over the hardness [-]; 0.8 in the wear map."""
+    pressure_threshold: wl.Stress | None = Field(default=None, examples=["2.1 GPa"])
+    """Pressure at which seizure begins [Pa]; None for that share of the hardness."""
     lower_slip_speed: wl.Speed = Field(default="0.2 m/s", validate_default=True)
     """Slip speed at which severe wear begins [m/s]."""
     upper_slip_speed: wl.Speed = Field(default="0.7 m/s", validate_default=True)
@@ -94,6 +100,12 @@ class KTH(wl.WearLaw):
         raise ValueError(f"must be 'low', 'mid', 'high' or your own {fields}, got {value!r}")
 
     @model_validator(mode="after")
+    def _one_threshold(self) -> KTH:
+        if self.pressure_threshold is not None and self.threshold_over_hardness != THRESHOLD_OVER_HARDNESS:
+            raise ValueError("give either pressure_threshold or threshold_over_hardness, not both")
+        return self
+
+    @model_validator(mode="after")
     def _ordered(self) -> KTH:
         if self.upper_slip_speed < self.lower_slip_speed:
             raise ValueError(
@@ -107,7 +119,7 @@ class KTH(wl.WearLaw):
         speed = contact.slip_speed
         fast = np.where(speed < p["upper_slip_speed"], p["coefficient.mid_speed"], p["coefficient.high_speed"])
         below = np.where(speed < p["lower_slip_speed"], p["coefficient.low_speed"], fast)
-        k = np.where(contact.pressure >= p["pressure_threshold"], p["coefficient.high_pressure"], below)
+        k = np.where(contact.pressure >= _threshold(p), p["coefficient.high_pressure"], below)
         density = contact.per_node(contact.density)
         rate: Array = density * k * contact.pressure * np.abs(contact.slip) / p["hardness"]
         return rate
@@ -115,7 +127,7 @@ class KTH(wl.WearLaw):
     def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         """Return the borders of the wear map."""
         return {
-            "pressure": (p["pressure_threshold"],),
+            "pressure": (_threshold(p),),
             "slip_speed": (p["lower_slip_speed"], p["upper_slip_speed"]),
         }
 
@@ -125,10 +137,9 @@ class KTH(wl.WearLaw):
 
     @cached_property
     def published(self) -> wl.Calibration | None:
-        """The record of the published map; None with borders or coefficients of your own."""
+        """The record of the published map; None with borders, coefficients or a hardness of your own."""
         ends: tuple[Literal["low", "mid", "high"], ...] = ("low", "mid", "high")
-        maps = [KTH(coefficient=end, hardness=self.hardness).numbers for end in ends]
-        return calibration() if self.numbers in maps else None
+        return calibration() if _map(self) in [_map(KTH(coefficient=end)) for end in ends] else None
 
     def explicit(self) -> KTH:
         """Return this law with numbers for k."""
@@ -142,6 +153,16 @@ class KTH(wl.WearLaw):
             return self, self, self
         low, mid, high = (self.model_copy(update={"coefficient": end}) for end in ("low", "mid", "high"))
         return low, mid, high
+
+
+def _threshold(p: wl.Numbers) -> Any:
+    """Return the pressure at which seizure begins [Pa]."""
+    return p["pressure_threshold"] if "pressure_threshold" in p else p["threshold_over_hardness"] * p["hardness"]
+
+
+def _map(law: KTH) -> dict[str, float]:
+    """Return the numbers of a law with its pressure threshold, however that is given."""
+    return {**law.numbers, "pressure_threshold": _threshold(law.numbers)}
 
 
 @wl.hookimpl

@@ -59,7 +59,7 @@ def table_2() -> pd.DataFrame:
     band = kth.band() or (kth, kth, kth)
     low, high = (dict(dict(law.explicit())["coefficient"]) for law in (band[0], band[-1]))
     borders = dict(kth)
-    limit = f"{number(borders['pressure_threshold'], 'GPa'):g}"
+    limit = f"{number(borders['hardness'], 'GPa') * borders['threshold_over_hardness']:g}"
     slow, fast = (f"{number(borders[name], 'm/s'):g}" for name in ("lower_slip_speed", "upper_slip_speed"))
     where = {
         "high_pressure": (f"p > {limit}", "any ṡ"),

@@ -119,11 +119,40 @@ def test_the_range_ends_where_the_fields_without_a_printed_end_begin(coefficient
     assert law.monotone_in == ()
 
 
-@pytest.mark.parametrize("options", [{"coefficient": OWN}, {"pressure_threshold": "1 GPa"}], ids=["k", "border"])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"coefficient": OWN},
+        {"pressure_threshold": "1 GPa"},
+        {"threshold_over_hardness": 0.7},
+        {"hardness": "3 GPa"},
+        {"hardness": "3 GPa", "pressure_threshold": "2.1 GPa"},
+    ],
+)
 def test_numbers_of_your_own_have_no_range(options: dict[str, Any]) -> None:
     assert kth(**options).calibration is None
     assert kth(**options).valid_range == {}
-    assert kth(hardness="3 GPa").calibration is not None  # k alone was fitted
+
+
+def test_the_published_map_with_its_border_as_a_number_is_the_published_map() -> None:
+    assert kth(pressure_threshold="2.1 GPa").calibration == kth().calibration
+
+
+@given(hardness=st.floats(1.0, 8.0), share=st.floats(0.1, 2.0), slip=st.floats(1e-3, 1.0))
+def test_the_border_in_pressure_follows_the_hardness(hardness: float, share: float, slip: float) -> None:
+    for options, border in (
+        ({}, 0.8 * hardness),
+        ({"threshold_over_hardness": share}, share * hardness),
+        ({"pressure_threshold": Q(share, "GPa")}, share),
+    ):
+        law = kth(hardness=Q(hardness, "GPa"), **options)
+        # a border of a hundred roundings on each side, since units are converted
+        pressures = 1e9 * border * np.array([1.0 - 100 * EPS, 1.0 + 100 * EPS])
+        below, above = law.checked_rate(contact_of(pressure=pressures, slip=slip))
+        k_below = TABLE_2["mid"][field_of(0.0, slip)]
+        assert [below, above] == pytest.approx(
+            7850.0 * slip * pressures * [k_below, TABLE_2["mid"][0]] / (1e9 * hardness), rel=16 * EPS
+        )
 
 
 def test_slip_speeds_and_pressures_in_the_fields_without_an_end_are_warned_of() -> None:
@@ -153,6 +182,8 @@ def test_slip_speeds_and_pressures_in_the_fields_without_an_end_are_warned_of() 
         ({"hardness": "0 GPa"}, r"hardness: must be greater than zero"),
         ({"hardness": 2.6}, r"hardness: .*2\.6"),
         ({"pressure_threshold": "2.1 kg"}, r"pressure_threshold: got 2\.100 kg.*'GPa'"),
+        ({"threshold_over_hardness": "2.1 GPa"}, r"threshold_over_hardness: got 2\.100 GPa.*plain number"),
+        ({"threshold_over_hardness": 0.7, "pressure_threshold": "2 GPa"}, r"pressure_threshold or .*, not both"),
         ({"lower_slip_speed": "inf m/s"}, r"lower_slip_speed: must be finite"),
         ({"upper_slip_speeds": "1 m/s"}, r"unknown field; did you mean 'upper_slip_speed'"),
     ],
