@@ -65,7 +65,7 @@ class Fastsim(wl.LineContactModel):
     many cells as strips. On 10 strips forces are off by 0.4 % of μN, the energy of the cells and USFD by 0.4 %, and
     KTH, which jumps, by 5 %, root mean square over a/b from 1/10 to 10, maximum pressures from 0.6 to 2.4 GPa, and any
     creepages up to μN/(G ab); single points are ten times further off. The documentation of wheels on rails has a
-    table."""
+    table. `wear_rate_error` solves four times as many: with 1000 strips that takes a minute and 4 GB for a patch."""
 
     slip: Literal["local", "scaled"] = "local"
     """Slip on an ellipse. "local": the slip of the theory. "scaled": the same times one factor for the patch, so that
@@ -98,7 +98,7 @@ class Fastsim(wl.LineContactModel):
 
     def refined(self) -> Fastsim:
         """Return the same theory on twice as many strips of an ellipse, with twice as many nodes each."""
-        return self.model_copy(update={"strips": 2 * self.strips})
+        return self.model_construct(**{**dict(self), "strips": 2 * self.strips})  # beyond the limit, too
 
     @property
     def elliptic_accuracy(self) -> float:

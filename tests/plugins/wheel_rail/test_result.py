@@ -314,6 +314,19 @@ def test_the_error_estimate_covers_the_true_error(honest: float) -> None:
     assert np.median(result.wear_rate_error) < 4 * np.median(true)
 
 
+def test_the_error_is_estimated_up_to_the_largest_number_of_strips() -> None:
+    predict, finer = (
+        RIG | wl.contact_model("strip_theory", strips=strips) | wl.wear_law("kth") for strips in (251, 500)
+    )
+    result = predict(**CONDITIONS)
+    assert abs(result.wear_rate - finer(**CONDITIONS).wear_rate) <= result.wear_rate_error < 1e-4 * result.wear_rate
+    for name in ("fastsim", "strip_theory"):
+        finest = wl.contact_model(name, strips=1000)
+        for strips in (2000, 4000):
+            finest = finest.refined()  # type: ignore[assignment]
+            assert f"strips={strips}" in repr(finest)
+
+
 def test_patch_means_have_no_error_but_rounding() -> None:
     result = (RIG | FASTSIM | wl.patch_mean() | PER_ENERGY)(**CONDITIONS)
     assert result.wear_rate_error.to("kg/m^3").magnitude == EPS * result.wear_rate.to("kg/m^3").magnitude > 0.0
