@@ -38,6 +38,8 @@ OPTIONS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 ROOT = Path(__file__).parent
 SLOW = {ROOT / line for line in (ROOT / "tests/slow.txt").read_text(encoding="utf-8").split()}
 """The files and folders of the slow tests."""
+collect_ignore = ["docs/examples/wearlaw-outside"]
+"""A distribution whose own tests run where it is installed, in `tests/third_party`."""
 MATLAB_READS = re.compile(r'(\w*read\w*)\("([^"]+)"(?:, "([^"]+)")?(?:, "([^"]+)")?')
 """A function of MATLAB, its file, and the variable and attribute that it reads there."""
 DOWNLOAD = re.compile(r"\{download\}`[^`<]*<([^>]+)>`")
@@ -146,7 +148,7 @@ def check_matlab(example: Example) -> None:
 
 def read_tables(example: Example) -> None:
     """Read tables of a case file below those of the shipped case."""
-    from wearlaw_studies.case import case_text, load_case  # private: a case without its files
+    from wearlaw_apps.studies.case import case_text, load_case  # private: a case without its files
 
     Path("_tables.toml").write_text(f"{case_text('tassini2010')}\n{example.parsed}", encoding="utf-8")
     load_case("_tables.toml")

@@ -95,6 +95,6 @@ def release(session: nox.Session) -> None:
 
 @nox.session(python="3.11", default=False)
 def mutation(session: nox.Session) -> None:
-    """Break modules in every small way and see whether their tests fail: `nox -s mutation -- wearlaw_kth`."""
+    """Break modules in every small way and see if tests fail: `nox -s mutation -- wearlaw_models.laws.kth`."""
     session.install("-e", ".[test]", "cosmic-ray>=8.7")
     session.run("python", "-m", "tests.mutation", *session.posargs)

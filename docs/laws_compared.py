@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 import wearlaw as wl
 from wearlaw import Array, Q
 from wearlaw.loader import installed
-from wearlaw_output.drawing import PALETTE, STYLE, WIDTH
+from wearlaw_apps.output.drawing import PALETTE, STYLE, WIDTH
 
 DPI = 110
 TABLE = Path(__file__).parent / "laws-compared.csv"

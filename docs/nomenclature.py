@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from wearlaw.configuration import field_docstrings
 from wearlaw.loader import installed
 from wearlaw.parameters import numbers
 from wearlaw.units.variables import UNITS, VARIABLES
-from wearlaw_output.labels import label
-from wearlaw_wheelset._rig import WheelsetProblem
+from wearlaw_apps.output.labels import label
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset.rig import WheelsetProblem
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")

@@ -27,10 +27,10 @@ from docs.regimes import picture as regimes
 from docs.wheelset_benchmark import picture as wheelsets_beside_contact
 from docs.wheelset_benchmark import wheelset
 from wearlaw import Q
-from wearlaw_output.curves import BLACK
-from wearlaw_output.drawing import LINES, PALETTE, STYLE
-from wearlaw_output.drawing import draw as drawing_of
-from wearlaw_studies.written import write
+from wearlaw_apps.output.curves import BLACK
+from wearlaw_apps.output.drawing import LINES, PALETTE, STYLE
+from wearlaw_apps.output.drawing import draw as drawing_of
+from wearlaw_apps.studies.written import write
 
 FOLDER = Path(__file__).parent / "pictures"
 GALLERY = Path(__file__).parent / "gallery"

@@ -14,26 +14,26 @@ import wearlaw as wl
 MARK = "(The build of this page writes the entries of all public names here.)"
 """Line of the page in whose place the entries stand."""
 
-OTHERS = ("wearlaw_wheelset", "wearlaw_kit", "wearlaw_life")
+OTHERS = ("wearlaw_models.rigs.wheelset", "wearlaw_kit", "wearlaw_apps.life")
 """Plugins whose top package has public names beside those of `wearlaw`."""
 
 TITLES = {
     "units": "Quantities and units",
-    "wearlaw_twin_disc": "Two discs",
-    "wearlaw_wheel_rail": "A wheel on a rail",
-    "wearlaw_archard": "Wear coefficients of papers",
+    "wearlaw_models.rigs.twin_disc": "Two discs",
+    "wearlaw_models.rigs.wheel_rail": "A wheel on a rail",
+    "wearlaw_models.laws.archard": "Wear coefficients of papers",
     "contact": "Problems and contacts",
     "loader": "Looking up models",
     "pipeline": "Pipelines and predictions",
-    "wearlaw_sweeps": "Sweeps",
-    "wearlaw_fits": "Tests, fits, comparisons, uncertainties",
-    "wearlaw_studies": "Studies",
-    "wearlaw_contact_files": "Contacts from files",
-    "wearlaw_output": "Data of figures",
-    "wearlaw_tables": "Tables",
-    "wearlaw_wheelset": "Wheelsets",
-    "wearlaw_life": "The life of a wheel",
-    "wearlaw_explore": "Explore",
+    "wearlaw_apps.sweeps": "Sweeps",
+    "wearlaw_apps.fits": "Tests, fits, comparisons, uncertainties",
+    "wearlaw_apps.studies": "Studies",
+    "wearlaw_apps.contact_files": "Contacts from files",
+    "wearlaw_apps.output": "Data of figures",
+    "wearlaw_apps.tables": "Tables",
+    "wearlaw_models.rigs.wheelset": "Wheelsets",
+    "wearlaw_apps.life": "The life of a wheel",
+    "wearlaw_apps.explore": "Explore",
     "models": "Base classes for plugins",
     "hookspecs": "Hooks",
     "configuration": "Settings",
@@ -104,8 +104,9 @@ def entries() -> Iterator[Entry]:
         for name in one.names
     }
     for name in sorted(wl.__all__, key=list(sources).index):
-        package = sources[name].split(".")
-        section = package[1] if package[0] == "wearlaw" else package[0]
+        section = sources[name].removeprefix("wearlaw.")
+        while section not in TITLES and section not in TOGETHER:
+            section = section.rpartition(".")[0]
         yield Entry("wearlaw", name, TOGETHER.get(section, section), sources[name])
     for plugin in OTHERS:
         for name in importlib.import_module(plugin).__all__:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_output.drawing import LINES, PALETTE, STYLE
+from wearlaw_apps.output.drawing import LINES, PALETTE, STYLE
 
 DENSITY, RATE = "N/mm^2", "ug/m/mm^2"
 ENDS = (0.15, 140.0)

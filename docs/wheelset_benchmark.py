@@ -16,9 +16,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from wearlaw import Array, Q
-from wearlaw_output.drawing import PALETTE, STYLE, WIDTH
+from wearlaw_apps.output.drawing import PALETTE, STYLE, WIDTH
+from wearlaw_models.rigs import wheelset as ws
 
 FOLDER = Path(__file__).parent / "wheelset-benchmark"
 DATA = Path(__file__).parents[1] / "tests" / "data"

@@ -21,7 +21,7 @@ from wearlaw import (
 from wearlaw.cli import main  # private: the program in this process
 from wearlaw.loader import Origin  # private: plugins of a test are found as if they were installed
 from wearlaw.models.model import Model  # private: the bound of a quadrature
-from wearlaw_studies.case import Case, load_case  # private: a case without its files
+from wearlaw_apps.studies.case import Case, load_case  # private: a case without its files
 
 Table = dict[str, Any]
 """A case as TOML gives it."""

@@ -33,26 +33,26 @@ from parso.python.tree import Keyword, String  # pyright: ignore[reportMissingIm
 ROOT = Path(__file__).parents[1]
 
 TESTS = {
-    "wearlaw_archard": "plugins/archard/test_archard.py",
-    "wearlaw_brr": "plugins/brr/test_brr.py",
-    "wearlaw_contact_files": "plugins/contact_files/test_contact_files.py",
-    "wearlaw_energy": "plugins/energy/test_energy.py",
-    "wearlaw_exact": "plugins/exact/test_kernel.py plugins/exact/test_exact.py test_numbers.py",
-    "wearlaw_fastsim": "plugins/fastsim/test_kernel.py plugins/fastsim/test_first_slip.py"
+    "wearlaw_models.laws.archard": "plugins/archard/test_archard.py",
+    "wearlaw_models.laws.brr": "plugins/brr/test_brr.py",
+    "wearlaw_apps.contact_files": "plugins/contact_files/test_contact_files.py",
+    "wearlaw_models.laws.energy": "plugins/energy/test_energy.py",
+    "wearlaw_models.contact_models.exact": "plugins/exact/test_kernel.py plugins/exact/test_exact.py test_numbers.py",
+    "wearlaw_models.contact_models.fastsim": "plugins/fastsim/test_kernel.py plugins/fastsim/test_first_slip.py"
     " plugins/fastsim/test_fastsim.py plugins/fastsim/test_solution.py plugins/fastsim/test_strip_forces.py"
     " plugins/fastsim/test_strip_fields.py"
     " plugins/fastsim/test_march.py plugins/fastsim/test_march_convergence.py plugins/fastsim/test_limits.py"
     " plugins/fastsim/test_given_strips.py",
-    "wearlaw_global": "plugins/global/test_global.py",
-    "wearlaw_kth": "plugins/kth/test_kth.py",
-    "wearlaw_linear": "plugins/linear/test_linear.py",
-    "wearlaw_polach": "plugins/polach/test_polach.py",
-    "wearlaw_sheffield": "plugins/sheffield/test_claims.py plugins/sheffield/test_tables.py",
-    "wearlaw_shen_hedrick_elkins": "plugins/shen_hedrick_elkins/test_shen_hedrick_elkins.py",
-    "wearlaw_thermal": "plugins/thermal/test_thermal.py",
-    "wearlaw_third_body": "plugins/third_body/test_third_body.py",
-    "wearlaw_usfd": "plugins/usfd/test_usfd.py",
-    "wearlaw_wlrm": "plugins/wlrm/test_wlrm.py",
+    "wearlaw_models.contact_models.global_": "plugins/global/test_global.py",
+    "wearlaw_models.laws.kth": "plugins/kth/test_kth.py",
+    "wearlaw_models.contact_models.linear": "plugins/linear/test_linear.py",
+    "wearlaw_models.contact_models.polach": "plugins/polach/test_polach.py",
+    "wearlaw_apps.papers.tassini2010": "plugins/tassini2010/test_claims.py plugins/tassini2010/test_tables.py",
+    "wearlaw_models.contact_models.shen_hedrick_elkins": "plugins/shen_hedrick_elkins/test_shen_hedrick_elkins.py",
+    "wearlaw_models.stages.thermal": "plugins/thermal/test_thermal.py",
+    "wearlaw_models.stages.third_body": "plugins/third_body/test_third_body.py",
+    "wearlaw_models.laws.usfd": "plugins/usfd/test_usfd.py",
+    "wearlaw_models.laws.wlrm": "plugins/wlrm/test_wlrm.py",
     "wearlaw.pipeline.composition": "core/test_composition.py core/test_pipeline.py"
     " plugins/wheel_rail/test_wheel_rail.py plugins/wheel_rail/test_result.py"
     " core/test_unlike_materials.py core/test_several_patches.py core/test_outcomes.py",
@@ -66,7 +66,7 @@ TESTS = {
     "wearlaw.contact.contact": "core/test_contact_from_arrays.py core/test_elliptic_contact.py core/test_records.py"
     " plugins/fastsim/test_given_strips.py core/test_several_patches.py core/test_outcomes.py"
     " plugins/studies/test_materials.py core/test_scale.py core/test_blame.py",
-    "wearlaw_archard.coefficients": "plugins/archard/test_wear_coefficients.py",
+    "wearlaw_models.laws.archard.coefficients": "plugins/archard/test_wear_coefficients.py",
     "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_unit_registries.py"
     " core/test_configuration.py",
 }
@@ -240,13 +240,11 @@ def main(names: list[str]) -> None:
     # Modules of the core first: for those of plugins the core is imported, and then cannot be mutated any more.
     for name in sorted(names or TESTS, key=lambda name: not name.startswith("wearlaw.")):
         runs = [[f"tests/{path}" for path in TESTS[name].split()]]
-        if name.startswith("wearlaw."):
-            paths = [ROOT / "core" / f"{name.replace('.', '/')}.py"]
-        else:
-            paths = sorted((ROOT / "plugins" / name).glob("*.py"))
-            kit = name.removeprefix("wearlaw_")
-            if name != "wearlaw_sheffield":
-                runs.append(["tests/test_shipped_models.py", "-k", f"test_the_model_conforms and {kit}"])
+        path = ROOT / ("core" if name.startswith("wearlaw.") else "plugins") / name.replace(".", "/")
+        paths = sorted(path.glob("*.py")) if path.is_dir() else [path.with_suffix(".py")]
+        if name.startswith("wearlaw_models."):
+            model = name.split(".")[2].removesuffix("_")
+            runs.append(["tests/test_shipped_models.py", "-k", f"test_the_model_conforms and {model}"])
         runs.append([ORACLE])
         for path in paths:
             report(path, runs)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-import wearlaw_half_space
+import wearlaw_models.contact_models.half_space
 from wearlaw import Array
 
 
@@ -34,7 +34,7 @@ def pressed(gap: Array, dx: float, dy: float, modulus: float, force: float, tole
     x, y = (np.minimum(np.arange(n), n - np.arange(n)) * step for n, step in zip(shape, (dx, dy), strict=True))
     # Without Poisson's ratio, the influence of tractions along x is that of a pressure.
     along, across = np.meshgrid(x, y, indexing="ij")
-    kernel = wearlaw_half_space.influence(along, across, dx, dy, 0.0)[0] / (np.pi * modulus)
+    kernel = wearlaw_models.contact_models.half_space.influence(along, across, dx, dy, 0.0)[0] / (np.pi * modulus)
     transform = scipy.fft.rfft2(kernel)
 
     def displaced(pressure: Array) -> Array:

@@ -17,7 +17,7 @@ import scipy
 from tests import wheel_on_rail
 from tests.normal_half_space import Contact, pressed
 from wearlaw import Array
-from wearlaw_wheelset._normal import HertzPatch, StripPatch, hertz, penetrated  # private: patches of any gap
+from wearlaw_models.rigs.wheelset.normal import HertzPatch, StripPatch, hertz, penetrated  # private: patches of any gap
 
 FILE = Path(__file__).parents[1] / "docs" / "wheelset" / "patches.csv"
 HEAD = ("gap", "N [kN]", "p0 [MPa]", "KPEC", "Hertz", "area [mm²]", "KPEC", "Hertz", "δ [µm]", "KPEC", "Hertz")

@@ -20,8 +20,8 @@ from tests.plugins.kit.wrong_contacts import Wrapped
 from tests.plugins.kit.wrong_laws import HottestNode, Linear, Ramps, Severe, Smooth
 from tests.plugins.kit.wrong_rigs import Delegating, Weight
 from wearlaw_kit import Check, checks
-from wearlaw_kth import PUBLISHED
-from wearlaw_wheelset import Wheelset
+from wearlaw_models.laws.kth import PUBLISHED
+from wearlaw_models.rigs.wheelset import Wheelset
 
 OWN = {"high_pressure": 0.02, "low_speed": 2e-4, "mid_speed": 3e-3, "high_speed": 4e-4}
 """Coefficients of one's own for the KTH map, in an order that no published set has."""

@@ -6,6 +6,7 @@ import ast
 import re
 import textwrap
 import tomllib
+from collections.abc import Iterator
 
 from tests.environments import ROOT
 
@@ -14,6 +15,9 @@ TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
 def text_of(path: str) -> str:
     return (ROOT / path).read_text(encoding="utf-8")
+
+
+PYPROJECT = tomllib.loads(text_of("pyproject.toml"))
 
 
 def test_all_sessions_of_nox_are_told() -> None:
@@ -32,22 +36,35 @@ def first_line(module: str) -> str:
     return (ast.get_docstring(ast.parse(text_of(path))) or "").splitlines()[0]
 
 
+def models() -> Iterator[str]:
+    """Yield a line for each room of models, with the entry points of its plugins."""
+    rooms: dict[str, list[str]] = {}
+    for name, place in PYPROJECT["project"]["entry-points"]["wearlaw"].items():
+        if place.startswith("wearlaw_models."):
+            rooms.setdefault(place.split(".")[1], []).append(name)
+    for room in ("rigs", "contact_models", "stages", "laws"):
+        text = textwrap.wrap(", ".join(rooms.pop(room)), 96, break_on_hyphens=False)
+        yield f"  {room:15} {text[0]}"
+        yield from (f"  {'':15} {line}" for line in text[1:])
+    assert not rooms
+
+
 def house() -> str:
-    """Return the picture of the house: models and applications, and the rooms of the core in the order of imports."""
-    contracts = tomllib.loads(text_of("pyproject.toml"))["tool"]["importlinter"]["contracts"]
-    models, applications = contracts[1]["modules"], contracts[2]["forbidden_modules"]
-    arrow, layers = (one["layers"] for one in contracts if one["type"] == "layers")
-    rooms = [name for layer in layers for name in layer.split(" | ")]
-    inner = [name for layer in arrow for name in layer.split(" | ")]
-    apart = [name for name in applications if name not in inner]
+    """Return the picture of the house: the four packages, what each may use, and what is in them."""
+    contracts = PYPROJECT["tool"]["importlinter"]["contracts"]
+    arrow, layers = (contract["layers"] for contract in contracts if contract["type"] == "layers")
+    applications, rooms = ([name for layer in parts for name in layer.split(" | ")] for parts in (arrow, layers))
     return "\n".join(
         [
-            f"applications    {' -> '.join(arrow)}",
-            *(f"  {name:22} {first_line(f'plugins/{name}')}" for name in [*inner, *apart]),
-            "models",
-            *(f"  {line}" for line in textwrap.wrap(", ".join(models), 112, break_on_hyphens=False)),
-            "core",
-            *(f"  {name:22} {first_line(f'core/wearlaw/{name}')}" for name in rooms),
+            "wearlaw_apps: may use the core, and applications further right",
+            f"  {' -> '.join(arrow)}",
+            *(f"  {name:15} {first_line(f'plugins/wearlaw_apps/{name}')}" for name in applications),
+            "wearlaw_kit: may use the core, output and show",
+            f"  {'':15} {first_line('plugins/wearlaw_kit')}",
+            "wearlaw_models: each may use the public names of wearlaw, and no other model",
+            *models(),
+            "wearlaw, the core: knows no plugin; each part may use those below it",
+            *(f"  {name:15} {first_line(f'core/wearlaw/{name}')}" for name in rooms),
         ]
     )
 

@@ -18,7 +18,7 @@ import pytest
 from matplotlib import pyplot as plt
 
 import wearlaw as wl
-from tests.plugins.sheffield.paper import FRICTION, MODULUS, RADIUS
+from tests.plugins.tassini2010.paper import FRICTION, MODULUS, RADIUS
 
 DOCS = Path(__file__).parents[1] / "docs"
 SCRIPTS = sorted((DOCS / "gallery").glob("*.py"))

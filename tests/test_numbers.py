@@ -16,7 +16,7 @@ from scipy import integrate
 
 import wearlaw as wl
 from tests import reference
-from tests.plugins.sheffield.paper import (
+from tests.plugins.tassini2010.paper import (
     AREA,
     CONDITIONS,
     FRICTION,

@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests import reference
-from tests.plugins.sheffield.paper import (
+from tests.plugins.tassini2010.paper import (
     AREA,
     CONDITIONS,
     FRICTION,

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import ast
 import re
 import shlex
 import shutil
-from collections.abc import Iterator
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -22,34 +20,6 @@ from wearlaw import (
 )
 
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
-
-
-PLUGINS = sorted((ROOT / "plugins").glob("wearlaw_*"))
-APPLICATIONS = {
-    f"wearlaw_{name}" for name in ("explore", "fits", "kit", "life", "output", "show", "studies", "sweeps", "tables")
-}
-
-
-def imported(path: Path) -> Iterator[tuple[str, str]]:
-    """Yield what a file imports from wearlaw, as module and name, and the attributes that it takes from it."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            yield from ((alias.name, "") for alias in node.names if alias.name.split(".")[0] == "wearlaw")
-        elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "wearlaw":
-            yield from ((str(node.module), alias.name) for alias in node.names)
-        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "wl":
-            yield "wearlaw", node.attr
-
-
-@pytest.mark.parametrize("folder", PLUGINS, ids=lambda folder: folder.name)
-def test_the_plugins_of_wearlaw_use_only_names_that_are_public(folder: Path) -> None:
-    public = {"", *dir(wl)}
-    if folder.name in APPLICATIONS:
-        return  # what is done with predictions may use the rest of the core, and so may commands
-    models = [path for path in folder.rglob("*.py") if path.name not in {"_command.py", "_reading.py", "_worn.py"}]
-    found = {one for path in models for one in imported(path)}
-    assert ("wearlaw", "") in found
-    assert {(module, name) for module, name in found if module != "wearlaw" or name not in public} == set()
 
 
 def test_everything_that_comes_with_wearlaw_comes_by_the_hooks_of_plugins(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -43,10 +43,10 @@ from wearlaw.errors import (
     WorkerWarning,
     shown,
 )
-from wearlaw.extras import load as _load
 from wearlaw.fields import ContactModelField, MaterialField, WearLawField, read_law
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
 from wearlaw.kernels import accelerate, accelerated, compiled_loop
+from wearlaw.late import load as _load
 from wearlaw.loader import (
     contact_model,
     contact_models,
@@ -238,48 +238,48 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from wearlaw_archard.coefficients import wear_coefficient
-    from wearlaw_contact_files._reading import read_contact
-    from wearlaw_explore._page import explore
-    from wearlaw_fits.comparison import Comparison, compare
-    from wearlaw_fits.distributions import lognormal, normal, published_range, uniform
-    from wearlaw_fits.fit import fit
-    from wearlaw_fits.read_tests import read_tests
-    from wearlaw_fits.result import Fit
-    from wearlaw_fits.uncertainty import Uncertainty, uncertainty
-    from wearlaw_fits.wear_tests import WearTests
-    from wearlaw_life import wear_out
-    from wearlaw_output.curves import Curve, FigureData, Panel, PlotAxis
-    from wearlaw_studies.case import Case, load_case
-    from wearlaw_studies.sections import CheckedClaim, Section, Verdict
-    from wearlaw_studies.study import Study, run
-    from wearlaw_sweeps.inverse import creepage_for
-    from wearlaw_sweeps.sweep import sweep
-    from wearlaw_tables import Table, read_table
-    from wearlaw_twin_disc import Disc, TwinDisc
-    from wearlaw_wheel_rail import WheelRail
+    from wearlaw_apps.contact_files.reading import read_contact
+    from wearlaw_apps.explore.page import explore
+    from wearlaw_apps.fits.comparison import Comparison, compare
+    from wearlaw_apps.fits.distributions import lognormal, normal, published_range, uniform
+    from wearlaw_apps.fits.fit import fit
+    from wearlaw_apps.fits.read_tests import read_tests
+    from wearlaw_apps.fits.result import Fit
+    from wearlaw_apps.fits.uncertainty import Uncertainty, uncertainty
+    from wearlaw_apps.fits.wear_tests import WearTests
+    from wearlaw_apps.life import wear_out
+    from wearlaw_apps.output.curves import Curve, FigureData, Panel, PlotAxis
+    from wearlaw_apps.studies.case import Case, load_case
+    from wearlaw_apps.studies.sections import CheckedClaim, Section, Verdict
+    from wearlaw_apps.studies.study import Study, run
+    from wearlaw_apps.sweeps.inverse import creepage_for
+    from wearlaw_apps.sweeps.sweep import sweep
+    from wearlaw_apps.tables import Table, read_table
+    from wearlaw_models.laws.archard.coefficients import wear_coefficient
+    from wearlaw_models.rigs.twin_disc import Disc, TwinDisc
+    from wearlaw_models.rigs.wheel_rail import WheelRail
 
 _LATE = {
-    "wearlaw_sweeps.inverse": ("creepage_for",),
-    "wearlaw_archard.coefficients": ("wear_coefficient",),
-    "wearlaw_contact_files._reading": ("read_contact",),
-    "wearlaw_explore._page": ("explore",),
-    "wearlaw_fits.comparison": ("Comparison", "compare"),
-    "wearlaw_fits.fit": ("fit",),
-    "wearlaw_fits.result": ("Fit",),
-    "wearlaw_fits.distributions": ("lognormal", "normal", "published_range", "uniform"),
-    "wearlaw_fits.uncertainty": ("Uncertainty", "uncertainty"),
-    "wearlaw_fits.read_tests": ("read_tests",),
-    "wearlaw_fits.wear_tests": ("WearTests",),
-    "wearlaw_life": ("wear_out",),
-    "wearlaw_output.curves": ("Curve", "FigureData", "Panel", "PlotAxis"),
-    "wearlaw_studies.case": ("Case", "load_case"),
-    "wearlaw_studies.sections": ("CheckedClaim", "Section", "Verdict"),
-    "wearlaw_studies.study": ("Study", "run"),
-    "wearlaw_sweeps.sweep": ("sweep",),
-    "wearlaw_tables": ("Table", "read_table"),
-    "wearlaw_twin_disc": ("Disc", "TwinDisc"),
-    "wearlaw_wheel_rail": ("WheelRail",),
+    "wearlaw_apps.sweeps.inverse": ("creepage_for",),
+    "wearlaw_models.laws.archard.coefficients": ("wear_coefficient",),
+    "wearlaw_apps.contact_files.reading": ("read_contact",),
+    "wearlaw_apps.explore.page": ("explore",),
+    "wearlaw_apps.fits.comparison": ("Comparison", "compare"),
+    "wearlaw_apps.fits.fit": ("fit",),
+    "wearlaw_apps.fits.result": ("Fit",),
+    "wearlaw_apps.fits.distributions": ("lognormal", "normal", "published_range", "uniform"),
+    "wearlaw_apps.fits.uncertainty": ("Uncertainty", "uncertainty"),
+    "wearlaw_apps.fits.read_tests": ("read_tests",),
+    "wearlaw_apps.fits.wear_tests": ("WearTests",),
+    "wearlaw_apps.life": ("wear_out",),
+    "wearlaw_apps.output.curves": ("Curve", "FigureData", "Panel", "PlotAxis"),
+    "wearlaw_apps.studies.case": ("Case", "load_case"),
+    "wearlaw_apps.studies.sections": ("CheckedClaim", "Section", "Verdict"),
+    "wearlaw_apps.studies.study": ("Study", "run"),
+    "wearlaw_apps.sweeps.sweep": ("sweep",),
+    "wearlaw_apps.tables": ("Table", "read_table"),
+    "wearlaw_models.rigs.twin_disc": ("Disc", "TwinDisc"),
+    "wearlaw_models.rigs.wheel_rail": ("WheelRail",),
 }
 """Public names that come from plugins, by the module that is imported at their first use."""
 
@@ -289,7 +289,7 @@ def __getattr__(name: str) -> object:
         if name in names:
             return _load(module, name, f"wearlaw.{name}")
     of_wheelsets = name in ("Wheelset", "Profile", "read_profile", "write_profile")
-    hint = f"; it is wearlaw_wheelset.{name}" if of_wheelsets else ""
+    hint = f"; it is wearlaw_models.rigs.wheelset.{name}" if of_wheelsets else ""
     raise AttributeError(f"module 'wearlaw' has no attribute {name!r}{hint}")
 
 

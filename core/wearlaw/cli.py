@@ -12,13 +12,13 @@ import click
 
 from wearlaw import loader
 from wearlaw.errors import WearlawError, described, did_you_mean, shown
-from wearlaw.extras import MissingPackageError, load
 from wearlaw.hookspecs import Command
+from wearlaw.late import MissingPackageError, load
 from wearlaw.version import __version__
 
 OWN = (
-    Command("plugins", "wearlaw_show:list_plugins", "List what the installed plugins provide."),
-    Command("show", "wearlaw_show:show", "Explain anything that wearlaw plugins lists."),
+    Command("plugins", "wearlaw_apps.show:list_plugins", "List what the installed plugins provide."),
+    Command("show", "wearlaw_apps.show:show", "Explain anything that wearlaw plugins lists."),
 )
 """The commands that are there whatever plugin is broken; their module is imported when one is called."""
 

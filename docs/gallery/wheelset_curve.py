@@ -4,8 +4,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from wearlaw import Q
+from wearlaw_models.rigs import wheelset as ws
 
 wheel, sizes = ws.Profile.s1002(), {"nominal_radius": "460 mm", "flange_back_distance": "1360 mm", "gauge": "1435 mm"}
 sizes |= {"rail": ws.Profile.uic60(), "rail_cant": "1:40", "material": wl.steel()}

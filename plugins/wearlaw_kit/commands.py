@@ -16,10 +16,10 @@ from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
 from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Rig
+from wearlaw_apps.output.commands import fields, values
+from wearlaw_apps.show import accuracies
 from wearlaw_kit.kit import Check, checks, validate_expected
 from wearlaw_kit.scaffold import Kind, write_plugin
-from wearlaw_output.commands import fields, values
-from wearlaw_show import accuracies
 
 
 @click.command("new-plugin")

@@ -20,8 +20,8 @@ PLUGIN = """
     from pydantic import Field
 
     import wearlaw as wl
-    from wearlaw_exact import Exact
-    from wearlaw_fastsim import Fastsim
+    from wearlaw_models.contact_models.exact import Exact
+    from wearlaw_models.contact_models.fastsim import Fastsim
 
     def writing(*arrays):
         for array in arrays:

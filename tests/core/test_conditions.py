@@ -12,10 +12,10 @@ import pytest
 import wearlaw as wl
 from tests import cases
 from wearlaw import Q
+from wearlaw_apps.studies.case import Case  # private: a case without its files
+from wearlaw_apps.studies.report.tables import summaries  # private: a part of the report, without its page
+from wearlaw_apps.studies.study import run  # private: a case run without its files
 from wearlaw_kit import Check, conformance
-from wearlaw_studies.case import Case  # private: a case without its files
-from wearlaw_studies.report.tables import summaries  # private: a part of the report, without its page
-from wearlaw_studies.study import run  # private: a case run without its files
 
 DISCS = wl.TwinDisc.suros(rolling_speed="1 m/s")
 

@@ -17,8 +17,8 @@ from tests.line import fields_at, slip_zone
 from tests.strategies import EPS, LINE_MODELS, log_uniform, saturation_creepage, with_creepage
 from wearlaw import Array
 from wearlaw.numerics.crossings import crossings  # private: not the means that they split
-from wearlaw_exact import Exact
 from wearlaw_kit import line_problems
+from wearlaw_models.contact_models.exact import Exact
 
 
 class Searched(Exact):

@@ -47,6 +47,11 @@ def test_importing_loads_no_special_functions_and_no_plugin() -> None:
     assert not [name for name in found if name.startswith("wearlaw_")]
 
 
+def test_loading_a_model_loads_no_other() -> None:
+    found = {name for name in loaded("import wearlaw_models.laws.usfd") if name.startswith("wearlaw_")}
+    assert found == {"wearlaw_models", "wearlaw_models.laws", "wearlaw_models.laws.usfd"}
+
+
 @pytest.mark.parametrize("arguments", [["--help"], ["plugins"], ["show", "usfd"], ["case", "tassini2010"]], ids=str)
 def test_commands_that_only_print_do_not_load_what_others_need(arguments: list[str]) -> None:
     code = (
@@ -58,12 +63,12 @@ def test_commands_that_only_print_do_not_load_what_others_need(arguments: list[s
 
 
 def test_a_worker_process_loads_no_labels() -> None:
-    assert not {"xarray", "pandas", "rich", "scipy.optimize"} & loaded("import wearlaw_sweeps.workers")
+    assert not {"xarray", "pandas", "rich", "scipy.optimize"} & loaded("import wearlaw_apps.sweeps.workers")
 
 
 def test_dir_shows_the_public_names_also_those_loaded_later_and_no_room() -> None:
-    code = f"{IMPORT}; import wearlaw_studies.study; assert dir(wl) == sorted(wl.__all__), dir(wl)"
-    assert "wearlaw_studies.study" in loaded(code)
+    code = f"{IMPORT}; import wearlaw_apps.studies.study; assert dir(wl) == sorted(wl.__all__), dir(wl)"
+    assert "wearlaw_apps.studies.study" in loaded(code)
     modules = [name for name in dir(wl) if inspect.ismodule(getattr(wl, name))]
     assert modules == ["elastic_limit", "hertz", "hertz_ellipse", "kalker"]
     assert {"fit", "sweep", "Uncertainty", "load_case"} <= set(dir(wl))

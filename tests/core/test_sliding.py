@@ -14,7 +14,7 @@ from scipy.integrate import quad
 import wearlaw as wl
 from wearlaw import Q
 from wearlaw.pipeline.ranges import SLIDING, RangeWatch  # private: names of marks
-from wearlaw_sweeps import points  # private: small blocks
+from wearlaw_apps.sweeps import points  # private: small blocks
 
 DISCS = wl.TwinDisc.suros(material=wl.steel(shear_yield_stress=None))
 WHEEL = wl.WheelRail(

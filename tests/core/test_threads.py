@@ -15,7 +15,7 @@ import pytest
 import wearlaw as wl
 from tests.core import first_uses
 from tests.core.first_uses import USES
-from wearlaw_output.notes import caught_warnings  # private: what sweeps and fits collect warnings with
+from wearlaw_apps.output.notes import caught_warnings  # private: what sweeps and fits collect warnings with
 
 
 def in_a_fresh_process(names: list[str]) -> list[str]:

@@ -12,9 +12,9 @@ import numpy as np
 import pandas as pd
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.oracle.cases import CONTACTS, HOLLOW, LAWS, POINT, RIGS, STAGES, seen, thinned
 from wearlaw import Q
+from wearlaw_models.rigs import wheelset as ws
 
 FILES = Path(__file__).parents[2] / "docs" / "examples"
 EXACT, FASTSIM = RIGS["twin_disc"] | CONTACTS["exact"], RIGS["wheel_rail"] | CONTACTS["fastsim"]

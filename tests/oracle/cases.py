@@ -11,8 +11,8 @@ from typing import Any
 import xarray as xr
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from wearlaw import Q
+from wearlaw_models.rigs import wheelset as ws
 
 BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.33, density="8800 kg/m^3")
 HOLLOW = ws.Profile.s1002().worn(Q([-20, 0, 20], "mm"), Q([0, 0.5, 0], "mm"))

@@ -11,10 +11,10 @@ from typing import Any
 import pandas as pd
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.oracle.applications import TESTS, USFD
 from tests.oracle.cases import CONTACTS, LAWS, POINT, RIGS, WHEEL_RAIL, WHEELSET
 from wearlaw import Q
+from wearlaw_models.rigs import wheelset as ws
 
 PREDICT = {
     "twin_disc": USFD,

@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 import wearlaw as wl
 from tests.cases import POINT, case
 from tests.plugins.fits import cli_data
-from wearlaw_studies.case import case_schema  # private: a case without its files
-from wearlaw_studies.study import Study, run  # private: a case run without its files
-from wearlaw_sweeps import points  # private: small blocks
+from wearlaw_apps.studies.case import case_schema  # private: a case without its files
+from wearlaw_apps.studies.study import Study, run  # private: a case run without its files
+from wearlaw_apps.sweeps import points  # private: small blocks
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def point() -> Study:
 def blank_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave figures empty, whose drawing takes most of the time of a small run."""
     monkeypatch.setattr(
-        "wearlaw_output.files.draw", lambda _: Figure(figsize=(1.0, 1.0))
+        "wearlaw_apps.output.files.draw", lambda _: Figure(figsize=(1.0, 1.0))
     )  # private: no figure is drawn
 
 

@@ -16,7 +16,7 @@ from docs import how_far_from_contact as page
 from docs.how_far_from_contact import SERVICE, Case, Computed, Rows, compute, of_contact, placed, service
 from docs.wheelset_benchmark import wheelset
 from tests import wheel_on_rail
-from wearlaw_wheelset._half_space import pressed  # private: the normal problem, against its theory
+from wearlaw_models.rigs.wheelset.half_space import pressed  # private: the normal problem, against its theory
 
 MODULUS = 82e9 / (1.0 - 0.28)
 

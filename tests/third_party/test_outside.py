@@ -14,7 +14,7 @@ from tests.core.distributions import write_distribution
 from tests.environments import ROOT, Environment, build
 from wearlaw_kit.scaffold import Kind, write_plugin  # private: writes without a process for each
 
-HERE = Path(__file__).parent
+OUTSIDE = ROOT / "docs" / "examples" / "wearlaw-outside"
 
 BROKEN = {
     "import_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named 'a_module_that_is_"),
@@ -92,7 +92,7 @@ print(json.dumps([r.tangential_force.m_as("N"), r.wear_rate.m_as("ug/m/mm^2"), r
 def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
     """Return an environment with wearlaw and a distribution from outside."""
     folder = tmp_path_factory.mktemp("wheels")
-    wheels = build(ROOT, folder), build(HERE / "wearlaw-outside", folder)
+    wheels = build(ROOT, folder), build(OUTSIDE, folder)
     return Environment(tmp_path_factory.mktemp("with outside"), *wheels)
 
 
@@ -127,8 +127,8 @@ def models(listed: str) -> dict[str, list[str]]:
 
 def test_the_wheels_are_what_is_imported_and_nothing_of_the_running_environment(environment: Environment) -> None:
     code = (
-        "import importlib.metadata, wearlaw, wearlaw_exact, wearlaw_outside\n"
-        "for module in (wearlaw, wearlaw_exact, wearlaw_outside):\n    print(module.__file__)\n"
+        "import importlib.metadata, wearlaw, wearlaw_models.contact_models.exact, wearlaw_outside\n"
+        "for module in (wearlaw, wearlaw_models.contact_models.exact, wearlaw_outside):\n    print(module.__file__)\n"
         "print(*(one.name for one in importlib.metadata.distributions() if 'wearlaw' in one.name))"
     )
     *files, distributions, predicted = environment.run("-W", "error", "-c", f"{code}\n{PREDICT}").splitlines()
@@ -173,7 +173,7 @@ def test_the_law_passes_the_checks(environment: Environment) -> None:
 
 
 def test_the_outside_distribution_passes_its_own_tests(environment: Environment, tmp_path: Path) -> None:
-    shutil.copytree(HERE / "wearlaw-outside" / "tests", tmp_path / "tests")
+    shutil.copytree(OUTSIDE / "tests", tmp_path / "tests")
     # What its contact model is exempt from is skipped.
     assert " passed, 1 skipped in " in environment.run("-m", "pytest", "-W", "error", cwd=tmp_path)
 

@@ -13,7 +13,7 @@ import wearlaw as wl
 from tests.plugins.laws import contact_of
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_archard import SteelWithHardness
+from wearlaw_models.laws.archard import SteelWithHardness
 
 SOFT, HARD = SteelWithHardness(hardness="2 GPa"), SteelWithHardness(hardness="4 GPa")
 ON_DISCS: dict[str, Any] = {"max_pressure": Q(1200, "MPa"), "friction_coefficient": 0.4}

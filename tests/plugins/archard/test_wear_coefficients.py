@@ -12,7 +12,7 @@ from hypothesis import given
 import wearlaw as wl
 from tests.strategies import EPS, log_uniform
 from wearlaw import Q
-from wearlaw_archard import FORMS
+from wearlaw_models.laws.archard import FORMS
 
 FULL: dict[str, Any] = {"hardness": "2.625 GPa", "density": "7850 kg/m^3", "friction_coefficient": 0.45}
 

@@ -12,7 +12,7 @@ import pytest
 import wearlaw as wl
 from tests.cases import assert_refused, files, wearlaw
 from tests.plugins.contact_files.files import FILES
-from wearlaw_contact_files._command import _print  # private: one reader, without the look-up
+from wearlaw_apps.contact_files.command import _print  # private: one reader, without the look-up
 
 pytestmark = [
     pytest.mark.usefixtures("blank_figures", "folder"),

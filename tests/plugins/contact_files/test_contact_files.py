@@ -12,8 +12,8 @@ import pytest
 import wearlaw as wl
 from tests.plugins.contact_files.files import FILES, HEAD, PRINTED, SUBSURFACE, of_version, rows_of, turned, write_rows
 from wearlaw import Q
-from wearlaw_contact_files import ContactMat
-from wearlaw_contact_files.subsurface import read_subsurface  # private: one reader, without the look-up
+from wearlaw_apps.contact_files import ContactMat
+from wearlaw_apps.contact_files.subsurface import read_subsurface  # private: one reader, without the look-up
 
 PRINTING = 5e-4
 """Largest relative error of a number printed with four digits."""

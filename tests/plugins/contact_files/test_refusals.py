@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.contact_files.files import FILES, SUBSURFACE, changed, of_version, rows_of, write_rows
 from wearlaw import Array
-from wearlaw_contact_files.subsurface import read_subsurface  # private: one reader, without the look-up
+from wearlaw_apps.contact_files.subsurface import read_subsurface  # private: one reader, without the look-up
 
 TREAD = FILES["tread"]
 FIRST_ELEMENT = 14

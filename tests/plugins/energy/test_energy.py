@@ -16,7 +16,7 @@ from tests.plugins.laws import around, contact_of
 from tests.roots import brentq
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_energy import Energy
+from wearlaw_models.laws.energy import Energy
 
 MILD, SEVERE = 5e-9, 15e-9
 """Coefficients in kg/J, made up."""

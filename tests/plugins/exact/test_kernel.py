@@ -12,8 +12,8 @@ import pytest
 from tests.plugins.excess import DIGITS, Density, Real, copies, crowded, shares
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_exact import _kernel  # private: each copy of the formula
-from wearlaw_exact._kernel import excess_dissipation  # private: each copy of the formula
+from wearlaw_models.contact_models.exact import kernel  # private: each copy of the formula
+from wearlaw_models.contact_models.exact.kernel import excess_dissipation  # private: each copy of the formula
 
 COPIES = copies(excess_dissipation)
 every_copy = pytest.mark.parametrize("copy", COPIES)
@@ -116,7 +116,7 @@ def test_two_steps_find_the_roots_at_any_creepage_and_level(monkeypatch: pytest.
     limit = 2.0 * ROUNDINGS * whole(reduced)
     found = {}
     for steps in (1, 2, 8):
-        monkeypatch.setattr(_kernel, "STEPS", steps)
+        monkeypatch.setattr(kernel, "STEPS", steps)
         found[steps] = apply("arrays", reduced, level)
     assert (np.abs(found[2] - found[8]) <= limit).all()
     assert not (np.abs(found[1] - found[8]) <= limit).all()

@@ -22,9 +22,9 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 import wearlaw as wl
 from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, PATIENCE_S, started
-from wearlaw_explore._page import Page, named, patch_figures  # private: the page without a browser
-from wearlaw_explore._subject import Subject  # private: a rig that is not installed
-from wearlaw_output.notes import Notes  # private: what the page shows as notes
+from wearlaw_apps.explore.page import Page, named, patch_figures  # private: the page without a browser
+from wearlaw_apps.explore.subject import Subject  # private: a rig that is not installed
+from wearlaw_apps.output.notes import Notes  # private: what the page shows as notes
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning")  # the page has them as notes
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw_fastsim._march import Ellipses  # private: patches with any flexibilities
+from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: patches with any flexibilities
 
 CREEPAGES = ("longitudinal_creepage", "lateral_creepage", "spin")
 

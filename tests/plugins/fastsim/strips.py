@@ -10,9 +10,14 @@ from numpy.typing import ArrayLike
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_fastsim._march import Ellipses  # private: patches with any flexibilities
-from wearlaw_fastsim._strips import even_strips, forces, layout_on, strips  # private: with any number of nodes
-from wearlaw_fastsim._zones import Nodes  # private: as above
+from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: patches with any flexibilities
+from wearlaw_models.contact_models.fastsim.strips import (  # private: with any number of nodes
+    even_strips,
+    forces,
+    layout_on,
+    strips,
+)
+from wearlaw_models.contact_models.fastsim.zones import Nodes  # private: as above
 
 ROUNDING = 100 * EPS
 

@@ -9,7 +9,10 @@ import pytest
 from tests.plugins.fastsim.marks import each_bound
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_fastsim._zones import Growth, first_slip  # private: strips with any growth of the traction
+from wearlaw_models.contact_models.fastsim.zones import (  # private: strips with any growth of the traction
+    Growth,
+    first_slip,
+)
 
 ANGLES = np.linspace(np.pi, 0.0, 4001)[:, None]
 

@@ -11,7 +11,10 @@ import pytest
 from tests.plugins.excess import DIGITS, Density, Real, copies, crowded, shares
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_fastsim._line import elliptic_excess, parabolic_excess  # private: of single points and of arrays
+from wearlaw_models.contact_models.fastsim.line import (  # private: of single points and of arrays
+    elliptic_excess,
+    parabolic_excess,
+)
 
 
 def parabolic(reduced: Real) -> Density:

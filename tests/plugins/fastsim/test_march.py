@@ -13,7 +13,7 @@ from tests.plugins.fastsim.march import CREEPAGES, sample
 from tests.plugins.fastsim.marks import each_bound
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_fastsim._march import (  # private: patches with any flexibilities
+from wearlaw_models.contact_models.fastsim.march import (  # private: patches with any flexibilities
     Cells,
     Ellipses,
     forces,

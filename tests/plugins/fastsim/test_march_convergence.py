@@ -12,7 +12,12 @@ from tests.plugins.fastsim.march import CREEPAGES, sample
 from tests.plugins.fastsim.marks import each_bound
 from tests.plugins.full_theory import spheres
 from wearlaw import Array
-from wearlaw_fastsim._march import Ellipses, forces, march, strip_centres  # private: patches with any flexibilities
+from wearlaw_models.contact_models.fastsim.march import (  # private: patches with any flexibilities
+    Ellipses,
+    forces,
+    march,
+    strip_centres,
+)
 
 
 def without_spin(ellipses: Ellipses, strips: int) -> tuple[Array, Array]:

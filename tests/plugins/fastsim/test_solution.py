@@ -10,7 +10,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, of_ratio
 from wearlaw import Array, Q
-from wearlaw_fastsim._march import Ellipses  # private: the flexibilities
+from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: the flexibilities
 
 Bound = Literal["elliptic", "parabolic"]
 BOUNDS: tuple[Bound, ...] = ("elliptic", "parabolic")
@@ -137,7 +137,9 @@ def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch
         return float((contact.traction_x * contact.slip_x + contact.traction_y * contact.slip_y).min())
 
     assert least_power() >= 0.0
-    monkeypatch.setattr("wearlaw_fastsim._march.drop_gains", lambda _: None)  # private: a march that gains energy
+    monkeypatch.setattr(
+        "wearlaw_models.contact_models.fastsim.march.drop_gains", lambda _: None
+    )  # private: a march that gains energy
     assert least_power() < 0.0
 
 

@@ -13,7 +13,13 @@ from tests.plugins.fastsim.marks import each_bound
 from tests.plugins.fastsim.strips import CASE, ROUNDING, ellipses, limit, sample, solve
 from tests.plugins.full_theory import rows
 from wearlaw import Q
-from wearlaw_fastsim._strips import even_strips, forces, forces_alone, layout_on, strips  # private: any nodes
+from wearlaw_models.contact_models.fastsim.strips import (  # private: any nodes
+    even_strips,
+    forces,
+    forces_alone,
+    layout_on,
+    strips,
+)
 
 
 @pytest.mark.validates(

@@ -1,1 +1,1 @@
-"""Tests of wearlaw_fits."""
+"""Tests of wearlaw_apps.fits."""

@@ -8,7 +8,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_fits.comparison import Compared  # private: for its type
+from wearlaw_apps.fits.comparison import Compared  # private: for its type
 
 RIG = wl.TwinDisc.suros()
 EXACT = RIG | wl.contact_model("exact")

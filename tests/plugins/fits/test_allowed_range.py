@@ -9,7 +9,7 @@ from pydantic import Field
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_fits.free_parameters import allowed_range  # private: bounds of fits, each kind of annotation alone
+from wearlaw_apps.fits.free_parameters import allowed_range  # private: bounds of fits, each kind of annotation alone
 
 
 class Bounded(wl.Configuration):

@@ -24,7 +24,7 @@ from tests.plugins.fits.comparisons import (
 )
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_fits.agreement import agreement  # private: errors of made-up rates, without a law
+from wearlaw_apps.fits.agreement import agreement  # private: errors of made-up rates, without a law
 
 
 def test_tests_without_a_wear_rate_are_left_out_for_all() -> None:

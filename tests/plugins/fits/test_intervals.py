@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from wearlaw_fits.intervals import (  # private: a line, whose intervals are in textbooks
+from wearlaw_apps.fits.intervals import (  # private: a line, whose intervals are in textbooks
     covariance,
     leverage,
     replicate,
@@ -16,7 +16,7 @@ from wearlaw_fits.intervals import (  # private: a line, whose intervals are in 
     student_intervals,
     studentised_intervals,
 )
-from wearlaw_fits.least_squares import Bounds, Solutions, fit_many  # private: as above
+from wearlaw_apps.fits.least_squares import Bounds, Solutions, fit_many  # private: as above
 
 WIDE = Bounds(np.full(2, -50.0), np.full(2, 50.0))
 X = np.linspace(0.0, 3.0, 12)

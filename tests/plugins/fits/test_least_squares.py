@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-from wearlaw_fits.least_squares import STEP, TOLERANCE, Bounds, fit_many, search  # private: models with kinks
+from wearlaw_apps.fits.least_squares import STEP, TOLERANCE, Bounds, fit_many, search  # private: models with kinks
 
 X = np.linspace(0.0, 3.0, 15)
 WIDE = Bounds(np.full(2, -5.0), np.full(2, 5.0))

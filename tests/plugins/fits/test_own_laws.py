@@ -13,7 +13,7 @@ import pytest
 import wearlaw as wl
 from tests.cases import POINT, files, table, wearlaw, write
 from tests.plugins.fits.fits import EXACT, made_up, usfd
-from wearlaw_studies.case import case_schema  # private: the schema of cases has no public name
+from wearlaw_apps.studies.case import case_schema  # private: the schema of cases has no public name
 
 pytestmark = pytest.mark.usefixtures("folder_with_tests", "blank_figures")
 UNIT = "ug/m/mm^2"

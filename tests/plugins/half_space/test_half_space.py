@@ -7,7 +7,7 @@ import pytest
 import scipy
 
 import wearlaw as wl
-import wearlaw_half_space
+import wearlaw_models.contact_models.half_space
 from tests.plugins.contact_files.files import FILES
 from tests.plugins.full_theory import spheres
 from wearlaw import Array
@@ -35,10 +35,10 @@ def test_displacements_are_those_of_point_forces(place: tuple[float, float]) -> 
         )
         return float(sum(parts))
 
-    along, across, mixed = wearlaw_half_space.influence(np.array(x), np.array(y), 1.0, 1.6, nu)
+    along, across, mixed = wearlaw_models.contact_models.half_space.influence(np.array(x), np.array(y), 1.0, 1.6, nu)
     assert along == pytest.approx(integral("along"), abs=1e-5)
     assert mixed == pytest.approx(integral("mixed"), abs=1e-5)
-    turned = wearlaw_half_space.influence(np.array(y), np.array(x), 1.6, 1.0, nu)
+    turned = wearlaw_models.contact_models.half_space.influence(np.array(y), np.array(x), 1.6, 1.0, nu)
     assert across == pytest.approx(float(turned[0]), rel=1e-14)
 
 

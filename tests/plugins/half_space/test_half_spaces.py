@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-import wearlaw_half_space
+import wearlaw_models.contact_models.half_space
 from docs import half_spaces
 from docs.half_spaces import LIMIT, SIZE, UNIT, ellipses
 from tests.environments import ROOT
@@ -203,7 +203,7 @@ def power_before(found: wl.Contact) -> float:
     stiffness = np.pi * float(problem.shear_modulus[0])
     moved = []
     for back in (0.0, step):
-        xx, yy, xy = wearlaw_half_space.influence(
+        xx, yy, xy = wearlaw_models.contact_models.half_space.influence(
             x[:, None] - x - back, y[:, None] - y, step, width, problem.poisson_ratio[0]
         )
         moved.append(np.array([xx @ q[0] - xy @ q[1], yy @ q[1] - xy @ q[0]]) / stiffness)

@@ -39,7 +39,7 @@ def test_a_name_that_is_no_lower_case_identifier_is_refused(name: str) -> None:
     assert_refused(new_plugin("--wear-law", "--", name), "name: must be a Python name of lower-case letters")
 
 
-@pytest.mark.parametrize(("name", "holder"), [("usfd", "the wear law of "), ("sheffield", "the plugin ")])
+@pytest.mark.parametrize(("name", "holder"), [("usfd", "the wear law of "), ("fits", "the plugin ")])
 def test_a_taken_name_is_refused_with_who_has_it(name: str, holder: str) -> None:
     assert_refused(new_plugin(name, "--contact-model"), f"name: '{name}' is taken by {holder}")
 

@@ -10,12 +10,12 @@ import pytest
 from click.testing import CliRunner
 
 import wearlaw as wl
-import wearlaw_life
+import wearlaw_apps.life
 from tests.plugins.life.test_life import line
-from wearlaw_life import _section  # private: a shorter distance
-from wearlaw_life._command import life  # private: the command
+from wearlaw_apps.life import section  # private: a shorter distance
+from wearlaw_apps.life.command import life  # private: the command
 
-TEXT = wearlaw_life.wearlaw_resources()["case"]["wheel_life"].replace('sections = ["life"]\n', "")
+TEXT = wearlaw_apps.life.wearlaw_resources()["case"]["wheel_life"].replace('sections = ["life"]\n', "")
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
 
@@ -28,8 +28,8 @@ def case(tmp_path: Path) -> Path:
 
 
 def test_section_has_the_life_and_which_states_wear_where(case: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_section, "OVER", wl.Q(100, "km"))
-    found = _section.section(wl.run(wl.load_case(str(case))))
+    monkeypatch.setattr(section, "OVER", wl.Q(100, "km"))
+    found = section.section(wl.run(wl.load_case(str(case))))
     assert "not a service rate" in found.text
     assert found.tables["life"]["distance [km]"].iloc[-1] == pytest.approx(100.0)
     _, states = found.figures

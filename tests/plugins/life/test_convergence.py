@@ -14,7 +14,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.life.test_life import GIVEN, line, pipeline
 from tests.plugins.wheelset.wheelsets import cone, on_round_heads
-from wearlaw_life import Life
+from wearlaw_apps.life import Life
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::wearlaw.RangeWarning",

@@ -11,12 +11,11 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.wheelsets import R0, cone, round_head, wheelset
 from wearlaw import Q
-from wearlaw_life import Life
-from wearlaw_life._line import Line  # private: a step that fails
-from wearlaw_life._removal import (  # private: the parts of a step in closed form
+from wearlaw_apps.life import Life
+from wearlaw_apps.life.line import Line  # private: a step that fails
+from wearlaw_apps.life.removal import (  # private: the parts of a step in closed form
     conserving,
     even,
     positions,
@@ -24,6 +23,7 @@ from wearlaw_life._removal import (  # private: the parts of a step in closed fo
     smoothed,
     swept,
 )
+from wearlaw_models.rigs import wheelset as ws
 
 GIVEN: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
 
@@ -176,7 +176,7 @@ def test_a_pair_of_unlike_wheels_has_no_mean() -> None:
 
 def test_several_processes_give_the_same_life(tmp_path: Path, short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
     """From a file, in blocks of a few states."""
-    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.sweeps.points.BLOCK", 2500)  # private: small blocks
     line().to_csv(tmp_path / "line.csv", index=False)
     lives = [
         wl.wear_out(pipeline(), tmp_path / "line.csv", over="500 km", workers=workers, **GIVEN) for workers in (1, 2)
@@ -187,7 +187,7 @@ def test_several_processes_give_the_same_life(tmp_path: Path, short: Life, monke
 
 def test_a_cluster_gives_the_same_life(short: Life, monkeypatch: pytest.MonkeyPatch) -> None:
     distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 2500)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.sweeps.points.BLOCK", 2500)  # private: small blocks
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as machines,
         distributed.Client(machines) as client,

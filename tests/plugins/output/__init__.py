@@ -1,1 +1,1 @@
-"""Tests of wearlaw_output."""
+"""Tests of wearlaw_apps.output."""

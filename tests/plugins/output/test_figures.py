@@ -16,15 +16,15 @@ from matplotlib.figure import Figure
 from tests.plugins.studies import report_data as data
 from tests.plugins.studies.report_data import ONE, THREE
 from wearlaw import Curve, FigureData, Panel, PlotAxis
-from wearlaw_output.curves import OUTSIDE, STRIP, Map, Shade, in_parts  # private: rarer parts of the description
-from wearlaw_output.drawing import (  # private: the drawer, with the looks that both drawers share
+from wearlaw_apps.output.curves import OUTSIDE, STRIP, Map, Shade, in_parts  # private: rarer parts of the description
+from wearlaw_apps.output.drawing import (  # private: the drawer, with the looks that both drawers share
     BAND,
     PALE,
     THIN,
     draw,
     line_styles,
 )
-from wearlaw_studies.report.interactive import plotly_figure  # private: the drawer for the page
+from wearlaw_apps.studies.report.interactive import plotly_figure  # private: the drawer for the page
 
 X = np.array([1.0, 2.0, 4.0])
 SEVEN_DIGITS = 5e-7

@@ -11,7 +11,9 @@ import scipy
 
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_output.wear_profile import onto_positions  # private: its totals to rounding, at positions that no rig has
+from wearlaw_apps.output.wear_profile import (
+    onto_positions,  # private: its totals to rounding, at positions that no rig has
+)
 
 
 def spread(arc: Array, width: Array, loss: Array, positions: Array) -> Array:

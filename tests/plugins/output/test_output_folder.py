@@ -8,7 +8,7 @@ import pytest
 
 import wearlaw as wl
 from tests.cases import tree
-from wearlaw_output.folder import FILES, results_folder  # private: what commands share
+from wearlaw_apps.output.folder import FILES, results_folder  # private: what commands share
 
 RESULTS = "results.nc"
 

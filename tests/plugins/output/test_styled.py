@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 from tests.plugins.studies.report_data import EVIL
-from wearlaw_output.styled import Marked, cell, html_table, latex_table  # private: tables by themselves
+from wearlaw_apps.output.styled import Marked, cell, html_table, latex_table  # private: tables by themselves
 
 TABLE = pd.DataFrame(
     {

@@ -1,1 +1,1 @@
-"""Tests of wearlaw_show."""
+"""Tests of wearlaw_apps.show."""

@@ -11,7 +11,7 @@ import wearlaw as wl
 from tests.cases import table, wearlaw, write
 from tests.core.distributions import Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
-from wearlaw_studies.case import case_schema, case_text  # private: a case without its files
+from wearlaw_apps.studies.case import case_schema, case_text  # private: a case without its files
 
 # case, schema, show, help
 

@@ -15,7 +15,7 @@ from tests.plugins.kit.wrong_rigs import Weight
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw.configuration import field_docstrings  # private: what `show`, schemas and signatures say of fields
 from wearlaw.models.model import Model  # private: the bound of a quadrature
-from wearlaw_show import describe
+from wearlaw_apps.show import describe
 
 MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}
 

@@ -13,9 +13,11 @@ from docs.half_spaces import RATIOS, SPINS, classes, ellipses, errors, rms
 from tests.half_spaces import DRAWS, POISSON_RATIO, table
 from tests.half_spaces import contact as half_spaces
 from wearlaw import Array, Q
-from wearlaw_half_space import influence
-from wearlaw_strip_theory import StripTheory, _strips  # private: strips one by one
-from wearlaw_strip_theory._interaction import full_slips  # private: one step of the theory, against its source
+from wearlaw_models.contact_models.half_space import influence
+from wearlaw_models.contact_models.strip_theory import StripTheory, fields  # private: strips one by one
+from wearlaw_models.contact_models.strip_theory.interaction import (
+    full_slips,  # private: one step of the theory, against its source
+)
 
 MODEL, FASTSIM = wl.contact_model("strip_theory"), wl.contact_model("fastsim")
 INPUTS = ("ratio", "xi", "eta", "phi")
@@ -31,10 +33,10 @@ def coefficients(ratio: Array) -> Any:
     return wl.kalker.coefficients(ratio, np.full(ratio.shape, POISSON_RATIO))
 
 
-def nodes(*strips: Array | float, count: int = 200) -> _strips.Nodes:
+def nodes(*strips: Array | float, count: int = 200) -> fields.Nodes:
     """Return the nodes of strips before the factor that makes a patch dissipate Tγ."""
     arrays = np.broadcast_arrays(*(np.atleast_1d(np.asarray(one, float)) for one in strips))
-    return _strips.solve(_strips.Strips(*arrays), count, count)
+    return fields.solve(fields.Strips(*arrays), count, count)
 
 
 @pytest.mark.parametrize("reduced", [0.01, 0.1, 0.5, 0.99, 1.0, 3.0])
@@ -182,7 +184,7 @@ def test_the_factor_of_a_patch_is_close_to_one(strips: int, without_spin: float,
     problem = contact.problem
     assert problem is not None
     strips_of_patches, _ = model._strips(problem, model._layout(problem))
-    slips = _strips.solve(strips_of_patches, *model._nodes_along).slip.transpose(2, 0, 1)  # before the factor
+    slips = fields.solve(strips_of_patches, *model._nodes_along).slip.transpose(2, 0, 1)  # before the factor
     factor = np.divide(contact.slip, slips, out=np.ones_like(slips), where=slips > 0.0)
     off = np.abs(factor - 1.0).max(axis=(1, 2))
     spin = found["phi"] != 0.0

@@ -1,1 +1,1 @@
-"""Tests of wearlaw_studies."""
+"""Tests of wearlaw_apps.studies."""

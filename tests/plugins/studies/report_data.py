@@ -10,7 +10,7 @@ import pandas as pd
 import wearlaw as wl
 from tests.cases import case
 from wearlaw import CheckedClaim, Curve, FigureData, Panel, PlotAxis, Section, Study
-from wearlaw_studies.report.page import report  # private: the page of a study with figures made by hand
+from wearlaw_apps.studies.report.page import report  # private: the page of a study with figures made by hand
 
 EVIL = "<script>alert(1)</script> <b>bold</b> $x_1$ %{y} & &amp; </script> {{ 7 * 7 }} \"'"
 """A text that HTML, plotly.js, MathJax or jinja would each make something else of."""

@@ -13,8 +13,8 @@ import tomli_w
 import wearlaw as wl
 from tests import cases
 from tests.cases import OWN_TESTS, STEEL, case, changed, load, table
-from wearlaw_output.labels import labels  # private: the names of models in results, without running them
-from wearlaw_studies.case import written  # private: a case without its files
+from wearlaw_apps.output.labels import labels  # private: the names of models in results, without running them
+from wearlaw_apps.studies.case import written  # private: a case without its files
 
 
 def rewritten(read: wl.Case) -> str:

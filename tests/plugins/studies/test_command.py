@@ -115,7 +115,7 @@ def test_the_main_table_has_the_most_wear_as_mass_and_as_depth(study: wl.Study, 
 def test_a_table_that_excel_cannot_read_is_left_out_unless_asked_for(
     folder: Path, monkeypatch: pytest.MonkeyPatch, most: int, option: list[str], left_out: bool
 ) -> None:
-    monkeypatch.setattr("wearlaw_studies.written.MOST_ROWS", most)  # private: less than a million rows
+    monkeypatch.setattr("wearlaw_apps.studies.written.MOST_ROWS", most)  # private: less than a million rows
     write(folder / "c.toml", SMALL)
     result = wearlaw("run", "c.toml", "-o", "out", *option)
     assert (folder / "out" / "results.csv").exists() != left_out

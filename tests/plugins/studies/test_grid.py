@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Array, Q
-from wearlaw_studies.grid import MOST_POINTS, Grid  # private: its errors without those of the rest of a case
+from wearlaw_apps.studies.grid import MOST_POINTS, Grid  # private: its errors without those of the rest of a case
 
 RIG = wl.TwinDisc.suros()
 

@@ -16,8 +16,8 @@ from tests.cases import case
 from tests.plugins.studies.panels import by_label, by_name
 from tests.plugins.studies.report_data import page_of
 from wearlaw import Q
-from wearlaw_output.styled import latex_table  # private: the marks of a table for LaTeX
-from wearlaw_studies.report.tables import FOOTNOTES, summaries  # private: the marks of each number
+from wearlaw_apps.output.styled import latex_table  # private: the marks of a table for LaTeX
+from wearlaw_apps.studies.report.tables import FOOTNOTES, summaries  # private: the marks of each number
 
 RIG = wl.TwinDisc.suros()
 BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.34, density="8800 kg/m^3")

@@ -16,9 +16,9 @@ import wearlaw as wl
 from tests.cases import POINT, case, load, table
 from tests.core.distributions import Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
-from wearlaw_studies.case import case_schema, load_case, written  # private: a case without its files
-from wearlaw_studies.report.tables import parameters  # private: a part of the report, without its page
-from wearlaw_studies.study import provenance, run  # private: a case run without its files
+from wearlaw_apps.studies.case import case_schema, load_case, written  # private: a case without its files
+from wearlaw_apps.studies.report.tables import parameters  # private: a part of the report, without its page
+from wearlaw_apps.studies.study import provenance, run  # private: a case run without its files
 
 STEELS = """
     from typing import Annotated

@@ -15,8 +15,14 @@ import wearlaw as wl
 from tests.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
-from wearlaw_studies.case import Case, case_schema, case_text, load_case, written  # private: a case without its files
-from wearlaw_studies.study import provenance, run  # private: a case run without its files
+from wearlaw_apps.studies.case import (  # private: a case without its files
+    Case,
+    case_schema,
+    case_text,
+    load_case,
+    written,
+)
+from wearlaw_apps.studies.study import provenance, run  # private: a case run without its files
 
 POINT: Any = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
 RIG = wl.TwinDisc.suros()

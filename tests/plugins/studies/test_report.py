@@ -16,7 +16,7 @@ import pytest
 import wearlaw as wl
 from tests import cases
 from tests.plugins.studies.report_data import EVIL, ODD, ONE, THREE, page_of, small_study
-from wearlaw_studies.report.interactive import plotly_figure  # private: the numbers that the page holds
+from wearlaw_apps.studies.report.interactive import plotly_figure  # private: the numbers that the page holds
 
 VOID = {"meta"}
 """Elements of the page that are never closed."""

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.cases import wearlaw
+from wearlaw_models.rigs import wheelset as ws
 
 STARTERS = ("two_discs", "my_tests", "wheel_on_rail", "wheelset")
 OWN_STEEL = '{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = "7800 kg/m^3" }'

@@ -16,7 +16,7 @@ from tests import cases
 from tests.cases import InstallModel, case
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_output.notes import grouped  # private: what commands print of notes
+from wearlaw_apps.output.notes import grouped  # private: what commands print of notes
 
 LOADS = ["1000 MPa", "1500 MPa"]
 FRICTIONS = [0.3, 0.4, 0.5]

@@ -1,1 +1,1 @@
-"""Tests of wearlaw_sweeps."""
+"""Tests of wearlaw_apps.sweeps."""

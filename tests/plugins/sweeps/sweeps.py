@@ -111,7 +111,7 @@ def deadly(marker: Path, always: bool = False) -> wl.Pipeline[...]:
 
 def interrupted_after(blocks: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Make as if Ctrl-C was pressed after some blocks, once."""
-    from wearlaw_sweeps.progress import Bar  # private: interrupts come from the bar
+    from wearlaw_apps.sweeps.progress import Bar  # private: interrupts come from the bar
 
     left = [None] * (blocks + 1)  # the first call is for what was done before
 
@@ -126,7 +126,7 @@ def interrupted_after(blocks: int, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def told(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Return a list that will hold the numbers of points of which the progress bar is told."""
-    from wearlaw_sweeps.progress import Bar  # private: what is told on the way
+    from wearlaw_apps.sweeps.progress import Bar  # private: what is told on the way
 
     found: list[int] = []
     monkeypatch.setattr(Bar, "__call__", lambda _, points: found.append(points))

@@ -15,7 +15,7 @@ import pytest
 import wearlaw as wl
 from tests.cases import POINT, assert_refused, changed, full_disk, table, wearlaw, write
 from tests.plugins.sweeps.sweeps import contents, interrupted_after
-from wearlaw_sweeps import room  # private: the memory of the machine
+from wearlaw_apps.sweeps import room  # private: the memory of the machine
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
@@ -72,7 +72,7 @@ def test_a_changed_case_or_version_is_not_resumed_and_told_what_changed(
     long_case(folder / "big.toml", sweeps={"long": {**LONG, "friction_coefficient": 0.3}})
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "conditions.friction_coefficient: was 0.46, is 0.3")
     long_case(folder / "big.toml")
-    monkeypatch.setattr("wearlaw_sweeps.provenance.__version__", "99.0")  # private: another version of wearlaw
+    monkeypatch.setattr("wearlaw_apps.sweeps.provenance.__version__", "99.0")  # private: another version of wearlaw
     assert_refused(wearlaw("run", case, "-o", "out", "--resume"), "is 99.0")
     assert contents(folder / "out.partial") == before
 
@@ -171,7 +171,7 @@ def test_a_law_of_which_nothing_is_uncertain_is_left_out_and_said_so(folder: Pat
 def test_a_full_disk_is_one_clear_error_and_leaves_nothing_of_the_uncertainty(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw_output.files.save_figure", full_disk)  # private: after tables were written
+    monkeypatch.setattr("wearlaw_apps.output.files.save_figure", full_disk)  # private: after tables were written
     result = wearlaw("uncertainty", uncertain(folder / "case.toml"), "--samples", "64", "-o", "out")
     assert_refused(result, "No space left on device; choose another folder with -o")
     assert [path.name for path in folder.iterdir()] == ["case.toml"]

@@ -73,9 +73,9 @@ def test_a_large_sweep_keeps_the_outcomes_of_laws_alone_and_says_so(monkeypatch:
     assert {"tangential_force", "max_pressure", "stick_ratio", "mass_per_distance", "outside_range"} <= set(whole)
     assert "keeps only" not in whole.attrs["notes"]
     numbers = len(whole.data_vars) * 6
-    monkeypatch.setattr("wearlaw_sweeps.sweep.MOST", numbers)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.sweeps.sweep.MOST", numbers)  # private: small blocks
     assert list(swept(TOGETHER)) == list(whole)
-    monkeypatch.setattr("wearlaw_sweeps.sweep.MOST", numbers - 1)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.sweeps.sweep.MOST", numbers - 1)  # private: small blocks
     cut = swept(TOGETHER)
     assert list(cut) == ["wear_rate", "rcf_damage", "heat_flux"]
     said = f"the sweep is large and keeps only the outcomes of laws: all outputs are {numbers:.2g} numbers"

@@ -141,7 +141,7 @@ def test_another_law_or_version_is_refused(tmp_path: Path, monkeypatch: pytest.M
     with pytest.raises(wl.OutputError, match=r"predict.laws.0.slope: "):
         wl.sweep(other, **GIVEN, store=store, resume=True)
     with monkeypatch.context() as patched:
-        patched.setattr("wearlaw_sweeps.provenance.__version__", "99.0")  # private: another version of wearlaw
+        patched.setattr("wearlaw_apps.sweeps.provenance.__version__", "99.0")  # private: another version of wearlaw
         with pytest.raises(wl.OutputError, match="wearlaw: "):
             wl.sweep(predict, **GIVEN, store=store, resume=True)
     monkeypatch.setattr(
@@ -203,7 +203,7 @@ import signal
 
 import numpy as np
 import wearlaw as wl
-from wearlaw_sweeps import points
+from wearlaw_apps.sweeps import points
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # tests in the background of a shell have it ignored
 points.BLOCK = 100

@@ -16,7 +16,7 @@ import wearlaw as wl
 from tests.core.axles import KTH, Axle
 from tests.plugins.sweeps.sweeps import interrupted_after, predictor, told
 from wearlaw import Q
-from wearlaw_sweeps import points  # private: small blocks
+from wearlaw_apps.sweeps import points  # private: small blocks
 
 ROWS = 100
 RANDOM = np.random.default_rng(5)
@@ -63,7 +63,7 @@ def of_netcdf(folder: Path) -> Any:
 def test_a_file_gives_what_its_arrays_give(
     table_of: Callable[[Path], Any], stored: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw_tables.CELLS", 28)  # private: tables in small pieces
+    monkeypatch.setattr("wearlaw_apps.tables.CELLS", 28)  # private: tables in small pieces
     if stored:
         pytest.importorskip("zarr")
     ds = swept(table_of(tmp_path), store=tmp_path / "map.zarr" if stored else None)
@@ -165,9 +165,9 @@ def test_wrong_files_are_refused_with_line_and_column(name: str, folder: Path) -
 
 
 def test_a_fault_far_down_is_found_in_any_piece(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw_tables.CELLS", 28)  # private: tables in small pieces
-    monkeypatch.setattr("wearlaw_sweeps.sweep.SAMPLE", 5)  # private: small blocks
-    monkeypatch.setattr("wearlaw_sweeps.sweep.BLOCK", 11)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.tables.CELLS", 28)  # private: tables in small pieces
+    monkeypatch.setattr("wearlaw_apps.sweeps.sweep.SAMPLE", 5)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.sweeps.sweep.BLOCK", 11)  # private: small blocks
     table = frame()
     table.loc[63, "Fz [N]"] = -1.0
     table.to_csv(tmp_path / "run.csv", index=False)
@@ -184,7 +184,9 @@ def test_a_fault_far_down_is_found_in_any_piece(tmp_path: Path, monkeypatch: pyt
 def test_a_row_that_only_its_block_shows_to_be_wrong_is_named(
     workers: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw_sweeps.sweep.SAMPLE", 10)  # private: of a rig with several patches, before it starts
+    monkeypatch.setattr(
+        "wearlaw_apps.sweeps.sweep.SAMPLE", 10
+    )  # private: of a rig with several patches, before it starts
     table: Any = pd.DataFrame({"y [mm]": np.linspace(-5.0, 5.0, 60), "mu": 0.3})
     table.loc[33, "mu"] = -0.3
     table.to_csv(tmp_path / "run.csv", index=False)
@@ -267,10 +269,10 @@ def peak_of(rows: int, folder: Path) -> int:
 
 def test_four_times_the_rows_take_no_more_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("zarr")
-    monkeypatch.setattr("wearlaw_tables.CELLS", 4000)  # private: tables in small pieces
+    monkeypatch.setattr("wearlaw_apps.tables.CELLS", 4000)  # private: tables in small pieces
     monkeypatch.setattr(points, "BLOCK", 1000)
-    monkeypatch.setattr("wearlaw_sweeps.sweep.BLOCK", 1000)  # private: small blocks
-    monkeypatch.setattr("wearlaw_sweeps.provenance.BLOCK", 1000)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.sweeps.sweep.BLOCK", 1000)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.sweeps.provenance.BLOCK", 1000)  # private: small blocks
     peak_of(2000, tmp_path)  # imports
     few, many = peak_of(40_000, tmp_path), peak_of(160_000, tmp_path)
     assert many < few + 120_000  # a byte for each row; one column of doubles would take eight

@@ -56,7 +56,7 @@ def test_sum_is_weighted_by_the_shares() -> None:
 def test_sum_is_the_same_from_a_file_in_blocks_on_two_processes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 300)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.sweeps.points.BLOCK", 300)  # private: small blocks
     TABLE.to_csv(tmp_path / "line.csv", index=False)
     one, two = (wl.sweep(PREDICT, tmp_path / "line.csv", share="share", workers=workers, **GIVEN) for workers in (1, 2))
     assert np.array_equal(one["depth"], two["depth"])
@@ -65,7 +65,7 @@ def test_sum_is_the_same_from_a_file_in_blocks_on_two_processes(
 
 
 def test_sum_in_a_store_goes_on_after_an_interrupt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw_sweeps.points.BLOCK", 300)  # private: small blocks
+    monkeypatch.setattr("wearlaw_apps.sweeps.points.BLOCK", 300)  # private: small blocks
     given, path = {**GIVEN, "share": "share [%]"}, tmp_path / "sum.zarr"
     due = wl.sweep(PREDICT, TABLE, store=path, **given)
     xr.testing.assert_identical(due, wl.sweep(PREDICT, TABLE, **given))
@@ -106,7 +106,7 @@ def test_wrong_sums_are_refused(options: dict[str, Any], message: str) -> None:
 
 def test_a_row_without_a_balance_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few steps balance the loads in the middle of the track, and fail where the load jumps."""
-    monkeypatch.setattr("wearlaw_wheelset._loads.STEPS", 3)  # private: the steps of a search
+    monkeypatch.setattr("wearlaw_models.rigs.wheelset.loads.STEPS", 3)  # private: the steps of a search
     table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 6.31], "share": 0.5})
     with pytest.raises(wl.DataError, match=r"row 1 .*lateral_displacement = 6.31 mm.*no normal forces balance"):
         wl.sweep(PREDICT, table, share="share", **GIVEN)

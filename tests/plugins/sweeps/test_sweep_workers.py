@@ -78,7 +78,7 @@ def test_compiled_kernels_are_turned_off_in_workers_where_they_are_here() -> Non
 SCRIPT = """
 import numpy as np
 import wearlaw as wl
-from wearlaw_sweeps import points
+from wearlaw_apps.sweeps import points
 
 points.BLOCK = 3
 wl.accelerate(False)

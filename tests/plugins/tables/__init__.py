@@ -1,1 +1,1 @@
-"""Tests of wearlaw_tables."""
+"""Tests of wearlaw_apps.tables."""

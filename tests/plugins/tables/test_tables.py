@@ -53,7 +53,7 @@ WRITERS: dict[str, tuple[Callable[[Path], object], dict[str, Any]]] = {
 
 @pytest.mark.parametrize("kind", WRITERS)
 def test_a_file_gives_what_was_written(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("wearlaw_tables.CELLS", 30)  # private: several pieces
+    monkeypatch.setattr("wearlaw_apps.tables.CELLS", 30)  # private: several pieces
     write, options = WRITERS[kind]
     write(tmp_path / "run")
     table = wl.read_table(tmp_path / "run", COLUMNS, **options)

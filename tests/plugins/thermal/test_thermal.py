@@ -17,10 +17,10 @@ from scipy.optimize import minimize_scalar
 from scipy.special import k0e
 
 import wearlaw as wl
-import wearlaw_thermal
+import wearlaw_models.stages.thermal
 from tests.plugins.ellipses import EPS, ellipse, ellipses, limit
 from wearlaw import Array, Q
-from wearlaw_thermal import Thermal, ThermalProperties
+from wearlaw_models.stages.thermal import Thermal, ThermalProperties
 
 ON_ELLIPSE = ("linear", "polach", "shen_hedrick_elkins", "fastsim")
 STEEL = float(np.sqrt(50.0 * 7850.0 * 450.0))
@@ -67,11 +67,11 @@ def heating(point: float) -> float:
 
 def test_the_constants_are_integrals_of_hertz_pressure() -> None:
     total = quad(lambda t: heating(np.sin(t)) * np.cos(t) ** 2, -0.5 * np.pi, 0.5 * np.pi)[0]
-    assert total == pytest.approx(wearlaw_thermal.TOTAL_OF_STRIP, rel=1e-8)  # of quad
+    assert total == pytest.approx(wearlaw_models.stages.thermal.TOTAL_OF_STRIP, rel=1e-8)  # of quad
     ellipses = quad(lambda t: np.cos(t) ** 4.5, -0.5 * np.pi, 0.5 * np.pi)[0]
-    assert ellipses == pytest.approx(wearlaw_thermal.TOTAL_OF_ELLIPSE, rel=1e-8)
+    assert ellipses == pytest.approx(wearlaw_models.stages.thermal.TOTAL_OF_ELLIPSE, rel=1e-8)
     hottest = minimize_scalar(lambda t: -heating(t), bounds=(0.0, 0.99), method="bounded")
-    assert -hottest.fun == pytest.approx(wearlaw_thermal.HOTTEST, rel=1e-8)
+    assert -hottest.fun == pytest.approx(wearlaw_models.stages.thermal.HOTTEST, rel=1e-8)
     assert hottest.x == pytest.approx(0.652, abs=5e-4)
 
 
@@ -99,7 +99,7 @@ def band_by_jaeger(peclet: float) -> float:
         root = np.sqrt(np.maximum((1.0 - s * s) * (1.0 - (s + shift[:, None]) ** 2), 0.0))
         overlap = (root * np.cos(0.5 * np.pi * NODES)) @ WEIGHTS * 0.5 * np.pi * (1.0 - 0.5 * shift)
         total += float((overlap * k0e(peclet * shift) * (1.0 + np.exp(-2.0 * peclet * shift))) @ weight)
-    return float(total * np.sqrt(2.0 * peclet / np.pi) / wearlaw_thermal.TOTAL_OF_STRIP)
+    return float(total * np.sqrt(2.0 * peclet / np.pi) / wearlaw_models.stages.thermal.TOTAL_OF_STRIP)
 
 
 def ellipse_by_fourier(peclet: float, axis_ratio: float) -> float:
@@ -287,7 +287,7 @@ def test_no_heat_leaves_the_friction_to_the_bit() -> None:
 def test_the_root_is_found_to_rounding(shape: Callable[[Array], Array], most: int) -> None:
     places = np.array([0.1, 0.11, 0.2, 0.37, 0.49, 0.5])
     function = Mock(side_effect=lambda friction: shape(friction - places))
-    found = wearlaw_thermal._root(function, np.full(6, 0.1), np.full(6, 0.5))
+    found = wearlaw_models.stages.thermal._root(function, np.full(6, 0.1), np.full(6, 0.5))
     assert found == pytest.approx(places, rel=8 * EPS)
     assert function.call_count <= most
     assert found[[0, -1]].tolist() == [0.1, 0.5]  # the ends of the bracket to the bit
@@ -373,7 +373,7 @@ def local_friction(rise: float, hot_ratio: float, cells: int = 400) -> float:
     pressure = np.sqrt(1.0 - x**2)
     ends = np.sqrt((np.arange(cells) + 0.5) * step)
     weights = 2.0 * np.diff(ends, prepend=0.0)  # of the cell itself, the one before it, and so on
-    per_heat = rise * 0.5 * np.pi / wearlaw_thermal.TOTAL_OF_STRIP
+    per_heat = rise * 0.5 * np.pi / wearlaw_models.stages.thermal.TOTAL_OF_STRIP
     heat, share = np.zeros(cells), np.ones(cells)
     for i in range(cells):
         before = per_heat * float(heat[:i] @ weights[i:0:-1])

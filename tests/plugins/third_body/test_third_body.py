@@ -16,7 +16,7 @@ import wearlaw as wl
 from tests.plugins.ellipses import EPS, ellipse, ellipses, limit
 from tests.plugins.full_theory import rows
 from wearlaw import Array, Q
-from wearlaw_third_body import ThirdBody
+from wearlaw_models.stages.third_body import ThirdBody
 
 ON_ELLIPSE = ("linear", "polach", "shen_hedrick_elkins", "fastsim")
 ON_LINE = ("exact", "fastsim", "global")

@@ -13,14 +13,17 @@ import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
 from wearlaw.numerics.integrate import integrate_forces  # private: forces of a problem of its own
-from wearlaw_wheelset._candidates import (  # private: one step of the contact, against another way to it
+from wearlaw_models.rigs.wheelset.candidates import (  # private: one step of the contact, against another way to it
     SPACING,
     candidates,
     sample,
     sampled,
 )
-from wearlaw_wheelset._loads import BALANCED, ROUGH  # private: the accuracy that a search ends at
-from wearlaw_wheelset._search import both_sides, searched  # private: one step of the contact, against another way to it
+from wearlaw_models.rigs.wheelset.loads import BALANCED, ROUGH  # private: the accuracy that a search ends at
+from wearlaw_models.rigs.wheelset.search import (  # private: one step of the contact, against another way to it
+    both_sides,
+    searched,
+)
 
 MODEL = wl.contact_model("fastsim")
 

@@ -15,10 +15,10 @@ import pytest
 from numpy.typing import NDArray
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.full_theory import rows
 from tests.plugins.wheelset.wheelsets import R0, Body, wheelset
 from wearlaw import Array, Q
+from wearlaw_models.rigs import wheelset as ws
 
 SIDES = ("left", "right")
 JUMPS = (0.0, 0.5, 5.0)

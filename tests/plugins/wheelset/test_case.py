@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from wearlaw import Q
+from wearlaw_models.rigs import wheelset as ws
 
 RIG = """
 title = "A worn wheel"

@@ -6,7 +6,7 @@ import scipy
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_wheelset._conicity import (  # private: one step of the contact, against another way to it
+from wearlaw_models.rigs.wheelset.conicity import (  # private: one step of the contact, against another way to it
     NODES,
     equivalent_conicity,
 )

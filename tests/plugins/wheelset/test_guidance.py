@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.wheelsets import through, wheelset
 from wearlaw import Array, Q
-from wearlaw_wheelset._guidance import BORNE  # private: the accuracy that a search ends at
-from wearlaw_wheelset._loads import BALANCED  # private: the accuracy that a search ends at
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset.guidance import BORNE  # private: the accuracy that a search ends at
+from wearlaw_models.rigs.wheelset.loads import BALANCED  # private: the accuracy that a search ends at
 
 PAIR = wheelset(rolling_speed="20 m/s") | wl.contact_model("strip_theory")
 RESULTS = ["lateral_displacement", "guiding_force", "wheel_load", "derailment_quotient"]

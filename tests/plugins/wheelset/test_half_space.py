@@ -13,10 +13,10 @@ from tests import normal_half_space, wheel_on_rail
 from tests.plugins.wheelset.test_roll import STEEL, service
 from tests.plugins.wheelset.wheelsets import R0, wheelset
 from wearlaw import Q
-from wearlaw_wheelset import _half_space  # private: the finest of its grids
-from wearlaw_wheelset._half_space import pressed  # private: the normal problem, against its theory
-from wearlaw_wheelset._motion import placed  # private: one step of the contact, against another way to it
-from wearlaw_wheelset._normal import hertz  # private: the normal problem, against its theory
+from wearlaw_models.rigs.wheelset import half_space  # private: the finest of its grids
+from wearlaw_models.rigs.wheelset.half_space import pressed  # private: the normal problem, against its theory
+from wearlaw_models.rigs.wheelset.motion import placed  # private: one step of the contact, against another way to it
+from wearlaw_models.rigs.wheelset.normal import hertz  # private: the normal problem, against its theory
 
 A, MODULUS = 1.0 / (2.0 * R0), 82e9 / (1.0 - 0.28)
 FASTSIM = wl.contact_model("fastsim")
@@ -249,7 +249,7 @@ def test_a_hump_that_is_too_narrow_for_its_rows_warns(monkeypatch: pytest.Monkey
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         pipeline.posed(where)
-    monkeypatch.setattr(_half_space, "FINEST", 1)
+    monkeypatch.setattr(half_space, "FINEST", 1)
     told = r"1 of 4 patches .*right wheel .* 4\.8 mm, .* off by (5|6|7|8|9|1[0-5]) %.* 20 strips"
     with pytest.warns(wl.RangeWarning, match=told):
         pipeline.posed(where)

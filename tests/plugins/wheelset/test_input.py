@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from wearlaw import Q
-from wearlaw_wheelset import _loads  # private: the accuracy that a search ends at
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset import loads  # private: the accuracy that a search ends at
 
 FIELDS: dict[str, Any] = {
     "wheel": ws.Profile.s1002(),
@@ -127,7 +127,7 @@ def test_positions_without_a_balance_have_no_result_and_a_warning(monkeypatch: p
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.WearlawWarning)
         balanced = predict(**given)
-    monkeypatch.setattr(_loads, "STEPS", 3)  # enough for the first position alone
+    monkeypatch.setattr(loads, "STEPS", 3)  # enough for the first position alone
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         found = predict(**given)

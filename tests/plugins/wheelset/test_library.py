@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
+from wearlaw_models.rigs import wheelset as ws
 
 WIDTHS = {"uic60": 72.0, "rail_60e1": 72.0, "rail_60e2": 72.0, "rail_54e1": 70.0}
 """Widths of heads where the sides of 1 in 20 begin [mm] (EN 13674-1)."""

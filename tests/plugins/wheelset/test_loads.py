@@ -11,11 +11,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.wheelsets import cone, on_round_heads, wheelset
 from wearlaw import Array, Q
-from wearlaw_wheelset import _normal  # private: the normal problem, against its theory
-from wearlaw_wheelset._loads import BALANCED  # private: the accuracy that a search ends at
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset import normal  # private: the normal problem, against its theory
+from wearlaw_models.rigs.wheelset.loads import BALANCED  # private: the accuracy that a search ends at
 
 FASTSIM = wl.contact_model("fastsim")
 Pressure = Literal["kpec", "hertz"]
@@ -240,7 +240,7 @@ def alone(pair: ws.Wheelset, problem: Any, force: Array) -> Array:
     low, high = 0.5 * problem.penetration[1, : force.size], 2.0 * problem.penetration[1, : force.size]
     for _ in range(60):  # bisection
         middle = 0.5 * (low + high)
-        deep = _normal.penetrated(*gaps, middle, 20).normal_force > force
+        deep = normal.penetrated(*gaps, middle, 20).normal_force > force
         low, high = np.where(deep, low, middle), np.where(deep, middle, high)
     return np.asarray(low)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.wheelsets import cone, through
 from wearlaw import Q
+from wearlaw_models.rigs import wheelset as ws
 
 
 def test_s1002_has_the_dimensions_of_its_name() -> None:

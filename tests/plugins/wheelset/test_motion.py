@@ -11,9 +11,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.wheelsets import R0, cone, on_round_heads, wheelset
 from wearlaw import Array, Q
+from wearlaw_models.rigs import wheelset as ws
 
 STENCIL = {1: 4.0 / 5.0, 2: -1.0 / 5.0, 3: 4.0 / 105.0, 4: -1.0 / 280.0}
 """Weights of differences between values in steps ahead and back, for a derivative of eighth order."""

@@ -18,9 +18,9 @@ from tests.normal_half_space import pressed
 from tests.normal_patches import loaded
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_wheelset import _normal as normal  # private: the normal problem, against its theory
-from wearlaw_wheelset import _normal_loops as loops  # private: the normal problem, against its theory
-from wearlaw_wheelset._normal import hertz, penetrated  # private: the normal problem, against its theory
+from wearlaw_models.rigs.wheelset import normal as normal  # private: the normal problem, against its theory
+from wearlaw_models.rigs.wheelset import normal_loops as loops  # private: the normal problem, against its theory
+from wearlaw_models.rigs.wheelset.normal import hertz, penetrated  # private: the normal problem, against its theory
 
 A = 1.0 / (2.0 * 0.46)
 MODULUS = 82e9 / (1.0 - 0.28)

@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import wearlaw_wheelset as ws
 from docs.wheelset_benchmark import wheelset
 from wearlaw import Q
-from wearlaw_wheelset._pictures import APART, LINES  # private: one step of the contact, against another way to it
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset.pictures import (  # private: one step of the contact, against another way to it
+    APART,
+    LINES,
+)
 
 
 @pytest.fixture(scope="module")

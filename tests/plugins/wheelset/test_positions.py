@@ -12,11 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Array, Q
-from wearlaw_wheelset._search import Touching, searched  # private: one step of the contact, against another way to it
-from wearlaw_wheelset._search_loops import ROLL_ACCURACY  # private: the accuracy that a search ends at
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset.search import (  # private: one step of the contact, against another way to it
+    Touching,
+    searched,
+)
+from wearlaw_models.rigs.wheelset.search_loops import ROLL_ACCURACY  # private: the accuracy that a search ends at
 
 STANDARD = wheelset()
 ROUNDING = 2e-9

@@ -13,10 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
-from wearlaw_wheelset._files import LARGEST  # private: the largest file that is read
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset.files import LARGEST  # private: the largest file that is read
 
 WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()
 ENDINGS = {"wheel": (".prw", ".csv", ".txt"), "rail": (".prr", ".csv", ".txt")}

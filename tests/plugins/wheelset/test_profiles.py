@@ -14,15 +14,15 @@ import pytest
 import scipy
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
-from wearlaw_wheelset._curve import (  # private: one step of the contact, against another way to it
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset.curve import (  # private: one step of the contact, against another way to it
     SPACING,
     Curve,
     smoothed,
 )
-from wearlaw_wheelset._formulas import FORMULAS  # private: all pieces that norms state
+from wearlaw_models.rigs.wheelset.formulas import FORMULAS  # private: all pieces that norms state
 
 MM = 1e-3
 WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.full_theory import rows
 from tests.plugins.wheelset.wheelsets import R0, Body, least_gap, standing, wheelset
 from wearlaw import Array, Q
-from wearlaw_wheelset._loads import BALANCED  # private: the accuracy that a search ends at
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset.loads import BALANCED  # private: the accuracy that a search ends at
 
 FASTSIM = wl.contact_model("fastsim")
 STEEL = wl.Material(youngs_modulus=Q(2.56 * 82.0, "GPa"), poisson_ratio=0.28, density="7850 kg/m^3")

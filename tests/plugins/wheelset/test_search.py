@@ -13,7 +13,6 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.wheelsets import (
     R0,
     Body,
@@ -27,7 +26,11 @@ from tests.plugins.wheelset.wheelsets import (
     wheelset,
 )
 from wearlaw import Array, Q
-from wearlaw_wheelset._search_loops import ROLL_ACCURACY, ROUNDING  # private: the accuracy that a search ends at
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset.search_loops import (  # private: the accuracy that a search ends at
+    ROLL_ACCURACY,
+    ROUNDING,
+)
 
 SIDE = np.array([-1.0, 1.0])
 STANDARD = wheelset()

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from tests.plugins.wheelset.test_positions import assert_same, geometry
 from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
-from wearlaw_wheelset._loads import Pressure  # private: the accuracy that a search ends at
+from wearlaw_models.rigs import wheelset as ws
+from wearlaw_models.rigs.wheelset.loads import Pressure  # private: the accuracy that a search ends at
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning")
 

@@ -9,8 +9,8 @@ import scipy
 from scipy.spatial.transform import Rotation
 
 import wearlaw as wl
-import wearlaw_wheelset as ws
 from wearlaw import Array, Q
+from wearlaw_models.rigs import wheelset as ws
 
 R0 = 0.46
 """Nominal radius [m]."""

@@ -14,7 +14,7 @@ from scipy import stats
 import wearlaw as wl
 from tests.plugins.ellipses import EPS
 from wearlaw import Array, Q
-from wearlaw_wlrm import WLRM
+from wearlaw_models.laws.wlrm import WLRM
 
 POINTS: dict[str, Any] = {"threshold": Q(20, "N"), "peak": Q(65, "N"), "balance": Q(175, "N"), "peak_damage": 1e-5}
 """Of a public program, `railway_project` by A. M. Saleh, crack_initiation/create_di_df.py at commit 605c5c7."""

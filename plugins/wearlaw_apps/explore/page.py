@@ -1,0 +1,282 @@
+"""The page: its figures, its controls, and the ways to open it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from html import escape
+from time import perf_counter
+from typing import Any
+
+import click
+import numpy as np
+import pandas as pd
+import panel as pn
+from bokeh.models import CustomJS
+
+import wearlaw as wl
+from wearlaw.fields import is_law_file
+from wearlaw.models.law import named_outcomes
+from wearlaw.pipeline.prediction import SHOWN
+from wearlaw.units.variables import VARIABLES, name_of
+from wearlaw_apps.explore.subject import Subject, numbered
+from wearlaw_apps.output.commands import values
+from wearlaw_apps.output.conditions import Known
+from wearlaw_apps.output.curves import BLACK, Map
+from wearlaw_apps.output.labels import in_words, label
+from wearlaw_apps.output.notes import Notes, caught_warnings
+from wearlaw_apps.output.pictures import fields_of, raster
+from wearlaw_apps.studies.case import load_case
+from wearlaw_apps.studies.report.interactive import plotly_figure
+from wearlaw_apps.sweeps.evaluation import expect_pipeline
+
+CURVE = 41
+"""Points of a curve of wear over creepage."""
+
+SLOW = 0.5
+"""Time beyond which a prediction gets no curve, and figures wait until a slider is released [s]."""
+
+STRETCHED: dict[str, Any] = {"sizing_mode": "stretch_width"}
+
+WIDE: dict[str, Any] = {"flex": "1 1 300px", "min-width": "260px", "max-width": "100%"}
+"""Style of an element that stands beside others if there is room, as on no phone."""
+
+TABLE = ":host { overflow-x: auto } th { text-align: left }"
+"""Style of a table, which scrolls on a narrow screen."""
+
+VIEWPORT = """document.head.insertAdjacentHTML("beforeend",
+    '<meta name="viewport" content="width=device-width, initial-scale=1">')"""
+"""JavaScript that makes the page as wide as the screen of a phone."""
+
+
+def patch_figures(predictions: Mapping[str, wl.Prediction]) -> list[wl.FigureData]:
+    """Return figures of pressure, slip and wear in a patch, by the first law that sees its cells; [] if none does."""
+    law, prediction = next(((law, one) for law, one in predictions.items() if one.scale == "cells"), ("", None))
+    if prediction is None:
+        return []
+    found = fields_of(prediction)
+    (wear,) = named_outcomes(prediction.laws)  # such as "wear_rate_rail", of a law for the rail alone
+    figures, along = [], wl.PlotAxis(label("x"))
+    for name, of in (("pressure", "pressure"), ("slip", "slip"), ("wear_rate", wear)):
+        if prediction.problem.geometry == "line":
+            panel = wl.Panel(along, wl.PlotAxis(label(name)), (wl.Curve(law, found["x"].values, found[of].values),))
+        else:
+            drawn = Map("", *raster(prediction, found[of].values))
+            panel = wl.Panel(along, wl.PlotAxis("y [mm]"), (), equal=True, map=drawn)
+        title = f"{label(name)} by {law}" if name == "wear_rate" else label(name)
+        figures.append(wl.FigureData(name, title, (panel,)))
+    return figures
+
+
+def largest(prediction: wl.Prediction) -> Any:
+    """Return the largest wear rate of the patches at each operating point [µg/m/mm²]."""
+    return np.nanmax(prediction.wear_rate.magnitude, axis=tuple(range(-len(prediction.problem.dims), 0)))
+
+
+def by_patch(predictions: Mapping[str, wl.Prediction]) -> dict[str, dict[str, wl.Prediction]]:
+    """Return predictions by law for each existing patch, by its label, "" for the only one of a rig."""
+    for first in predictions.values():
+        rows: Any = first.to_dataframe(["wear_rate"])[[*first.problem.dims]].to_dict("records")
+        return {in_words(row): {law: one.sel(**row) for law, one in predictions.items()} for row in rows}
+    return {}
+
+
+def numbers(patches: Mapping[str, Mapping[str, wl.Prediction]]) -> str:
+    """Return a table in HTML with a column for each patch."""
+    columns = {}
+    for patch, predictions in patches.items():
+        first = next(iter(predictions.values()))
+        wear = {f"wear rate by {law}": one.wear_rate for law, one in predictions.items()}
+        columns[patch] = wear | {name_of(name): first[name] for name in SHOWN[first.problem.geometry]}
+    return str(pd.DataFrame(columns).map(repr).to_html(border=0, header=len(columns) > 1))
+
+
+def slider(rig: Any, name: str, value: object) -> Any:
+    """Return a slider in a `unit` that starts at a condition; None for no number, such as a law of friction."""
+    known, bounds = Known.of(value), getattr(rig.conditions().get(name), "unit", None)
+    if known is None or np.ndim(known.values):
+        return None
+    unit = VARIABLES[name].unit if name in VARIABLES else known.unit or ""
+    start = float(wl.Q(known.values, known.unit or "").m_as(unit))
+    high = 2.0 * abs(start) or 1.0
+    low = -high if bounds is not None and bounds.negative and not bounds.positive else 0.01 * high
+    text = label(name, units={name: unit}).removesuffix(" [-]")
+    ends = {"start": low, "end": high, "step": (high - low) / 200.0, "format": "0.[0000]"}
+    made: Any = pn.widgets.EditableFloatSlider(label=text, value=start, **ends, **STRETCHED)
+    made.unit = unit
+    return made
+
+
+class Page:
+    """The page of a rig, which starts from its example conditions and the given ones."""
+
+    def __init__(self, subject: Subject, given: Mapping[str, Any]) -> None:
+        self.subject, self.start = subject, subject.conditions(given)
+        subject.rig.checked_problem(self.start)  # an error of what is given, before there is a page with notes
+        sliders = {name: slider(subject.rig, name, value) for name, value in self.start.items()}
+        self.sliders = {name: one for name, one in sliders.items() if one is not None}
+        self.model = pn.widgets.Select(label="Contact model", options=[*subject.models], **STRETCHED)
+        self.laws = pn.widgets.CheckBoxGroup(options=[*subject.laws], value=subject.first_laws, inline=True)
+        self.patch = pn.widgets.Select(label="Patch", options=[""], visible=False, **STRETCHED)
+        self.panes: dict[str, Any] = {}
+        self.figures = pn.FlexBox(**STRETCHED)
+        self.notes, self.numbers, self.python = (pn.pane.HTML(stylesheets=[TABLE], **STRETCHED) for _ in range(3))
+        self._update()
+        self._update()  # for its time: the first predictions load and compile
+        for one in self.sliders.values():
+            one.param.watch(self._moved, "value")
+            one.param.watch(self._update, "value_throttled")
+        for widget in (self.model, self.laws, self.patch):
+            widget.param.watch(self._update, "value")
+
+    def layout(self) -> Any:
+        """Return the controls beside the figures, or above them on a phone."""
+        laws = pn.Column(pn.pane.HTML("Wear laws"), self.laws)
+        controls = [*self.sliders.values(), self.model, laws, self.patch, self.numbers]
+        left = pn.Column(*controls, styles={**WIDE, "max-width": "420px"})
+        right = pn.Column(self.notes, self.figures, self.python, styles={**WIDE, "flex": "4 1 600px"})
+        return pn.FlexBox(left, right, flex_wrap="wrap", **STRETCHED)
+
+    def _moved(self, *_: Any) -> None:
+        if self.seconds < SLOW:
+            self._update()
+
+    def _update(self, *_: Any) -> None:
+        with caught_warnings():  # there are notes of them
+            self._show(self.model.value, self.laws.value)
+
+    def _show(self, model: str, laws: list[str]) -> None:
+        notes, started = Notes(), perf_counter()
+        conditions = dict(self.start)
+        for name, one in self.sliders.items():
+            conditions[name] = f"{one.value:.6g} {one.unit}" if one.unit else float(f"{one.value:.6g}")
+        predictions = self.subject.predict(model, laws, conditions, notes)
+        curve = self._curve(predictions, conditions) if perf_counter() - started < SLOW else []
+        self.seconds = perf_counter() - started
+        patches = by_patch(predictions)
+        self.patch.param.update(options=[*patches] or [""], visible=len(patches) > 1)
+        if patches and self.patch.value not in patches:
+            self.patch.value = next(iter(patches))
+        patch = patch_figures(patches.get(self.patch.value, {}))
+        self._draw([*patch, *curve, *self._profiles(predictions)])
+        self.numbers.object = numbers(patches)
+        python = escape(self.subject.python(model, laws, conditions), quote=False)
+        self.python.object = f"<p>The same in Python:</p><pre tabindex=0 style='white-space: pre-wrap'>{python}</pre>"
+        self.notes.object = "".join(f"<p role=status>{escape(text)}</p>" for text in notes.texts)
+
+    def _curve(self, predictions: Mapping[str, wl.Prediction], conditions: Mapping[str, Any]) -> list[wl.FigureData]:
+        """Return the figure of wear over creepage, with points for the present; none if the creepage has no slider."""
+        creepage = self.subject.rig.creepage
+        if creepage not in self.sliders:
+            return []
+        along = self.sliders[creepage]
+        x = np.linspace(along.start, along.end, CURVE)
+        there = {**conditions, creepage: wl.Q(x, along.unit)}
+        found = self.subject.predict(self.model.value, [*predictions], there, Notes())
+        curves = [wl.Curve(law, x, largest(one), colour=number) for number, (law, one) in enumerate(found.items())]
+        now = np.array([largest(one) for one in predictions.values()])
+        point = wl.Curve("now", np.full(now.shape, along.value), now, colour=BLACK, points=True)
+        panel = wl.Panel(wl.PlotAxis(along.label), wl.PlotAxis(label("wear_rate")), (*curves, point))
+        return [wl.FigureData("curve", f"wear over {name_of(creepage)}", (panel,))]
+
+    def _profiles(self, predictions: Mapping[str, wl.Prediction]) -> Iterable[wl.FigureData]:
+        """Return the figures of a rig with profiles, such as a wheelset."""
+        resolved = {law: one for law, one in predictions.items() if one.scale == "cells"}
+        draw = getattr(self.subject.rig, "profile_figures", None)
+        return draw(resolved) if draw and resolved else ()
+
+    def _draw(self, figures: Iterable[wl.FigureData]) -> None:
+        """Show each panel as a figure of its own, which has room on a phone."""
+        shown = []
+        for figure in figures:
+            for number, panel in enumerate(figure.panels):
+                name = f"{figure.name}_{number}"
+                if name not in self.panes:
+                    look: dict[str, Any] = {"config": {"displayModeBar": False}, "styles": WIDE, **STRETCHED}
+                    self.panes[name] = pn.pane.Plotly(name=name, **look)
+                drawn = plotly_figure(replace(figure, panels=(replace(panel, title=panel.title or figure.title),)))
+                listed = len(panel.curves) > 1
+                margin = {"l": 60, "r": 10, "t": 30, "b": 90 if listed else 50}
+                look = {"height": 280, "margin": margin, "showlegend": listed, "template": "none"}
+                below = {"orientation": "h", "yref": "container", "y": 0, "yanchor": "bottom"}
+                self.panes[name].object = {**drawn, "layout": {**drawn["layout"], **look, "legend": below}}
+                shown.append(self.panes[name])
+        self.figures[:] = shown
+
+
+def explore(predict: Any, /, **conditions: Any) -> Any:
+    """Return a page to explore a pipeline in a notebook: sliders for its conditions, menus of models, live figures.
+
+    Parameters
+    ----------
+    predict : Pipeline
+        As in rig | contact model | wear law. The page starts with its models; the menus have the installed ones too.
+    **conditions
+        Start values of conditions, such as ``normal_force="80 kN"``. Default: the example values of the rig. Those that
+        are numbers get sliders, from about 0 or from minus twice to twice their start value.
+
+    Returns
+    -------
+    panel.viewable.Viewable
+        The page. A notebook shows it; ``.show()`` opens it in a browser.
+
+    Raises
+    ------
+    InputError
+        If `predict` is no pipeline, or a condition is wrong.
+    """
+    expect_pipeline(predict)
+    pn.extension("plotly", inline=True)
+    models = {predict.contact_model: "predict.contact_model"}
+    laws, stages = numbered("predict.laws", predict.laws), numbered("predict.stages", predict.stages)
+    return Page(Subject(predict.rig, "predict.rig", "", models, laws, stages), conditions).layout()
+
+
+@click.command("explore")
+@click.argument("rig", default="wheel_rail")
+@click.option("--law", "laws", metavar="LAW", multiple=True, help="Wear law to start with: its name or TOML file.")
+@click.option("--set", "conditions", metavar="CONDITION=VALUE", multiple=True, help="Start value of a condition.")
+@click.option("--port", default=0, help="Port of the page [default: a free one].")
+@click.option("--browser/--no-browser", default=True, help="Whether to open a browser.")
+def command(rig: str, laws: tuple[str, ...], conditions: tuple[str, ...], port: int, browser: bool) -> None:
+    """Explore a rig on a local page: RIG is an installed rig, such as wheelset, or a case.
+
+    \b
+    wearlaw explore
+    wearlaw explore twin_disc --set "normal_force=7 kN" --set creepage=1%
+    wearlaw explore my-case.toml
+    wearlaw explore wheel_rail --law fit/law.toml
+
+    An installed rig has example values. A case brings its own rig, models and laws. The page needs no network; Ctrl-C
+    ends it.
+    """  # noqa: D301
+    pn.extension("plotly")
+    subject, start = named(rig, laws), values("--set", conditions)
+
+    def opened() -> Any:
+        document: Any = pn.state.curdoc
+        document.js_on_event("document_ready", CustomJS(code=VIEWPORT))
+        return Page(subject, start).layout()
+
+    Page(subject, start)  # an error before the server starts
+    look: dict[str, Any] = {"show": browser, "verbose": False, "title": f"wearlaw: {subject.rig.name}"}
+    server: Any = pn.serve(opened, port=port, address="localhost", start=False, **look)
+    click.echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
+    server.run_until_shutdown()
+
+
+def named(rig: str, chosen: Iterable[str] = ()) -> Subject:
+    """Return an installed rig with example values, or that of a case with its models and laws; with chosen laws."""
+    laws = {}
+    for name in chosen:
+        read = wl.read_law if is_law_file(name) else wl.wear_law
+        laws[read(name)] = f"wl.{read.__name__}({name!r})"
+    found = wl.rigs().get(rig)
+    if found is not None:
+        given = "".join(f", {name}={text!r}" for name, text in found.example_fields.items())
+        return Subject(wl.rig(rig, **found.example_fields), "rig", f"rig = wl.rig({rig!r}{given})", own_laws=laws)
+    case = load_case(rig)
+    models, wear_laws, stages = (
+        numbered(f"case.{name}", getattr(case, name)) for name in ("contact_models", "wear_laws", "stages")
+    )
+    return Subject(case.rig, "case.rig", f"case = wl.load_case({rig!r})", models, {**wear_laws, **laws}, stages)

@@ -1,0 +1,93 @@
+"""What the page asks of wearlaw, without the page: which models fit a rig, and what they predict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+import wearlaw as wl
+from wearlaw_apps.output.labels import labelled
+from wearlaw_apps.output.notes import Notes
+from wearlaw_apps.sweeps.several import composed
+
+FIRST = "strip_theory"
+"""The contact model with which a page starts, if it solves the rig's patches and the user has none."""
+
+MEANS: Any = wl.patch_mean()
+"""The stage for a law of patch means."""
+
+
+@dataclass
+class Subject:
+    """A rig and the user's models, each with the Python that makes it; the installed models join them."""
+
+    rig: Any
+    code: str
+    setup: str = ""
+    own_models: Mapping[Any, str] = field(default_factory=dict)
+    own_laws: Mapping[Any, str] = field(default_factory=dict)
+    stages: Mapping[Any, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        by_use = sorted(wl.contact_models(), key=lambda name: name != FIRST)
+        models = {**self.own_models, **_installed(wl.contact_model, by_use)}
+        own = {law: code for law, code in self.own_laws.items() if isinstance(law, wl.WearLaw)}
+        laws = {**own, **_installed(wl.wear_law, [*wl.wear_laws(), *wl.parameter_sets()])}
+        self.codes = {MEANS: "wl.patch_mean()", **self.stages, **models, **laws}
+        fitting = []
+        for model in models:
+            with suppress(wl.CompositionError):  # it is for another shape of patch
+                self.rig | model
+                fitting.append(model)
+        self.models, self.laws = labelled(fitting), labelled([*laws])
+        self.first_laws = [*self.laws][: len(own)] or ["usfd"]
+
+    def conditions(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the example conditions of the rig and the given ones, which replace those that they exclude."""
+        replaced = [name for names in self.rig.choices if {*names} & {*given} for name in names]
+        return {name: value for name, value in self.rig.example.items() if name not in replaced} | dict(given)
+
+    def pipeline(self, model: str, law: str) -> Any:
+        """Return the pipeline of a contact model and a law, by their labels; a law of patch means gets them."""
+        try:
+            return composed(self.rig, self.models[model], [*self.stages], self.laws[law])
+        except wl.CompositionError:
+            return composed(self.rig, self.models[model], [*self.stages, MEANS], self.laws[law])
+
+    def predict(
+        self, model: str, laws: Sequence[str], conditions: Mapping[str, Any], notes: Notes
+    ) -> dict[str, wl.Prediction]:
+        """Return a prediction for each law, by its label; there are notes of warnings and errors."""
+        found: dict[str, wl.Prediction] = {}
+        for law in laws:
+            try:
+                with notes.of(law):
+                    found[law] = self.pipeline(model, law)(**conditions)
+            except wl.WearlawError as error:
+                notes.add(f"{law}: {error}")
+        return found
+
+    def python(self, model: str, laws: Sequence[str], conditions: Mapping[str, Any]) -> str:
+        """Return the Python that predicts the same."""
+        given = ", ".join(f"{name}={value!r}" for name, value in conditions.items())
+        lines = ["import wearlaw as wl", "", self.setup, f"conditions = dict({given})"]
+        for pipeline in (self.pipeline(model, law) for law in laws):
+            parts = (pipeline.contact_model, *pipeline.stages, *pipeline.laws)
+            lines.append(f"print(({' | '.join([self.code, *(self.codes[part] for part in parts)])})(**conditions))")
+        return "\n".join(lines)
+
+
+def numbered(code: str, parts: Iterable[Any]) -> dict[Any, str]:
+    """Return the parts in a list that has a name in Python."""
+    return {part: f"{code}[{place}]" for place, part in enumerate(parts)}
+
+
+def _installed(make: Callable[[str], Any], names: Iterable[str]) -> dict[Any, str]:
+    """Return the models that need no numbers from the user, each with the Python that makes it."""
+    found = {}
+    for name in names:
+        with suppress(wl.ConfigurationError):
+            found[make(name)] = f'wl.{make.__name__}("{name}")'
+    return found

@@ -1,0 +1,511 @@
+"""Comparing predictors of one outcome on the same tests: `compare`, its ranking, and a figure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from html import escape
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+import pandas as pd
+
+from wearlaw.arrays import Array, steady
+from wearlaw.errors import (
+    CalibrationWarning,
+    FitError,
+    FitWarning,
+    InputError,
+    PlasticityWarning,
+    RangeWarning,
+    did_you_mean,
+    shown,
+)
+from wearlaw.models.law import WEAR, Law, named_outcomes
+from wearlaw.models.model import Model
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
+from wearlaw.units.variables import name_of
+from wearlaw_apps.fits.agreement import Agreement, agreement
+from wearlaw_apps.fits.fit import fit as refit
+from wearlaw_apps.fits.lack_of_fit import repeats
+from wearlaw_apps.fits.named_numbers import FRICTION
+from wearlaw_apps.fits.observations import TRACTION, test_names
+from wearlaw_apps.fits.result import Fit
+from wearlaw_apps.fits.wear_tests import WearTests, expect_tests
+from wearlaw_apps.output.curves import BLACK, Curve, FigureData
+from wearlaw_apps.output.labels import label, labels, readable
+from wearlaw_apps.output.notes import Notes, caught_warnings
+from wearlaw_apps.output.parity import parity_panels
+from wearlaw_apps.output.plot import plot
+from wearlaw_apps.sweeps.progress import Bar
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+
+Predictor: TypeAlias = Pipeline[...] | Fit
+"""A pipeline with a law, or a fit of one."""
+
+Folds: TypeAlias = int | Literal["leave-one-out"]
+"""Number of folds, or one for each operating point."""
+
+SEED = 0
+"""Seed of the random order in which operating points are dealt to folds, so that a comparison can be repeated."""
+
+COLUMNS = {
+    "predictor": "object",
+    **dict.fromkeys(("rms_factor", "bias", "geometric_sd", "largest_factor", "rms_error"), "Float64"),
+    **dict.fromkeys(("tests", "in_sample", "without_ratio", "fitted"), "Int64"),
+    **dict.fromkeys(("aic", "aicc"), "Float64"),
+}
+"""Columns of a ranking with their types."""
+
+
+class Names(NamedTuple):
+    """The names of a predictor, its law and its contact model."""
+
+    label: str
+    law: str
+    contact: str
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """One predictor in a comparison.
+
+    Attributes
+    ----------
+    names : Names
+        Its names.
+    pipeline : Pipeline
+        The pipeline that predicts.
+    predicted : ndarray, (tests,)
+        Its predictions in SI, for wear rates [kg/m/m²].
+    agreement : Agreement
+        Their errors against the measured ones.
+    in_sample : int
+        Number of the tests to which its law was fitted.
+    fitted : int or None
+        Number k of parameters fitted to exactly these n tests; the scatter counts as one more if it is estimated.
+    aic : float or None
+        Akaike's information criterion of that fit, n ln(Σ rᵢ²/n) + 2k, rᵢ being its residuals, or Σ rᵢ² + 2k where the
+        tests state their uncertainty. Of laws fitted to the same tests, the one with the least AIC is expected to
+        predict other tests best. Only differences matter.
+    aicc : float or None
+        AIC + 2k(k + 1)/(n - k - 1), for few tests; None if there are too few.
+
+    Notes
+    -----
+    K. P. Burnham and D. R. Anderson, Model Selection and Multimodel Inference, 2nd ed., Springer, 2002.
+    """
+
+    names: Names
+    pipeline: Pipeline[...]
+    predicted: Array
+    agreement: Agreement
+    in_sample: int = 0
+    fitted: int | None = None
+    aic: float | None = None
+    aicc: float | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison:
+    """Predictors of one outcome on the same tests, made by `compare`.
+
+    Attributes
+    ----------
+    tests : WearTests
+        The tests for the comparison.
+    compared : tuple of Compared
+        The predictors, best first.
+    notes : tuple of str
+        Remarks for the reader, once each.
+    outcome : str
+        Name of the outcome, such as "wear_rate".
+    unit : str
+        Its unit in tables and figures.
+    cross_validated : str
+        How fits were cross-validated, "leave-one-out" or such as "5 folds"; "" if they were not.
+    """
+
+    tests: WearTests
+    compared: tuple[Compared, ...]
+    notes: tuple[str, ...]
+    outcome: str = WEAR
+    unit: str = WEAR_RATE
+    cross_validated: str = ""
+
+    @property
+    def measured(self) -> Array:
+        """The measurements in SI, (tests,)."""
+        return self.tests.measured(self.outcome, self.unit)
+
+    def table(self) -> pd.DataFrame:
+        """Return the ranking, a row for each predictor, best first, with the measures of `Agreement` and `Compared`.
+
+        A measure that does not exist is blank (NA), never infinite.
+        """
+        return self._ranking().rename(columns={"rms_error": f"rms_error [{self.unit or '-'}]"})
+
+    def _ranking(self) -> pd.DataFrame:
+        rows = [{**vars(one), **vars(one.agreement), "predictor": one.names.label} for one in self.compared]
+        frame = pd.DataFrame(rows, columns=list(COLUMNS)).astype(COLUMNS)
+        return frame.assign(rms_error=in_unit(frame["rms_error"].to_numpy(float), self.unit)).astype(COLUMNS)
+
+    def predictions(self) -> pd.DataFrame:
+        """Return the tests with the values of each predictor; the heads of the columns hold the units."""
+        predicted = {
+            f"{one.names.label} [{self.unit or '-'}]": in_unit(one.predicted, self.unit) for one in self.compared
+        }
+        return self.tests.to_dataframe().assign(**predicted)
+
+    def figure_data(self) -> FigureData:
+        """Return measured against predicted values, a panel for each contact model, on logarithmic axes.
+
+        Tests in which one of the two is zero are missing there; the caption says how many. If a value is negative, the
+        axes are linear and show all tests.
+        """
+        measured = self.measured
+        values = np.stack([measured, *(one.predicted for one in self.compared)])
+        linear = bool((values < 0.0).any())
+        laws = list(dict.fromkeys(one.names.law for one in self.compared))
+        panels: dict[str, list[Curve]] = {}
+        for one in self.compared:
+            drawn = np.full(measured.shape, linear) | ((one.predicted > 0) & (measured > 0))
+            x, y = (in_unit(some[drawn], self.unit) for some in (one.predicted, measured))
+            curve = Curve(one.names.law, x, y, colour=laws.index(one.names.law) % BLACK, points=True, hollow=True)
+            panels.setdefault(one.names.contact, []).append(curve)
+        zeros = int(((values[1:] == 0.0) | (measured == 0.0)).sum(axis=-1).max())
+        hidden = f" Not shown: {name_of(self.outcome)}s of zero, in up to {zeros} tests." if zeros else ""
+        lines = "The line is equality." if linear else f"The lines are equality and a factor of two.{hidden}"
+        source = f" of {self.tests.source}" if self.tests.source else ""
+        name = label(self.outcome, units={self.outcome: self.unit})
+        return FigureData(
+            name="measured_against_predicted",
+            title=f"Measured against predicted {name_of(self.outcome)}",
+            panels=parity_panels(name, list(panels.items()), in_unit(np.ravel(values), self.unit), linear),
+            caption=f"{len(self.tests)} tests{source}. {lines}",
+        )
+
+    def plot(self) -> Figure:
+        """Return a drawing of `figure_data`."""
+        return plot(self.figure_data())
+
+    def __repr__(self) -> str:
+        frame = self._shown()
+        cells = [list(frame.columns), *frame.to_numpy().tolist()]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in cells]
+        return "\n  ".join([self._head(), *map(str.rstrip, lines)])
+
+    def _repr_html_(self) -> str:
+        return f"<div><b>{escape(self._head())}</b>{self._shown().to_html(index=False, border=0)}</div>"
+
+    def _shown(self) -> pd.DataFrame:
+        """Return the ranking as texts, without columns that say nothing."""
+        frame = self._ranking().drop(columns="tests")
+        return frame.loc[:, frame.fillna(0).ne(0).any()].map(_cell)
+
+    def _head(self) -> str:
+        count = f"{len(self.compared)} predictor{'s' if len(self.compared) > 1 else ''} on {len(self.tests)} tests"
+        of = "" if self.outcome == WEAR else f" of {name_of(self.outcome)}"
+        unit = f"; rms_error in {readable(self.unit)}" if self.unit else ""
+        validated = f", fits cross-validated ({self.cross_validated})" if self.cross_validated else ""
+        return f"{count}{of}, best first{validated}{unit}"
+
+
+def _cell(value: Any) -> str:
+    if value is pd.NA:
+        return ""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def compare(
+    predictors: Mapping[str, Predictor] | Sequence[Predictor],
+    tests: WearTests,
+    *,
+    outcome: str | None = None,
+    friction_coefficient: ArrayLike | None = None,
+    cross_validate: Folds | None = None,
+) -> Comparison:
+    """Rank predictors by how well they agree with measured wear rates or another outcome, all on the same tests.
+
+    Parameters
+    ----------
+    predictors : mapping of str to Pipeline or Fit, or sequence of these
+        The predictors of the outcome. In a sequence, each is named after its law and contact model, such as
+        "usfd on exact", or "usfd fitted on exact" for a `Fit`.
+    tests : WearTests
+        Measured tests. Those without the outcome are left out.
+    outcome : str, optional
+        Name of the outcome, such as "rcf_damage"; needed if the predictors share several that the tests measure.
+    friction_coefficient : array_like of float, optional
+        μ [-] for tests without a friction coefficient.
+    cross_validate : int or "leave-one-out", optional
+        Each `Fit` predicts every test from a fit of its free parameters to tests at other operating points: to all
+        others for "leave-one-out", or to those in the other of this number of random folds. Repeated tests, whose
+        conditions agree to 0.1 %, stay together. Pipelines predict as they are.
+
+    Returns
+    -------
+    Comparison
+        The predictors, ranked by: first the number of tests in which either the predicted or the measured value is
+        zero, or negative, which no factor can express; then the root mean square of the logarithmic error,
+        `rms_factor`; then the root mean square error.
+
+    Raises
+    ------
+    InputError
+        If there is no predictor, two have the same name, they share no outcome, or no test has it. For
+        cross-validation, also if no predictor is a `Fit`, or the number of folds is impossible.
+    FitError
+        If the tests outside a fold do not determine the parameters of a fit.
+    ConditionsError
+        If the friction coefficient is unknown, or a predictor's rig does not take the conditions of the tests.
+
+    Notes
+    -----
+    A law fitted to these tests follows their scatter too: the more parameters it has, the better it agrees. AIC (see
+    `Compared`) weighs one against the other. It is blank unless a law was fitted to the wear rates of exactly these
+    tests, and if fits assume different kinds of scatter. A note names the laws that were fitted to these tests, and
+    `in_sample` counts the tests; cross-validation ranks fits by tests that they have not seen.
+    """
+    expect_tests(tests)
+    given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
+    if not given:
+        raise InputError("give at least one predictor, such as rig | contact_model | law")
+    for one in given:
+        if not isinstance(one, Pipeline | Fit) or not _pipeline(one).laws:
+            raise InputError(
+                f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {shown(one)}"
+            )
+    outcome = _outcome(given, tests, outcome)
+    names = _names(given, outcome)
+    if isinstance(predictors, Mapping):
+        names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
+    return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, outcome, cross_validate)
+
+
+@steady
+def compare_named(
+    named: Sequence[tuple[Names, Predictor]],
+    tests: WearTests,
+    friction_coefficient: ArrayLike | None,
+    outcome: str | None = None,
+    cross_validate: Folds | None = None,
+    progress: bool = False,
+) -> Comparison:
+    """Compare predictors that have names already; see `compare`. With `progress`, show that of cross-validation."""
+    taken = [names.label for names, _ in named]
+    twice = [name for name in taken if taken.count(name) > 1]
+    if twice:
+        raise InputError(f"two predictors are called {shown(twice[0])}; give a mapping from names of your own to them")
+    given = [predictor for _, predictor in named]
+    outcome = _outcome(given, tests, outcome)
+    unit = _law(given[0], outcome).outcome.unit
+    tests = tests.measuring([name for one in given for name in named_outcomes(_pipeline(one).laws)])
+    notes = Notes()
+    measured, name = tests.measured(outcome, unit), name_of(outcome)
+    there = ~np.isnan(measured)
+    if not there.any():
+        raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
+    if not there.all():
+        notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out")
+    task = _Task(tests[there], outcome, unit, measured[there], friction_coefficient, notes)
+    compared = [task.compared(*one) for one in named]
+    how = ""
+    if cross_validate is not None:
+        parts, how = task.folds(given, cross_validate)
+        with Bar(len(parts) * sum(isinstance(one, Fit) for one in given), progress) as bar:
+            bar.stage("cross-validating")
+            compared = [
+                task.unseen(old, one, parts, bar) if isinstance(one, Fit) else old
+                for old, one in zip(compared, given, strict=True)
+            ]
+    if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
+        notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
+        compared = [replace(one, fitted=None, aic=None, aicc=None) for one in compared]
+    seen = [f"{one.names.label} ({one.in_sample} of {len(task.tests)})" for one in compared if one.in_sample]
+    if seen:
+        notes.add(
+            f"fitted to these tests, which flatters their rank: {', '.join(seen)}; compare on other tests, or"
+            " cross-validate"
+        )
+    ranked = sorted(compared, key=lambda one: one.agreement.rank)
+    return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, unit, how)
+
+
+def _outcome(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:
+    """Return the outcome to compare: the given one, or the only one that all predict and the tests measure."""
+    predicted = [named_outcomes(_pipeline(one).laws) for one in given]
+    every = list(dict.fromkeys(name for names in predicted for name in names))
+    shared = [name for name in every if all(name in names for names in predicted)]
+    if outcome is not None:
+        if outcome not in shared:
+            raise InputError(
+                f"outcome: not all predictors predict {shown(outcome)}{did_you_mean(outcome, shared)} They predict"
+                f" {', '.join(every)}"
+            )
+        return outcome
+    if not shared:
+        raise InputError(f"the predictors have no outcome in common; they predict {', '.join(every)}")
+    tests = tests.measuring(shared)
+    measured = [name for name in shared if not np.isnan(tests.measured(name, _law(given[0], name).outcome.unit)).all()]
+    if len(measured) > 1:
+        raise InputError(
+            f"the predictors share {' and '.join(measured)}, which are all measured; choose one, as in"
+            f' outcome="{measured[0]}"'
+        )
+    return (measured or shared)[0]
+
+
+def _pipeline(predictor: Predictor) -> Pipeline[...]:
+    return predictor.predict if isinstance(predictor, Fit) else predictor
+
+
+def _law(predictor: Predictor, outcome: str) -> Law:
+    """Return the law of a predictor for an outcome by its name in results."""
+    laws = _pipeline(predictor).laws
+    return laws[named_outcomes(laws)[outcome]]
+
+
+def _names(predictors: Sequence[Predictor], outcome: str) -> list[Names]:
+    """Return names of predictors after their models, as in a study."""
+    models = _labels([_pipeline(one).contact_model for one in predictors])
+    stages = iter(_labels([stage for one in predictors for stage in _pipeline(one).stages]))
+    laws = iter(_labels([_law(one, outcome) for one in predictors if isinstance(one, Pipeline)]))
+    names = []
+    for one, model in zip(predictors, models, strict=True):
+        named = [(stage, next(stages)) for stage in _pipeline(one).stages]
+        contact = ", ".join([model, *("patch means" if stage.gives_means else name for stage, name in named)])
+        own = _law(one, outcome)
+        law = next(laws) if isinstance(one, Pipeline) else own.label or f"{own.name} fitted"
+        names.append(Names(f"{law} on {contact}", law, contact))
+    return names
+
+
+def _labels(models: Sequence[Model]) -> list[str]:
+    """Return a label for each model, the same for equal ones. Models need not be hashable."""
+    distinct: list[Model] = []
+    for model in models:
+        if model not in distinct:
+            distinct.append(model)
+    found = labels(distinct)
+    return [found[distinct.index(model)] for model in models]
+
+
+@dataclass(frozen=True)
+class _Task:
+    """The tests with an outcome, measured in SI, on which predictors are compared; `notes` collects remarks."""
+
+    tests: WearTests
+    outcome: str
+    unit: str
+    measured: Array
+    friction: Any
+    notes: Notes
+
+    def compared(self, names: Names, predictor: Predictor) -> Compared:
+        """Return a predictor with its predictions."""
+        predicted = self._predicted(names.label, predictor, self.tests, self.friction, self.notes)
+        errors = agreement(predicted, self.measured)
+        if errors.without_ratio:
+            sign = "zero or negative" if ((predicted < 0) | (self.measured < 0)).any() else "zero"
+            self.notes.add(
+                f"{names.label}: either the predicted or the measured {name_of(self.outcome)} is {sign} in"
+                f" {errors.without_ratio} of {len(self.tests)} tests, which no factor can express; these count first in"
+                " the ranking"
+            )
+        calibration = _law(predictor, self.outcome).calibration
+        known = set(calibration.tests if calibration else ())
+        seen = sum(digest in known for digest in self.tests.digests(self.outcome, self.unit))
+        found = Compared(names, _pipeline(predictor), predicted, errors, seen)
+        return self._with_aic(found, predictor) if isinstance(predictor, Fit) else found
+
+    def unseen(self, old: Compared, fit: Fit, parts: Sequence[NDArray[np.intp]], bar: Bar) -> Compared:
+        """Return a fit with its predictions of each test by fits to the tests of other folds."""
+        name, predicted = old.names.label, np.empty(len(self.tests))
+        for held in parts:
+            there = np.isin(np.arange(len(self.tests)), held)
+            friction = self.friction if np.ndim(self.friction) == 0 else coefficient(self.friction, FRICTION)[held]
+            try:
+                # The fit to all tests has warned already; test after test at the edge of the range would repeat it.
+                with caught_warnings(FitWarning, RangeWarning, PlasticityWarning, CalibrationWarning):
+                    again = refit(tests=self.tests[~there], bootstrap=0, **fit.settings)
+                    predicted[held] = self._predicted(name, again, self.tests[held], friction, Notes())
+            except FitError as error:
+                raise FitError(
+                    f"{name}: cannot be fitted without {test_names(self.tests, there)}: {error}; choose another number"
+                    " of folds, or free fewer parameters"
+                ) from error
+            bar(1)
+        return replace(old, predicted=predicted, agreement=agreement(predicted, self.measured), in_sample=0)
+
+    def folds(self, given: Sequence[Predictor], how: Folds) -> tuple[list[NDArray[np.intp]], str]:
+        """Return the indices of the tests in each fold, and the way in words.
+
+        Tests that repeat each other are in one fold, since a fit that has seen one of them has seen the others.
+
+        Notes
+        -----
+        M. Stone, J. R. Stat. Soc. B 36 (1974) 111-147.
+        """
+        if not any(isinstance(one, Fit) for one in given):
+            raise InputError(
+                "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
+                ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
+            )
+        conditions = self._conditions(given[0], self.tests, self.friction)
+        conditions.pop(TRACTION, None)  # measured tractions of repeated tests scatter
+        points = repeats(conditions, len(self.tests))
+        count = int(points.max()) + 1
+        if count < len(self.tests):
+            self.notes.add(
+                f"the {len(self.tests)} tests are at {count} operating points; cross-validation leaves out repeated"
+                " tests together"
+            )
+        number: Any = count if how == "leave-one-out" else how
+        if not isinstance(number, int) or not 2 <= number <= count:
+            raise InputError(
+                f'cross_validate: give "leave-one-out" or a number of folds from 2 to {count}, the number of operating'
+                f" points; got {shown(how)}"
+            )
+        dealt = np.random.default_rng(SEED).permutation(count)
+        parts = [np.flatnonzero(np.isin(points, dealt[fold::number])) for fold in range(number)]
+        return parts, "leave-one-out" if number == count else f"{number} folds"
+
+    def _conditions(self, predictor: Predictor, tests: WearTests, friction: Any) -> dict[str, Any]:
+        pipeline = _pipeline(predictor)
+        return tests.conditions(pipeline.contact_model, friction, pipeline.rig)
+
+    def _predicted(self, name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
+        """Return the predicted outcomes of tests in SI."""
+        pipeline, law = _pipeline(predictor), _law(predictor, self.outcome)
+        conditions = self._conditions(predictor, tests, friction)
+        if isinstance(predictor, Fit) and predictor.contact_parameters:
+            conditions.pop(TRACTION, None)
+            if FRICTION in predictor.parameters:
+                conditions[FRICTION] = float(predictor.parameters[FRICTION].magnitude)
+                notes.add(f"{name}: takes the friction coefficient that was fitted, {conditions[FRICTION]:.4g}")
+        if TRACTION in conditions:
+            notes.add(f"{name}: takes the traction that was measured in the tests")
+        with notes.of(name):
+            pipeline = pipeline.without_law() | law  # warns if the parameters were fitted for another contact
+        with notes.of("tests"):
+            prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
+        return np.asarray(prediction[law.outcome.name].to_base_units().magnitude)
+
+    def _with_aic(self, found: Compared, fit: Fit) -> Compared:
+        """Return a predictor with the AIC of its fit; add a note if it was not fitted to exactly these tests."""
+        digests, *others = (one.tests.digests(one.observable, one.unit) for one in fit.observations)
+        if others or digests != self.tests.digests(self.outcome, self.unit):
+            self.notes.add(f"{found.names.label}: was fitted to other tests or measurements, so its AIC is left blank")
+            return found
+        free = len(fit.parameters)
+        k = free + (fit.scatter != "uncertainty")
+        spare = len(self.tests) - k - 1
+        aicc = fit.aic + 2.0 * k * (k + 1) / spare if spare > 0 else None
+        return replace(found, fitted=free, aic=fit.aic, aicc=aicc)

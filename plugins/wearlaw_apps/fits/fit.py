@@ -1,0 +1,438 @@
+"""Fitting the numbers of laws and stages, and the friction coefficient, to tests: `fit`."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+from typing import Any, Literal
+
+import numpy as np
+
+from wearlaw.arrays import Array, steadily
+from wearlaw.configuration import known_name
+from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown, warn
+from wearlaw.models.law import Calibration, named_outcomes
+from wearlaw.numerics.integrate import integrate_forces
+from wearlaw.numerics.totals import Totals
+from wearlaw.pipeline.composition import warn_of_parameters
+from wearlaw.pipeline.pipeline import Pipeline, Rig
+from wearlaw.pipeline.ranges import overload_of
+from wearlaw.units.quantities import Quantity, QuantityLike, coefficient, in_unit
+from wearlaw.units.variables import UNITS, name_of
+from wearlaw_apps.fits.free_parameters import FreeParameters, give_bounds
+from wearlaw_apps.fits.intervals import (
+    Replicates,
+    covariance,
+    leverage,
+    replicate,
+    student_intervals,
+    studentised_intervals,
+    undetermined,
+)
+from wearlaw_apps.fits.lack_of_fit import LackOfFit, lack_of_fit, repeats
+from wearlaw_apps.fits.least_squares import Bounds, Solutions, fit_many, search
+from wearlaw_apps.fits.named_numbers import FRICTION, changed_parts
+from wearlaw_apps.fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
+from wearlaw_apps.fits.result import Fit
+from wearlaw_apps.fits.wear_tests import WearTests, expect_tests
+
+NEAR = 10.0
+"""Starting points lie within this factor of the first value, up and down."""
+
+ROUNDS = 3
+"""Iterations in which the scatter about the fit sets the weights of two kinds of measurement."""
+
+LEAST_SCATTER = 1e-5
+"""Least scatter for a weight; made-up tests without scatter would otherwise hide each other's parameters."""
+
+LEAST_GROUP = 4
+"""Least number of measurements of a kind to estimate their scatter."""
+
+AT_BOUND = 1e-6
+"""Distance from a bound, as a share of the range, up to which a fit counts as lying on it."""
+
+USABLE = 0.95
+"""Share of the replicates that must converge and determine each parameter, for reliable intervals."""
+
+DIGITS = 4
+"""Significant digits of the stated range of a fitted law, rounded outwards."""
+
+
+def fit(
+    predict: Pipeline[...],
+    tests: WearTests,
+    free: Sequence[str],
+    *,
+    friction_coefficient: float | None = None,
+    scatter: Literal["relative", "absolute"] = "relative",
+    bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]] | None = None,
+    starts: int = 256,
+    bootstrap: int = 1000,
+    seed: int = 0,
+    confidence: float = 0.95,
+    on_progress: Callable[[int], None] | None = None,
+) -> Fit:
+    """Fit numbers of laws and stages, and the friction coefficient, to tests by weighted least squares.
+
+    Parameters
+    ----------
+    predict : Pipeline
+        The pipeline to fit. Parameters that are not free keep the values of its laws and stages. Without a law, the
+        friction coefficient and the numbers of stages are fitted to the measured traction.
+    tests : WearTests
+        Measured tests. Those without a law's outcome do not affect the parameters of the law.
+    free : sequence of str
+        Numeric fields of laws and stages, nested ones with a dot as in "coefficient.low_speed", and
+        "friction_coefficient". A name that several of them have is written "third_body.reduction", or "usfd_rail.m_m"
+        for one of the laws of two bodies. The friction coefficient is one value for all tests. It and the numbers of
+        stages are also fitted to the traction T/N, on an ellipse with T = √(Fx² + Fy²).
+    friction_coefficient : float, optional
+        μ of tests without one, or the starting value if it is free.
+    scatter : str
+        "relative": measurements scatter by a factor, and the residual is ln(predicted/measured). "absolute": the
+        residual is predicted - measured. If the tests state an uncertainty of the wear rate, the residual is
+        (predicted - measured) over that, whatever is given here.
+    bounds : mapping of str to pair, optional
+        Least and greatest values, within the limits of the field. Default: a hundredth and a hundred times the
+        starting value of a number that must be positive; for any other, a hundred times its size below and above it;
+        within the limits of the field.
+    starts : int
+        Number of further starting points, within a factor of ten of the given law.
+    bootstrap : int
+        Replicates of the bootstrap, at least 2/(1 - confidence), so that some lie beyond each end of an interval. 0
+        for intervals by Student's t.
+    seed : int
+        Seed of all random numbers; the same seed gives the same fit.
+    confidence : float
+        Confidence level of the intervals, and of the tests for lack of fit.
+    on_progress : callable, optional
+        Called with the number of replicates in each finished batch.
+
+    Raises
+    ------
+    FitError
+        If a parameter is unknown or ambiguous, its outcome is not measured, the tests do not determine it, there are
+        too few tests, no fit is found, or a setting is invalid.
+    ConditionsError
+        If the rig does not take the conditions of the tests.
+
+    Warns
+    -----
+    CalibrationWarning
+        If parameters that are not free were fitted for another contact or other materials.
+    FitWarning
+        If the law does not fit the tests (see `LackOfFit`), the fit ends at a bound, or the bootstrap is unreliable.
+
+    Notes
+    -----
+    G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
+    """
+    expect_tests(tests)
+    if scatter not in ("relative", "absolute"):
+        raise FitError(f'scatter: must be "relative" or "absolute", got {shown(scatter)}')
+    for name, count in {"starts": starts, "bootstrap": bootstrap, "seed": seed}.items():
+        if not isinstance(count, int) or count < 0:
+            raise FitError(f"{name}: must be a whole number, zero or positive, got {shown(count)}")
+    if not 0.0 < confidence < 1.0:
+        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shown(confidence)}")
+    if 0 < bootstrap < round(2.0 / (1.0 - confidence), 6):
+        raise FitError(f"bootstrap: must be 0 or at least 2/(1 - confidence), got {shown(bootstrap)}")
+    free = [free] if isinstance(free, str) else list(free)
+    settings = {
+        "predict": predict,
+        "free": free,
+        "friction_coefficient": friction_coefficient,
+        "scatter": scatter,
+        "bounds": bounds,
+        "starts": starts,
+        "seed": seed,
+        "confidence": confidence,
+    }
+    with steadily():
+        task = _Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
+        best = task.solve(starts, seed)
+        replicates = None
+        if bootstrap:
+            groups = np.repeat(np.arange(len(task.observations)), [one.measured.size for one in task.observations])
+            replicates = replicate(task.model, best, task.free.bounds, groups, bootstrap, seed, on_progress)
+        found = _result(task, best, replicates, confidence, settings)
+    problem = found.observations[0].problem
+    overload = overload_of(problem, integrate_forces(found.predict.staged_model, problem).tangential)
+    if overload:
+        overload.warn()
+    poor = (one.warning for one in found.lack_of_fit if one.poor)
+    for text in (*poor, *_at_bounds(task, best), *_unreliable(task, replicates)):
+        warn(text, FitWarning)
+    _warn_of_kept(task)
+    return found
+
+
+@dataclass
+class _Task:
+    """The free parameters, the measurements, and the weights of the residuals."""
+
+    predict: Pipeline[...]
+    tests: WearTests
+    scatter: Scatter
+    free: FreeParameters
+    observations: list[Observations]
+    weights: Array
+
+    @classmethod
+    def of(
+        cls,
+        predict: Pipeline[...],
+        tests: WearTests,
+        free: Sequence[str],
+        friction: float | None,
+        scatter: Literal["relative", "absolute"],
+        bounds: Mapping[str, Any],
+    ) -> _Task:
+        """Return the task for the arguments of `fit`."""
+        if not isinstance(predict, Pipeline):
+            raise FitError(f"predict: give a rig with a contact model, and laws or none, not {shown(predict)}")
+        if friction is not None:
+            given = coefficient(friction, FRICTION)
+            if given.ndim:
+                raise FitError(f"{FRICTION}: must be one number; one for each test can stand in a column of the tests")
+            friction = float(given)
+        predict = predict.with_law(*(law.explicit() for law in predict.laws)) if predict.laws else predict
+        first = _first_friction(tests, friction) if FRICTION in free else friction
+        parameters = FreeParameters.of(predict, free, first, bounds)
+        observations = observe(predict, tests.measuring(named_outcomes(predict.laws)), parameters, first, scatter)
+        stated = any(one.scatter == "uncertainty" for one in observations)
+        count = sum(one.measured.size for one in observations)
+        if count <= len(parameters.names):
+            raise FitError(
+                f"tests: {count} measurement{'s' if count > 1 else ''} cannot tell {len(parameters.names)} parameters"
+                f" ({', '.join(parameters.names)}) and their scatter; give more tests, or free fewer parameters"
+            )
+        return cls(predict, tests, "uncertainty" if stated else scatter, parameters, observations, np.ones(count))
+
+    def parts(self, values: Array) -> list[Array]:
+        """Return values of all measurements, (n,), by their kind, as views."""
+        return np.split(values, np.cumsum([one.measured.size for one in self.observations])[:-1])
+
+    def model(self, theta: Array) -> Array:
+        """Return the weighted residuals (sets, n) of scaled parameters (sets, p)."""
+        values = self.free.columns(theta)
+        return np.concatenate([one.compare(one.predicted(values)) for one in self.observations], axis=-1) * self.weights
+
+    def residuals(self, best: Solutions) -> Array:
+        """Return the residuals of a fit without their weights, (n,)."""
+        found: Array = best.residuals[0] / self.weights
+        return found
+
+    def solve(self, starts: int, seed: int) -> Solutions:
+        """Return the best fit."""
+        bounds, first = self.free.bounds, np.zeros(len(self.free.names))
+        target = np.zeros(self.weights.size)
+        reach = np.where(self.free.positive, math.log(NEAR), NEAR)
+        near = Bounds(bounds.clip(-reach), bounds.clip(reach))
+        best = search(self.model, target, first, bounds, near, starts, seed)
+        if len(self.observations) > 1:
+            for _ in range(ROUNDS):
+                self._weigh(best)
+                best = fit_many(self.model, target[None], best.theta, bounds)
+        if not best.converged[0]:
+            advice = give_bounds(self.free.names[0])
+            raise FitError(f"the fit has not converged; {advice}, or a law whose parameters are nearer to the tests")
+        names = [name for name, left in zip(self.free.names, undetermined(best.jacobian)[0], strict=True) if left]
+        if names:
+            combined = ", or determine only a combination of them" if len(names) > 1 else ""
+            raise FitError(
+                f"free: the tests do not determine {' and '.join(names)}{combined}; fix some of these parameters, or"
+                " add tests in other regimes"
+            )
+        return best
+
+    def _weigh(self, best: Solutions) -> None:
+        """Weigh each kind of measurement by its scatter about the fit."""
+        for own, weights in zip(self.parts(self.residuals(best)), self.parts(self.weights), strict=True):
+            scatter = math.sqrt(float(np.mean(own**2)))
+            if own.size >= LEAST_GROUP and scatter > 0.0:
+                weights[:] = 1.0 / max(scatter, LEAST_SCATTER)
+
+
+def _first_friction(tests: WearTests, given: float | None) -> float:
+    """Return a starting value of the friction coefficient: given, from the tests, or the greatest traction."""
+    traction = tests.columns.get("traction_coefficient")
+    if traction is None or np.isnan(traction).all():
+        raise FitError(
+            "free: the friction coefficient is fitted to measured traction, and the tests have none; add a column"
+            " 'traction_coefficient', 'tangential_force [N]' or 'frictional_heat [W]', or give friction_coefficient"
+        )
+    if given is not None:
+        return given
+    if tests.friction_coefficient is not None:
+        return float(np.mean(tests.friction_coefficient))
+    return float(np.nanmax(traction))
+
+
+def _result(
+    task: _Task, best: Solutions, replicates: Replicates | None, confidence: float, settings: Mapping[str, Any]
+) -> Fit:
+    """Return the result of a fit."""
+    free, values = task.free, task.free.columns(best.theta)
+    observations = tuple(_with_friction(one, values) for one in task.observations)
+    by_student = student_intervals(best, confidence)
+    ends = by_student if replicates is None else studentised_intervals(best, replicates, confidence)
+    samples = {} if replicates is None else free.columns(replicates.theta)
+    slopes = free.slopes(best.theta[0])
+    chi2, aic = _sums(task, best)
+    return Fit(
+        parameters={name: free.quantity(name, float(value[0])) for name, value in values.items()},
+        intervals=_pairs(free, ends),
+        covariance_intervals=_pairs(free, by_student),
+        confidence=confidence,
+        covariance=covariance(best)[0] * np.outer(slopes, slopes),
+        predict=_fitted_pipeline(task, values, observations),
+        tests=task.tests,
+        scatter=task.scatter,
+        chi2=chi2,
+        aic=aic,
+        samples={name: free.quantity(name, one) for name, one in samples.items()},
+        observations=observations,
+        lack_of_fit=tuple(_lack_of_fit(task, best, confidence)),
+        settings=settings,
+    )
+
+
+def _lack_of_fit(task: _Task, best: Solutions, confidence: float) -> Iterator[LackOfFit]:
+    """Yield a test for each kind of measurement whose scatter is known."""
+    residuals, leverages = task.parts(task.residuals(best)), task.parts(leverage(best))
+    for one, own, spent in zip(task.observations, residuals, leverages, strict=True):
+        points, known = repeats(one.conditions, own.size), one.scatter == "uncertainty"
+        found = lack_of_fit(one.observable, own, points, float(spent.sum()), confidence, known)
+        if found is not None:
+            yield found
+
+
+def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Quantity, Quantity]]:
+    low, high = (free.values(free.bounds.clip(end)) for end in ends)  # the search did not go beyond the bounds
+    return {
+        name: (free.quantity(name, float(low[i])), free.quantity(name, float(high[i])))
+        for i, name in enumerate(free.names)
+    }
+
+
+def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observations:
+    if FRICTION not in values:
+        return one
+    friction = float(values[FRICTION][0])
+    problem = one.problem.replaced(friction_coefficient=np.full(one.measured.shape, friction))
+    return dataclasses.replace(one, conditions={**one.conditions, FRICTION: friction}, problem=problem)
+
+
+def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:
+    """Return the pipeline with the fitted numbers; laws with free numbers record the fit."""
+    given = task.predict
+    at_places = {place: float(values[name][0]) for name, place in task.free.places.items()}
+    for one in observations:
+        nothing = one.predicted(values)[0] <= FLOOR
+        if one.scatter == "relative" and nothing.any():
+            raise FitError(
+                f"the best fit predicts no {name_of(one.observable)} in {test_names(one.tests, nothing)}; leave these"
+                ' tests out, or fit with scatter="absolute"'
+            )
+    try:
+        stages = changed_parts(given.stages, "stage", at_places)
+        laws = list(changed_parts(given.laws, "law", at_places))
+    except ConfigurationError as error:
+        raise FitError(f"the best fit has parameters that the model does not accept; try bounds: {error}") from None
+    predict = given.model_copy(update={"stages": stages})
+    for one in observations:
+        if one.law is not None and one.law in task.free.freed_laws:
+            laws[one.law] = laws[one.law].model_copy(update={"fitted_for": _calibration(task, predict, one)})
+    return predict.with_law(*laws) if laws else predict
+
+
+def _calibration(task: _Task, predict: Pipeline[...], one: Observations) -> Calibration:
+    """Return the calibration of a fitted law."""
+    problem, model = one.problem, predict.contact_model
+    means = {
+        "pressure": Totals().mean(problem, "pressure"),
+        "slip_speed": Totals().mean(problem, "slip_speed"),
+        "wear_index_density": wear_index_density(predict, problem),
+    }
+    options = ((name, getattr(model, name)) for name in type(model).model_fields)
+    of = f" of {task.tests.source}" if task.tests.source else ""
+    with_stages = f", with {' and '.join(map(repr, predict.stages))}" if predict.stages else ""
+    return Calibration(
+        contact_model=model.name,
+        scale=predict.scale,
+        options=tuple((name, value) for name, value in options if isinstance(value, str)),
+        geometry=problem.geometry,
+        materials=_materials(predict.rig),
+        bodies=tuple(body.material for body in problem.bodies.values()),
+        stated_range=tuple((name, *_ends(name, values)) for name, values in means.items()),
+        tests=one.tests.digests(one.observable, one.unit),
+        source=f"fitted to {one.measured.size} tests{of}{with_stages}",
+    )
+
+
+def _ends(variable: str, values: Array) -> tuple[str, str]:
+    """Return the least and the greatest value with the unit, rounded outwards."""
+    unit = UNITS[variable]
+    shown = in_unit(values, unit)
+    low, high = (
+        float(Context(DIGITS, rounding).create_decimal_from_float(float(end)))
+        for end, rounding in ((shown.min(), ROUND_FLOOR), (shown.max(), ROUND_CEILING))
+    )
+    return f"{low!r} {unit}", f"{high!r} {unit}"
+
+
+def _materials(rig: Rig) -> str:
+    names = [known_name(body.material) or " ".join(repr(body.material).split()) for body in rig.bodies.values()]
+    if len(set(names)) == 1:
+        return f"both bodies {names[0]}"
+    return " on ".join(names) or "unknown"
+
+
+def _sums(task: _Task, best: Solutions) -> tuple[float, float]:
+    """Return the sum of squares and Akaike's criterion, with a separate scatter for each kind of measurement."""
+    squares = task.residuals(best) ** 2
+    parameters = len(task.free.names)
+    if task.scatter == "uncertainty" and len(task.observations) == 1:
+        return float(squares.sum()), float(squares.sum()) + 2.0 * parameters
+    kinds, tiny = task.parts(squares), float(np.finfo(np.float64).tiny)
+    likelihood = sum(kind.size * math.log(max(float(kind.mean()), tiny)) for kind in kinds)
+    return float(squares.sum()), likelihood + 2.0 * (parameters + len(kinds))
+
+
+def _at_bounds(task: _Task, best: Solutions) -> Iterator[str]:
+    bounds, theta = task.free.bounds, best.theta[0]
+    margin = AT_BOUND * (bounds.high - bounds.low)
+    ended = (theta <= bounds.low + margin) | (theta >= bounds.high - margin)
+    if ended.any():
+        names = ", ".join(name for name, at in zip(task.free.names, ended, strict=True) if at)
+        yield (
+            f"the best fit lies at a bound of {names}, whose interval then means nothing; give wider bounds, or free"
+            " fewer parameters"
+        )
+
+
+def _unreliable(task: _Task, replicates: Replicates | None) -> Iterator[str]:
+    if replicates is None:
+        return
+    usable = np.mean(replicates.standard_errors > 0.0, axis=0)
+    lost = [name for name, share in zip(task.free.names, usable, strict=True) if share < USABLE]
+    if lost:
+        yield f"some bootstrap replicates do not determine {', '.join(lost)}; their intervals may be too narrow"
+    if replicates.converged < USABLE:
+        yield f"only {replicates.converged:.0%} of the bootstrap replicates have converged; the intervals are rough"
+
+
+def _warn_of_kept(task: _Task) -> None:
+    """Warn the caller of `fit` if a law keeps parameters that were fitted for another contact."""
+    predict = task.predict
+    free = {(place.index, place.field) for place in task.free.places.values() if place.kind == "law"}
+    for one in task.observations:
+        if one.law is None:
+            continue
+        law, problem = predict.laws[one.law], one.problem
+        if any((one.law, name) not in free for name in law.numbers):
+            warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law)

@@ -1,0 +1,352 @@
+"""The result of a fit: parameters with their intervals, residuals, the fitted law, its provenance and its figure."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from uuid import uuid4
+
+import numpy as np
+import pandas as pd
+import pint
+import tomli_w
+
+from wearlaw import loader
+from wearlaw.arrays import Array
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import FitError, OutputError, shown
+from wearlaw.fields import specification
+from wearlaw.models.law import WEAR, Law
+from wearlaw.text_files import reason_of
+from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
+from wearlaw.units.registry import si_factor, symbol
+from wearlaw.units.variables import UNITS, name_of
+from wearlaw.version import __version__
+from wearlaw_apps.fits.lack_of_fit import SAME, LackOfFit
+from wearlaw_apps.fits.observations import TRACTION, Observations, Scatter, wear_index_density
+from wearlaw_apps.fits.wear_tests import WearTests
+from wearlaw_apps.output.curves import BLACK, Curve, FigureData, Panel, PlotAxis
+from wearlaw_apps.output.labels import label
+from wearlaw_apps.output.parity import parity_panels
+from wearlaw_apps.output.plot import plot
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from wearlaw.pipeline.pipeline import Pipeline
+
+BETWEEN = 8
+"""Points of a curve between two tests."""
+
+MOST_SAMPLES = 200
+"""Most replicates for a band; more would not change it visibly."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit:
+    """Parameters fitted to tests, made by `fit`.
+
+    Attributes
+    ----------
+    parameters : dict of str to Quantity
+        The fitted values.
+    intervals : dict of str to (Quantity, Quantity)
+        Ends of the intervals, by `interval_method`.
+    covariance_intervals : dict of str to (Quantity, Quantity)
+        Ends of the intervals by Student's t from the covariance.
+    confidence : float
+        Confidence level of the intervals.
+    covariance : ndarray, (p, p)
+        Of the values in SI, in the order of `parameters`, from the linearised model.
+    predict : Pipeline
+        The pipeline with the fitted laws and stages.
+    tests : WearTests
+        All given tests.
+    scatter : str
+        Kind of residuals: "relative", "absolute" or "uncertainty".
+    chi2 : float
+        Sum of the squared residuals: relative ones as ln(predicted/measured), absolute ones over the root mean square
+        of the measurements, others over the stated uncertainty.
+    aic : float
+        Akaike's information criterion; only differences between laws fitted to the same tests matter.
+    samples : dict of str to Quantity, (replicates,)
+        The parameters of the bootstrap replicates.
+    observations : tuple of Observations
+        The measurements with their pipeline, and the fitted friction coefficient.
+    lack_of_fit : tuple of LackOfFit
+        A test for each kind of measurement with repeated tests or stated uncertainties.
+    settings : dict
+        The arguments of `fit`, without the tests and the bootstrap, to make the fit anew.
+    """
+
+    parameters: dict[str, Quantity]
+    intervals: dict[str, tuple[Quantity, Quantity]]
+    covariance_intervals: dict[str, tuple[Quantity, Quantity]]
+    confidence: float
+    covariance: Array
+    predict: Pipeline[...]
+    tests: WearTests
+    scatter: Scatter
+    chi2: float
+    aic: float
+    samples: dict[str, Quantity]
+    observations: tuple[Observations, ...]
+    lack_of_fit: tuple[LackOfFit, ...]
+    settings: Mapping[str, Any]
+
+    @property
+    def law(self) -> Law | None:
+        """The law with the fitted parameters; None if the pipeline has no law, or several, which are `predict.laws`."""
+        return self.predict.laws[0] if len(self.predict.laws) == 1 else None
+
+    @property
+    def interval_method(self) -> str:
+        """How `intervals` were made: "studentised bootstrap", or "Student's t" without a bootstrap."""
+        return "studentised bootstrap" if self.samples else "Student's t"
+
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """Versions, stages with their fitted numbers, tests, settings and sums, as a TOML table."""
+        found, model = loader.installed(), self.predict.contact_model
+        return {
+            "wearlaw": __version__,
+            "laws": {law.name: found[law.kind].distribution(law.name, type(law)) for law in self.predict.laws},
+            "contact_model": found["contact model"].distribution(model.name, type(model)),
+            "stages": [specification(stage) for stage in self.predict.stages],
+            "tests": self.tests.source,
+            "measurements": {one.observable: one.measured.size for one in self.observations},
+            "free": list(self.parameters),
+            "scatter": self.scatter,
+            "chi2": self.chi2,
+            "seed": self.settings["seed"],
+            "bootstrap": len(next(iter(self.samples.values()), ())),
+            "confidence": self.confidence,
+        }
+
+    @property
+    def standard_errors(self) -> dict[str, Quantity]:
+        """Standard errors of the parameters from the covariance."""
+        errors = np.sqrt(np.diag(self.covariance))
+        return {
+            name: from_si(float(error), str(value.units))
+            for (name, value), error in zip(self.parameters.items(), errors, strict=True)
+        }
+
+    @property
+    def correlation(self) -> Array:
+        """Correlation of the parameters, (p, p)."""
+        size = np.sqrt(np.diag(self.covariance))
+        correlation: Array = self.covariance / np.outer(size, size)
+        return correlation
+
+    @property
+    def rms(self) -> Quantity:
+        """Root mean square of the residuals of the first kind of measurement.
+
+        For relative scatter and stated uncertainties it is a ratio: 0.1 is then a factor of about 1.1. For absolute
+        scatter it has the unit of the measurement.
+        """
+        first = self.observations[0]
+        mean = float(np.sqrt(np.mean(first.compare(self.fitted(first)) ** 2)))
+        if first.scatter == "absolute":
+            return from_si(mean * float(first.divisor[0]), first.unit)
+        return from_si(mean, "")
+
+    @property
+    def residuals(self) -> pd.DataFrame:
+        """A row for each measurement: test, measured and predicted value, residual, and predicted over measured.
+
+        The ratio is NaN unless both values are positive.
+        """
+        frames = []
+        for one in self.observations:
+            predicted = self.fitted(one)
+            ratio = np.full(predicted.shape, np.nan)
+            np.divide(predicted, one.measured, out=ratio, where=(predicted > 0.0) & (one.measured > 0.0))
+            absolute = one.scatter == "absolute"
+            residual = in_unit(predicted - one.measured, one.unit) if absolute else one.compare(predicted)
+            columns = {
+                "label": one.tests.labels,
+                "observable": f"{one.observable} [{one.unit}]" if one.unit else one.observable,
+                "creepage [%]": in_unit(one.problem.creepage, UNITS["creepage"]),
+                "measured": in_unit(one.measured, one.unit),
+                "predicted": in_unit(predicted, one.unit),
+                "residual": residual,
+                "predicted/measured": ratio,
+            }
+            frames.append(pd.DataFrame(columns))
+        return pd.concat(frames, ignore_index=True)
+
+    def table(self) -> pd.DataFrame:
+        """Return the parameters with their intervals, a row for each."""
+        values = self.parameters.values()
+        columns = {
+            "parameter": list(self.parameters),
+            "value": [value.magnitude for value in values],
+            "low": [low.magnitude for low, _ in self.intervals.values()],
+            "high": [high.magnitude for _, high in self.intervals.values()],
+            "standard_error": [error.magnitude for error in self.standard_errors.values()],
+            "unit": [symbol(value.units, "~C") for value in values],
+        }
+        return pd.DataFrame(columns)
+
+    def to_toml(self, path: str | os.PathLike[str]) -> None:
+        """Write the fitted law and its provenance to a file that `read_law` reads.
+
+        Fitted numbers of stages stand in the provenance.
+
+        Raises
+        ------
+        FitError
+            If the pipeline has no law, or several.
+        OutputError
+            If the file cannot be written.
+        """
+        if self.law is None:
+            raise FitError(
+                f"a file holds one law, and this fit has {len(self.predict.laws)}; what it found is in fit.predict.laws"
+                " and fit.parameters"
+            )
+        target, law = Path(path), self.law
+        text = tomli_w.dumps({law.kind.replace(" ", "_"): specification(law), "provenance": self.provenance})
+        temporary = target.with_name(f".{uuid4().hex}")  # short, since the name may be as long as names can be
+        try:
+            temporary.write_text(text, encoding="utf-8", newline="\n")
+            os.replace(temporary, target)
+        except OSError as error:
+            temporary.unlink(missing_ok=True)
+            raise OutputError(f"cannot write {shown(target)}: {reason_of(error)}") from None
+
+    def figure_data(self) -> FigureData:
+        """Return measured and fitted values, a panel for each kind of measurement.
+
+        They are drawn over Tγ/A or over the one condition that varies, with the band of the bootstrap replicates. If
+        several vary, measured values are drawn against fitted ones.
+        """
+        panels = tuple(_panel(self, one) for one in self.observations)
+        names, band = ", ".join(self.parameters), f"{self.confidence:.0%} of the bootstrap replicates"
+        return FigureData("fit", f"Fit of {names}", panels, f"{names} fitted to {self.tests.source or 'tests'}.", band)
+
+    def plot(self) -> Figure:
+        """Return a drawing of `figure_data`."""
+        return plot(self.figure_data())
+
+    @property
+    def contact_parameters(self) -> tuple[str, ...]:
+        """The fitted parameters that change the contact: the friction coefficient and numbers of stages."""
+        places = self.observations[0].places
+        return tuple(name for name in self.parameters if places[name].kind != "law")
+
+    def values_in_si(self, which: Mapping[str, Quantity] | None = None) -> dict[str, Array]:
+        """Return the fitted parameters, or others, as SI arrays of one axis."""
+        chosen = self.parameters if which is None else which
+        return {
+            name: np.atleast_1d(value.magnitude) * si_factor(value, str(value.units)) for name, value in chosen.items()
+        }
+
+    def fitted(self, one: Observations) -> Array:
+        """Return the fitted values of a kind of measurement in SI, (tests,)."""
+        predicted: Array = one.predicted(self.values_in_si())[0]
+        return predicted
+
+    def __repr__(self) -> str:
+        return "\n".join([self._head(), *(f"  {name:<21} {text}" for name, text in self._lines())])
+
+    def _repr_html_(self) -> str:
+        rows = (f"<tr><td>{escape(name)}</td><td>{escape(text)}</td></tr>" for name, text in self._lines())
+        return f"<div><b>{escape(self._head())}</b><table>{''.join(rows)}</table></div>"
+
+    def _head(self) -> str:
+        degrees = sum(one.measured.size for one in self.observations) - len(self.parameters)
+        counts = " and ".join(f"{one.measured.size} {_plural(one.observable)}" for one in self.observations)
+        return f"Fit to {counts}, {degrees} degrees of freedom, {self.scatter} scatter"
+
+    def _lines(self) -> Iterator[tuple[str, str]]:
+        """Yield the names and texts of a summary."""
+        for name, value in self.parameters.items():
+            low, high = (f"{end.magnitude:.3g}" for end in self.intervals[name])
+            unit = repr(value).partition(" ")[2]
+            yield name, f"{value.magnitude:<8.4g} ({low} to {high}) {unit}".rstrip()
+        factor = f", a factor of {np.exp(self.rms.magnitude):.4g}" if self.observations[0].scatter == "relative" else ""
+        yield "rms residual", f"{self.rms!r}{factor}"
+        for one in self.lack_of_fit:
+            of = f" of {name_of(one.observable)}" if len(self.observations) > 1 else ""
+            yield "lack of fit", f"{'yes' if one.poor else 'none'}{of}: {one}"
+        yield "intervals", f"{self.confidence:.0%}, {self.interval_method}"
+
+
+def _plural(observable: str) -> str:
+    return f"{observable.replace('_', ' ')}s" if observable in (WEAR, TRACTION) else f"values of {name_of(observable)}"
+
+
+def _panel(fit: Fit, one: Observations) -> Panel:
+    """Return measured and fitted values: along the one condition that varies, with a band, or else side by side."""
+    numbers = {name: _numbers(value) for name, value in one.conditions.items() if name != TRACTION}
+    varied = [name for name, values in numbers.items() if np.ptp(values) > SAME * np.abs(values).mean()]
+    if len(varied) != 1:
+        return _parity(one, fit.fitted(one))
+    name, values = varied[0], numbers[varied[0]]
+    order = np.argsort(values, kind="stable")
+    conditions = {other: _finer(value, order) for other, value in one.conditions.items()}
+    problem = one.pipeline.posed(conditions, of_one_patch="fit")
+    if "creepage" in name and one.law is not None and (abs(np.sign(values).sum()) == values.size):
+        axis = "wear_index_density"
+        at_tests, along = (
+            in_unit(wear_index_density(fit.predict, some), UNITS[axis]) for some in (one.problem, problem)
+        )
+        x = PlotAxis(label(axis), "log" if (one.measured > 0.0).all() else "linear")
+    else:
+        given = one.conditions[name]
+        unit = f"{given.units:~P}" if isinstance(given, pint.Quantity) else ""
+        at_tests, along = values, _numbers(conditions[name])
+        x = PlotAxis(label(name, units={name: unit}))
+    measured = Curve("measured", at_tests, in_unit(one.measured, one.unit), colour=BLACK, points=True)
+    return Panel(
+        x,
+        PlotAxis(one.label, x.scale),
+        (_curve(fit, one, problem, along), measured),
+    )
+
+
+def _parity(one: Observations, fitted: Array) -> Panel:
+    """Return measured against fitted values."""
+    x, y = (in_unit(values, one.unit) for values in (fitted, one.measured))
+    values = np.concatenate([x, y])
+    tests = Curve("tests", x, y, points=True, hollow=True)
+    (panel,) = parity_panels(one.label, [("", [tests])], values, bool((values <= 0.0).any()))
+    return panel
+
+
+def _numbers(value: Any) -> Array:
+    return real_array(value.magnitude if isinstance(value, pint.Quantity) else value)
+
+
+def _finer(value: Any, order: NDArray[np.intp]) -> Any:
+    """Return a condition of the tests in some order, and of points between them; a single value stays."""
+    numbers = _numbers(value)
+    if numbers.ndim == 0:
+        return value
+    places = np.linspace(0.0, order.size - 1.0, BETWEEN * (order.size - 1) + 1)
+    finer = np.interp(places, np.arange(order.size), numbers[order])
+    return Q(finer, str(value.units)) if isinstance(value, pint.Quantity) else finer
+
+
+def _curve(fit: Fit, one: Observations, problem: Problem, along: Array) -> Curve:
+    """Return the fitted values at operating points, with the band of the bootstrap replicates."""
+    order = np.argsort(along, kind="stable")
+
+    def at(values: dict[str, Array]) -> Array:
+        return in_unit(one.predicted(values, problem), one.unit)[:, order]
+
+    low = high = None
+    if fit.samples:
+        values = fit.values_in_si(fit.samples)
+        step = max(len(next(iter(values.values()))) // MOST_SAMPLES, 1)
+        tail = 0.5 - 0.5 * fit.confidence
+        low, high = np.quantile(at({name: some[::step] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
+    return Curve("fitted", along[order], at(fit.values_in_si())[0], low=low, high=high)

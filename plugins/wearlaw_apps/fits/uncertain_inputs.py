@@ -1,0 +1,183 @@
+"""The uncertain inputs of a prediction: distributions of conditions and of numbers of laws and stages, and fits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+import pint
+
+from wearlaw.arrays import Array
+from wearlaw.errors import InputError, did_you_mean, shown
+from wearlaw.models.contact_model import Stage
+from wearlaw.models.law import Law
+from wearlaw.parameters import changed, number_like, numbers, numbers_in_si
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.units.quantities import Unit, coefficient, from_si
+from wearlaw.units.registry import symbol
+from wearlaw_apps.fits.distributions import Distribution, PublishedRange, uniform
+from wearlaw_apps.fits.named_numbers import FRICTION, Kind, Place, place_of
+
+if TYPE_CHECKING:
+    from wearlaw_apps.fits.result import Fit
+
+OTHERS = "\nThe values are samples of its distribution; choose one without such values, such as lognormal or uniform"
+"""The hint for impossible samples."""
+
+Ends: TypeAlias = tuple[float, float]
+"""The two numbers of a distribution in SI."""
+
+Sampled: TypeAlias = dict[str | Place, Any]
+"""Conditions by name, as the rig takes them, and numbers of laws and stages in SI by place."""
+
+
+@dataclass(frozen=True)
+class UncertainInput:
+    """A condition, or numbers of a law or stage, which a distribution moves together.
+
+    The distribution has two numbers in SI for each of them. The rig gets a condition in `unit`, None for plain numbers.
+    """
+
+    name: str
+    shown: str
+    distribution: Distribution
+    ends: Mapping[str | Place, Ends]
+    unit: str | None = None
+
+    def at(self, probability: Array) -> Sampled:
+        """Return the values at probabilities."""
+        values = {key: self.distribution.quantiles(probability, *ends) for key, ends in self.ends.items()}
+        return {key: one if self.unit is None else from_si(one, self.unit) for key, one in values.items()}
+
+
+@dataclass(frozen=True)
+class UncertainFit:
+    """The parameters of a fit, which its bootstrap replicates move together, with their correlation.
+
+    The fitted friction coefficient is the condition of that name, if it is not given otherwise.
+    """
+
+    fit: Fit
+    takes_friction: bool
+
+    name = "fit"
+
+    @property
+    def shown(self) -> str:
+        """The parameters."""
+        return f"of {', '.join(self.fit.samples)}, {self._count} replicates"
+
+    def at(self, probability: Array) -> Sampled:
+        """Return the values at probabilities."""
+        which = np.minimum((probability * self._count).astype(np.intp), self._count - 1)
+        samples, found = self.fit.values_in_si(self.fit.samples), Sampled()
+        for name, place in self.fit.observations[0].places.items():
+            if place.kind != "condition":
+                found[place] = samples[name][which]
+            elif self.takes_friction:
+                found[name] = samples[name][which]
+        return found
+
+    @property
+    def _count(self) -> int:
+        return len(next(iter(self.fit.samples.values())))
+
+
+Uncertain: TypeAlias = UncertainInput | UncertainFit
+
+
+def of_fit(fit: Fit, conditions: Mapping[str, Any]) -> UncertainFit:
+    """Return the parameters of a fit as an input."""
+    if not fit.samples:
+        raise InputError("the fit has no replicates to draw from; fit it with a bootstrap, as in bootstrap=1000")
+    return UncertainFit(fit, FRICTION in fit.samples and conditions.get(FRICTION) is None)
+
+
+def of_condition(name: str, given: Distribution) -> UncertainInput:
+    """Return a condition as an input, in the unit of the distribution's first number."""
+    unit = symbol(given.first.units, "~C") if isinstance(given.first, pint.Quantity) else None
+    return UncertainInput(name, str(given), given, {name: ends_in_si(name, given, unit)}, unit)
+
+
+def of_numbers(predict: Pipeline[...], kind: Kind, given: Mapping[str, Any]) -> list[UncertainInput]:
+    """Return distributed numbers of the laws or stages of a pipeline as inputs, by their names as in `place_of`."""
+    found = []
+    for name, one in given.items():
+        try:
+            place = place_of(predict, name, kind)
+        except InputError as error:
+            raise InputError(f"{kind}: {error}") from None
+        part = (predict.laws if kind == "law" else predict.stages)[place.index]
+        ends, distribution = parameter(place.field, one, part)
+        at_places: dict[str | Place, Ends] = {replace(place, field=field): pair for field, pair in ends.items()}
+        found.append(UncertainInput(name, str(one), distribution, at_places))
+    return found
+
+
+def parameter(name: str, given: object, part: Law | Stage) -> tuple[dict[str, Ends], Distribution]:
+    """Return the two numbers in SI for each field of a law or stage that an uncertain number moves, and how."""
+    if isinstance(given, PublishedRange):
+        return _published(name, part), uniform(0.0, 1.0)
+    if not isinstance(given, Distribution):
+        raise InputError(
+            f"{name}: must be a distribution, such as wl.normal(5.3, 0.5) with its unit, or wl.published_range();"
+            f" got {shown(given)}"
+        )
+    known = numbers(part.explicit() if isinstance(part, Law) else part)
+    if name not in known:
+        hint = did_you_mean(name, known)
+        raise InputError(f"{part.kind} '{part.name}' has no number {shown(name)}{hint} There are: {', '.join(known)}")
+    number = known[name]
+    unit = symbol(number.units, "~C") if isinstance(number, pint.Quantity) else None
+    return {name: ends_in_si(name, given, unit)}, given
+
+
+def ends_in_si(name: str, given: Distribution, unit: str | None) -> Ends:
+    """Return the two numbers of a distribution in SI; without a unit they are coefficients."""
+
+    def in_si(value: Any) -> float:
+        if unit is None:
+            return float(value if isinstance(value, float) else coefficient(value, name))
+        return float(Unit(unit, positive=False).si(value, name))
+
+    return in_si(given.first), float(given.second) if given.kind == "lognormal" else in_si(given.second)
+
+
+def _published(name: str, part: Law | Stage) -> dict[str, Ends]:
+    """Return the ends of the published ranges of a field's numbers, which move together."""
+    band = part.band() if isinstance(part, Law) else None
+    if band is None:
+        raise InputError(f"{name}: the source of {part.kind} '{part.name}' publishes no ranges; give a distribution")
+    low, _, high = (numbers_in_si(end.explicit()) for end in band)
+    ranges = {field: (low[field], high[field]) for field in low if low[field] != high[field]}
+    ends = {field: pair for field, pair in ranges.items() if field == name or field.startswith(f"{name}.")}
+    if not ends:
+        known = sorted({field.partition(".")[0] for field in ranges})
+        raise InputError(
+            f"{name}: {part.kind} '{part.name}' has no published range of it; there are: {', '.join(known) or 'none'}"
+        )
+    return ends
+
+
+def check_samples(part: Law | Stage, samples: Mapping[str, Array]) -> None:
+    """Raise an error if a law or stage does not accept some samples of its numbers, in SI by name.
+
+    If it accepts all combinations of their extremes, it accepts the samples. If not, each sample is tried.
+    """
+    like = numbers(part)
+
+    def accept(sample: tuple[Any, ...]) -> None:
+        changed(part, {name: number_like(like[name], float(si)) for name, si in zip(samples, sample, strict=True)})
+
+    try:
+        for extremes in product(*((values.min(), values.max()) for values in samples.values())):
+            accept(extremes)
+    except InputError:
+        try:
+            for sample in zip(*samples.values(), strict=True):
+                accept(sample)
+        except InputError as error:
+            raise InputError(f"{error}{OTHERS}") from None

@@ -1,0 +1,90 @@
+"""The command that wears a profile over a distance."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import click
+import pandas as pd
+
+import wearlaw as wl
+from wearlaw_apps.life.life import Life
+from wearlaw_apps.output.commands import folder_for, print_notes, print_results, value, values
+from wearlaw_apps.output.curves import FigureFormat
+from wearlaw_apps.output.files import write_files, writes_results
+from wearlaw_apps.output.folder import results_folder
+from wearlaw_apps.output.notes import Notes
+from wearlaw_apps.studies.case import load_case
+
+LIFE = "life.json"
+"""The file with the models and notes of a life, which tells its folder from others."""
+
+
+@click.command()
+@click.argument("case")
+@click.argument("line", type=click.Path(path_type=Path))
+@click.option("--over", required=True, metavar="DISTANCE", help='Distance, as in "100000 km"; passages for a rail.')
+@click.option("--until", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
+@click.option("--set", "settings", metavar="NAME=VALUE", multiple=True,
+              help="Condition of all states, or argument of wl.wear_out, such as sides=each.")  # fmt: skip
+@click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
+@click.option("--resume", is_flag=True, help="Go on from the finished steps of an interrupted life, in FOLDER.partial.")
+@writes_results("LINE-life")
+def life(
+    case: str,
+    line: Path,
+    over: str,
+    until: tuple[str, ...],
+    settings: tuple[str, ...],
+    workers: int,
+    resume: bool,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+) -> None:
+    """Wear a profile over a distance: CASE is a case file with a rig, LINE a table of states with their shares.
+
+    \b
+    wearlaw life wheel_life line.csv --over "20000 km"
+    wearlaw life my-case.toml line.csv --over "100000 km" --until flange_thickness="25 mm" --set sides=each
+
+    The first contact model and the first wear law of the case predict. The folder then holds life.csv, the measures
+    at every step; profiles.csv; a figure; the worn profile, worn.csv (or that of each side, worn_left.csv and
+    worn_right.csv); and life.json.
+    """  # noqa: D301
+    folder = output or folder_for(str(line), "life")
+    partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
+    loaded, notes = load_case(case), Notes()
+    given: dict[str, Any] = values("--set", settings)
+    with results_folder(folder, overwrite, LIFE) as fresh:
+        with notes.of("life"):
+            predict: wl.Pipeline[...] = loaded.rig | loaded.contact_models[0]
+            for stage in loaded.stages:
+                predict = predict | stage
+            predict = predict | loaded.wear_laws[0]
+            found = wl.wear_out(
+                predict, line, over=value(over), until=values("--until", until), workers=workers, store=partial,
+                resume=resume, progress=True, **given,
+            )  # fmt: skip
+        laws = [repr(law) for law in found.pipeline.laws]
+        record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": notes.texts}
+        names = write_files(fresh, LIFE, record, _tables(found), [found.figure()], figure_formats, latex)
+    shutil.rmtree(partial, ignore_errors=True)
+    print_notes(notes.texts)
+    click.echo(repr(found))
+    print_results(folder, names)
+
+
+def _tables(found: Life) -> dict[str, pd.DataFrame]:
+    """Return the measures, the profiles at each step, and the last ones, by the names of their files."""
+    profiles = found.profiles.drop_vars("body")
+    units = {name: one.attrs.get("units") for name, one in profiles.variables.items()}
+    heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit}
+    tables = {"life": found.table, "profiles": profiles.to_dataframe().reset_index().rename(columns=heads)}
+    for side, profile in zip(profiles["side"].values, found.worn_profiles[-1], strict=True):
+        y, z = (value.magnitude for value in profile.points)
+        tables["worn" if side == "mean" else f"worn_{side}"] = pd.DataFrame({"y [mm]": y, "z [mm]": z})
+    return tables

@@ -1,0 +1,174 @@
+"""The life of a profile: what a run returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+import xarray
+
+import wearlaw as wl
+from wearlaw_apps.life.removal import positions
+from wearlaw_apps.output.labels import readable
+from wearlaw_apps.output.plot import plot
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from wearlaw_models.rigs.wheelset import Profile
+
+SIDES = {1: ("",), 2: ("_left", "_right")}
+"""Ends of the names of columns: of one profile for both sides, or of each side."""
+
+MOST_CURVES = 4
+"""Most profiles in a picture."""
+
+SEEN = 10.0
+"""Largest depth as drawn on the profile [mm]."""
+
+PLACES = 601
+"""Places along a profile in `Life.profiles`."""
+
+CURVES = {"flange": "change of the flange [mm]", "equivalent_conicity": "equivalent conicity", "mass": "mass [kg]"}
+"""Beginnings of the columns that are drawn over the distance, with the labels of their axes."""
+
+
+def name_and_unit(column: str) -> tuple[str, str]:
+    """Return the name and the unit in the head of a column."""
+    name, _, unit = column.partition(" [")
+    return name, unit.removesuffix("]")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Life:
+    """How profiles wear over a distance.
+
+    Attributes
+    ----------
+    pipeline : Pipeline
+        The pipeline with the worn profiles, for further predictions.
+    body : str
+        The body that wears.
+    ended : str
+        Why the life ended: "over", or the name of the measure that reached its limit, as in the table; "" if it was
+        interrupted.
+    worn_profiles : tuple of tuple of Profile
+        The profiles at the start and after each step: one for both sides, or those of the left and the right side.
+    table : pandas.DataFrame
+        The measures at the start and after each step, with units in the heads. `depth` is the largest depth along the
+        normal of the first profile. `mass` is what a wheel lost, or a metre of rail. `worn_area` is the area between
+        the sections of the first profile and this one. `factor` is what the step's depths were multiplied by so that
+        the removed mass is the predicted one. Where each side has its own profile, the names of their columns end with
+        "_left" and "_right".
+    """
+
+    pipeline: wl.Pipeline[...]
+    body: str
+    ended: str
+    worn_profiles: tuple[tuple[Profile, ...], ...]
+    table: pd.DataFrame
+
+    @property
+    def profile(self) -> Profile:
+        """The worn profile; that of the right side if each has its own, as `worn_profiles[-1]` has both."""
+        return self.worn_profiles[-1][-1]
+
+    @property
+    def profiles(self) -> xarray.Dataset:
+        """Profiles over the distance: y, z and the depth along the normal of the first profile, at its places.
+
+        The places are arc lengths of the first profile [mm]; y and z are those of the surface that the normal there
+        meets now. NaN beyond the end of a profile that is shorter than the other side's.
+        """
+        firsts = self.worn_profiles[0]
+        place = positions(firsts, PLACES)
+        data = np.full((3, len(self.worn_profiles), len(firsts), PLACES), np.nan)
+        for side, first in enumerate(firsts):
+            there = (place >= first.curve.s[0]) & (place <= first.curve.s[-1])
+            y, z, angle, _ = first.curve.at(place[there])
+            s = wl.Q(1e3 * place[there], "mm")
+            depth = np.array([first.depth_to(profiles[side], s).magnitude for profiles in self.worn_profiles])
+            inwards = depth if first.kind == "rail" else -depth
+            data[:, :, side, there] = [1e3 * y - inwards * np.sin(angle), 1e3 * z + inwards * np.cos(angle), depth]
+        along, unit = name_and_unit(self.table.columns[0])
+        dims, names = (along, "side", "place"), {"y": "y, outwards", "z": "z, down", "depth": "depth worn"}
+        return xarray.Dataset(
+            {
+                name: (dims, values, {"units": "mm", "long_name": text})
+                for (name, text), values in zip(names.items(), data, strict=True)
+            },
+            {
+                along: (along, self.table.iloc[:, 0].to_numpy(), {"units": unit}),
+                "side": ["mean"] if len(firsts) == 1 else ["left", "right"],
+                "place": ("place", 1e3 * place, {"units": "mm", "long_name": "position along the first profile"}),
+                "body": self.body,
+            },
+        )
+
+    def figure(self) -> wl.FigureData:
+        """Return the data of `plot`."""
+        column = self.table.columns[0]
+        (along, unit), distances = name_and_unit(column), self.table[column].to_numpy()
+        last = len(distances) - 1
+        chosen = np.unique(np.linspace(0, last, min(last + 1, MOST_CURVES)).round().astype(int))
+        worn = self.profiles.isel({along: chosen})
+        deepest = float(worn["depth"].max())
+        times = 10.0 ** np.floor(np.log10(SEEN / deepest)) if deepest > 0.0 else 1.0  # so that wear is seen
+        new = worn.isel({along: 0})
+        magnified = worn + (times - 1.0) * (worn - new)
+        panels = []
+        for side in worn["side"].values:
+            title = self.body if side == "mean" else f"{side} {self.body}"
+            for shown, name, label, what in (
+                (magnified, "z", "z, down [mm]", f"wear × {times:g}"),
+                (worn, "depth", "depth worn [mm]", "wear along the normal"),
+            ):
+                across, down = shown["y"].sel(side=side).values, shown[name].sel(side=side).values
+                curves = tuple(
+                    wl.Curve(f"{distance:,.0f} {unit or along}", across[number], down[number], colour=number)
+                    for number, distance in enumerate(distances[chosen])
+                )
+                x, y = wl.PlotAxis("y, outwards [mm]"), wl.PlotAxis(label, inverted=True)
+                panels.append(wl.Panel(x, y, curves, f"{title}, {what}", equal=name == "z"))
+        for beginning, label in CURVES.items():
+            measures = self.table.filter(regex=f"^{beginning}").dropna(axis=1, how="all")
+            if beginning == "flange":
+                measures = measures - measures.iloc[0]
+            if len(self.worn_profiles[0]) == 1:
+                measures = measures.drop(columns=measures.filter(regex="_left|_right"))
+            several = measures.shape[1] > 1  # the label of the axis names one alone
+            curves = tuple(
+                wl.Curve(_words(str(name)) if several else "", distances, values.to_numpy(), colour=number * several)
+                for number, (name, values) in enumerate(measures.items(), MOST_CURVES)
+            )
+            if curves:
+                panels.append(wl.Panel(wl.PlotAxis(column), wl.PlotAxis(label), curves))
+        caption = f"The {self.body} after {last} steps. It follows from the given line and wear law alone."
+        return wl.FigureData("life", f"Life of a {self.body}", tuple(panels), caption)
+
+    def plot(self) -> Figure:
+        """Draw profiles over the distance, the wear along their normals, and the measures, as a matplotlib figure."""
+        return plot(self.figure())
+
+    def __repr__(self) -> str:
+        first, last = self.table.iloc[0], self.table.iloc[-1]
+        along, unit = name_and_unit(self.table.columns[0])
+        why = {"": ", interrupted", "over": ""}.get(self.ended, f", to the limit of {_words(self.ended)}")
+        steps = "1 step" if len(self.table) == 2 else f"{len(self.table) - 1} steps"
+        lines = [f"Life of a {self.body}: {_number(last.iloc[0])} {unit or along}, {steps}{why}"]
+        for one in map(str, self.table.columns[1:]):
+            if not one.startswith("factor") and np.isfinite(last[one]):
+                unit = readable(name_and_unit(one)[1])
+                lines.append(f"  {_words(one):<26}{_number(first[one])} to {_number(last[one])} {unit}".rstrip())
+        return "\n".join(lines)
+
+
+def _words(column: str) -> str:
+    """Return the name of a measure for readers."""
+    return name_and_unit(column)[0].replace("_", " ").replace("gradient", "gradient qR")
+
+
+def _number(value: float) -> str:
+    return f"{value:,.0f}" if abs(value) >= 1e4 else f"{value:.4g}"

@@ -1,0 +1,82 @@
+"""The wear that a line causes across the profiles of a body: the sum of a sweep over its states, at every step."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import warnings
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_apps.output.notes import caught_warnings
+from wearlaw_apps.sweeps.located import posed
+from wearlaw_apps.sweeps.points import Points
+from wearlaw_apps.sweeps.provenance import provenance_of
+from wearlaw_apps.sweeps.sweep import check_importable, run
+from wearlaw_apps.sweeps.wear_profile import ProfileJob, Sum
+
+if TYPE_CHECKING:
+    from wearlaw_apps.sweeps.folder import Parts
+
+
+class Wear(NamedTuple):
+    """Wear per metre rolled, or per passage over a rail, weighted by share."""
+
+    depth: Array
+    """Depth normal to the profile, (sides, positions) [m per metre or passage]."""
+    mass: Array
+    """Mass of a wheel [kg/m], or of a metre of rail [kg/m per passage], (sides,)."""
+
+
+class Line:
+    """The states of a line, whose wear at positions `at` along the profile [m] is summed with their shares."""
+
+    def __init__(
+        self, predict: wl.Pipeline[...], points: Points, body: str, at: Array, workers: int, client: Any
+    ) -> None:
+        with caught_warnings():  # the first step gives them
+            first = posed(points.part([slice(0, 1)]), predict.rig.checked_problem)
+        check_importable(predict, workers, client)
+        self.job = ProfileJob.of(predict, first, body, wl.Q(1e3 * at, "mm"), True)
+        self.sides = len(self.job.dims.get("side", "-"))
+        self.points = dataclasses.replace(points, weight=self.job.weight(first))
+        self._workers, self._client, self._quiet = workers, client, False
+        self._kept: Parts | None = None
+
+    def keep(self, store: str | os.PathLike[str], life: Mapping[str, Any], resume: bool) -> Parts:
+        """Keep the wear of each step in a store, of a life with these settings, and return the store."""
+        from wearlaw_apps.sweeps.folder import Parts  # zarr takes half a second
+
+        provenance = provenance_of(self.job, self.points) | {"life": json.loads(json.dumps(life))}
+        self._kept = Parts(store, provenance, resume, "life")
+        if self._kept.resumed:
+            text = f"the finished steps in {wl.shown(store)} are kept; the life goes on from there"
+            warnings.warn(text, wl.ResumeWarning, stacklevel=3)
+        return self._kept
+
+    def wear(self, step: int, predict: wl.Pipeline[...], at: Array) -> Wear:
+        """Return the wear of both sides at arc lengths of the profiles at the beginning of a step [m].
+
+        Raises
+        ------
+        DataError
+            If a state has no result, or its wheel climbs; the message names the row.
+        """
+        part = None if self._kept is None else self._kept[step]
+        if part is not None:
+            return Wear(**part.arrays)
+        total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at), self.points)
+        for warning in run(total, lambda _: None, self._workers, self._client):
+            if not self._quiet:
+                warnings.warn(warning, stacklevel=4)
+        self._quiet = True
+        depth, mass = (wl.Q(total.arrays()[name], self.job.units[name]).to_base_units() for name in Wear._fields)
+        found = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude))
+        if self._kept is not None:
+            self._kept.add(step, found._asdict(), {})
+        return found

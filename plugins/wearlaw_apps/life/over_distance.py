@@ -1,0 +1,190 @@
+"""Wearing profiles over a distance, step by step."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping
+from contextlib import ExitStack, closing
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import pandas as pd
+
+import wearlaw as wl
+from wearlaw_apps.life.life import Life
+from wearlaw_apps.life.line import Line
+from wearlaw_apps.life.removal import even, positions
+from wearlaw_apps.life.steps import Limits, Steps
+from wearlaw_apps.sweeps.evaluation import expect_pipeline
+from wearlaw_apps.sweeps.progress import Bar
+from wearlaw_apps.sweeps.tables import operating_points
+from wearlaw_apps.sweeps.wear_profile import SHARE
+
+if TYPE_CHECKING:
+    from wearlaw_models.rigs.wheelset import Profile
+
+DEEPEST = 1e-4
+"""Largest depth of a step [m]: contacts move with the wear."""
+
+
+def wear_out(
+    predict: wl.Pipeline[...],
+    line: Any,
+    /,
+    *,
+    over: wl.QuantityLike | float,
+    share: str = "share",
+    columns: Mapping[str, str] | None = None,
+    depth_step: wl.QuantityLike = "0.05 mm",
+    smoothing: wl.QuantityLike = "3 mm",
+    spacing: wl.QuantityLike = "0.1 mm",
+    until: Mapping[str, wl.QuantityLike | float] | None = None,
+    body: str = "wheel",
+    sides: Literal["mean", "each"] = "mean",
+    conicity_step: float = 0.005,
+    workers: int = 1,
+    client: Any = None,
+    store: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    progress: bool = False,
+    **conditions: Any,
+) -> Life:
+    """Return how profiles wear over a distance on a line.
+
+    A step predicts the wear of all states across the profile and sums it with their shares. It smooths the sum,
+    removes it along the normal over a distance that wears at most `depth_step`, and takes new points at even arc
+    lengths. The wear of a step is that of its middle, extrapolated from its beginning and from the step before. At
+    each place it changes as an exponential with its relative rate of change, a method of second order like that of
+    Adams and Bashforth. A step needs one prediction of the line.
+
+    Parameters
+    ----------
+    predict : Pipeline
+        A rig whose field of the body's name is its profile, such as a `wearlaw.Wheelset`, a contact model that resolves
+        the patch, and a wear law.
+    line : pandas.DataFrame, xarray.Dataset or path
+        Operating states in rows, conditions in columns with units, and a column with the share of the distance. A file
+        is read in pieces, as in `wearlaw.sweep`; one of any length needs no more memory than a short one.
+    over : Quantity, str or float
+        The distance [m], or the number of passages for a rail.
+    share : str
+        The column with the shares, which add up to one.
+    columns : mapping of str to str, optional
+        The column of each condition, as in `wearlaw.sweep`.
+    depth_step : Quantity or str
+        Largest depth of a step, at most 0.1 mm [m].
+    smoothing : Quantity or str
+        Standard deviation of the Gaussian kernel that smooths the summed wear [m]. It stands for what lies between the
+        states; zero does not smooth.
+    spacing : Quantity or str
+        Distance between the positions of the wear along the profile [m].
+    until : mapping, optional
+        Limits of measures in `Life.table` that end the life, such as {"flange_thickness": "25 mm"}.
+    body : str
+        "wheel" or "rail".
+    sides : "mean" or "each"
+        With "mean" both sides have one profile, which wears by the mean of both, as on a vehicle that turns. With
+        "each" they wear for themselves.
+    conicity_step : float
+        Largest change of the equivalent conicity in a step, if the rig has one; math.inf for any.
+    workers : int
+        Number of processes on this machine.
+    client : distributed.Client, optional
+        A cluster of dask.distributed, instead of `workers`.
+    store : path, optional
+        A folder that keeps the finished steps.
+    resume : bool
+        Whether to go on with the life in `store`, if there is one.
+    progress : bool
+        Whether to show the distance and the time left.
+    **conditions
+        Conditions that are the same in all states.
+
+    Returns
+    -------
+    Life
+
+    Raises
+    ------
+    DataError
+        If the line is wrong, its shares do not add up to one, or a state is impossible, has no result or its wheel
+        climbs; the message names the row. If steps were finished before, the error's attribute `life` holds them.
+    InputError
+        If an argument is wrong, or the profile is too short for the wear.
+    OutputError
+        If `store` holds anything but the same life.
+    """
+    expect_pipeline(predict)
+    length = wl.Unit("mm")
+    settings: dict[str, Any] = {
+        "depth_step": float(length.si(depth_step, "depth_step")),
+        "smoothing": float(wl.Unit("mm", positive=False, negative=False).si(smoothing, "smoothing")),
+        "conicity_step": float(conicity_step),
+    }
+    if settings["depth_step"] > DEEPEST:
+        raise wl.InputError(f"depth_step: must be at most {1e3 * DEEPEST:g} mm, since contacts move as a profile wears")
+    if not conicity_step > 0.0:
+        raise wl.InputError(f"conicity_step: must be positive, or math.inf for no limit; got {conicity_step:g}")
+    distance = _distance(over, body)
+    new = tuple(even(one) for one in _profiles(predict.rig, body, sides))
+    longest = max(np.ptp(one.curve.s) for one in new)
+    at = positions(new, math.ceil(longest / length.si(spacing, "spacing")) + 1)
+    with ExitStack() as stack:
+        points = stack.enter_context(
+            operating_points(predict, line, conditions, columns, {SHARE: share}, {}, store, True)
+        )
+        steps = Steps(Line(predict, points, body, at, workers, client), body, new, **settings)
+        now = steps.begin(predict)
+        rows, profiles = [now.row], [now.profiles]
+        limits = Limits(until or {}, distance, now.row)
+        if store is not None:
+            settings |= {"sides": sides, "limits": limits.ends}
+            stack.enter_context(closing(steps.line.keep(store, settings, resume)))
+        along, _ = limits.ends["over"]
+        bar = stack.enter_context(Bar(round(distance), progress))
+        bar.stage(along)
+
+        def life(ended: str = "") -> Life:
+            return Life(now.predict, body, ended, tuple(profiles), pd.DataFrame(rows))
+
+        try:
+            while not (ended := limits.reached(now.row)):
+                now = steps.step(now, limits)
+                bar(round(now.row[along]) - round(rows[-1][along]))
+                rows.append(now.row)
+                profiles.append(now.profiles)
+        except (wl.WearlawError, KeyboardInterrupt) as error:
+            if now.number:
+                error.life = life()  # type: ignore[union-attr]
+                error.add_note(f"{now.number} steps are finished: the error's attribute `life` has them")
+            raise
+        return life(ended)
+
+
+def _distance(over: Any, body: str) -> float:
+    """Return the distance [km], or the number of passages of a rail."""
+    if body != "rail":
+        return 1e-3 * float(wl.Unit("km").si(over, "over"))
+    if isinstance(over, str | wl.Quantity) or not over > 0.0:
+        raise wl.InputError(f"over: a rail wears by passages; give their number, such as 1e6; got {wl.shown(over)}")
+    return float(over)
+
+
+def _profiles(rig: Any, body: str, sides: str) -> tuple[Profile, ...]:
+    """Return the profiles of a rig that wear: one, or those of the left and the right side."""
+    right: Any = getattr(rig, body, None)
+    left = f"left_{body}"
+    if body not in rig.bodies or not hasattr(right, "worn"):
+        raise wl.InputError(
+            f"body: the rig {rig.name!r} has no profile of {wl.shown(body)} that can wear; take a rig with profiles,"
+            " such as wearlaw.Wheelset, and its 'wheel' or 'rail'"
+        )
+    if sides == "each" and hasattr(rig, left):
+        return getattr(rig, left) or right, right
+    if sides != "mean" or getattr(rig, left, None) is not None:
+        raise wl.InputError(
+            f"sides: {wl.shown(sides)} does not suit the rig {rig.name!r}; give 'mean' if it has one profile of its"
+            f" {body} for both sides, or 'each' if it has {left} too"
+        )
+    return (right,)

@@ -1,0 +1,106 @@
+"""Removing a wear depth from a profile: smoothing, removal along the normal, and the mass that is removed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy
+
+import wearlaw as wl
+from wearlaw import Array
+
+if TYPE_CHECKING:
+    from wearlaw_models.rigs.wheelset import (
+        Profile,  # or what has its `curve`, `kind`, `points`, `worn`, `depth_to` and `measures`
+    )
+
+ACCURACY = 5e-11
+"""Share of the predicted mass by which the removed one may differ, after the factor."""
+
+STEPS = 6
+"""Most steps of the secant method for the factor; two are usual."""
+
+EDGE = 1e-3
+"""Share of the deepest wear at an end of a profile that says that the profile is too short."""
+
+
+def positions(profiles: Sequence[Profile], count: int) -> Array:
+    """Return even arc lengths from end to end of profiles [m]."""
+    ends = np.array([one.curve.s[[0, -1]] for one in profiles])
+    return np.linspace(ends[:, 0].min(), ends[:, 1].max(), count)
+
+
+def even(profile: Profile) -> Profile:
+    """Return a profile with points at even arc lengths."""
+    return profile.worn(wl.Q(1e3 * profile.curve.s[[0, -1]], "mm"), "0 mm")
+
+
+def smoothed(depth: Array, at: Array, length: float) -> Array:
+    """Return depths at even positions [m], smoothed by a Gaussian kernel of a standard deviation [m]; their sum stays.
+
+    The kernel reaches four times as far, and mirrors at the ends of the profile.
+    """
+    if not length:
+        return depth
+    found: Array = scipy.ndimage.gaussian_filter1d(depth, length / (at[1] - at[0]), mode="reflect")
+    return found
+
+
+def removed(profile: Profile, at: Array, depth: Array) -> Profile:
+    """Return the profile after removal of depths [m] along its normal, with points at even arc lengths.
+
+    Depths between the positions `at` [m] follow a cubic spline, so that no kinks arise.
+    """
+    s = profile.curve.s
+    between = np.maximum(scipy.interpolate.CubicSpline(at, depth)(np.clip(s, at[0], at[-1])), 0.0)
+    return profile.worn(wl.Q(1e3 * s, "mm"), wl.Q(1e3 * between, "mm"))
+
+
+def swept(old: Profile, new: Profile, radius: float = np.inf) -> float:
+    """Return the volume between two profiles of a wheel [m³], or the area of the section [m²] if they do not turn.
+
+    Both are taken as polygons through their points, closed at their ends. A wheel turns about an axis at a distance
+    `radius` from z = 0 [m]; the volume is exact for frustums of cones.
+    """
+    ends = [[1e-3 * value.magnitude for value in one.points] for one in (old, new)]
+    y, z = (np.concatenate([ends[0][axis], ends[1][axis][::-1], ends[0][axis][:1]]) for axis in (0, 1))
+    low, high = z[:-1], z[1:]
+    section = 0.5 * (low + high)
+    if np.isfinite(radius):
+        section = np.pi * (2.0 * radius * section + (low**2 + low * high + high**2) / 3.0)
+    return float(abs((section * np.diff(y)).sum()))
+
+
+def conserving(profile: Profile, at: Array, depth: Array, volume: float, radius: float) -> tuple[Profile, float]:
+    """Return the profile after removal of depths, and the factor that makes them remove a given volume.
+
+    Without the factor the volume differs: a depth along the normal of a curved profile sweeps an area that also depends
+    on the curvature, and smoothing moves wear to other radii.
+
+    Raises
+    ------
+    InputError
+        If the profile is too short for the wear.
+    """
+    for name, value in zip(("first", "last"), np.interp(profile.curve.s[[0, -1]], at, depth), strict=True):
+        if value > EDGE * depth.max():
+            raise wl.InputError(
+                f"{profile.kind}: the profile is too short for the wear, which reaches {value / depth.max():.2g} of its"
+                f" deepest place at the {name} point; give a wider profile, or less smoothing"
+            )
+
+    def by(factor: float) -> tuple[Profile, float]:
+        new = removed(profile, at, factor * depth)
+        return new, swept(profile, new, radius)
+
+    new, found = by(1.0)
+    before, factor = (1.0, found), volume / found
+    for _ in range(STEPS):
+        new, found = by(factor)
+        if abs(found - volume) <= ACCURACY * volume or found == before[1]:
+            break
+        slope = (found - before[1]) / (factor - before[0])
+        before, factor = (factor, found), factor + (volume - found) / slope
+    return new, factor

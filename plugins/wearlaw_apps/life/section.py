@@ -1,0 +1,68 @@
+"""The section of a report about the life of a wheel: its profiles, its measures, and which states wear where."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+import wearlaw as wl
+from wearlaw_apps.life.over_distance import wear_out
+from wearlaw_apps.output.notes import caught_warnings
+
+LINE = "line"
+"""The sweep whose states make up the line."""
+
+OVER = wl.Q(10_000, "km")
+"""The distance of the example."""
+
+STATES = 7
+"""Most states in the figure of what wears where."""
+
+
+def section(study: wl.Study) -> wl.Section:
+    """Return the section about the life of a wheel, on the states of the sweep "line", with equal shares.
+
+    Raises
+    ------
+    InputError
+        If the case has no such sweep, or it varies more than one condition.
+    """
+    given = study.conditions(sweep=LINE)
+    varying = [name for name, value in given.items() if np.ndim(getattr(value, "magnitude", value))]
+    if len(varying) != 1:
+        raise wl.InputError(f"the section 'life' takes a sweep {LINE!r} of one condition, got {len(varying)}")
+    (name,) = varying
+    values = given.pop(name)
+    unit = f"{values.units:~C}"
+    states = pd.DataFrame({f"{name} [{unit}]": values.magnitude, "share": 1.0 / values.size})
+    predict = study.pairs[0].pipeline
+    with caught_warnings():  # the sweep of the study has said them
+        found = wear_out(predict, states, over=OVER, **given)
+        figures = (found.figure(), _states(predict, name, values, given))
+    return wl.Section(
+        title="The life of a wheel",
+        text=f"An example, not a service rate: {OVER:~P} with equal shares of the {values.size} states of the sweep"
+        f" '{LINE}'. Real lines have curves, in which flanges wear.",
+        tables={"life": found.table},
+        figures=figures,
+    )
+
+
+def _states(predict: wl.Pipeline[...], name: str, values: wl.Quantity, given: dict[str, object]) -> wl.FigureData:
+    """Return the depth that single states wear across the new profile."""
+    chosen = np.unique(np.linspace(0, values.size - 1, min(values.size, STATES)).round().astype(int))
+    s = predict.rig.wheel.curve.s  # type: ignore[attr-defined]
+    at = wl.Q(np.arange(1e3 * s[0], 1e3 * s[-1], 0.25), "mm")
+    found = predict(**{name: values[chosen]}, **given)
+    depth = found.wear_profile("wheel", at=at)["depth"]
+    panels = []
+    for side in depth["side"].values:
+        curves = tuple(
+            wl.Curve(f"{values.magnitude[state]:.3g} {values.units:~P}", at.magnitude, depth.sel(side=side)[row].values,
+                     colour=row)
+            for row, state in enumerate(chosen)
+        )  # fmt: skip
+        x, y = wl.PlotAxis("position along the profile [mm]"), wl.PlotAxis("depth [µm/km]")
+        panels.append(wl.Panel(x, y, curves, f"{side} wheel"))
+    title = f"Which {name.replace('_', ' ')} wears where"
+    return wl.FigureData("states", title, tuple(panels), "On the new profile, by single states, without smoothing.")

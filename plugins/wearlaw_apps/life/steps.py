@@ -1,0 +1,227 @@
+"""The steps of a life: how long each is, the wear of its middle, and the profiles and measures after it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw.units.registry import unit_in_si
+from wearlaw_apps.life.life import SIDES, name_and_unit
+from wearlaw_apps.life.line import Line, Wear
+from wearlaw_apps.life.removal import conserving, positions, smoothed, swept
+
+if TYPE_CHECKING:
+    from wearlaw_models.rigs.wheelset import Profile
+
+START = 0.25
+"""Share of `depth_step` of the first step, which has none before it to extrapolate from."""
+
+GROWTH = 2.0
+"""Largest ratio of the distances of two steps: the extrapolation then multiplies a wear by e at most."""
+
+CORRECTION = 2e3
+"""Largest depth by which extrapolation may change the wear of a step anywhere, over the square of `depth_step` [1/m]:
+all steps halve with it. Where contact leaves a place and comes back, longer steps would wear one place too deep,
+and then the other."""
+
+SHORTEST = 1.0 / 64.0
+"""Smallest share of `depth_step` that a jump of the conicity makes a step; a jump stays one however short the step."""
+
+AIM = 0.95
+"""Share of `conicity_step` at which a step aims."""
+
+TRIES = 8
+"""Most distances that a step tries to hold the conicity and the limits."""
+
+NEAR = 1e-9
+"""Share of the way to a limit at which it counts as reached."""
+
+CONICITY = "equivalent_conicity"
+"""Its column."""
+
+
+class Limits:
+    """Limits that end a life: those of measures, as in `wear_out`, and the distance in the unit of its column.
+
+    `start` has the measures at the start by their columns, the distance first. A measure that each side has for itself
+    ends the life with the first side.
+    """
+
+    def __init__(self, until: Mapping[str, wl.QuantityLike | float], over: float, start: Mapping[str, float]) -> None:
+        along, *columns = start
+        there = {name_and_unit(column)[0]: column for column in columns if math.isfinite(start[column])}
+        self._start = start
+        self.ends: dict[str, tuple[str, float]] = {}
+        """The column and the limit of each measure, and of the distance as "over"."""
+        for name, limit in until.items():
+            found = [name] if name in there else [f"{name}{side}" for side in SIDES[2] if f"{name}{side}" in there]
+            if not found:
+                raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
+            unit, what = name_and_unit(there[found[0]])[1], f"until: {name}"
+            value = wl.Unit(unit).si(limit, what) / unit_in_si(unit) if unit else wl.coefficient(limit, what)
+            self.ends |= {one: (there[one], float(value)) for one in found}
+        self.ends["over"] = along, over
+
+    def _ways(self, row: Mapping[str, float]) -> Array:
+        """Return the share of the way from the start to each limit."""
+        start = self._start
+        return np.array([(row[one] - start[one]) / (end - start[one]) for one, end in self.ends.values()])
+
+    def reached(self, row: Mapping[str, float]) -> str:
+        """Return the measure that is at its limit, or "over"; "" if the life goes on."""
+        return next((name for name, way in zip(self.ends, self._ways(row), strict=True) if way >= 1.0 - NEAR), "")
+
+    def share(self, before: Mapping[str, float], after: Mapping[str, float]) -> float:
+        """Return the share of a step at which the first measure reaches its limit, one if none does."""
+        old, new = self._ways(before), self._ways(after)
+        passed = new > 1.0
+        return float(((1.0 - old[passed]) / (new - old)[passed]).min(initial=1.0))
+
+
+class State(NamedTuple):
+    """The profiles after a step, and what the next step extrapolates. Distances are in m, or in passages of a rail."""
+
+    predict: wl.Pipeline[...]
+    """The pipeline with these profiles."""
+    profiles: tuple[Profile, ...]
+    """One for both sides, or those of the left and the right side."""
+    mass: Array
+    """Mass lost so far, (sides,) [kg]."""
+    row: dict[str, float]
+    """Measures by the heads of their columns, in the units there."""
+    number: int = 0
+    """Number of steps so far."""
+    step: float = 0.0
+    """Distance of the last step."""
+    wear: Wear | None = None
+    """Wear of both sides at the beginning of the last step; None at the start."""
+    change: float = 0.0
+    """Change of the conicity in the last step."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """What all steps of a life share, in SI; see `wear_out`."""
+
+    line: Line
+    body: str
+    new: tuple[Profile, ...]
+    """The profiles at the start: one for both sides, or those of the left and the right side."""
+    depth_step: float
+    smoothing: float
+    conicity_step: float
+
+    @property
+    def along(self) -> tuple[str, float]:
+        """The column of the distance or of the passages, and what one metre or passage is there."""
+        return ("passages", 1.0) if self.body == "rail" else ("distance [km]", 1e-3)
+
+    def begin(self, predict: wl.Pipeline[...]) -> State:
+        """Return the state at the start."""
+        return self._state(predict, self.new, 0.0, np.zeros(self.line.sides), [1.0] * len(self.new))
+
+    def step(self, now: State, limits: Limits) -> State:
+        """Return the state after one more step."""
+        at = positions(now.profiles, self.line.job.at.size)
+        wear = self.line.wear(now.number, now.predict, at)
+        wear = wear._replace(depth=smoothed(wear.depth, at, self.smoothing))
+        deepest = float(self._of_profiles(wear.depth).max())
+        if not deepest > 0.0:
+            raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
+        along, unit = self.along
+        distance = min(self._distance(now, wear), (limits.ends["over"][1] - now.row[along]) / unit)
+        after = self._after(now, at, wear, distance)
+        for _ in range(TRIES - 1):
+            if after.change > self.conicity_step and distance * deepest > SHORTEST * self.depth_step:
+                distance *= max(AIM * self.conicity_step / after.change, 0.25)
+            elif (share := limits.share(now.row, after.row)) < 1.0 - 1e-6:
+                distance *= share
+            else:
+                break
+            after = self._after(now, at, wear, distance)
+        return after
+
+    def _distance(self, now: State, wear: Wear) -> float:
+        """Return the distance that a step tries first."""
+        distance = self.depth_step / float(self._of_profiles(wear.depth).max())
+        if now.wear is None:
+            return START * distance
+        distance = min(distance, GROWTH * now.step)
+        rise = float(np.abs(self._of_profiles(wear.depth - now.wear.depth)).max())
+        if rise > 0.0:
+            distance = min(distance, self.depth_step * math.sqrt(2.0 * CORRECTION * now.step / rise))
+        if now.change > 0.0:
+            distance = min(distance, AIM * self.conicity_step / now.change * now.step)
+        return distance
+
+    def _after(self, now: State, at: Array, wear: Wear, distance: float) -> State:
+        """Return the state after a distance, with the wear of its middle."""
+        middle = _of_middle(now, wear, distance)
+        body = now.predict.rig.bodies[self.body]
+        density, radius = wl.scalar_si(body.material.density, "kg/m^3"), float(np.asarray(body.rolling_radius))
+        volumes = distance * self._of_profiles(middle.mass) / density
+        removals = zip(now.profiles, distance * self._of_profiles(middle.depth), volumes, strict=True)
+        worn = [conserving(profile, at, depth, float(volume), radius) for profile, depth, volume in removals]
+        profiles, factors = zip(*worn, strict=True)
+        along, unit = self.along
+        mass = now.mass + distance * middle.mass
+        after = self._state(now.predict, profiles, now.row[along] + unit * distance, mass, factors)
+        change = abs(after.row[CONICITY] - now.row[CONICITY])
+        return after._replace(number=now.number + 1, step=distance, wear=wear, change=change)
+
+    def _of_profiles(self, values: Array) -> Array:
+        """Return values of both sides for each profile: as they are, or their mean."""
+        return values if len(self.new) == 2 else values.mean(axis=0, keepdims=True)
+
+    def _state(
+        self,
+        predict: wl.Pipeline[...],
+        profiles: tuple[Profile, ...],
+        done: float,
+        mass: Array,
+        factors: Sequence[float],
+    ) -> State:
+        """Return the state of profiles, with their measures."""
+        sides = SIDES[len(profiles)]
+        fields = {self.body: profiles[-1]} | ({f"left_{self.body}": profiles[0]} if len(profiles) == 2 else {})
+        rig: Any = predict.rig.model_copy(update=fields)
+        row = {self.along[0]: done}
+        if len(profiles) == 1:
+            row["mass [kg]"] = float(mass.mean())
+        if mass.size == 2:
+            row |= {f"mass{side} [kg]": float(one) for side, one in zip(SIDES[2], mass, strict=True)}
+        for side, new, profile in zip(sides, self.new, profiles, strict=True):
+            depth = new.depth_to(profile, wl.Q(1e3 * new.curve.s, "mm")).magnitude.max()
+            row[f"depth{side} [mm]"] = float(depth) if done else 0.0
+            row[f"worn_area{side} [mm^2]"] = 1e6 * swept(new, profile) if done else 0.0
+            measures = profile.measures(getattr(rig, "flange_back_position", "-70 mm"))
+            row |= {f"{name}{side} [mm]": value.m_as("mm") for name, value in measures.items()}
+        try:
+            row[CONICITY] = float(rig.equivalent_conicity(amplitude="3 mm").m_as(""))
+        except (AttributeError, wl.InputError):  # the rig has none, or these profiles
+            row[CONICITY] = math.nan
+        row |= {f"factor{side}": one for side, one in zip(sides, factors, strict=True)}
+        return State(predict.model_copy(update={"rig": rig}), profiles, mass, row)
+
+
+@np.errstate(over="ignore")  # where hardly any wear is left, the exponential is zero
+def _of_middle(now: State, wear: Wear, distance: float) -> Wear:
+    """Return the wear in the middle of a step, extrapolated from its beginning and the step before.
+
+    Depths change as exponentials with the relative rate of change that they have. Unlike straight lines, these never
+    fall below zero, where a clipped depth would leave a kink in the profile. The mass changes with the sum of the
+    depths.
+    """
+    if now.wear is None:
+        return wear
+    share, worn = 0.5 * distance / now.step, wear.depth > 0.0
+    change = np.divide(wear.depth - now.wear.depth, wear.depth, out=np.zeros_like(wear.depth), where=worn)
+    depth = wear.depth * np.exp(share * change)
+    sums = wear.depth.sum(axis=-1)
+    return Wear(depth, wear.mass * np.divide(depth.sum(axis=-1), sums, out=np.ones_like(sums), where=sums > 0.0))

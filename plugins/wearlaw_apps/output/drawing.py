@@ -1,0 +1,267 @@
+"""Figures drawn with matplotlib in one style, for print.
+
+The palette is safe for colour-blind readers (Okabe and Ito, 2008). Lines that would differ only in colour get a line
+style each, for prints in grey. Only measurements have filled markers. The legend stands below the panels, where it
+covers no curve.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from wearlaw_apps.output.curves import (
+    OUTSIDE,
+    STRIP,
+    borders_of,
+    head_of_legend,
+    in_parts,
+    lone_points,
+    map_range,
+    shows_outside,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+
+    from wearlaw_apps.output.curves import Curve, FigureData, Map, Panel, Shade
+
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+LINES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (9, 3)), (0, (6, 1.5, 1, 1.5, 1, 1.5)), (0, (3, 3, 1, 3, 1, 3)))
+"""Line styles, as many as colours: names of matplotlib, or an offset with lengths of dashes and gaps in line widths."""
+MARKERS = ("s", "^", "D", "v", "P", "X", "o")
+"""One for the measurements of each colour."""
+STYLE: Any = {
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": "medium",
+    "axes.xmargin": 0.02,
+    "figure.titlesize": "large",
+    "legend.frameon": False,
+    "legend.fontsize": "small",
+    "legend.title_fontsize": "small",
+    "font.size": 10,
+    "lines.linewidth": 1.6,
+}
+WIDTH, ROW_HEIGHT = 7.4, 3.6
+"""Width of a figure and height of a row of panels, in inches."""
+AROUND = 0.9
+"""Height and width that the labels of a panel take, in inches."""
+TITLE, LINE = 0.26, 0.17
+"""Height of a line of the title, and of the conditions below it, in inches."""
+TITLE_LETTERS, LETTERS = 72, 105
+"""Letters of the title, and of the conditions, that fit across a figure."""
+PANEL_LETTERS = 76
+"""Letters of the title of a panel that fit across a figure."""
+SHADE, STRIP_GREY = "#ececec", "#8c8c8c"
+"""Greys of a shade as high as a panel, and of a strip along its x axis."""
+BAND, EDGE = 0.07, 0.4
+"""Opacity of a band and of its edges."""
+THIN, PALE = 0.8, 0.6
+"""Width in points and opacity of a line outside the range of its law."""
+LEGEND_WIDTH = 100
+"""Characters that fit below a figure."""
+COLOURS = "viridis"
+"""Colour map of maps."""
+TICKS = 3
+"""Fewest labelled ticks on a logarithmic axis."""
+
+
+def draw(figure: FigureData) -> Figure:
+    """Draw a figure: panels in rows of two, an odd first panel over a whole row."""
+    count = len(figure.panels)
+    cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
+    rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
+    widths = {cell: WIDTH / len(set(row)) for row in rows for cell in row}
+    heights = [max(panel_height(figure.panels[cell], widths[cell]) for cell in row) for row in rows]
+    title = textwrap.wrap(figure.title, TITLE_LETTERS)
+    conditions = textwrap.wrap(figure.conditions, LETTERS)
+    head = TITLE * len(title) + LINE * len(conditions) + 0.08
+    height = 0.9 + head + sum(heights)
+    with mpl.rc_context(STYLE):
+        drawn = Figure(figsize=(WIDTH, height), layout="constrained")
+        engine: Any = drawn.get_layout_engine()
+        engine.set(rect=(0.0, 0.0, 1.0, 1.0 - head / height))
+        axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
+        styles, maps = line_styles(figure), [panel.map for panel in figure.panels if panel.map is not None]
+        norm: Any = None
+        if maps:
+            low, high = map_range(figure)
+            norm = LogNorm(low, high) if maps[0].scale == "log" and low < high else Normalize(low, high)
+        for number, panel in enumerate(figure.panels):
+            _fill(axes[number], panel, styles, norm, round(PANEL_LETTERS * widths[number] / WIDTH))
+        if maps:
+            bar = drawn.colorbar(ScalarMappable(norm, COLOURS), ax=list(axes.values()), label=_literal(maps[0].label))
+            if isinstance(norm, LogNorm):
+                _label_ticks(bar.ax.yaxis)
+        drawn.suptitle(_literal("\n".join(title)), y=1.0 - 0.05 / height, va="top")
+        below = 1.0 - (0.05 + TITLE * len(title)) / height
+        drawn.text(0.5, below, _literal("\n".join(conditions)), ha="center", va="top", fontsize="small", color="0.35")
+        _legend(drawn, figure, list(axes.values()))
+    return drawn
+
+
+def panel_height(panel: Panel, width: float) -> float:
+    """Return the height of a panel of a width, in inches; a shape takes as much as it needs."""
+    if not panel.equal or not panel.curves:
+        return ROW_HEIGHT
+    across, up = (
+        np.ptp(axis.ends or np.concatenate([values[np.isfinite(values)] for values in every]))
+        for axis, every in (
+            (panel.x, [curve.x for curve in panel.curves]),
+            (panel.y, [curve.y for curve in panel.curves]),
+        )
+    )
+    return float(min(AROUND + (width - AROUND) * up / across, ROW_HEIGHT))
+
+
+def line_styles(figure: FigureData) -> dict[tuple[int, int], int]:
+    """Return the index in `LINES` for each colour and dash of the lines of a figure.
+
+    It is that of the dash, unless two lines of a panel would then differ only in colour: every line then has its own.
+    """
+    kinds = [
+        list(dict.fromkeys((curve.colour, curve.dash) for curve in panel.curves if not curve.points))
+        for panel in figure.panels
+    ]
+    alike = any(len(of_panel) > len({dash for _, dash in of_panel}) for of_panel in kinds)
+    every = dict.fromkeys(kind for of_panel in kinds for kind in of_panel)
+    return {kind: (number if alike else kind[1]) % len(LINES) for number, kind in enumerate(every)}
+
+
+def _fill(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: Any, letters: int) -> None:
+    if panel.map is not None:
+        _draw_map(axes, panel.map, norm)
+    for shade in panel.shades:
+        for low, high in shade.spans:
+            axes.axvspan(low, high, 0.0, STRIP if shade.strip else 1.0, color=_grey(shade), lw=0, zorder=0)
+    for curve in panel.curves:
+        plot_curve(axes, curve, styles.get((curve.colour, curve.dash), 0))
+    axes.set_title(_literal("\n".join(textwrap.wrap(panel.title, letters))))
+    axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label))
+    axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
+    axes.set(xlim=panel.x.ends or (None, None), ylim=panel.y.ends or (None, None))
+    for axis, drawn in ((panel.x, axes.xaxis), (panel.y, axes.yaxis)):
+        if axis.inverted:
+            drawn.set_inverted(True)
+        if axis.scale == "log":
+            _label_ticks(drawn)
+    if panel.equal:
+        axes.set_aspect("equal", adjustable="box")
+
+
+def _grey(shade: Shade) -> str:
+    return STRIP_GREY if shade.strip else SHADE
+
+
+def _label_ticks(axis: Axis) -> None:
+    """Label a logarithmic axis with plain numbers: at powers of ten, and between them where these are few."""
+    low, high = sorted(map(float, axis.get_view_interval()))
+    ticks = log_ticks(low, high)
+    axis.set_major_locator(FixedLocator(ticks))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: plain(value)))
+    if len(ticks) <= 2 * TICKS:
+        axis.set_minor_locator(NullLocator())
+
+
+def log_ticks(low: float, high: float) -> list[float]:
+    """Return the labelled ticks of a logarithmic axis with these ends: 1, 10, 100, or 1, 2, 5, 10, or evenly spaced."""
+    powers = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1.0)
+    powers = powers[:: max(1, len(powers) // 8)]
+    for digits in ((1.0,), (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)):
+        found = np.ravel(np.multiply.outer(10.0**powers, digits))
+        seen = found[(found >= low * (1.0 - 1e-9)) & (found <= high * (1.0 + 1e-9))]
+        if seen.size >= TICKS:
+            return [float(f"{tick:.6g}") for tick in seen]
+    step = 10.0 ** np.floor(np.log10(high - low)) / 2.0
+    return [float(f"{tick:.6g}") for tick in np.arange(np.ceil(low / step), np.floor(high / step) + 1.0) * step]
+
+
+def plain(value: float) -> str:
+    """Return a number as people write it: 0.02 or 6000, and a power of ten only for the smallest and the largest."""
+    if value == 0.0 or 1e-4 <= abs(value) < 1e5:
+        return f"{value:.6g}".replace("-", "−")
+    digits, power = f"{value:.3e}".split("e")
+    factor = "" if float(digits) == 1.0 else rf"{float(digits):g} \times "
+    return f"${factor}10^{{{int(power)}}}$"
+
+
+def plot_curve(axes: Axes, curve: Curve, style: int = 0) -> None:
+    """Draw a curve with its band, or points with their error bars."""
+    number = curve.colour % len(PALETTE)
+    colour = PALETTE[number]
+    looks: dict[str, Any] = {"color": colour, "linestyle": LINES[style], "zorder": 2.0 + 0.1 * style}
+    if curve.points:
+        looks = {"color": colour, "marker": MARKERS[number], "linestyle": "", "markersize": 5 if curve.hollow else 4,
+                 "zorder": 3, "markerfacecolor": "none" if curve.hollow else colour}  # fmt: skip
+    elif alone := lone_points(curve):
+        looks |= {"marker": ".", "markevery": alone}
+    inside, outside = in_parts(curve)
+    axes.plot(curve.x, inside, label=_literal(curve.label), **looks)
+    if outside is not None:
+        axes.plot(curve.x, outside, label="_", **{**looks, "linewidth": THIN, "alpha": PALE})
+    if curve.low is None or curve.high is None:
+        return
+    if curve.points:
+        bars = curve.y - curve.low, curve.high - curve.y
+        axes.errorbar(curve.x, curve.y, bars, fmt="none", ecolor=colour, elinewidth=1.0, capsize=2.0)
+    else:
+        axes.fill_between(
+            curve.x, curve.low, curve.high, facecolor=(colour, BAND), edgecolor=(colour, EDGE), lw=0.5, zorder=1
+        )
+
+
+def _draw_map(axes: Axes, drawn: Map, norm: Any) -> None:
+    """Draw a map as a cell around each point, so that a jump stays one, with borders, white below black."""
+    mesh = axes.pcolormesh(drawn.x, drawn.y, drawn.values, norm=norm, cmap=COLOURS, shading="nearest", zorder=0)
+    mesh.set_rasterized(True)
+    axes.set_axisbelow(False)
+    axes.grid(visible=False)
+    for number, region in borders_of(drawn).values():
+        for width, colour, line in ((2.6, "white", "-"), (1.2, "black", LINES[number])):
+            axes.contour(
+                drawn.x, drawn.y, region.astype(float), [0.5], colors=colour, linewidths=width, linestyles=[line]
+            )
+
+
+def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
+    """Add one legend for all panels, with each label once."""
+    entries: dict[str, Any] = {}
+    for one, panel in zip(axes, figure.panels, strict=True):
+        labelled = ((artist, str(artist.get_label())) for artist in one.get_lines())
+        entries |= {label: artist for artist, label in labelled if not label.startswith("_")}
+        for shade in panel.shades:
+            entries[_literal(shade.label)] = Patch(facecolor=_grey(shade), edgecolor="0.6", linewidth=0.5)
+        for label, (number, _) in borders_of(panel.map).items():
+            entries[label] = Line2D([], [], color="black", linewidth=1.2, linestyle=LINES[number])
+    if shows_outside(figure):
+        entries[OUTSIDE] = Line2D([], [], color="black", linewidth=THIN, alpha=PALE)
+    if not (entries or head_of_legend(figure)):
+        return
+    widths = [len(name) + 10 for name in entries]  # in characters, with the line sample and the gap
+    drawn.legend(
+        list(entries.values()),
+        list(entries),
+        loc="outside lower center",
+        handlelength=3.0,  # a whole period of every line style
+        ncols=len(entries) if sum(widths) <= LEGEND_WIDTH else max(1, LEGEND_WIDTH // max(widths)),
+        title=_literal(head_of_legend(figure)) or None,
+    )
+
+
+def _literal(text: str) -> str:
+    """Escape a text for matplotlib: no formula between dollar signs, no hidden legend entry."""
+    shown = text.replace("$", r"\$")
+    return f" {shown}" if shown.startswith("_") else shown

@@ -1,0 +1,295 @@
+"""Pictures of a prediction: curves, a map or bars over its operating points, and the fields of a single patch.
+
+xarray and pandas draw, and matplotlib the cells of a patch.
+"""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib import pyplot
+
+from wearlaw.arrays import Array
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import InputError, did_you_mean, shown
+from wearlaw.models.law import named_outcomes
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.solution import Solution
+from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
+from wearlaw.units.variables import name_of
+from wearlaw_apps.output.conditions import Conditions
+from wearlaw_apps.output.curves import OUTSIDE, Curve
+from wearlaw_apps.output.datasets import data_of, dataset, fields, labelled
+from wearlaw_apps.output.drawing import PALE, THIN, plot_curve
+from wearlaw_apps.output.labels import in_words, label, readable
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+
+SIZE = (6.4, 4.4)
+"""Width and height of a figure, in inches."""
+
+MOST_CURVES = 8
+"""Most curves of a prediction over two conditions; with more it is a map."""
+
+TITLE = 70
+"""Characters on a line of the title."""
+
+ALONG = ("pressure", "traction", "traction_bound")
+"""Fields along the patch of a line that are shown if none is named."""
+
+FIELDS = ("traction", "pressure", "slip")
+"""Fields of a patch that is not a line; the first is shown if none is named."""
+
+PIXELS = (401, 301)
+"""Points along and across a patch that is not a line."""
+
+
+def draw(prediction: Prediction, solution: Solution, name: str | None, x: str | None, ax: Axes | None) -> Axes:
+    """Draw a prediction; see `Prediction.plot`."""
+    problem, conditions = prediction.problem, Conditions.of(solution)
+    points = problem.batch_shape[: len(problem.batch_shape) - len(problem.dims)]
+    if math.prod(points) == 1 and x is None:
+        several = math.prod(problem.batch_shape) > 1
+        drawn = _bars(prediction, conditions, name, ax) if several else _of_patch(prediction, name, ax)
+        return _titled(drawn, conditions, ())
+    return _over_points(prediction, conditions, name, x, ax)
+
+
+def _over_points(
+    prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None
+) -> Axes:
+    """Draw a variable over the operating points: a map over two axes of many values, otherwise curves."""
+    problem = prediction.problem
+    found, variable = _found(prediction, conditions, name, x)
+    dims = [str(dim) for dim in found[variable].dims if dim not in problem.dims]
+    if len(dims) > 2:
+        raise InputError(
+            f"plot: there are {len(dims)} axes of operating points, and a picture shows two; choose some of the points,"
+            " as in r.isel(point_0=0).plot()"
+        )
+    for dim in dims:  # conditions that vary together give an axis of positions
+        if dim not in found.coords:
+            found = found.assign_coords({dim: (dim, range(found.sizes[dim]), {"long_name": "operating point"})})
+    along = x if x in dims else max(dims, key=lambda dim: found.sizes[dim])
+    others = [dim for dim in dims if dim != along]
+    if x is None and others and found.sizes[others[0]] > MOST_CURVES:
+        return _titled(_map(found, variable, along, others[0], problem, ax), conditions, dims)
+    together = [name for name in conditions.numbers if name in found and found[name].dims == (along,)]
+    across = x or (along if along in together or not together else together[0])
+    return _titled(_curves(found, variable, across, others, problem, ax), conditions, (across, *others))
+
+
+def _found(
+    prediction: Prediction, conditions: Conditions, name: str | None, x: str | None = None
+) -> tuple[xarray.Dataset, str]:
+    """Return the variables to draw, without axes of a single operating point, and the name of the one to draw."""
+    outcomes = named_outcomes(prediction.laws)
+    variable = name or next(iter(outcomes), "tangential_force")
+    names = [variable]
+    if x is not None and x not in conditions.numbers:
+        names.append(x)
+    if variable in outcomes:
+        names.append(OUTSIDE_RANGE)
+    found = dataset(prediction, conditions, names)
+    points = [dim for dim in found[variable].dims if dim not in prediction.problem.dims]
+    return found.squeeze([dim for dim in points if found.sizes[dim] == 1]), variable
+
+
+def _curves(
+    found: xarray.Dataset, variable: str, across: str, others: Sequence[str], problem: Problem, ax: Axes | None
+) -> Axes:
+    """Draw a curve for each value of the other axes and for each patch."""
+    apart = [*others, *(dim for dim in problem.dims if dim in found.dims)]
+    curves: list[Curve] = []
+    for index in np.ndindex(*(found.sizes[dim] for dim in apart)):
+        place = dict(zip(apart, index, strict=True))
+        here = found.isel(place)
+        x, y = (np.atleast_1d(here[name].values) for name in (across, variable))
+        there = np.isfinite(x) & np.isfinite(y)
+        outside = np.atleast_1d(here[OUTSIDE_RANGE].values > 0.0)[there] if OUTSIDE_RANGE in here else None
+        if there.any():
+            label_here = _series(found, place, problem)
+            curves.append(Curve(label_here, x[there], y[there], colour=len(curves), outside=outside))
+    if not curves:
+        raise InputError(f"plot: {variable} has no value at these operating points")
+    drawn: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
+    for curve in curves:
+        plot_curve(drawn, curve)
+    pale = any(curve.outside is not None and curve.outside.any() for curve in curves)
+    if pale:
+        drawn.plot([], [], color="black", linewidth=THIN, alpha=PALE, label=OUTSIDE)
+    if apart or pale:
+        drawn.legend(fontsize="small")
+    drawn.set(xlabel=_label(found[across]), ylabel=_label(found[variable]))
+    return drawn
+
+
+def _map(found: xarray.Dataset, variable: str, along: str, up: str, problem: Problem, ax: Axes | None) -> Axes:
+    """Draw a map over two axes; hatching marks what lies outside the range of the law."""
+    values = found[variable]
+    if values.ndim > 2:
+        known = " and ".join(f"{dim} {labels}" for dim, labels in problem.dims.items())
+        raise InputError(f"plot: a map shows one patch; choose one of {known}, as in r.sel(...).plot()")
+    bar = {"label": _label(values)}
+    drawn: Axes = values.plot.pcolormesh(x=along, y=up, cbar_kwargs=bar, **_look(ax)).axes
+    if OUTSIDE_RANGE in found and (found[OUTSIDE_RANGE] > 0.0).any():
+        marks = found[OUTSIDE_RANGE].transpose(up, along)
+        drawn.contourf(marks[along], marks[up], marks, levels=[0.5, 1.5], colors="none", hatches=["///"])
+        drawn.fill_between([], [], facecolor="none", edgecolor="black", hatch="///", label=OUTSIDE)
+        drawn.legend(fontsize="small")
+    drawn.set(xlabel=_label(found[along]), ylabel=_label(found[up]))
+    return drawn
+
+
+def _bars(prediction: Prediction, conditions: Conditions, name: str | None, ax: Axes | None) -> Axes:
+    """Draw a variable of each existing patch at one operating point."""
+    found, variable = _found(prediction, conditions, name)
+    dims = [str(dim) for dim in found[variable].dims]
+    table = found.to_dataframe(dim_order=dims).dropna(subset=variable)
+    labels = [row if isinstance(row, tuple) else (row,) for row in table.index.tolist()]
+    names = [in_words(dict(zip(dims, row, strict=True))) for row in labels]
+    drawn: Axes = table[[variable]].set_axis(names).plot.bar(legend=False, rot=0, **_look(ax))
+    marks = table[OUTSIDE_RANGE].tolist() if OUTSIDE_RANGE in table else []
+    outside = [place for place, mark in enumerate(marks) if mark > 0.0]
+    for place in outside:
+        drawn.patches[place].set(alpha=PALE, label=OUTSIDE if place == outside[0] else "_")
+    if outside:
+        drawn.legend(handles=[drawn.patches[outside[0]]], fontsize="small")
+    drawn.set(xlabel="", ylabel=_label(found[variable]))
+    drawn.axhline(0.0, color="black", linewidth=0.8)
+    return drawn
+
+
+def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes:
+    """Draw the fields of the only patch: along a line, otherwise as a map."""
+    if prediction.scale == "patch":
+        raise InputError(
+            "plot: there is one operating point, and the contact model gives means of its patch; give a condition"
+            ' several values, such as creepage=Q([0.5, 1, 2], "%"), or take a contact model that resolves the patch,'
+            ' such as wl.contact_model("exact") for discs and wl.contact_model("strip_theory") for wheels'
+        )
+    line = prediction.problem.geometry == "line"
+    found = fields_of(prediction)
+    every = [str(one) for one in found.data_vars]
+    if name is not None and name not in every:
+        raise InputError(
+            f"plot: there is one operating point, and {shown(name)} is no field of its patch"
+            f"{did_you_mean(name, [*every, *default_variables(prediction)])} The fields are: {', '.join(every)}"
+        )
+    if not line:
+        variable = name or FIELDS[0]
+        axes: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
+        mesh = axes.pcolormesh(*raster(prediction, found[variable].values, *PIXELS), rasterized=True)
+        axes.figure.colorbar(mesh, ax=axes, shrink=0.8, label=_label(found[variable]))
+        axes.set(xlabel=_label(found["x"]), ylabel=_label(found["y"]), aspect="equal")
+        return axes
+    names = list(ALONG) if name is None else [name]
+    table = found.to_dataframe().reset_index()
+    style = ["--" if one == "traction_bound" else "-" for one in names]
+    labels = [name_of(one) for one in names]
+    drawn: Axes = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
+    drawn.set(xlabel=_label(found["x"]), ylabel=_label(found[names[0]]) if name else label("pressure", "traction"))
+    return drawn
+
+
+def fields_of(prediction: Prediction) -> xarray.Dataset:
+    """Return the fields of a single patch and the local outcomes: along a line, otherwise over the nodes of its strips.
+
+    The contact model must resolve the patch.
+    """
+    if prediction.problem.geometry == "line":
+        return prediction.profile
+    contact = prediction.contact
+    columns, shape = fields(contact, prediction.laws, ("x", "y", *FIELDS)), contact.pressure.shape
+    shaped = {name: (np.broadcast_to(one, shape).reshape(shape[-2:]), unit) for name, (one, unit) in columns.items()}
+    data = data_of(("node", "strip"), shaped)
+    return labelled(prediction.problem.replaced(dims={}), {name: data.pop(name) for name in ("x", "y")}, data)
+
+
+def raster(prediction: Prediction, field: Array, columns: int = 81, rows: int = 51) -> tuple[Array, Array, Array]:
+    """Return x and y of a grid over a patch [mm], and a field at its points: that of the nearest node, NaN outside.
+
+    The edge is that of an ellipse, or else a smooth one through the ends of the strips.
+    """
+    nodes, length, strips, width = _strips(prediction)
+    low, high = _ends(strips, width)
+    y = low.min() + np.ptp([low, high]) * (np.arange(rows) + 0.5) / rows
+    edge = _edge(prediction, y)
+    x = edge.max() * (2.0 * np.arange(columns) + 1.0 - columns) / columns
+    strip = np.abs(y[:, None] - strips).argmin(axis=1)
+    stretch = edge / np.maximum(0.5 * length.sum(axis=0)[strip], np.finfo(float).tiny)
+    node = np.abs(x[:, None] - stretch[:, None, None] * nodes.T[strip, None]).argmin(axis=-1)
+    return 1e3 * x, 1e3 * y, np.where(np.abs(x) <= edge[:, None], field[node, strip[:, None]], np.nan)
+
+
+def _strips(prediction: Prediction) -> tuple[Array, Array, Array, Array]:
+    """Return x of the nodes of a patch and their lengths, (nodes, strips), y of the strips and their widths [m]."""
+    contact = prediction.contact
+    shape = contact.pressure.shape[-2:]
+    width = contact.strip_width.reshape(shape[1])
+    y = np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0]
+    return contact.x.reshape(shape), contact.area.reshape(shape) / width, y, width
+
+
+def _edge(prediction: Prediction, y: Array) -> Array:
+    """Return half the length of a patch at positions across it [m]."""
+    problem = prediction.problem
+    if problem.geometry == "ellipse":
+        squared = problem.a**2 * np.maximum(1.0 - (y / problem.b) ** 2, 0.0)
+    else:
+        _, length, strips, width = _strips(prediction)
+        low, high = _ends(strips, width)
+        order = np.argsort(low)
+        places = np.concatenate([[low.min()], 0.5 * (low + high)[order], [high.max()]])
+        squared = np.interp(y, places, np.concatenate([[0.0], (0.5 * length.sum(axis=0)[order]) ** 2, [0.0]]))
+    half_length: Array = np.sqrt(squared)
+    return half_length
+
+
+def _ends(strips: Array, width: Array) -> tuple[Array, Array]:
+    """Return the ends of strips that lie side by side, each about its middle."""
+    order = np.argsort(strips)
+    sizes = width[order]
+    ends = np.cumsum(sizes)
+    ends += ((strips[order] - (ends - 0.5 * sizes)) * sizes).sum() / ends[-1]
+    after = ends[np.argsort(order)]
+    return after - width, after
+
+
+def _look(ax: Axes | None) -> dict[str, Any]:
+    return {"figsize": SIZE} if ax is None else {"ax": ax}
+
+
+def _series(found: xarray.Dataset, place: Mapping[str, int], problem: Problem) -> str:
+    """Return the name of a curve: the value of each other condition, and the patch."""
+    of_points = [_value(found[dim].isel({dim: at})) for dim, at in place.items() if dim not in problem.dims]
+    patch = in_words({dim: found[dim].values[at] for dim, at in place.items() if dim in problem.dims})
+    return ", ".join([*of_points, *([patch] if patch else [])])
+
+
+def _value(one: xarray.DataArray) -> str:
+    """Return the name and the value of a condition."""
+    return f"{name_of(str(one.name))} {one.item():.4g} {_unit(one)}".rstrip()
+
+
+def _titled(drawn: Axes, conditions: Conditions, variable: Collection[str]) -> Axes:
+    """Write the conditions that a picture does not show above it, and return its axes."""
+    drawn.set_title("")  # xarray's
+    lines = textwrap.wrap(conditions.text(without=variable), TITLE)
+    drawn.set_title("\n".join(lines), fontsize="small", loc="left")
+    return drawn
+
+
+def _label(one: xarray.DataArray) -> str:
+    """Return the label of an axis."""
+    return f"{one.attrs.get('long_name', name_of(str(one.name)))} [{_unit(one) or '-'}]"
+
+
+def _unit(one: xarray.DataArray) -> str:
+    return readable(one.attrs.get("units", ""))

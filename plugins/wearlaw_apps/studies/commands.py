@@ -1,0 +1,152 @@
+"""Commands that run case files: a study, or how uncertain its predictions are."""
+
+from __future__ import annotations
+
+import shutil
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+import click
+
+from wearlaw.cli import Stopped
+from wearlaw.errors import OutputError, shown
+from wearlaw_apps.output.commands import folder_for, print_notes, print_results, print_table
+from wearlaw_apps.output.curves import FigureFormat
+from wearlaw_apps.output.files import write_files, writes_results
+from wearlaw_apps.output.folder import results_folder
+from wearlaw_apps.output.notes import Notes, grouped
+from wearlaw_apps.studies.case import load_case, written
+from wearlaw_apps.studies.report.tables import summaries
+from wearlaw_apps.studies.study import evaluations, provenance
+from wearlaw_apps.studies.study import run as run_case
+from wearlaw_apps.studies.uncertainty import uncertainty_of
+from wearlaw_apps.studies.written import RESULTS, check_room, without_csv, write
+from wearlaw_apps.sweeps.progress import Bar
+
+UNCERTAINTY = "uncertainty.json"
+"""The file with the record of an uncertainty, which tells its folder from others."""
+
+
+@click.command()
+@click.argument("case")
+@click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
+@click.option("--resume", is_flag=True, help="Go on from the finished blocks of an interrupted run, in FOLDER.partial.")
+@click.option(
+    "--csv/--no-csv",
+    default=None,
+    help="Write results.csv or leave it out [default: write it up to 1 048 575 rows, those that Excel reads].",
+)
+@writes_results("CASE-results")
+def run(
+    case: str,
+    output: Path | None,
+    overwrite: bool,
+    workers: int,
+    resume: bool,
+    csv: bool | None,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+) -> None:
+    """Run a study: CASE is a case file, or the name of a shipped one.
+
+    Shipped are two_discs, my_tests, wheel_on_rail, wheelset, wheel_life and tassini2010.
+
+    Every contact model of the case is paired with every law. Results are written as report.html, a page to open in a
+    browser, results.nc (netCDF), results.csv, tables/*.csv, figures/*.png and case.toml, the case with every default
+    spelt out.
+    """
+    loaded = load_case(case)
+    folder = output or folder_for(case, "results")
+    notes = Notes()
+    partial = _partial(folder, resume)
+    try:
+        with results_folder(folder, overwrite, RESULTS) as fresh:
+            left_out = without_csv(loaded, csv)
+            check_room(loaded, folder, left_out is None)
+            with Bar(evaluations(loaded)) as bar, notes.of("run"):
+                study = run_case(loaded, bar, workers, partial, resume)
+                if left_out is not None:
+                    study = replace(study, notes=(*study.notes, left_out))
+                with notes.of("figures"):
+                    names = write(study, fresh, figure_formats, latex, bar.stage, left_out is None)
+    except KeyboardInterrupt:
+        if partial.exists():
+            raise Stopped(f"Stopped; finished blocks are in {shown(partial)}, and --resume goes on") from None
+        raise
+    _discard(partial)
+    print_notes(grouped([*study.notes, *notes.texts]))
+    for table in summaries(study):
+        click.echo(f"{table.title}: {table.frame.columns[0]}")
+        print_table(table.frame.set_index(table.frame.columns[0]).rename_axis(None))
+    print_results(folder, names)
+
+
+def _partial(folder: Path, resume: bool) -> Path:
+    """Return the folder of finished blocks for a folder of results.
+
+    Raises
+    ------
+    OutputError
+        If it exists and is not to be resumed.
+    """
+    named = folder if folder.name else folder.resolve()  # "." has no name
+    partial = named.with_name(f"{named.name}.partial")
+    if partial.exists() and not resume:
+        raise OutputError(
+            f"output: {shown(partial)} holds the finished blocks of an interrupted run; add --resume to go on with it,"
+            " remove it, or choose another folder with -o"
+        )
+    return partial
+
+
+def _discard(partial: Path) -> None:
+    for store in partial.glob("*.zarr"):
+        shutil.rmtree(store, ignore_errors=True)
+    with suppress(OSError):  # it does not exist, or other files are in it
+        partial.rmdir()
+
+
+@click.command()
+@click.argument("case")
+@click.option("--samples", type=int, default=2**14, show_default=True, help="How many, rounded up to a power of two.")
+@click.option("--seed", type=int, default=0, show_default=True, help="The same seed gives the same samples.")
+@writes_results("CASE-uncertainty")
+def uncertainty(
+    case: str,
+    samples: int,
+    seed: int,
+    output: Path | None,
+    overwrite: bool,
+    figure_formats: tuple[FigureFormat, ...],
+    latex: bool,
+) -> None:
+    """Say how uncertain predictions are: CASE is a case file with tables [uncertainty.NAME].
+
+    Every contact model of the case is paired with every law. Written are wear_rates.csv with medians and 95 %
+    intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each
+    pair, such as scatter_usfd_on_exact.png for the table [uncertainty.scatter].
+    """
+    loaded = load_case(case)
+    folder = output or folder_for(case, "uncertainty")
+    total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
+    notes = Notes()
+    with results_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as bar:
+        found = uncertainty_of(loaded, samples, seed, bar)
+        bar.stage("writing results")
+        with notes.of("figures"):
+            record = {"samples": found.samples, "seed": seed, "provenance": provenance(loaded), "notes": found.notes}
+            tables = {
+                "wear_rates": found.wear_rates,
+                **({"sobol_indices": found.indices} if len(found.indices) else {}),
+            }
+            names = write_files(
+                fresh, UNCERTAINTY, record, tables, found.figures, figure_formats, latex, written(loaded)
+            )
+    if found.samples != samples:
+        click.echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
+    print_notes(grouped([*found.notes, *notes.texts]))
+    print_table(found.wear_rates.set_index(["point", "pair"]))
+    if len(found.indices):
+        print_table(found.indices.set_index(["point", "pair"]).round(3))
+    print_results(folder, names)

@@ -1,0 +1,304 @@
+"""The tables of a study: outcomes of its sweeps, its models and their parameters, and the tables of its sections.
+
+Each can be written as CSV with all digits, and for LaTeX with the digits shown.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pint
+import xarray
+from numpy.typing import NDArray
+
+from wearlaw.configuration import Configuration, field_docstrings
+from wearlaw.errors import InputError
+from wearlaw.models.law import WEAR, Law
+from wearlaw.models.model import Blame, Model
+from wearlaw.pipeline.variables import MASS
+from wearlaw.units.quantities import Q, from_si
+from wearlaw.units.registry import symbol
+from wearlaw.units.variables import UNITS, VARIABLES, name_of
+from wearlaw_apps.fits.pairs import Pair
+from wearlaw_apps.output.labels import label as label_of
+from wearlaw_apps.output.labels import labelled, readable
+from wearlaw_apps.output.notes import caught_warnings
+from wearlaw_apps.output.styled import Marked
+from wearlaw_apps.studies.figures import main_result
+from wearlaw_apps.studies.results import (
+    LIMITS,
+    SHAKEDOWN,
+    along,
+    axes_of,
+    beyond_limits,
+    labelled_by,
+    main_axis,
+    outcomes_of,
+    patches_of,
+    predicting,
+    together,
+)
+from wearlaw_apps.studies.sections import Section
+from wearlaw_apps.studies.study import Study, used
+
+COLUMNS = 5
+"""Number of values on the main axis at which outcomes are shown."""
+
+FOOTNOTES = {
+    "†": "outside the range, the materials or the body that the law was fitted to",
+    "*": "beyond first yield",
+    "‡": "beyond shakedown",
+}
+"""Meanings of the marks of outcomes and depths."""
+
+
+@dataclass(frozen=True, eq=False)
+class NamedTable:
+    """A table with its file name, an identifier, its title and footnotes. The heads of its columns hold the units."""
+
+    name: str
+    title: str
+    frame: pd.DataFrame
+    footnotes: tuple[str, ...] = ()
+
+
+def tables(study: Study) -> list[NamedTable]:
+    """Return all tables of a study."""
+    sections = (one for section in study.sections for one in of_section(section))
+    return [main_table(study), *summaries(study), *profiles(study), parameters(study), models(study), *sections]
+
+
+def of_section(section: Section) -> list[NamedTable]:
+    """Return the tables of a section, with their names in words as titles."""
+    return [
+        NamedTable(name, name.replace("_", " ").strip().capitalize(), frame) for name, frame in section.tables.items()
+    ]
+
+
+def main_table(study: Study) -> NamedTable:
+    """Return the least and the most of the main outcome of each pair, what lies outside, and the borders of its law."""
+    results, outcome = main_result(study)
+    ((name, sweep),) = results.sweeps.items()
+    what = f"[{readable(sweep[outcome].attrs['units'])}{', which is mg/km' if outcome == MASS else ''}]"
+    limits, axes = beyond_limits(sweep), axes_of(sweep)
+    rows = []
+    for pair in map(study.pair, predicting(study, outcome, sweep.pair.values.tolist())):
+        of_pair, law = sweep.sel(pair=pair.label), pair.pipeline.laws[0]
+        values = of_pair[outcome]
+        row: dict[str, Any] = {"pair": pair.label}
+        known, point = bool(values.notnull().any()), {}
+        for word, find in (("least ", values.argmin), ("most ", values.argmax))[0 if axes else 1 :]:
+            found: Any = find(...) if known else {}
+            word = word if axes else ""
+            row[f"{word}{what}"] = values.isel(found).item() if known else None
+            point = {axis: of_pair[axis].isel({axis: found[axis]}) for axis in axes} if known else {}
+            if axes:
+                row[f"{word}at"] = ", ".join(_place(study, name, value) for value in point.values())
+        if outcome == WEAR:
+            row["that is"] = _as_mass_and_depth(study, name, pair, point) if known else ""
+        row["outside the range"] = _count(of_pair.outside_range.values > 0.0) if law.valid_range else "not known"
+        beyond = limits[SHAKEDOWN].sel(contact_model=pair.contact_model).values if limits else None
+        row[LIMITS[SHAKEDOWN]] = "not known" if beyond is None else _count(beyond)
+        row["regimes change at"] = _borders(law)
+        rows.append(row)
+    where = f"Least and most over the sweep '{name}', with the {' and '.join(map(name_of, axes))} there"
+    return NamedTable("main", where if axes else f"The operating point '{name}'", pd.DataFrame(rows))
+
+
+def _place(study: Study, name: str, value: xarray.DataArray) -> str:
+    """Return a value of an axis, such as "1 %", in the unit of the case."""
+    unit = study.case.sweeps[name].written_units().get(str(value.name), "")
+    return f"{Q(value.item(), value.attrs['units']).m_as(unit):.4g} {readable(unit)}".rstrip()
+
+
+def _as_mass_and_depth(study: Study, name: str, pair: Pair, point: Mapping[str, xarray.DataArray]) -> str:
+    """Return the wear at an operating point as mass and as depth, such as "35 mg/km; wheel 12 µm in 1000 km"."""
+    at = {axis: Q(value.item(), value.attrs["units"]) for axis, value in point.items()}
+    pipeline, law = pair.pipeline, pair.pipeline.laws[0]
+    with caught_warnings():  # the study has them
+        found = pipeline.predict(pipeline.posed({**study.case.sweeps[name].given, **at}))
+        parts = [f"{_compact(Q(float(found.mass_per_distance.m_as('g/km')), 'g'))}/km"]
+        body = law.body or next(iter(study.case.rig.bodies), None)
+        if body is not None:
+            with suppress(InputError):  # a rail does not turn
+                depth = Q(float(found.depth_per_distance(body).m_as("mm/km")), "m")
+                parts.append(f"{body} {_compact(depth)} in 1000 km")
+    return "; ".join(parts)
+
+
+def _compact(quantity: Any) -> str:
+    """Return a quantity in the unit in which it has few digits, such as "1.2 mm" for 0.0012 m."""
+    found = quantity.to_compact()
+    return f"{found.magnitude:.4g} {symbol(found.units, '~P')}"
+
+
+def _borders(law: Law) -> str:
+    """Return the borders of the regimes of a law in words; a variable that only the law knows is in SI units."""
+    with Blame(law):
+        borders = law.breakpoints(law.numbers)
+    if borders is None:
+        return "not known"
+    shown = []
+    for name, values in borders.items():
+        unit = UNITS.get(name, "")
+        numbers = ", ".join(f"{from_si(value, unit).magnitude:.4g}" if unit else f"{value:.4g}" for value in values)
+        known = VARIABLES.get(name)
+        shown.append(f"{(known and known.symbol) or name_of(name)} {numbers} {readable(unit)}".rstrip())
+    return "; ".join(shown) or "none"
+
+
+def _count(mask: NDArray[np.bool_]) -> str:
+    """Return in how many points of a sweep something is so."""
+    if mask.all() or not mask.any():
+        return "everywhere" if mask.all() else "nowhere"
+    return f"{mask.sum()} of {mask.size}"
+
+
+def summaries(study: Study) -> list[NamedTable]:
+    """Return a short table of each outcome for each sweep, and of the mass lost at all patches if there are several."""
+    creepage = study.case.rig.creepage
+    return [
+        _marked(
+            f"{outcome}_{name}",
+            f"Sweep '{name}'{_fixed(sweep, creepage)}{', all patches together' if outcome == MASS else ''}",
+            summary(sweep, creepage, outcome, predicting(study, outcome, sweep.pair.values.tolist())),
+        )
+        for name, sweep in study.sweeps.items()
+        for outcome in (*(one.name for one in outcomes_of(study, sweep)), *((MASS,) if MASS in sweep else ()))
+    ]
+
+
+def _marked(name: str, title: str, frame: pd.DataFrame) -> NamedTable:
+    """Return a table with the footnotes of its marks."""
+    marks = "".join(getattr(value, "marks", "") for value in frame.to_numpy().flat)
+    return NamedTable(name, title, frame, tuple(f"{mark} {FOOTNOTES[mark]}" for mark in FOOTNOTES if mark in marks))
+
+
+def _marks(outside: Any, beyond: Mapping[str, xarray.DataArray], model: str) -> list[str]:
+    """Return the marks of the operating points of a contact model, from where they are outside and beyond limits."""
+    limits = [np.atleast_1d(where.sel(contact_model=model).values) for where in beyond.values()]
+    beyond_yield, beyond_shakedown = limits or [np.zeros(np.shape(outside), bool)] * 2
+    last = np.where(beyond_shakedown, "‡", np.where(beyond_yield, "*", ""))
+    return [str(mark) for mark in np.char.add(np.where(outside, "†", ""), last)]
+
+
+def _fixed(sweep: xarray.Dataset, creepage: str | None) -> str:
+    """Return the values of the other axes at which a sweep is shown, in words."""
+    main = main_axis(sweep, creepage)
+    line = along(sweep, main)
+    others = [axis for axis in axes_of(sweep) if axis != main]
+    at = (f"{name_of(axis)} {line[axis].item():.4g} {line[axis].attrs['units']}".rstrip() for axis in others)
+    return f" at {', '.join(at)}" if others else ""
+
+
+def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: list[str]) -> pd.DataFrame:
+    """Return an outcome at a few values of the main axis, with a row for each pair and for the ends of its band.
+
+    If the rig makes several patches, there is a row for each of them, or one for the sum of `MASS` over all.
+    """
+    axis = main_axis(sweep, creepage)
+    line = along(sweep, axis)
+    count = line.sizes[axis]
+    line = line.isel({axis: sorted({round(step * (count - 1) / (COLUMNS - 1)) for step in range(COLUMNS)})})
+    rows: dict[str, Any] = {}
+    low, high = f"{outcome}_low", f"{outcome}_high"
+    line = together(line, MASS) if outcome == MASS else line
+    for pair, patch in itertools.product(pairs, patches_of(line)):
+        here = line.sel(patch)
+        one, label = here.sel(pair=pair), labelled_by(patch, pair)
+        marks = _marks(one.outside_range.values > 0.0, beyond_limits(here), one.pair_contact_model.item())
+        values = {label: one[outcome]}
+        if low in one and (one[high] > one[low]).any():
+            values |= {f"{label}, low end": one[low], f"{label}, high end": one[high]}
+        rows |= {label: list(map(Marked, each.values, marks)) for label, each in values.items()}
+    heads = [np.format_float_positional(at, precision=4, fractional=False, trim="-") for at in line[axis].values]
+    frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
+    what, over = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
+    frame.insert(0, f"{what} by {over}", list(rows))
+    return frame
+
+
+def profiles(study: Study) -> list[NamedTable]:
+    """Return a short table for each profile across the patch: the greatest depth on each body, by pair and patch."""
+    found = []
+    for name, profile in study.profiles.items():
+        if "y" not in profile:
+            continue
+        depths = {body: profile[f"{body}_depth"] for body in study.case.rig.bodies if f"{body}_depth" in profile}
+        rows = [(pair, patch) for pair in profile.pair.values.tolist() for patch in patches_of(profile)]
+        columns: dict[str, Any] = {"pair": [labelled_by(patch, pair) for pair, patch in rows]}
+        for body, depth in depths.items():
+            unit = readable(depth.attrs["units"])
+            deepest = [_deepest(study, profile.sel(patch), pair, body) for pair, patch in rows]
+            columns[f"{body}: greatest depth [{unit}]"], columns[f"{body}: at y [mm]"] = zip(*deepest, strict=True)
+        per = ", ".join(f"{body} {depth.attrs['long_name']}" for body, depth in depths.items())
+        frame = pd.DataFrame({head: np.array(values, dtype=object) for head, values in columns.items()})
+        found.append(_marked(f"profile_{name}", f"Profile '{name}': wear across the patch, {per}", frame))
+    return found
+
+
+def _deepest(study: Study, profile: xarray.Dataset, pair: str, body: str) -> tuple[Marked, float]:
+    """Return the greatest depth that a pair gives for a body, with its marks, and its position."""
+    depth, model = profile[f"{body}_depth"].sel(pair=pair), study.pair(pair).contact_model
+    outside = study.is_for_other_body(pair, body) or bool(profile.outside_range.sel(pair=pair))
+    (marks,) = _marks([outside], beyond_limits(profile), model)
+    if depth.isnull().all():  # a law for the other body
+        return Marked(np.nan, marks), np.nan
+    place = profile.y.sel(contact_model=model) if "contact_model" in profile.y.dims else profile.y
+    deepest = int(np.nanargmax(depth.values))
+    return Marked(depth[deepest].item(), marks), place[deepest].item()
+
+
+def parameters(study: Study) -> NamedTable:
+    """Return every parameter of the rig and of the models."""
+    subjects: list[tuple[str, Configuration]] = [("rig", study.case.rig), *_models(study)]
+    rows = [(subject, *row) for subject, record in subjects for row in _fields(record)]
+    columns = ["of", "parameter", "value", "meaning"]
+    return NamedTable("parameters", "Parameters", pd.DataFrame(rows, columns=columns))
+
+
+def models(study: Study) -> NamedTable:
+    """Return the distribution and the literature source of each model."""
+    origins = used(study.case)
+    rows = [(label, one.kind, origins[one.kind][one.name], one.source) for label, one in _models(study)]
+    columns = ["model", "kind", "provided by", "source"]
+    return NamedTable("models", "Models", pd.DataFrame(rows, columns=columns))
+
+
+def _models(study: Study) -> list[tuple[str, Model]]:
+    """Return the contact models of all pairs, the stages around them and the laws, with their labels."""
+    used_here = [pair.pipeline.contact_model for pair in study.pairs]
+    contact_models = {label: one for label, one in labelled(study.case.contact_models).items() if one in used_here}
+    laws = {pair.law: pair.pipeline.laws[0] for pair in study.pairs}
+    return [*contact_models.items(), *labelled(study.case.stages).items(), *laws.items()]
+
+
+def _fields(record: Configuration, within: str = "") -> Iterator[tuple[str, str, str]]:
+    """Yield name, value and meaning of each field that is set, including fields of nested records."""
+    for name, meaning in field_docstrings(type(record)).items():
+        value = getattr(record, name)
+        if isinstance(value, Model):
+            yield f"{within}{name}", value.name, meaning
+        if isinstance(value, Configuration):
+            yield from _fields(value, f"{within}{name}.")
+        elif value is not None:
+            yield f"{within}{name}", _text(value), meaning
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, pint.Quantity):
+        return f"{_number(value.magnitude)} {symbol(value.units, '~P')}".rstrip()
+    return _number(value) if isinstance(value, float) else str(value)
+
+
+def _number(value: Any) -> str:
+    """Return a number with 12 digits, or the count and the ends of an array, such as the points of a profile."""
+    if np.ndim(value):
+        return f"{np.size(value)} values from {np.min(value):.12g} to {np.max(value):.12g}"
+    return f"{value:.12g}"

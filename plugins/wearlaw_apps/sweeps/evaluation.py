@@ -1,0 +1,189 @@
+"""Evaluating a block of a sweep, in any process."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from wearlaw import kernels
+from wearlaw.arrays import Array, steady
+from wearlaw.contact.elastic_limit import Overload
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import InputError, RangeWarning, shown
+from wearlaw.models.contact_model import ContactModel
+from wearlaw.models.law import Law
+from wearlaw.models.model import fault
+from wearlaw.numerics.totals import SlipTotals, Totals
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.pipeline.ranges import RangeWatch, Seen
+from wearlaw.pipeline.solution import Solution
+from wearlaw.units.registry import magnitude
+from wearlaw_apps.output.labels import long_name
+from wearlaw_apps.output.notes import caught_warnings
+from wearlaw_apps.sweeps.located import posed
+from wearlaw_apps.sweeps.points import Points
+
+Outputs = dict[str, Array]
+"""Results of a block by name, (points, *axes of the rig) each, in the units of the job."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """The evaluation of every block.
+
+    Attributes
+    ----------
+    pipeline : Pipeline
+    units : mapping of str to str
+        The unit of each output, by its name.
+    dims : mapping of str to tuple
+        The rig's own axes with their labels, as in `Problem.dims`.
+    accelerate : bool or None
+        The setting of `wearlaw.accelerate`, to apply in every process.
+    """
+
+    pipeline: Pipeline[...]
+    units: Mapping[str, str]
+    dims: Mapping[str, tuple[str | int, ...]] = field(default_factory=dict)
+    accelerate: bool | None = field(default_factory=kernels.chosen)
+
+    @property
+    def labels(self) -> Mapping[str, Sequence[str | int | float]]:
+        """The axes of the outputs at one operating point, with their labels."""
+        return self.dims
+
+    @property
+    def own_shape(self) -> tuple[int, ...]:
+        """Shape of the outputs at one operating point."""
+        return tuple(map(len, self.labels.values()))
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """What determines the outputs beside the pipeline, the points and the units."""
+        return {}
+
+    def weight(self, problem: Problem) -> float:
+        """Return the size of an operating point compared with a single line or ellipse.
+
+        Four numbers of a strip count as one of 16 for a patch.
+        """
+        strips = 0 if problem.strips is None else problem.strips.y.shape[-1]
+        return math.prod(map(len, problem.dims.values())) * (1.0 + 0.25 * strips)
+
+    def posed(self, conditions: Mapping[str, Any]) -> Problem:
+        """Return the problem of conditions."""
+        return self.pipeline.posed(conditions)
+
+    def outputs(self, prediction: Prediction, part: Points) -> Outputs:  # noqa: ARG002
+        """Return the outputs of a prediction at some of the points."""
+        return {name: np.asarray(magnitude(prediction[name], unit)) for name, unit in self.units.items()}
+
+    def attributes(self, name: str) -> dict[str, str]:
+        """Return the attributes of an output in results: its unit and its long name."""
+        return {"units": self.units[name], "long_name": long_name(name, self.pipeline.laws)}
+
+
+@dataclass(frozen=True)
+class BlockRecord:
+    """What the warnings of a sweep need to know of a block.
+
+    Attributes
+    ----------
+    points : int
+        Number of operating points, or of patches if there are several at each point.
+    overload : Overload or None
+        The one furthest beyond first yield.
+    ranges : mapping of str to tuple
+        For each variable that leaves the range of the law: lowest and highest mean over the patch in SI, and the number
+        of points outside.
+    remarks : tuple of str
+        Warnings of the rig, such as that a wheel climbs its rail.
+    """
+
+    points: int
+    overload: Overload | None
+    ranges: Mapping[str, tuple[float, float, int]]
+    remarks: tuple[str, ...] = ()
+
+
+@steady
+def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, BlockRecord]:
+    """Return the outputs of a block of operating points, and its record.
+
+    `on_block` is called with the number of points just done, several times for a long block.
+    """
+    kernels.accelerate(job.accelerate)
+    with caught_warnings() as caught:
+        problem = posed(part, job.posed)
+    remarks = dict.fromkeys(map(str, caught))
+    if job.dims or problem.dims:
+        _check_axes(job, problem, part)
+        on_block = on_block and _in_points(on_block, part.size, problem.size)
+    watch = RangeWatch(*job.pipeline.laws, on_block=on_block)
+    if problem.size:
+        prediction = job.pipeline.watched(problem, watch)
+        outputs = job.outputs(prediction, part)
+    else:  # the bodies touch nowhere
+        outputs = {name: np.full((part.size, *job.own_shape), np.nan) for name in job.units}
+    return outputs, BlockRecord(watch.points, watch.overload, watch.seen, tuple(remarks))
+
+
+def _check_axes(job: Job, problem: Problem, part: Points) -> None:
+    """Raise an error unless the axes of a block's problem are the operating points and the rig's own axes."""
+    own = tuple(map(len, job.dims.values()))
+    if problem.dims != job.dims or problem.batch_shape != ((part.size, *own) if part.dims else own):
+        raise fault(
+            job.pipeline.rig,
+            f"gave a batch of shape {problem.batch_shape} with the axes {problem.dims!r} for {part.size} operating"
+            " points; in the rig, give each condition an axis of length one for each of the rig's axes, as in"
+            " values[..., None, None]",
+        )
+
+
+def _in_points(on_block: Callable[[int], None], points: int, patches: int) -> Callable[[int], None]:
+    """Return a function that takes numbers of patches and passes on numbers of operating points in proportion."""
+    done = 0
+
+    def advance(more: int) -> None:
+        nonlocal done
+        before, done = done * points // patches, done + more
+        on_block(done * points // patches - before)
+
+    return advance
+
+
+def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
+    """Return the warnings of a prediction at the points of all blocks together, and the first one of the rig."""
+    every = list(blocks)
+    watch = RangeWatch(*job.pipeline.laws)
+    if job.dims:
+        watch.counted = "patches"
+    watch.points = sum(one.points for one in every)
+    for one in every:
+        for name, seen in one.ranges.items():
+            watch.see_outside(name, Seen(*seen))
+    watch.overload = max((one.overload for one in every if one.overload), default=None)
+    with caught_warnings() as found:
+        watch.warn()
+    remark = next((text for one in every for text in one.remarks), None)
+    return found if remark is None else [*found, RangeWarning(remark)]
+
+
+def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Prediction:
+    """Return a prediction of zeros, with all names and units of the solved one, at no cost."""
+    none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
+    every = (none,) * len(laws)
+    slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
+    totals = Totals(every, every, none, none, none, patch_area=one, slip=slip, across=(None,) * len(laws))
+    return Prediction(Solution(problem, model, laws, totals))
+
+
+def expect_pipeline(predict: object) -> None:
+    """Raise an `InputError` unless the argument `predict` of an application is a pipeline."""
+    if not isinstance(predict, Pipeline):
+        raise InputError(f"predict: must be a pipeline, as in rig | contact model | wear law; got {shown(predict)}")

@@ -1,0 +1,152 @@
+"""The operating points that a sweep is given, above all the rows of a table: which columns are which conditions."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import IO, Any, cast
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.errors import ConditionsError, DataError, InputError, UnitError
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.units.quantities import Q
+from wearlaw.units.variables import VARIABLES
+from wearlaw_apps.sweeps.located import advice
+from wearlaw_apps.sweeps.points import OnDisk, Points, Varying, split
+from wearlaw_apps.sweeps.wear_profile import SHARE, check_shares
+from wearlaw_apps.tables import Column, Table, open_table
+
+Columns = Mapping[str, str]
+"""The columns of a table by the names that they get, as in {"normal_force": "-Fz [N]"}."""
+
+
+@contextmanager
+def operating_points(
+    predict: Pipeline[...],
+    source: Any,
+    conditions: Mapping[str, Any],
+    columns: Columns | None,
+    keep: Columns | None,
+    as_csv: Mapping[str, Any],
+    store: str | os.PathLike[str] | None,
+    summed: bool,
+) -> Iterator[Points]:
+    """Give the operating points of a sweep: combinations of conditions, or rows of a table that share conditions.
+
+    Arguments are those of `sweep`; `as_csv` has `sep` and `decimal`. If the points are to be summed, the kept column
+    `SHARE` has their shares. The numbers of a file that need not fit into memory, since there is a store or only a sum,
+    are kept in a temporary file while the context lasts.
+
+    Raises
+    ------
+    DataError
+        If this is not a table, or a column is wrong.
+    """
+    if source is None:
+        for name, value in {"columns": columns, "keep": keep}.items():
+            if value is not None:
+                raise InputError(f"{name}: belongs to a table; give one, as in wl.sweep(predict, 'run.csv', ...)")
+    fixed, arrays = split(conditions)
+    if source is None:
+        if not arrays:
+            raise ConditionsError(
+                'no condition is an axis; give at least one as an array, such as creepage=Q([1, 2], "%")'
+            )
+        yield Points(fixed, arrays)
+        return
+    for name in arrays:
+        raise DataError(f"{name}: beside a table it must be one value; add it to the table as a column")
+    table = open_table(source, **as_csv)
+    kept, given = _chosen(table, columns, keep)
+    for name in given:
+        if name in fixed or name in kept:
+            raise DataError(f"{table.label}: {name} is given twice; keep one")
+    if not given:
+        raise DataError(f"{table.label}: none of its columns is a condition; name them in columns={{...}}")
+    try:
+        predict.rig.check_names({**fixed, **given})
+    except ConditionsError as error:
+        name = str(error).partition(": ")[0]
+        if name not in given:
+            raise
+        raise ConditionsError(f"{table.label}, column '{given[name].head}': {error}") from None
+    file = isinstance(source, str | os.PathLike)
+    origin = f" of {Path(source).name}" if file else ""
+    every = [*kept.values(), *given.values()]
+    with ExitStack() as stack:
+        beside = Path(tempfile.gettempdir()) if store is None else Path(store).parent
+        on_disk = file and (summed or store is not None)
+        collected = _read(table, every, kept, _files(beside, len(every), stack) if on_disk else None)
+        found = {
+            one.name: Varying(table.dim, values, one.unit, file * f"{'-' * (one.sign < 0)}{one.head}{origin}")
+            for one, values in zip(every, collected, strict=True)
+        }
+        points = Points(
+            fixed,
+            {name: found[name] for name in given},
+            {dim: labels for dim, labels in table.labels.items() if dim == table.dim},
+            kept={name: found[name] for name in kept},
+            file=table if file else Table(table.label),
+            numbers=range(found[next(iter(given))].values.size),
+        )
+        if summed and keep is not None:
+            check_shares(points, keep[SHARE])
+        yield points
+
+
+def _chosen(table: Table, columns: Columns | None, keep: Columns | None) -> tuple[dict[str, Column], dict[str, Column]]:
+    """Return the columns to keep and those of conditions, by name."""
+    wrong: list[str] = []
+    kept: dict[str, Column] = {}
+    given: dict[str, Column] = {}
+    for choice, argument, found in ((keep or {}, "keep", kept), (columns, "columns", given)):
+        try:
+            found |= table.select(choice, argument)
+        except DataError as error:
+            if not error.problems:
+                raise
+            wrong += error.problems
+    if columns is None:
+        places = {column.place for column in kept.values()}
+        given = {name: column for name, column in given.items() if column.place not in places}
+    for name, column in given.items():
+        try:
+            if column.unit is None and columns is not None and name in VARIABLES and VARIABLES[name].unit:
+                raise UnitError(advice(name, "-" * (column.sign < 0) + column.head))
+            Q(1.0, column.unit or "")
+        except UnitError as error:
+            wrong.append(f"{name}: column '{column.head}': {error}")
+    if wrong:
+        raise DataError(f"{table.label} is wrong in:", wrong)
+    return kept, given
+
+
+def _files(folder: Path, count: int, stack: ExitStack) -> list[IO[bytes]]:
+    """Return files without a name, which end with the context."""
+    folder.mkdir(parents=True, exist_ok=True)
+    return [cast(IO[bytes], stack.enter_context(tempfile.TemporaryFile(dir=folder))) for _ in range(count)]
+
+
+def _read(
+    table: Table, columns: Sequence[Column], gaps: Mapping[str, Column], into: list[IO[bytes]] | None
+) -> list[Array]:
+    """Return the numbers of columns."""
+    pieces: list[list[Array]] = []
+    rows = 0
+    for values in table.pieces(columns, gaps):
+        rows += values[0].size
+        if into is None:
+            pieces.append(values)
+        else:
+            for file, numbers in zip(into, values, strict=True):
+                file.write(np.ascontiguousarray(numbers).data)
+    if rows == 0:
+        raise DataError(f"{table.label}: has no rows")
+    if into is None:
+        return [np.concatenate(some) for some in zip(*pieces, strict=True)]
+    return [cast(Array, OnDisk(one)) for one in into]  # in the place of arrays, of which it has what is used

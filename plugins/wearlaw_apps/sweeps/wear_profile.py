@@ -1,0 +1,242 @@
+"""Wear across the profile of a body at the operating points of a sweep, and its sum weighted by their shares."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray
+from pydantic import TypeAdapter
+
+from wearlaw.arrays import Array
+from wearlaw.contact.problem import Problem
+from wearlaw.errors import ConditionsError, DataError, InputError, shown
+from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.pipeline.prediction import Prediction
+from wearlaw.units.quantities import Q, QuantityLike, coefficient
+from wearlaw.units.variables import VARIABLES
+from wearlaw_apps.output.notes import caught_warnings
+from wearlaw_apps.output.wear_profile import PATCH, POSITION
+from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs, unsolved
+from wearlaw_apps.sweeps.points import Block, Points
+from wearlaw_apps.sweeps.provenance import digest, provenance_of
+from wearlaw_apps.sweeps.results import COMPLETE, Target, attributes, labels_of
+
+if TYPE_CHECKING:
+    from wearlaw_apps.sweeps.folder import Parts
+
+WEAR_PROFILE = "wear_profile"
+"""Name of this output of a sweep."""
+
+SHARE = "share"
+"""Name that the column with the shares gets."""
+
+ROUNDED = 1e-6
+"""Deviation of the sum of the shares from one that is rounding of the numbers in a table."""
+
+PIECE = 1_000_000
+"""Shares that are read at a time."""
+
+UNITS = (
+    {"depth": "um/km", "sliding_distance": "mm/m", "mass": "mg/km"},
+    {"depth": "nm", "sliding_distance": "um", "mass": "mg/m"},
+)
+"""Units per distance rolled of a body that turns, and per passage of a wheel of one that does not."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProfileJob(Job):
+    """The wear across the profile of a body, at each point or summed over all of them.
+
+    Attributes
+    ----------
+    body : str
+        Its name in the rig.
+    at : ndarray, (positions,)
+        Arc lengths of its profile [m].
+    summed : bool
+        Whether the points are weighted by their shares and summed. The sum has the mass too.
+    """
+
+    body: str
+    at: Array
+    summed: bool
+
+    @classmethod
+    def of(
+        cls, pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool
+    ) -> ProfileJob:
+        """Return the job of a pipeline, after a prediction at the first operating point.
+
+        Raises
+        ------
+        InputError
+            If the body or the positions are wrong.
+        """
+        if at is None:
+            raise InputError('at: "wear_profile" needs positions, such as at=Q(np.arange(-60, 60, 0.25), "mm")')
+        unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
+        turns = bool(np.isfinite(pipeline.rig.bodies[body].rolling_radius).any())
+        units = {name: unit for name, unit in UNITS[0 if turns else 1].items() if summed or name != "mass"}
+        positions = VARIABLES[POSITION].expected.si(at, "at")
+        return cls(pipeline, units, first.dims, body=body, at=positions, summed=summed)
+
+    @property
+    def labels(self) -> Mapping[str, Sequence[str | int | float]]:
+        """The axes of the outputs: those of the rig but for patches, and the positions [mm]."""
+        own = {name: labels for name, labels in self.dims.items() if name != PATCH}
+        return {**own, POSITION: tuple((1e3 * self.at).tolist())}
+
+    @property
+    def _patches(self) -> int:
+        """The axis of the patches, from the end."""
+        return list(self.dims).index(PATCH) - len(self.dims)
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """What else determines the results."""
+        return {"body": self.body, "at": digest(self.at, "m")}
+
+    def attributes(self, name: str) -> dict[str, str]:
+        """Return the attributes of an output in results: its unit and its long name."""
+        per = "passage of a wheel" if self.units["depth"] == UNITS[1]["depth"] else "distance rolled"
+        return {"units": self.units[name], "long_name": f"{name.replace('_', ' ')} of the {self.body} per {per}"}
+
+    def weight(self, problem: Problem) -> float:
+        """Return the size of an operating point: four columns of its positions, of which 16 numbers are one patch."""
+        return super().weight(problem) + 0.25 * math.prod(self.own_shape)
+
+    def posed(self, conditions: Mapping[str, Any]) -> Problem:
+        """Return the problem of conditions; a state that has no place in a sum over service is an error."""
+        problem = super().posed(conditions)
+        if not self.summed:
+            return problem
+        if problem.exists is not None and PATCH in problem.dims and not problem.exists.any(self._patches).all():
+            wrong = "no normal forces balance this state, as where friction holds a flange"
+        elif np.any(getattr(problem, "climbs", False)):
+            wrong = "the wheel climbs its rail, beyond the steepest point of its flange, as no wheel does in service"
+        else:
+            return problem
+        raise ConditionsError(
+            f"{wrong}; correct the state, or leave it out and divide the shares by the sum of those that stay"
+        )
+
+    def outputs(self, prediction: Prediction, part: Points) -> Outputs:
+        """Return the depth and the sliding distance, (points, *sides, positions), or the sums of these and the mass."""
+        with caught_warnings():  # `of` has given those of the law and the body
+            across = prediction.wear_profile(self.body, at=Q(1e3 * self.at, "mm"))
+        found = {
+            name: Q(across[name].values, across[name].attrs["units"]).m_as(unit)
+            for name, unit in self.units.items()
+            if name in across
+        }
+        if not self.summed:
+            return found
+        mass = prediction.mass_lost("1 km" if "km" in self.units["mass"] else "1 m", self.body).m_as("mg")
+        if PATCH in self.dims:
+            mass = np.nansum(mass, axis=self._patches)
+        share = part.kept[SHARE]
+        shares = coefficient(share.given(share.values), SHARE, positive=False)
+        return {
+            name: np.asarray(np.tensordot(shares, one, axes=1), np.float64)
+            for name, one in {**found, "mass": mass}.items()
+        }
+
+
+class Sum(Target):
+    """The sum of the outputs of all blocks, in their order, so that it is the same from any number of processes.
+
+    Parameters
+    ----------
+    job : Job
+    points : Points
+    folder : path, optional
+        Where to keep the outputs of each block.
+    resume : bool
+        Whether to go on with the blocks that are there.
+    """
+
+    def __init__(self, job: Job, points: Points, folder: Path | None = None, resume: bool = False) -> None:
+        super().__init__(job, points)
+        self._totals: Outputs = {}
+        self._waiting: dict[int, Outputs] = {}
+        self._next = 0
+        self._parts: Parts | None = None
+        if folder is None:
+            return
+        from wearlaw_apps.sweeps.folder import Parts  # zarr takes half a second
+
+        self._parts = Parts(folder, provenance_of(job, points), resume)
+        self.resumed = self._parts.resumed
+        for block in points.blocks() if self.resumed else ():
+            if (part := self._parts[block.number]) is not None:
+                self._take(block, part.arrays, TypeAdapter(BlockRecord).validate_python(part.record))
+
+    def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
+        """Take over a finished block."""
+        if self._parts is not None:
+            self._parts.add(block.number, outputs, asdict(record))
+        self._take(block, outputs, record)
+
+    def _take(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
+        self.done[block.number] = record
+        self._waiting[block.number] = outputs
+        while self._next in self._waiting:
+            for name, values in self._waiting.pop(self._next).items():
+                self._totals[name] = self._totals.get(name, 0.0) + values
+            self._next += 1
+
+    def arrays(self) -> dict[str, Array]:
+        """Return the sums."""
+        return self._totals
+
+    def finish(self, notes: Sequence[str]) -> xarray.Dataset:
+        """Return the sums as a labelled dataset, and write them."""
+        coordinates = labels_of(self.job)
+        data = {
+            name: (tuple(coordinates)[: values.ndim], values, self.job.attributes(name))
+            for name, values in self._totals.items()
+        }
+        attrs = attributes(COMPLETE, provenance_of(self.job, self.points), notes)
+        found = xarray.Dataset(data, coordinates, attrs)
+        if self._parts is not None:
+            self._parts.finish(found)
+        return found
+
+    def close(self) -> None:
+        """Let other processes write the folder."""
+        if self._parts is not None:
+            self._parts.close()
+
+
+def check_shares(points: Points, name: str) -> None:
+    """Raise an error unless the kept column `SHARE` of points has the shares of one whole.
+
+    Raises
+    ------
+    DataError
+        If a share is missing or negative, or they do not add up to one.
+    """
+    column, total, table = points.kept[SHARE], 0.0, points.file
+    assert table is not None
+    factor = 1.0 if column.unit is None else float(coefficient(Q(1.0, column.unit), name))
+    for start in range(0, column.values.size, PIECE):
+        shares = column.values[start : start + PIECE]
+        wrong = np.flatnonzero(~(shares >= 0.0))
+        if wrong.size:
+            row = table.where(start + int(wrong[0]))
+            raise DataError(
+                f"{table.label}, {row}, column {shown(name)}: must be a share of the distance, zero or more, got"
+                f" {shares[wrong[0]]:g}"
+            )
+        total += factor * float(shares.sum())
+    if abs(total - 1.0) > ROUNDED:
+        percent = "; are they in percent? Name the column with its unit, as in 'share [%]'"
+        advice = percent if abs(total - 100.0) < 100.0 * ROUNDED else f"; divide the column by {total:.6g}"
+        raise DataError(
+            f"{table.label}: the shares in {shown(name)} must add up to 1, but add up to {total:.6g}{advice}"
+        )

@@ -1,0 +1,147 @@
+"""Evaluating the blocks of a sweep: in this process, in others on this machine (loky), or on a cluster (dask)."""
+
+from __future__ import annotations
+
+import functools
+import json
+import pickle
+import signal
+import sys
+import warnings
+from collections import deque
+from collections.abc import Callable, Generator, Iterable
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import asdict
+from typing import Any, TypeAlias
+
+from wearlaw.errors import ModelError, SweepError, WorkerWarning, described
+from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs, evaluate
+from wearlaw_apps.sweeps.points import Block, Points
+
+Evaluated: TypeAlias = Generator[tuple[Block, Outputs, BlockRecord], None, None]
+"""Finished blocks, in any order, with their outputs ({} if they are in a store) and records."""
+
+RECORDS = "blocks/record"
+"""Array with the record of each finished block. It is in a group of its own, which xarray leaves alone."""
+
+AHEAD = 4
+"""Blocks submitted for each worker, so that none waits for work."""
+
+IDLE_S = 300
+"""Seconds after which a worker process without work ends; loky warns of one that ends just as it is given work."""
+
+DEATHS = 3
+"""Deaths of worker processes at which a sweep is given up."""
+
+
+def here(
+    job: Job, store: str | None, points: Points, blocks: list[Block], on_block: Callable[[int], None]
+) -> Evaluated:
+    """Evaluate blocks in this process, with progress also within a block."""
+    for block in blocks:
+        yield block, *_evaluated(job, block, points.part(block.slices), store, on_block)
+
+
+def _evaluated(
+    job: Job, block: Block, part: Points, store: str | None, on_block: Callable[[int], None] | None = None
+) -> tuple[Outputs, BlockRecord]:
+    """Evaluate a block; with a store, write it there and return no outputs."""
+    outputs, record = evaluate(job, part, on_block)
+    if store is None:
+        return outputs, record
+    _write(store, block, outputs, record)
+    return {}, record
+
+
+def _write(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> None:
+    """Write a block; its record comes last, since it says that the block is finished."""
+    import zarr
+
+    for name, values in outputs.items():
+        array: Any = zarr.open_array(store, path=name, mode="r+", zarr_format=3).with_config(
+            {"write_empty_chunks": True}
+        )  # NaN is a result
+        array[(*block.slices, ...)] = values.reshape(block.shape + values.shape[1:])
+    zarr.open_array(store, path=RECORDS, mode="r+", zarr_format=3)[block.number] = json.dumps(asdict(record))
+
+
+def _evaluated_elsewhere(job: bytes, block: Block, part: Points, store: str | None) -> tuple[Outputs, BlockRecord]:
+    """Evaluate a block in another process."""
+    try:
+        return _evaluated(_unpickled(job), block, part, store)
+    except Exception:
+        raise
+    except BaseException as error:  # a model's SystemExit must not end the worker, or this program
+        raise ModelError(described(error)) from None
+
+
+@functools.lru_cache(maxsize=8)
+def _unpickled(job: bytes) -> Job:
+    """Unpickle the job of a sweep, once for all of its blocks."""
+    unpickled: Job = pickle.loads(job)
+    return unpickled
+
+
+def in_processes(workers: int, job: bytes, store: str | None, points: Points, blocks: Iterable[Block]) -> Evaluated:
+    """Evaluate blocks in worker processes, which later sweeps use too."""
+    import loky
+
+    waiting, deaths = deque(blocks), 0
+    while waiting:
+        pool = loky.get_reusable_executor(workers, timeout=IDLE_S, initializer=_leave_ctrl_c_to_the_parent)
+        try:
+            yield from _in_pool(pool, lambda: workers, job, store, points, waiting)
+        except BrokenProcessPool:
+            deaths += 1
+            if deaths == DEATHS:
+                raise SweepError(
+                    f"the sweep was given up, since worker processes died {DEATHS} times; does it need more memory than"
+                    " there is?"
+                ) from None
+            warnings.warn("a worker process died; its blocks are evaluated again", WorkerWarning, stacklevel=4)
+        except BaseException:  # nobody waits for the blocks in work
+            pool.shutdown(kill_workers=True)
+            raise
+
+
+def _leave_ctrl_c_to_the_parent() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def on_cluster(client: Any, job: bytes, store: str | None, points: Points, blocks: Iterable[Block]) -> Evaluated:
+    """Evaluate blocks on a cluster of dask.distributed.
+
+    If a worker dies, the cluster tries its block again, as often as the setting
+    `distributed.scheduler.allowed-failures` allows.
+    """
+    killed = sys.modules["distributed"].KilledWorker  # the client comes from there
+    pool = client.get_executor(pure=False)
+    try:
+        yield from _in_pool(pool, lambda: sum(client.nthreads().values()), job, store, points, deque(blocks))
+    except killed as error:
+        raise SweepError(f"a block was given up by the cluster, since its workers died: {error}") from None
+    finally:
+        pool.shutdown(wait=False)  # nobody waits for the blocks in work
+
+
+def _in_pool(
+    pool: Any, workers: Callable[[], int], job: bytes, store: str | None, points: Points, waiting: deque[Block]
+) -> Evaluated:
+    """Evaluate blocks in the workers of an executor; if it fails, those that are not finished wait again.
+
+    A task is a block with the values along its dimensions; the worker expands them to operating points.
+    """
+    pending: dict[Future[tuple[Outputs, BlockRecord]], Block] = {}
+    try:
+        while waiting or pending:
+            ahead = AHEAD * max(1, workers())
+            while waiting and len(pending) < ahead:
+                part = points.part(waiting[0].slices)
+                future = pool.submit(_evaluated_elsewhere, job, waiting[0], part, store)
+                pending[future] = waiting.popleft()
+            for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                outputs, record = future.result()
+                yield pending.pop(future), outputs, record
+    finally:
+        waiting.extendleft(reversed(pending.values()))

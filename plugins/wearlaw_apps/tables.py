@@ -1,0 +1,511 @@
+"""Tables of numbers with units, from CSV files, pandas or xarray, with the line of each row for errors.
+
+>>> import wearlaw as wl
+>>> table = wl.read_table("run.csv", {"normal_force": "Fz [kN]", "creepage": "-slip [%]"})
+>>> table["normal_force"]
+[7.100 7.200] kN
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import os
+import re
+import sys
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
+
+import numpy as np
+
+from wearlaw.arrays import Array
+from wearlaw.errors import PROBLEMS, DataError, UnitError, did_you_mean, shown
+from wearlaw.late import needed_for
+from wearlaw.units.quantities import Q, Quantity
+from wearlaw.units.registry import symbol
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+    from numpy.typing import NDArray
+
+CELLS = 1_000_000
+"""Cells of a file that are read at a time."""
+
+ROW = "row"
+"""Default name for the dimension of the rows."""
+
+MISSING = ("", "-", "NA", "N/A", "n/a", "na", "nan", "NaN", "NAN", "null", "NULL", "None", "#N/A")
+"""Cells without a value."""
+
+LISTED = 20
+"""Most columns that a message lists."""
+
+
+_WORDS = r"[^\[\]\s]*+(?:\s++[^\[\]\s]++)*+"
+HEAD = re.compile(rf"(?P<name>{_WORDS})\s*+(?:\[\s*+(?P<unit>{_WORDS})\s*+\])?")
+"""The head of a column, as in "creepage [%]": a name and an optional unit; the time is linear in the length."""
+
+
+class Column(NamedTuple):
+    """A column in use.
+
+    Attributes
+    ----------
+    name : str
+        The name that it got.
+    head : str
+        Its head in the table.
+    place : int
+        Its index in the table.
+    unit : str or None
+        Its unit, "" for a ratio; None for plain numbers. An unknown unit is kept as it is written.
+    sign : float
+        The factor 1 or -1.
+    """
+
+    name: str
+    head: str
+    place: int
+    unit: str | None
+    sign: float = 1.0
+
+
+class Table:
+    """Columns of a table, from `read_table`.
+
+    ``table["creepage"]`` is a column as a quantity, or as plain numbers if it has no unit, with NaN for missing values.
+    Values are read at the first use.
+
+    Attributes
+    ----------
+    label : str
+        The table in messages, such as "table 'run.csv'".
+    columns : dict of str to Column
+        The columns in use, by name.
+    comments : list of str
+        Lines above the header of a CSV file that begin with "#".
+    header : int
+        The line of the header of a CSV file, from 1.
+    """
+
+    def __init__(self, label: str, heads: Iterable[str] = ()) -> None:
+        self.label = label
+        self.heads = [_column(head, place) for place, head in enumerate(heads)]
+        self.columns: dict[str, Column] = {}
+        self.comments: list[str] = []
+        self.header = 0
+        self.decimal = "."
+        self.dim = ROW
+        self.labels: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Quantity | Array:
+        """Return a column.
+
+        Raises
+        ------
+        DataError
+            If there is no such column, or a cell holds text; the message names every line.
+        """
+        values, unit = self.numbers(name), self.columns[name].unit
+        return values if unit is None else Q(values, unit)
+
+    def numbers(self, name: str) -> Array:
+        """Return a column in its unit, without it; errors as for a column."""
+        column = self._column(name)
+        (values,) = self._numbers([column], self._whole, 0, [name])
+        return values
+
+    @cached_property
+    def lines(self) -> NDArray[np.intp]:
+        """The line of each row of a CSV file, from 1; empty for other tables."""
+        return np.empty(0, dtype=np.intp)
+
+    def texts(self, name: str) -> list[str]:
+        """Return the cells of a column as text, "" for missing ones."""
+        texts = (str(cell).strip() for cell in self._whole[self._column(name).place])
+        return ["" if text in MISSING else text for text in texts]
+
+    def where(self, row: int, name: str | None = None) -> str:
+        """Return the place of a row, from 0, or of one of its cells in words, as in "line 7, column 'Fz [N]'"."""
+        return self._rows_in_words([row])[row] + ("" if name is None else f", column '{self._column(name).head}'")
+
+    def select(self, columns: Mapping[str, str] | None, argument: str = "columns") -> dict[str, Column]:
+        """Return columns by the names that they get, from a mapping as in `read_table`.
+
+        Raises
+        ------
+        DataError
+            If there are no such columns, or units contradict each other; the message names all faults.
+        """
+        if columns is not None and not isinstance(columns, Mapping):
+            raise DataError(
+                f'{argument}: must map names to columns, such as {{"force": "Fz [N]"}}, got {shown(columns)}'
+            )
+        wrong: list[str] = []
+        found: dict[str, Column] = {}
+        for column in self.heads if columns is None else ():
+            if column.name in found:
+                wrong.append(f"{column.name} is given twice, by '{found[column.name].head}' and '{column.head}'")
+            found[column.name] = column
+        for name, text in (columns or {}).items():
+            try:
+                if not name.isidentifier():
+                    raise DataError(f"{argument}: '{name}' is no name; use letters, digits and underscores")
+                found[name] = self._find(name, text)
+            except (DataError, UnitError) as error:
+                wrong.append(str(error))
+        if wrong:
+            raise DataError(f"{self.label} is wrong in:", wrong)
+        return found
+
+    def pieces(self, columns: Sequence[Column], gaps: Collection[str] = ()) -> Iterator[list[Array]]:
+        """Yield the values of columns piece by piece.
+
+        Raises
+        ------
+        DataError
+            If a cell holds text, or is missing in a column that is not named in `gaps`; the message names the lines.
+        """
+        first = 0
+        for frame in self._frames():
+            values = self._numbers(columns, frame, first, gaps)
+            yield values
+            first += len(values[0])
+
+    def _frames(self) -> Iterator[Any]:
+        """Yield some rows, with the places of columns as their names."""
+        yield self._whole
+
+    @cached_property
+    def _whole(self) -> Any:
+        """All rows."""
+        raise NotImplementedError
+
+    def _rows_in_words(self, rows: Collection[int]) -> dict[int, str]:
+        return {row: f"row {row} (the first is row 0)" for row in rows}
+
+    def _column(self, name: str) -> Column:
+        if name not in self.columns:
+            raise DataError(f"{self.label}: there is no column '{name}'{did_you_mean(name, self.columns)}")
+        return self.columns[name]
+
+    def _find(self, name: str, text: str) -> Column:
+        """Return the column that a text names, with its sign and the unit that the text or the table states."""
+        for sign, rest in ((1.0, text), (-1.0, text.removeprefix("-").strip())):
+            given = _column(rest, 0)
+            for found in (
+                [one for one in self.heads if one.head == rest],
+                [one for one in self.heads if one.name == given.name],
+            ):
+                if len(found) > 1:
+                    raise DataError(f"{name}: the column '{rest}' is there {len(found)} times; rename all but one")
+                if found:
+                    return found[0]._replace(name=name, unit=_agreed(name, given, found[0]), sign=sign)
+        known = [one.head for one in self.heads]
+        near = did_you_mean(text.removeprefix("-"), [*known, *(one.name for one in self.heads)]).rstrip(".")
+        listed = ", ".join(f"'{one}'" for one in known[:LISTED]) + (", ..." if len(known) > LISTED else "")
+        raise DataError(f"{name}: there is no column '{text}'{near or ';'} The columns are {listed}")
+
+    def _numbers(self, columns: Sequence[Column], frame: Any, first: int, gaps: Collection[str]) -> list[Array]:
+        """Return columns of a frame, the first row of which has the number `first`, as floats."""
+        found, wrong = [], []
+        for column in columns:
+            cells = frame[column.place]
+            values, missing = _floats(cells, self.decimal)
+            found.append(values if column.sign > 0 else -values)
+            without = np.isnan(values) & ~(missing & (column.name in gaps))
+            wrong += [
+                (int(row), column, "" if missing[row] else str(cells.iloc[row]))
+                for row in np.flatnonzero(without)[:PROBLEMS]
+            ]
+        if wrong:
+            wrong = sorted(wrong, key=lambda one: one[0])[:PROBLEMS]
+            if self._hint(wrong[0][2]):  # all others of the column are alike
+                wrong = wrong[:1]
+            places = self._rows_in_words({first + row for row, _, _ in wrong})
+            raise DataError(
+                f"{self.label} is wrong in:",
+                [
+                    f"{places[first + row]}, column '{column.head}': "
+                    + (f"{shown(text)} is not a number{self._hint(text)}" if text else "is missing")
+                    for row, column, text in wrong
+                ],
+            )
+        return found
+
+    def _hint(self, text: str) -> str:
+        """Return how to read a number with the other decimal mark."""
+        other = "," if self.decimal == "." else "."
+        if text.count(other) == 1 and text.lstrip("+-").replace(other, "").isdigit():
+            return f'; for decimals with "{other}", give decimal="{other}", on the command line --decimal {other}'
+        return ""
+
+
+def _column(head: str, place: int) -> Column:
+    """Return the column of a head; an unknown unit is kept as it is written."""
+    match = HEAD.fullmatch(head)
+    name, unit = (match["name"], match["unit"]) if match else (head, None)
+    with suppress(UnitError):
+        unit = unit and _known(unit)
+    return Column(name, head, place, unit)
+
+
+def _agreed(name: str, given: Column, column: Column) -> str | None:
+    """Return the unit that the user states for a column, or else that of the table, which must not be another one."""
+    if given.unit is None:
+        return column.unit
+    try:
+        unit = Q(1.0, given.unit)
+    except UnitError as error:
+        raise UnitError(f"{name}: column '{column.head}': {error}") from None
+    if column.unit is not None and given.unit != column.unit:
+        with suppress(UnitError):  # what the table states may be no unit
+            if Q(1.0, column.unit) != unit:
+                units = f"'{given.unit}' and '{column.unit}'"
+                raise DataError(f"{name}: column '{column.head}': has the units {units}; keep one of them")
+    return given.unit
+
+
+def _known(unit: str) -> str:
+    """Return a unit in the notation of pint, "" for "-" and "1"."""
+    return "" if unit.strip() in ("", "-", "1") else symbol(Q(1.0, unit).units, "~C")
+
+
+def read_table(
+    source: str | os.PathLike[str] | TextIO | pandas.DataFrame | xarray.Dataset,
+    columns: Mapping[str, str] | None = None,
+    *,
+    sep: str | None = None,
+    decimal: str = ".",
+    comment: str = "#",
+) -> Table:
+    """Return columns of a table with their units.
+
+    Parameters
+    ----------
+    source : path, text file, pandas.DataFrame or xarray.Dataset
+        A CSV file, or a table of pandas or xarray, such as ``xarray.open_dataset("run.nc", decode_times=False)``. The
+        unit of a column stands in its head, as in "Fz [kN]", or in the `attrs["units"]` of xarray. "[-]" is a ratio. If
+        all cells of the first row of a CSV file are numbers, it has no header, and the columns are "1", "2", ...
+    columns : mapping of str to str, optional
+        The columns to use by the names that they get, as in {"force": "Fz [kN]", "creepage": "-slip"}. A minus changes
+        the sign. State the unit in brackets if the table does not. Default: all, by their heads without units.
+    sep : str, optional
+        What separates the cells of a CSV file; " " for any number of spaces. Default: the first of semicolon, tab and
+        comma that the header has, and spaces for numbers without any of them.
+    decimal : {".", ","}
+        The decimal mark of a CSV file.
+    comment : str
+        What lines above the header of a CSV file begin with that are comments; without a header, all such lines.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    DataError
+        If there is no such table, or no such column; the message names all faults.
+    """
+    table = open_table(source, sep=sep, decimal=decimal, comment=comment)
+    table.columns = table.select(columns)
+    return table
+
+
+def open_table(source: Any, *, sep: str | None = None, decimal: str = ".", comment: str = "#") -> Table:
+    """Return a table without columns in use; arguments as for `read_table`."""
+    if isinstance(source, str | os.PathLike):
+        return CsvTable(f"table {shown(Path(source))}", Path(source), sep, decimal, comment)
+    if hasattr(source, "read"):
+        return CsvTable(f"table '{getattr(source, 'name', 'text')}'", source.read().encode(), sep, decimal, comment)
+    pandas, xarray = sys.modules.get("pandas"), sys.modules.get("xarray")  # loaded already if the table is theirs
+    if xarray is not None and isinstance(source, xarray.Dataset):
+        return FrameTable(_frame(source))
+    if pandas is not None and isinstance(source, pandas.DataFrame):
+        return FrameTable(source)
+    raise DataError(f"table: must be a path, a pandas.DataFrame or an xarray.Dataset, got {shown(source)}")
+
+
+class FrameTable(Table):
+    """A pandas.DataFrame."""
+
+    def __init__(self, frame: pandas.DataFrame) -> None:
+        super().__init__("table", map(str, frame.columns))
+        if frame.index.nlevels > 1:
+            raise DataError("table: its index has several levels; call reset_index() on it")
+        self.dim = ROW if frame.index.name is None else str(frame.index.name)
+        self.labels = {self.dim: (self.dim, frame.index.to_numpy())}
+        self._frame = frame.set_axis(range(frame.shape[1]), axis=1)
+
+    @cached_property
+    def _whole(self) -> Any:
+        return self._frame
+
+
+def _frame(dataset: xarray.Dataset) -> pandas.DataFrame:
+    """Return a dataset as a table, with units in its heads."""
+    if len(dataset.sizes) != 1:
+        along = ", ".join(f"'{name}' along {' × '.join(map(str, one.dims))}" for name, one in dataset.items())
+        raise DataError(f"table: its columns must all lie along one dimension, got {along}; select some of them")
+    units = {name: one.attrs.get("units") for name, one in dataset.variables.items()}
+    frame = dataset.to_dataframe()
+    return frame.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit})
+
+
+class CsvTable(Table):
+    """A CSV file, or the bytes of one."""
+
+    def __init__(self, label: str, source: Path | bytes, sep: str | None, decimal: str, comment: str = "#") -> None:
+        super().__init__(label)
+        if decimal not in (".", ","):
+            raise DataError(f'decimal: must be "." or ",", got {decimal!r}')
+        self._source, self.decimal = source, decimal
+        self._skip, header = 0, ""
+        with self._opened() as file:
+            while header := file.readline():
+                if "".join(header.split()).strip(",;") and not header.lstrip('" ').startswith(comment):
+                    break
+                self._skip += 1
+                self.comments.append(header.strip('",; \t\r\n').lstrip(f"{comment} "))
+        if not header:
+            raise DataError(f"{label} is empty")
+        marks = [mark for mark in ";\t," if mark in header]
+        self.sep = sep or next(iter(marks), " " if _is_number(header.split()[0], decimal) else ",")
+        cells = self._cells(next(csv.reader([header], delimiter=self.sep, skipinitialspace=True)))
+        while cells and not cells[-1]:
+            cells.pop()
+        bare = all(_is_number(cell, decimal) for cell in cells)
+        self.header = self._skip + 1
+        self._skip += not bare
+        self._comment = comment if bare else None
+        self.heads = [_column(str(place + 1) if bare else cell, place) for place, cell in enumerate(cells)]
+
+    def _cells(self, cells: Sequence[str]) -> list[str]:
+        return " ".join(cells).split() if self.sep == " " else [cell.strip() for cell in cells]
+
+    @contextmanager
+    def _opened(self) -> Iterator[TextIO]:
+        """Give the file as text, behind the lines to skip."""
+        try:
+            with io.BytesIO(self._source) if isinstance(self._source, bytes) else self._source.open("rb") as raw:
+                file = io.TextIOWrapper(raw, encoding="utf-8-sig", newline="")
+                for _ in range(self._skip):
+                    file.readline()
+                yield file
+        except FileNotFoundError:
+            raise DataError(f"{self.label}: there is no such file") from None
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            raise self._failed(error) from None
+
+    def _failed(self, error: Exception) -> DataError:
+        reason = getattr(error, "strerror", None) or f"{type(error).__name__}: {error}"
+        others = "open other files with pandas or xarray, and give the table"
+        return DataError(f"{self.label} cannot be read as CSV in UTF-8: {reason}; {others}")
+
+    def _frames(self) -> Iterator[Any]:
+        pd = _pandas()
+        width = len(self.heads)
+        with self._opened() as file:
+            try:
+                with pd.read_csv(
+                    file,
+                    sep=r"\s+" if self.sep == " " else self.sep,
+                    header=None,  # and no names, or pandas would not see rows that are too long
+                    decimal=self.decimal,
+                    comment=self._comment,
+                    keep_default_na=False,
+                    na_values=list(MISSING),
+                    skipinitialspace=True,
+                    chunksize=max(CELLS // width, 1),
+                    low_memory=False,
+                ) as reader:
+                    for frame in reader:
+                        if len(frame.columns) < width or frame.iloc[:, width:].notna().any(axis=None):
+                            raise self._uneven()
+                        yield frame.dropna(how="all")
+            except pd.errors.EmptyDataError:
+                return
+            except pd.errors.ParserError as error:
+                raise self._uneven() if "Expected" in str(error) else self._failed(error) from None
+
+    @cached_property
+    def _whole(self) -> Any:
+        width = len(self.heads)
+        rows = []
+        for _, cells in self._rows():
+            if len(cells) < width or any(cell not in MISSING for cell in cells[width:]):
+                raise self._uneven()
+            rows.append(cells[:width])
+        return _pandas().DataFrame(rows, columns=range(width), dtype=object)
+
+    @cached_property
+    def lines(self) -> NDArray[np.intp]:
+        """The line of each row, from 1."""
+        return np.array([line for line, _ in self._rows()], dtype=np.intp)
+
+    def _rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Yield the line and the cells of each row that is not empty."""
+        with self._opened() as file:
+            reader = csv.reader(file, delimiter=self.sep, skipinitialspace=True, strict=True)
+            line = self._skip + 1
+            for found in reader:
+                cells = self._cells(found)
+                comment = self._comment and cells and cells[0].startswith(self._comment)
+                if not comment and any(cell not in MISSING for cell in cells):
+                    yield line, cells
+                line = self._skip + reader.line_num + 1
+
+    def _rows_in_words(self, rows: Collection[int]) -> dict[int, str]:
+        try:
+            lines = itertools.islice(self._rows(), max(rows) + 1)
+            found = {row: f"line {line}" for row, (line, _) in enumerate(lines) if row in rows}
+        except DataError:  # on another machine
+            found = {}
+        return {**super()._rows_in_words(rows), **found}
+
+    def _uneven(self) -> DataError:
+        """Return the error for rows of other lengths than the header."""
+        width = len(self.heads)
+        comma = '; separate cells with decimal commas by ";", and give decimal=","' if self.sep == "," else ""
+        wrong = (
+            f"line {line}: has {len(cells)} cells, not {width}{comma if len(cells) > width else ''}"
+            for line, cells in self._rows()
+            if len(cells) < width or any(cell not in MISSING for cell in cells[width:])
+        )
+        return DataError(f"{self.label} is wrong in:", itertools.islice(wrong, PROBLEMS))
+
+
+def _pandas() -> Any:
+    with needed_for("reading a table", "sweeps"):
+        import pandas
+
+    return pandas
+
+
+def _is_number(text: str, decimal: str) -> bool:
+    try:
+        float(text.replace(decimal, "."))
+    except ValueError:
+        return False
+    return True
+
+
+def _floats(cells: Any, decimal: str) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the numbers of a column of pandas, NaN where there is none, and which cells are missing."""
+    if isinstance(cells.dtype, np.dtype) and cells.dtype.kind in "iuf":
+        values = np.ascontiguousarray(cells, dtype=np.float64)
+        return values, np.isnan(values)
+    pd = _pandas()
+    missing = cells.isna()
+    if cells.dtype.kind in "bmM":  # truth values and times are no numbers
+        return np.full(len(cells), np.nan), missing.to_numpy()
+    texts = cells.where(~missing, "nan").map(str).str.strip().str.replace("\u2212", "-")
+    missing |= texts.isin(MISSING)
+    if decimal == ",":
+        texts = texts.str.replace(".", "?", regex=False).str.replace(",", ".")
+    return pd.to_numeric(texts, errors="coerce").to_numpy(dtype=np.float64), missing.to_numpy()

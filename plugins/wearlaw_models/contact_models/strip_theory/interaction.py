@@ -1,0 +1,80 @@
+"""The slip at which given strips slip all over, from what all of them displace on half-spaces.
+
+In full slip the traction of a strip is g √(1-(x/a)²). The displacement by it is even in x, and Cerruti's solution gives
+its curvature at x = 0 in closed form. A narrow strip of the width w at the distance y, with η = y/a, m = 1/(1+η²) and
+the complete elliptic integrals K and E of the parameter m, adds
+
+    -∂²u_x/∂x² = g w/(πG a²) [G_K - ν G_E],  -∂²u_y/∂x² = g w/(πG a²) [(1-ν) G_K + ν G_E],
+
+with G_K = 2 √m (K - E), from the kernel 1/r, whose partial integration over x leaves ∫ sin²θ/(sin²θ+η²)^(3/2) dθ, and
+G_E = 2 √m (m E + (1-m) (K - E)), from y²/r³. Their integrals over η are P_K = 2η√m K and P_E = 2η√m E, which are those
+of a strip over its own middle. The sum over all strips, times the half length, is the slip k at which a strip slips all
+over. On an ellipse k is a constant times the half length, but not quite that of Kalker's stiffness for small creepage.
+So it is scaled by the quotient of both on the ellipse with the patch's area and length.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import scipy
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_models.contact_models.strip_theory import loops as loops
+from wearlaw_models.contact_models.strip_theory.loops import KNOTS, TINY
+
+ACROSS = 16
+"""Strips of half an ellipse; with these its sums are right to 0.15 % for a/b from 0.1 to 10."""
+
+PAIRS = 16
+"""Pairs of strips that take about as long as one operating point in the count of `accelerated`."""
+
+
+def full_slips(flat: wl.Problem, layout: wl.Strips, greatest: Array, c11: Array, c22: Array) -> tuple[Array, Array]:
+    """Return k along x and along y, (strips, points), of strips with the greatest bounds g."""
+    nu, scale = flat.poisson_ratio, 0.5 * np.pi**2 / flat.shear_modulus
+    (own_k, own_e), (of_ellipse_k, of_ellipse_e) = _curvatures(layout, greatest), _of_ellipse(flat.a / flat.b)
+    along = (own_k - nu * own_e) * (scale / (c11 * (of_ellipse_k - nu * of_ellipse_e)))
+    across = (1.0 - nu) * own_k + nu * own_e
+    return along, across * (scale / (c22 * ((1.0 - nu) * of_ellipse_k + nu * of_ellipse_e)))
+
+
+def _curvatures(layout: wl.Strips, greatest: Array) -> Array:
+    """Return a Σ g w/a² G_K and a Σ g w/a² G_E at the middle of each strip, (2, strips, points)."""
+    y, half_length, width = (np.ascontiguousarray(one) for one in (layout.y, layout.half_length, layout.width))
+    found = greatest / half_length * np.stack(_up_to(0.5 * width / half_length)) * 2.0
+    weight = greatest * width / half_length**2
+    if wl.accelerated(y.shape[0] * y.size // PAIRS):
+        loops.others_loop(y, half_length, weight, _table(), found)
+    else:
+        own = np.arange(len(y))
+        for to, one in zip(found, loops.between(loops.place(y - y[:, None], half_length), _table()), strict=True):
+            one[own, own] = 0.0
+            to += (weight * one).sum(axis=1)
+    return np.asarray(half_length * found)
+
+
+def _of_ellipse(ratio: Array) -> tuple[Array, ...]:
+    """Return the sums of `_curvatures` in the middle of ellipses, over g there."""
+    angle = 0.25 * np.pi / ACROSS * np.arange(2 * ACROSS + 1)
+    ends, half_length = np.sin(angle[::2, None]), np.multiply.outer(np.cos(angle[1::2]), ratio)
+    first, last = _up_to(ends[:-1] / half_length), _up_to(ends[1:] / half_length)
+    return tuple(2.0 * (other - one).sum(axis=0) for one, other in zip(first, last, strict=True))
+
+
+def _up_to(eta: Array) -> tuple[Array, Array]:
+    """Return P_K and P_E from 0 to η."""
+    square = eta * eta / (1.0 + eta * eta)
+    z = np.sqrt(square)
+    return 2.0 * z * scipy.special.ellipkm1(np.maximum(square, TINY)), 2.0 * z * scipy.special.ellipe(1.0 - square)
+
+
+@cache
+def _table() -> Array:
+    """Return G_K and G_E at even steps of η/√(1+η²) from 0 to 1; at zero, where both strips are one, a finite value."""
+    z = np.maximum(np.arange(KNOTS + 1), 1) / KNOTS
+    k, e, m = scipy.special.ellipkm1(z**2), scipy.special.ellipe(1.0 - z**2), np.maximum(1.0 - z**2, 0.0)
+    table: Array = 2.0 * np.sqrt(m) * np.stack([k - e, m * e + z**2 * (k - e)])
+    return table

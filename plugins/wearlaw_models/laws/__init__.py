@@ -1,0 +1,1 @@
+"""Laws of wear and of rolling contact fatigue."""

@@ -1,0 +1,68 @@
+"""Measures of a worn profile: flange height, thickness and gradient, the hollow of the tread, and the depth worn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from wearlaw import Array
+from wearlaw_models.rigs.wheelset.curve import Curve
+
+BELOW_TOP, DATUM, ABOVE_TREAD = 2e-3, 70e-3, 10e-3
+"""Where a flange is measured [m]: L1, L2 and L3 of "Wheel wear" in MiniProf's standard calculations, which state these
+defaults (Greenwood Engineering, greenwood.dk/miniprofstandardcalc.php)."""
+
+NEWTON = 4
+"""Steps of Newton's method to where a normal meets a worn profile; the error squares in each."""
+
+
+def flange(y: Array, z: Array, back: float) -> tuple[float, float, float]:
+    """Return the flange height Sh, the flange thickness Sd and the flange gradient qR of a wheel [m].
+
+    Parameters
+    ----------
+    y, z : ndarray, (points,)
+        The profile, outwards and down [m], from the flange to the field side.
+    back : float
+        y of the back of the flange [m].
+
+    Returns
+    -------
+    tuple of float
+        NaN for a wheel without a flange or a profile that does not reach the datum.
+    """
+    tip = int(np.argmax(z))
+    outer = slice(tip, None)
+    at = back + DATUM
+    if not y[tip] < at <= y[-1]:
+        return np.nan, np.nan, np.nan
+    tread = float(np.interp(at, y[outer], z[outer]))
+    height = float(z[tip]) - tread
+    if height <= ABOVE_TREAD + BELOW_TOP:
+        return np.nan, np.nan, np.nan
+    flank, top = (_first_below(y[outer], z[outer], level) for level in (tread + ABOVE_TREAD, z[tip] - BELOW_TOP))
+    return height, flank - back, flank - top
+
+
+def _first_below(y: Array, z: Array, level: float) -> float:
+    """Return y where a flank, from the top of the flange outwards, first rises above a height [m]."""
+    place = int(np.argmax(z < level))
+    share = (z[place - 1] - level) / (z[place - 1] - z[place])
+    return float(y[place - 1] + share * (y[place] - y[place - 1]))
+
+
+def hollow(z: Array) -> float:
+    """Return the largest rise of the radius of a wheel from the top of its flange outwards [m]."""
+    tread = z[int(np.argmax(z)) :]
+    return float((np.maximum.accumulate(tread[::-1])[::-1] - tread).max())
+
+
+def depth_between(new: Curve, worn: Curve, s: Array) -> Array:
+    """Return the depth between two curves along the normals of the new one, at its arc lengths [m]."""
+    y, z, angle, _ = new.at(s)
+    place = worn.s[0] + (s - new.s[0]) / np.ptp(new.s) * np.ptp(worn.s)
+    for _ in range(NEWTON):
+        there = worn.at(np.clip(place, worn.s[0], worn.s[-1]))
+        along = (there[0] - y) * np.cos(angle) + (there[1] - z) * np.sin(angle)
+        place = place - along / np.cos(there[2] - angle)
+    there = worn.at(np.clip(place, worn.s[0], worn.s[-1]))
+    return np.asarray(new.sign * ((there[1] - z) * np.cos(angle) - (there[0] - y) * np.sin(angle)))

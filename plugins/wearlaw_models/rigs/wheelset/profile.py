@@ -1,0 +1,625 @@
+"""Profiles of wheels and rails: by formula, from points, turned, shifted and worn."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from functools import cache, cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import Field, GetJsonSchemaHandler, model_serializer, model_validator
+from pydantic_core import core_schema
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_models.rigs.wheelset.curve import Curve, joined, through_points
+from wearlaw_models.rigs.wheelset.files import Kind, points_of, write_points
+from wearlaw_models.rigs.wheelset.formulas import FORMULAS
+from wearlaw_models.rigs.wheelset.measures import depth_between, flange, hollow
+from wearlaw_models.rigs.wheelset.points import check_orientation, check_points
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from pydantic import SerializationInfo, SerializerFunctionWrapHandler
+
+CONVEX = {"wheel": -1.0, "rail": 1.0}
+"""Sign of dθ/ds where a body is convex: the wheel lies above its profile, the rail below."""
+
+
+class _Coordinates:
+    """Makes pydantic accept coordinates: a quantity with one axis, or a table of values and their unit."""
+
+    def __get_pydantic_core_schema__(self, source: object, handler: object) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(
+            self._checked,
+            serialization=core_schema.plain_serializer_function_ser_schema(self._table, when_used="json"),
+        )
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, object]:
+        values = {"type": "array", "items": {"type": "number"}}
+        properties = {"values": values, "unit": {"type": "string", "examples": ["mm"]}}
+        return {"type": "object", "properties": properties, "required": ["values", "unit"]}
+
+    def _checked(self, value: object) -> wl.Quantity:
+        if isinstance(value, Mapping):
+            if value.keys() != {"values", "unit"}:
+                raise ValueError('give {values = [...], unit = "mm"}')
+            value = wl.Q(value["values"], value["unit"])
+        if not isinstance(value, wl.Quantity):
+            raise ValueError(
+                f'has no unit; give a quantity, such as Q([-1.0, 0.0, 1.0], "mm"), not a {type(value).__name__}'
+            )
+        wl.Unit("mm", positive=False).si(wl.Q(0.0, str(value.units)), "it")
+        if np.ndim(value.magnitude) != 1:
+            raise ValueError(f"must have one axis, got an array of shape {np.shape(value.magnitude)}")
+        numbers = np.array(value.magnitude, dtype=np.float64)
+        numbers.setflags(write=False)
+        return wl.Q(numbers, str(value.units))
+
+    @staticmethod
+    def _table(value: wl.Quantity) -> dict[str, Any]:
+        return {"values": value.magnitude.tolist(), "unit": f"{value.units:~C}"}
+
+
+Coordinates = Annotated[wl.Quantity, _Coordinates()]
+Angle = Annotated[wl.Quantity, wl.Unit("deg", positive=False)]
+Shift = Annotated[wl.Quantity, wl.Unit("mm", positive=False)]
+
+
+class Profile(wl.Configuration):
+    """The profile of a wheel or a rail.
+
+    y is positive outwards (to the field side) and z is positive down, for wheel and rail, left and right. A wheel has
+    its origin on the tread, at the taping line, where its radius is the nominal one; its flange is at y < 0. A rail has
+    its origin at its top, on its axis, and is not canted; its gauge side is at y < 0.
+
+    Make one by `s1002`, `uic60`, `named`, `from_points` or `read_profile`. In files, a profile is the name of a
+    formula, such as "s1002", the path of a file, a table with `file` and options of `read_profile`, or a table of these
+    fields. A formula or the points come first, then the mirror, the turn and the shifts.
+    """
+
+    kind: Kind
+    """Whether it is that of a wheel or of a rail."""
+    formula: str | None = None
+    """Name of a formula, such as "s1002"; `wearlaw plugins` lists them."""
+    y: Coordinates | None = None
+    """Positions of the points outwards [m]."""
+    z: Coordinates | None = None
+    """Positions of the points down [m]."""
+    weights: tuple[Annotated[float, Field(gt=0.0)], ...] | None = None
+    """Weights of the points for smoothing [-]; all the same if not given."""
+    smoothing: Annotated[wl.Quantity, wl.Unit("mm", positive=False, negative=False)] = Field(
+        default="0 mm", validate_default=True
+    )
+    """Root mean square distance of the points from the curve, at most [m]; with zero it runs through them."""
+    mirror: bool = False
+    """Whether y changes its sign."""
+    turn: Angle = Field(default="0 deg", validate_default=True)
+    """Turn about the origin, from y to z [rad]."""
+    shift_y: Shift = Field(default="0 mm", validate_default=True)
+    """Shift outwards [m]."""
+    shift_z: Shift = Field(default="0 mm", validate_default=True)
+    """Shift down [m]."""
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            kind: Kind,
+            formula: str | None = None,
+            y: wl.Quantity | None = None,
+            z: wl.Quantity | None = None,
+            weights: tuple[float, ...] | None = None,
+            smoothing: wl.QuantityLike = "0 mm",
+            mirror: bool = False,
+            turn: wl.QuantityLike = "0 deg",
+            shift_y: wl.QuantityLike = "0 mm",
+            shift_z: wl.QuantityLike = "0 mm",
+        ) -> None: ...
+
+    @classmethod
+    def named(cls, name: str) -> Profile:
+        """Return the profile by formula with a name, such as "rail_60e2"; `wearlaw plugins` lists them."""
+        return cls.model_validate({"formula": name})
+
+    @classmethod
+    def s1002(cls) -> Profile:
+        """Return the wheel profile S1002 of UIC 510-2 and EN 13715."""
+        return cls(kind="wheel", formula="s1002")
+
+    @classmethod
+    def uic60(cls) -> Profile:
+        """Return the head of the rail UIC 60, as in the Manchester benchmark, not canted, down to 37 mm."""
+        return cls(kind="rail", formula="uic60")
+
+    @classmethod
+    def from_points(
+        cls,
+        *,
+        y: wl.Quantity,
+        z: wl.Quantity,
+        kind: Kind,
+        smoothing: wl.QuantityLike = "0 mm",
+        weights: Array | tuple[float, ...] | None = None,
+    ) -> Profile:
+        """Return the profile through points, or near them.
+
+        Parameters
+        ----------
+        y, z : Quantity, shape (n,)
+            The points in their order along the profile, from either end: outwards and down.
+        kind : "wheel" or "rail"
+            The kind of profile.
+        smoothing : Quantity or str
+            Root mean square distance of the points from the curve. The curve is the smoothest one that keeps it, in the
+            sense of the least ``∫|r''|² du`` over the length u of the chords. With zero the curve is a cubic spline
+            through the points. Give the standard deviation of their noise.
+        weights : array_like of float, shape (n,), optional
+            Weights of the squared distances.
+
+        Raises
+        ------
+        ConfigurationError
+            If the points are no profile: fewer than 10, not finite, doubled, out of order, with gaps or loops, in the
+            wrong unit, mirrored or upside down.
+        """
+        given = None if weights is None else tuple(float(weight) for weight in weights)
+        return cls(kind=kind, y=y, z=z, smoothing=smoothing, weights=given)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_text(cls, given: Any) -> Any:
+        """Take the name of a formula or the path of a file for a table, and add the kind of a formula."""
+        if isinstance(given, str | os.PathLike):
+            given = _named(os.fspath(given))
+        elif isinstance(given, Mapping) and "file" in given:
+            return _File(**given).fields()
+        if isinstance(given, Mapping) and (name := given.get("formula")) is not None:
+            if name not in FORMULAS:
+                near = did_you_mean(name, FORMULAS)
+                raise ValueError(
+                    f"formula: no profile is called {wl.shown(name)}{near} There are {', '.join(FORMULAS)}"
+                )
+            return {"kind": FORMULAS[name].kind, **given}
+        return given
+
+    @model_validator(mode="after")
+    def _is_a_profile(self) -> Profile:
+        if self.formula is not None:
+            if self.y is not None or self.z is not None or self.weights is not None:
+                raise ValueError("takes a formula or points, not both")
+            if self.kind != (kind := FORMULAS[self.formula].kind):
+                raise ValueError(f"kind: '{self.formula}' is a {kind}, not a {self.kind}")
+        elif self.y is None or self.z is None:
+            raise ValueError("needs the name of a formula, or points with y and z")
+        else:
+            check_points(_si(self.y), _si(self.z), self._name)
+            if self.weights is not None and len(self.weights) != self.y.size:
+                raise ValueError(f"weights: must be one for each of {self.y.size} points, got {len(self.weights)}")
+        check_orientation(self.kind, *self._moved(*self._given), self._name)
+        return self
+
+    def _name(self, index: int) -> str:
+        """Return the name of a point in messages."""
+        return f"point {index}"
+
+    @property
+    def _given(self) -> tuple[Array, Array]:
+        """The points as given, or those of the formula's curve [m], before the mirror, turn and shifts."""
+        if self.formula is not None:
+            curve = _by_formula(self.formula)
+            return curve.y, curve.z
+        assert self.y is not None
+        assert self.z is not None
+        return _si(self.y), _si(self.z)
+
+    @property
+    def _motion(self) -> tuple[float, float, float, float]:
+        """The sign of y, the turn [rad], and the shifts [m]."""
+        turn, y, z = wl.scalar_si(self.turn, "rad"), wl.scalar_si(self.shift_y, "m"), wl.scalar_si(self.shift_z, "m")
+        return (-1.0 if self.mirror else 1.0), turn, y, z
+
+    def _moved(self, y: Array, z: Array) -> tuple[Array, Array]:
+        """Return positions after the mirror, the turn and the shifts; the mirror does not change their order."""
+        sign, turn, shift_y, shift_z = self._motion
+        if not turn:  # so that rounding changes nothing
+            return sign * y + shift_y, z + shift_z
+        cosine, sine = np.cos(turn), np.sin(turn)
+        return cosine * sign * y - sine * z + shift_y, sine * sign * y + cosine * z + shift_z
+
+    @cached_property
+    def curve(self) -> Curve:
+        """The profile by its arc length."""
+        if self.formula is not None:
+            base = _by_formula(self.formula)
+        else:
+            weights = None if self.weights is None else np.array(self.weights)
+            y, z = self._given
+            way = slice(None, None, -1 if y[-1] < y[0] else 1)
+            smoothing, sign = wl.scalar_si(self.smoothing, "m"), CONVEX[self.kind]
+            base = through_points(y[way], z[way], smoothing, None if weights is None else weights[way], sign)
+        sign, turn, *shifts = self._motion
+        if (sign, turn, *shifts) == (1.0, 0.0, 0.0, 0.0):
+            return base
+        return base.moved(self._moved, sign, turn)
+
+    @property
+    def points(self) -> tuple[wl.Quantity, wl.Quantity]:
+        """Coordinates y and z of its points, or of those of a formula's curve, after the mirror, turn and shifts.
+
+        They begin at the end with the smaller y.
+        """
+        y, z = self._moved(*self._given)
+        way = slice(None, None, -1 if y[-1] < y[0] else 1)
+        return wl.Q(1e3 * y[way], "mm"), wl.Q(1e3 * z[way], "mm")
+
+    @property
+    def apparent_cant(self) -> wl.Quantity:
+        """Angle by which the head of a rail seems to lean towards y < 0, as one that is canted does [rad].
+
+        It is the angle at which the head is most like its mirror image: the top, within 20 mm of the middle between
+        the sides, has no slope. The sides are taken 10 mm below the top. NaN for a wheel, or if a side does not reach
+        so far down. Wear of one side changes it, by about 1/110 for 5 mm.
+        """
+        return wl.Q(_lean(self.curve) if self.kind == "rail" else np.nan, "rad")
+
+    def mirrored(self) -> Profile:
+        """Return the profile with the sign of y changed, as of a rail whose gauge side is at y > 0."""
+        return self.model_copy(update={"mirror": not self.mirror, "turn": -self.turn, "shift_y": -self.shift_y})
+
+    def shifted(self, *, y: wl.QuantityLike = "0 mm", z: wl.QuantityLike = "0 mm") -> Profile:
+        """Return the profile shifted outwards by `y` and down by `z`."""
+        unit = wl.Unit("mm", positive=False)
+        new = self._motion[2] + float(unit.si(y, "y")), self._motion[3] + float(unit.si(z, "z"))
+        return self._with_motion(self._motion[1], *new)
+
+    def turned(self, angle: wl.QuantityLike) -> Profile:
+        """Return the profile turned about the origin by an angle, positive from y to z.
+
+        The field side falls with a positive angle. The head of a rail leans to the track's middle with a negative one.
+        """
+        by = float(wl.Unit("deg", positive=False).si(angle, "angle"))
+        _, turn, y, z = self._motion
+        cosine, sine = np.cos(by), np.sin(by)
+        return self._with_motion(turn + by, cosine * y - sine * z, sine * y + cosine * z)
+
+    def _with_motion(self, turn: float, y: float, z: float) -> Profile:
+        return self.model_copy(
+            update={"turn": wl.Q(turn, "rad"), "shift_y": wl.Q(1e3 * y, "mm"), "shift_z": wl.Q(1e3 * z, "mm")}
+        )
+
+    def worn(self, s: wl.Quantity, depth: wl.Quantity | str, *, smoothing: wl.QuantityLike = "0 mm") -> Profile:
+        """Return the profile after wear, which removes a depth along the normal.
+
+        Parameters
+        ----------
+        s : Quantity, shape (n,)
+            Arc lengths of this profile's `curve`, growing [m].
+        depth : Quantity, shape (n,) or a scalar
+            Depth removed there, not negative; linear between, and zero beyond the ends of `s` [m].
+        smoothing : Quantity or str
+            Smoothing of the new profile; see `from_points`.
+
+        Returns
+        -------
+        Profile
+            The new profile, from points at most 0.05 mm apart.
+
+        Raises
+        ------
+        InputError
+            If `s` does not grow or is not on the profile, if a depth is negative, or if it reaches the centre of a
+            convex curve.
+        """
+        length = wl.Unit("mm", positive=False)
+        place, removed = length.si(s, "s"), length.si(depth, "depth")
+        curve = self.curve
+        if place.ndim != 1 or not place.size or removed.shape not in ((), place.shape):
+            raise wl.InputError(
+                f"s must have one axis, and depth a value for each s, got shapes {place.shape} and {removed.shape}"
+            )
+        if (np.diff(place) <= 0.0).any() or place[0] < curve.s[0] - 1e-9 or place[-1] > curve.s[-1] + 1e-9:
+            raise wl.InputError(
+                f"s must grow and lie on the profile, from {1e3 * curve.s[0]:.6g} to {1e3 * curve.s[-1]:.6g} mm; got"
+                f" {1e3 * place.min():.6g} to {1e3 * place.max():.6g} mm"
+            )
+        if (removed < 0.0).any():
+            raise wl.InputError(f"depth must not be negative, got {1e3 * removed.min():.4g} mm")
+        depths = np.interp(curve.s, place, np.broadcast_to(removed, place.shape), left=0.0, right=0.0)
+        left = 1.0 - curve.curvature * depths
+        if left.min() <= 0.0:
+            worst = int(np.argmin(left))
+            raise wl.InputError(
+                f"depth {1e3 * depths[worst]:.4g} mm at s = {1e3 * curve.s[worst]:.4g} mm reaches the centre of the"
+                f" curve, which has a radius of {1e3 / curve.curvature[worst]:.4g} mm there; remove it in smaller steps"
+            )
+        y = curve.y - CONVEX[self.kind] * np.sin(curve.angle) * depths
+        z = curve.z + CONVEX[self.kind] * np.cos(curve.angle) * depths
+        new = through_points(y, z, 0.0, None, CONVEX[self.kind])
+        return Profile(kind=self.kind, y=wl.Q(1e3 * new.y, "mm"), z=wl.Q(1e3 * new.z, "mm"), smoothing=smoothing)
+
+    def depth_to(self, worn: Profile, s: wl.Quantity) -> wl.Quantity:
+        """Return the depth between this profile and a worn one, such as a measured one, along this one's normals.
+
+        Parameters
+        ----------
+        worn : Profile
+            The worn profile, in the same position.
+        s : Quantity
+            Arc lengths of this profile's `curve` [m].
+
+        Returns
+        -------
+        Quantity
+            The depth at each of them [m], negative where the worn profile lies outside this one.
+        """
+        place = wl.Unit("mm", positive=False).si(s, "s")
+        return wl.Q(1e3 * depth_between(self.curve, worn.curve, place), "mm")
+
+    def measures(self, flange_back_position: wl.QuantityLike = "-70 mm") -> dict[str, wl.Quantity]:
+        """Return the measures of a wheel that say how far it is worn; a rail has none.
+
+        Parameters
+        ----------
+        flange_back_position : Quantity or str
+            Place of the back of the flange in the profile, y [m].
+
+        Returns
+        -------
+        dict of str to Quantity
+            The flange height Sh, from the tread datum to the top of the flange; the flange thickness Sd, from the back
+            to the flank, 10 mm above the datum (towards the flange's top); the flange gradient qR, parallel to the
+            axle, between the flank 10 mm above the datum and 2 mm below the top; and the hollow of the tread [m]. Those
+            of the flange are NaN without a flange, or if the profile does not reach the datum.
+
+        Notes
+        -----
+        The tread datum lies 70 mm from the back. The quantities are those of MiniProf's calculation "Wheel wear"; the
+        text of EN 15313 was not read. The definition of the hollow is wearlaw's: a place of the tread is hollow if
+        places further out have a larger radius. It is the largest rise of the radius on the way outwards, and zero for
+        a tread whose radius falls from the flange to the field side, as that of a new wheel does.
+        """
+        if self.kind == "rail":
+            return {}
+        y, z = self.curve.y, self.curve.z
+        back = float(wl.Unit("mm", positive=False).si(flange_back_position, "flange_back_position"))
+        names = ("flange_height", "flange_thickness", "flange_gradient", "hollow")
+        return {name: wl.Q(1e3 * one, "mm") for name, one in zip(names, (*flange(y, z, back), hollow(z)), strict=True)}
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the profile as it lies, with z down, and return matplotlib's axes."""
+        if ax is None:
+            from matplotlib.figure import Figure
+
+            ax = Figure(figsize=(7.4, 3.6), layout="constrained").add_subplot()
+            ax.spines[["top", "right"]].set_visible(False)
+            ax.grid(alpha=0.3)
+        curve = self.curve
+        ax.plot(1e3 * curve.y, 1e3 * curve.z, color="#0072B2", linewidth=1.6, label=repr(self))
+        if self.smoothing.magnitude:
+            y, z = (value.magnitude for value in self.points)
+            ax.plot(y, z, ".", color="#D55E00", markersize=2.0, zorder=3, label="points")
+        ax.set(xlabel="y [mm], outwards", ylabel="z [mm], down", title=repr(self), aspect="equal")
+        if not ax.yaxis_inverted():
+            ax.invert_yaxis()
+        return ax
+
+    @model_serializer(mode="wrap")
+    def _short(self, handler: SerializerFunctionWrapHandler, info: SerializationInfo) -> Any:
+        """Return the name of a formula, or the fields that are not at their defaults."""
+        if info.mode != "json":
+            return handler(self)
+        changed = {name: value for name, value in handler(self).items() if name in self._changed}
+        return self.formula if changed.keys() == {"formula"} else changed
+
+    @property
+    def _changed(self) -> list[str]:
+        """The fields that are not at their defaults, without the kind of a formula."""
+        texts = ("turn", "shift_y", "shift_z", "smoothing")
+        found = [name for name in ("formula", "y", "z", "weights") if getattr(self, name) is not None]
+        found += ["mirror"] if self.mirror else []
+        found += [name for name in texts if getattr(self, name).magnitude]
+        return found if self.formula else ["kind", *found]
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        table = super().__get_pydantic_json_schema__(schema, handler)
+        table.pop("required", None)  # a formula knows its kind
+        names = {"type": "string", "description": "the name of a formula, such as s1002, or the path of a file"}
+        return {"anyOf": [table, _File.model_json_schema(), names]}
+
+    @cached_property
+    def _identity(self) -> tuple[object, ...]:
+        points = tuple(_si(value).tobytes() for value in (self.y, self.z) if value is not None)
+        return self.kind, self.formula, points, self.weights, wl.scalar_si(self.smoothing, "m"), self._motion
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Profile):
+            return NotImplemented
+        return self._identity == other._identity
+
+    def __hash__(self) -> int:
+        return hash(self._identity)
+
+    def __repr__(self) -> str:
+        if self.formula is not None:
+            text = f"Profile.named('{self.formula}')"
+        else:
+            assert self.y is not None
+            low, high = 1e3 * _si(self.y).min(), 1e3 * _si(self.y).max()
+            text = f"Profile({self.kind}, {self.y.size} points from y = {low:.4g} to {high:.4g} mm"
+            text += f", smoothing={self.smoothing:~P})" if self.smoothing.magnitude else ")"
+        text += ".mirrored()" if self.mirror else ""
+        _, turn, y, z = self._motion
+        text += f".turned('{np.rad2deg(turn):.6g} deg')" if turn else ""
+        text += f".shifted(y='{1e3 * y:.6g} mm', z='{1e3 * z:.6g} mm')" if y or z else ""
+        return text
+
+
+def _si(value: wl.Quantity) -> Array:
+    """Return lengths in metres."""
+    array: Array = value.magnitude * wl.scalar_si(wl.Q(1.0, str(value.units)), "m")
+    return array
+
+
+@cache
+def _by_formula(name: str) -> Curve:
+    return joined(FORMULAS[name].pieces(), CONVEX[FORMULAS[name].kind])
+
+
+def _named(text: str) -> Any:
+    """Return the fields of a formula, or the profile of a file."""
+    if text in FORMULAS:
+        return {"formula": text}
+    if not os.path.lexists(wl.beside(text)):
+        raise wl.InputError(
+            f"{wl.shown(text)} is neither a profile by formula nor a file in {wl.shown(wl.beside('.').absolute())}"
+            f"{did_you_mean(text, FORMULAS)} The"
+            f" formulas are: {', '.join(FORMULAS)}"
+        )
+    return _File(file=text).fields()
+
+
+class _File(wl.Configuration):
+    """A table that names the file of a profile, with the options of `read_profile`."""
+
+    file: str
+    kind: Kind | None = None
+    units: str = "mm"
+    sep: str | None = None
+    decimal: str = "."
+    mirror_y: Annotated[bool, Field(strict=True)] = False
+    mirror_z: Annotated[bool, Field(strict=True)] = False
+    shift_y: Shift = Field(default="0 mm", validate_default=True)
+    shift_z: Shift = Field(default="0 mm", validate_default=True)
+    smoothing: Shift = Field(default="0 mm", validate_default=True)
+
+    def fields(self) -> dict[str, Any]:
+        """Return the fields of the profile in the file."""
+        found = read_profile(wl.beside(self.file), **{name: value for name, value in self if name != "file"})
+        return {name: getattr(found, name) for name in found.model_fields_set}
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Return "; did you mean 'x'?" for the nearest known word, or a full stop if no word is near."""
+    near = get_close_matches(word.lower(), list(known), n=1)
+    return f"; did you mean '{near[0]}'?" if near else "."
+
+
+def read_profile(
+    path: str | os.PathLike[str],
+    *,
+    kind: Kind | None = None,
+    units: str = "mm",
+    sep: str | None = None,
+    decimal: str = ".",
+    mirror_y: bool = False,
+    mirror_z: bool = False,
+    shift_y: wl.QuantityLike = "0 mm",
+    shift_z: wl.QuantityLike = "0 mm",
+    smoothing: wl.QuantityLike = "0 mm",
+) -> Profile:
+    """Return the profile of a file.
+
+    The ending gives the format: .prr and .prw of Simpack, .ban and .whl of MiniProf, or else two columns, y and z.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    kind : "wheel" or "rail", optional
+        The kind of profile, if neither the ending nor the header gives it.
+    units : str
+        Unit of length in the file, if the file does not give it.
+    sep, decimal : str, optional
+        Of two columns: what separates the cells, and the decimal mark, as in `wearlaw.read_table`.
+    mirror_y, mirror_z : bool
+        Whether to change the sign of y or z.
+    shift_y, shift_z : Quantity or str
+        Shift outwards and down, after the mirrors.
+    smoothing : Quantity or str
+        Root mean square distance of the points from the curve; see `Profile.from_points`.
+
+    Raises
+    ------
+    DataError
+        If the file cannot be read, or does not hold a profile. The message names the file and the line.
+    """
+    try:
+        found, told = points_of(Path(path), kind, units, sep, decimal)
+        length = wl.Unit("mm", positive=False)
+        y = (-1.0 if mirror_y else 1.0) * found.y + float(length.si(shift_y, "shift_y"))
+        z = (-1.0 if mirror_z else 1.0) * found.z + float(length.si(shift_z, "shift_z"))
+
+        def name(index: int) -> str:
+            return f"line {found.lines[index]}"
+
+        check_points(y, z, name)
+        check_orientation(told, y, z, name)
+        return Profile(
+            kind=told,
+            y=wl.Q(1e3 * y, "mm"),
+            z=wl.Q(1e3 * z, "mm"),
+            weights=None if found.weights is None else tuple(found.weights.tolist()),
+            smoothing=smoothing,
+        )
+    except wl.InputError as error:
+        raise wl.DataError(f"profile {wl.shown(path)}: {error}") from None
+
+
+def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
+    """Write a profile to a file, whole or not at all; `read_profile` reads it.
+
+    The ending gives the format: .prr of Simpack for a rail and .prw for a wheel, or .csv and .txt with two columns. The
+    file holds the points, or those of the curve if they are smoothed, in mm with nine
+    decimals.
+
+    Raises
+    ------
+    InputError
+        If the ending is not known or belongs to the other kind of profile.
+    OutputError
+        If the file cannot be written.
+    """
+    y, z = (1e-3 * value.magnitude for value in profile.points)
+    if profile.smoothing.magnitude:
+        y, z = profile.curve.y, profile.curve.z
+    write_points(Path(path), profile.kind, y, z)
+
+
+DEEP, TOP = 10e-3, 20e-3
+"""Depth of the sides below the top, and half-width of the top, by which a rail's lean is measured [m]."""
+
+
+def _lean(curve: Curve) -> float:
+    """Return the angle at which the top of a rail has no slope about the middle of its head [rad]."""
+    lean = 0.0
+    for _ in range(50):
+        cosine, sine = np.cos(lean), np.sin(lean)
+        y, z = cosine * curve.y - sine * curve.z, sine * curve.y + cosine * curve.z
+        crown = int(np.argmin(z))
+        low = z >= z[crown] + DEEP
+        left, right = np.flatnonzero(low[:crown]), np.flatnonzero(low[crown:]) + crown
+        if not (left.size and right.size):
+            return float("nan")
+        sides = []
+        for inner, outer in ((left[-1] + 1, left[-1]), (right[0] - 1, right[0])):
+            share = (z[crown] + DEEP - z[inner]) / (z[outer] - z[inner])
+            sides.append(y[inner] + share * (y[outer] - y[inner]))
+        middle = 0.5 * sum(sides)
+        top = np.linspace(middle - TOP, middle + TOP, 401)
+        order = slice(left[-1], right[0] + 1)
+        heights = np.interp(top, y[order], z[order])
+        slope = float(((top - middle) * heights).sum() / ((top - middle) ** 2).sum())
+        lean -= np.arctan(slope)
+        if abs(slope) < 1e-10:
+            break
+    return lean

@@ -1,0 +1,708 @@
+"""A wheelset on two rails as a rig: its conditions, and the contact problem that they pose."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Required, Self, TypedDict, Unpack
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_models.rigs.wheelset.conicity import equivalent_conicity
+from wearlaw_models.rigs.wheelset.geometry import Geometry, geometry, patches, profiles
+from wearlaw_models.rigs.wheelset.guidance import guided
+from wearlaw_models.rigs.wheelset.loads import Balance, Elastic, Friction, Pressure, Task
+from wearlaw_models.rigs.wheelset.pictures import Profiles, contact_figure, wear_figure
+from wearlaw_models.rigs.wheelset.profile import Profile
+from wearlaw_models.rigs.wheelset.search import Section, Touching, both_sides, searched, section
+from wearlaw_models.rigs.wheelset.search_loops import PATCHES
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+DIMS: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2, 3)}
+"""The axes of patches."""
+
+HUGE = 1e12
+"""Greatest value of a condition in its unit, whatever it is: products of several are floats."""
+
+DISPLACEMENT, ANGLE = (wl.Unit(unit, positive=False, limit=HUGE) for unit in ("mm", "mrad"))
+YAW = wl.Unit("mrad", positive=False, limit=200.0)  # a locomotive in the tightest curve has a tenth of it
+LOAD = wl.Unit("kN", limit=HUGE)
+
+
+class WheelsetConditions(TypedDict, total=False):
+    """The conditions of a wheelset on two rails; arrays broadcast against each other."""
+
+    lateral_displacement: Annotated[wl.QuantityLike, DISPLACEMENT]
+    """Lateral displacement of the wheelset in the track, positive to the right [m]."""
+    lateral_force: Annotated[wl.QuantityLike, wl.Unit("kN", positive=False, limit=HUGE)]
+    """Lateral force on the wheelset, positive to the right [N], in place of a displacement. The wheelset stands where
+    the rails bear it, at the nearest stable place to the middle of the track."""
+    vertical_load: Annotated[wl.QuantityLike, LOAD]
+    """Vertical load of each wheel, Q [N]."""
+    vertical_load_left: Annotated[wl.QuantityLike, LOAD]
+    """Vertical load of the left wheel [N]; with `vertical_load_right` in place of `vertical_load`."""
+    vertical_load_right: Annotated[wl.QuantityLike, LOAD]
+    """Vertical load of the right wheel [N]."""
+    friction_coefficient: Required[wl.Friction]
+    """Friction coefficient, μ [-]."""
+    yaw: Annotated[wl.QuantityLike, YAW]
+    """Yaw, positive clockwise from above, ψ [rad]; zero if not given."""
+    roll: Annotated[wl.QuantityLike, ANGLE]
+    """Roll, positive if it lowers the right wheel, ρ [rad]. By default the one at which both wheels sink together under
+    their loads: gap plus penetration are equal."""
+    flange_friction_coefficient: wl.Friction
+    """Friction coefficient where the contact angle exceeds `flange_angle`, as on a lubricated flange [-]."""
+    axle_torque: Annotated[wl.QuantityLike, wl.Unit("N*m", positive=False, limit=HUGE)]
+    """Torque on the axle, positive if it drives, M [N m]. By default zero, a free axle."""
+    angular_speed: Annotated[wl.QuantityLike, wl.Unit("rad/s", limit=HUGE)]
+    """Speed of rotation instead of a torque, Ω [rad/s]."""
+    lateral_velocity: Annotated[wl.QuantityLike, wl.Unit("m/s", positive=False, limit=HUGE)]
+    """Velocity of the lateral displacement [m/s]."""
+    yaw_velocity: Annotated[wl.QuantityLike, wl.Unit("rad/s", positive=False, limit=HUGE)]
+    """Velocity of the yaw [rad/s]. Where no roll is given, the wheelset rolls with both velocities, so that both wheels
+    stay on their rails."""
+    curve_radius: Annotated[wl.QuantityLike, wl.Unit("m", positive=False, infinite=True)]
+    """Radius of the curve, positive to the right [m]. Infinite on straight track."""
+    rolled_distance: Annotated[wl.QuantityLike, wl.Unit("km", positive=False, negative=False, limit=HUGE)]
+    """Distance rolled since the bodies were new [m], for laws of running-in."""
+
+
+RESULTS: Mapping[str, str] = {
+    "lateral_displacement": "mm",
+    "guiding_force": "kN",
+    "wheel_load": "kN",
+    "derailment_quotient": "",
+}
+"""Units of the results for a wheelset and its wheels."""
+
+FLANGE_DEPTH = 10e-3
+"""Depth below the taping line at which the thickness of a flange is measured (EN 15313) [m]."""
+
+FLANGE_SLOPE = np.radians(50.0)
+"""A wheel has a flange if its profile is steeper than this; those in use have 60 to 75 degrees [rad]."""
+
+MOST_PLAY = 40e-3
+"""Greatest distance between flange and rail in the middle of the track [m]: a worn flange in a widened curve has 30."""
+
+LARGEST_RADIUS = 0.7
+"""Radius of a wheel beyond which it is taken for a diameter [m]: locomotives have up to 0.63."""
+
+HIGH_PRESSURE = 3.5e9
+"""Maximum pressure that only the noise of points gives [Pa]: new flanges have up to about 3."""
+
+IMBALANCE = 1e-3
+"""Share of the load that may be left over without a warning; the forces of FASTSIM jump by less than that, as a strip
+begins to stick once more."""
+
+GRID_ERROR = 0.03
+"""Estimated error of the maximum pressure of half-spaces from which it is warned of."""
+
+MARGIN = 1e-3
+"""Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
+
+CONICITY_POINTS = 801
+"""Displacements at which the conicity takes radii."""
+
+RATIO = re.compile(r"\s*1\s*[:/]\s*([0-9]+\.?[0-9]*)\s*")
+
+
+def _cant(value: object) -> object:
+    """Return the angle of a cant such as "1:40"; other values stay."""
+    if isinstance(value, int | float):
+        raise wl.UnitError(f"got {value!r}; give a ratio or an angle, such as '1:40' or '1.4 deg'")
+    ratio = RATIO.fullmatch(value) if isinstance(value, str) else None
+    return wl.Q(float(np.arctan2(1.0, float(ratio[1]))), "rad") if ratio else value
+
+
+Cant = Annotated[wl.Quantity, wl.Unit("rad", positive=False, limit=0.2), BeforeValidator(_cant)]
+Place = Annotated[wl.Quantity, wl.Unit("mm", positive=False)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class WheelsetProblem(wl.Problem):
+    """The contact problem of a wheelset, and how the wheelset stands; arrays have the shape of the batch.
+
+    Attributes
+    ----------
+    roll : ndarray
+        Roll of the wheelset, positive if it lowers the right wheel, ρ [rad].
+    penetration : ndarray
+        Vertical approach of wheel and rail from first touching, at each patch [m].
+    imbalance : ndarray
+        What the balance leaves over, the greatest of these shares [-]: of the vertical load of a wheel, of the torque
+        of full slip, of the load that the rails would move from wheel to wheel to sink equally, and of the axle load as
+        a lateral force.
+    lateral_displacement : ndarray
+        Lateral displacement of the wheelset in the track, positive to the right [m].
+    guiding_force : ndarray
+        Lateral force of a wheel on its rail, positive to the right, Y [N].
+    wheel_load : ndarray
+        Vertical force of a wheel on its rail, Q [N].
+    derailment_quotient : ndarray
+        Guiding force over wheel load, with the sign of Y, Y/Q [-].
+    """
+
+    roll: Array
+    penetration: Array
+    imbalance: Array
+    lateral_displacement: Array
+    guiding_force: Array
+    wheel_load: Array
+    derailment_quotient: Array
+    balance: Balance
+    shape: tuple[int, ...]
+
+    @property
+    def results(self) -> Mapping[str, str]:
+        """Units of displacement and forces."""
+        return RESULTS
+
+    @property
+    def climbs(self) -> NDArray[np.bool_]:
+        """Whether each wheel stands on its flange beyond the steepest place, (positions, sides)."""
+        over, climbs = _climbing(self.balance), np.zeros(self.balance.roll.size * 2, dtype=np.bool_)
+        climbs[self.balance.found.wheel[over]] = True
+        return climbs.reshape(-1, 2)
+
+    def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
+        """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
+        mapped = super(WheelsetProblem, self).mapped(function, of_strips)  # a class with slots has no plain super()
+        names = ("roll", "penetration", "imbalance", *self.results)
+        return mapped.replaced(**{name: function(getattr(self, name)) for name in names})
+
+
+class Wheelset(wl.Rig):
+    """Two wheels on an axle that roll on two rails, with the profiles of wheels and rails.
+
+    Each wheel touches its rail in one to three patches. The rig finds them, the roll at which both wheels bear their
+    load, and the creepages of each patch. The normal and lateral creep forces of its patches carry the vertical load of
+    a wheel, and the wheelset turns at the speed at which the creep forces balance the torque on the axle.
+
+    Prefer this rig to `WheelRail` where you have profiles, or where a wheel touches in several places. It has no
+    dynamics: lateral displacement or force, yaw and loads come from a program for vehicle dynamics. Both wheels have
+    the same profile unless `left_wheel` gives that of the left one; so do the rails with `left_rail`.
+
+    Axes are those of the track: x forwards, y to the right, z down. Results have the axes "side" and "patch". Patch 1
+    is the place where rigid bodies touch first; missing patches are NaN.
+
+    Materials of wheels and rails may differ. The rig then takes E* and Kalker's means of G and ν.
+    """
+
+    name: ClassVar[str] = "wheelset"
+    source: ClassVar[str] = (
+        "locus of contact: A. D. de Pater, Vehicle System Dynamics 17 (1988) 127-140; strips: J. Piotrowski and W. Kik,"
+        " Vehicle System Dynamics 46 (2008) 27-48; half-spaces: I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206-219"
+    )
+    creepage: ClassVar = "lateral_displacement"
+    choices: ClassVar = [("lateral_displacement", "lateral_force")]
+    example: ClassVar[Mapping[str, Any]] = {
+        "lateral_displacement": "3 mm",
+        "yaw": "7.2 mrad",
+        "vertical_load": "50 kN",
+        "friction_coefficient": 0.3,
+    }
+    example_fields: ClassVar[Mapping[str, Any]] = {
+        "wheel": "s1002",
+        "rail": "uic60",
+        "nominal_radius": "460 mm",
+        "flange_back_distance": "1360 mm",
+        "gauge": "1435 mm",
+        "rail_cant": "1:40",
+        "material": "steel",
+        "rolling_speed": "20 m/s",
+    }
+
+    wheel: Profile
+    """Profile of the wheels; a file may give the name of a formula, such as "s1002", or the path of a profile."""
+    rail: Profile
+    """Profile of the rails, without cant; a file may give "uic60" or a path."""
+    left_wheel: Profile | None = None
+    """Profile of the left wheel if it differs; `wheel` is then that of the right one. The flange is at y < 0."""
+    left_rail: Profile | None = None
+    """Profile of the left rail if it differs; `rail` is then that of the right one. The gauge side is at y < 0."""
+    nominal_radius: wl.Length
+    """Radius of the wheels at the origin of their profile, the taping line [m]."""
+    flange_back_distance: wl.Length
+    """Distance between the inner faces of the wheels [m]."""
+    flange_back_position: Place = Field(default="-70 mm", validate_default=True)
+    """Place of the inner face in the wheel's profile, y [m]."""
+    gauge: wl.Length
+    """Track gauge, the distance between the rails [m]."""
+    gauge_depth: wl.Length = Field(default="14 mm", validate_default=True)
+    """Depth below the rail's highest point at which the gauge is measured [m]."""
+    rail_cant: Cant = Field(default="0 rad", validate_default=True)
+    """Angle by which the rails lean inwards, such as "1:40" [rad]."""
+    flange_angle: Annotated[wl.Quantity, wl.Unit("deg")] = Field(default="30 deg", validate_default=True)
+    """Contact angle beyond which a patch takes `flange_friction_coefficient` [rad]."""
+    pressure: Pressure = "kpec"
+    """Normal problem. "kpec": strips by the method of Kik and Piotrowski with elliptic correction, for any profile.
+    "hertz": ellipses with the curvatures where rigid bodies touch, for curvatures that hardly vary over the patch.
+    "half_space": elastic half-spaces, element by element, for patches with two humps and for reference; slow."""
+    strips: Annotated[int, Field(ge=5, le=500, strict=True)] = 20
+    """Number of strips of a patch with `pressure = "kpec"`; "half_space" has twice as many rows of elements over the
+    width in which the undeformed bodies overlap."""
+    material: wl.MaterialField
+    """Material of wheels and rails; a file may also give the name of an installed material."""
+    rail_material: wl.MaterialField | None = None
+    """Material of the rails, if it differs from the wheels'."""
+    rolling_speed: wl.Speed
+    """Speed of the wheelset along the track, V [m/s]."""
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            wheel: Profile,
+            rail: Profile,
+            left_wheel: Profile | None = None,
+            left_rail: Profile | None = None,
+            nominal_radius: wl.QuantityLike,
+            flange_back_distance: wl.QuantityLike,
+            flange_back_position: wl.QuantityLike = "-70 mm",
+            gauge: wl.QuantityLike,
+            gauge_depth: wl.QuantityLike = "14 mm",
+            rail_cant: wl.QuantityLike = "0 rad",
+            flange_angle: wl.QuantityLike = "30 deg",
+            pressure: Pressure = "kpec",
+            strips: int = 20,
+            material: wl.Material,
+            rail_material: wl.Material | None = None,
+            rolling_speed: wl.QuantityLike,
+        ) -> None: ...
+
+    @property
+    def patch_geometry(self) -> wl.Geometry:
+        """Strips, or ellipses by Hertz's theory."""
+        return "ellipse" if self.pressure == "hertz" else "strips"
+
+    @model_validator(mode="after")
+    def _fits(self) -> Wheelset:
+        for name in ("wheel", "rail", "left_wheel", "left_rail"):
+            given, kind = getattr(self, name), name.removeprefix("left_")
+            if given is not None and given.kind != kind:
+                raise ValueError(f"{name} is the profile of a {given.kind}; give that of a {kind}")
+        if wl.scalar_si(self.nominal_radius, "m") > LARGEST_RADIUS:
+            warnings.warn(
+                f"nominal_radius: {self.nominal_radius!r} is more than wheels in service have; is it the diameter?",
+                wl.RangeWarning,
+                stacklevel=4,
+            )
+        lean, cant = (wl.scalar_si(angle, "rad") for angle in (self.rail.apparent_cant, self.rail_cant))
+        if abs(lean) > 0.5 * cant > 0.0:
+            raise ValueError(
+                f"rail_cant: is {np.degrees(cant):.3g} deg, but the head of the rail's profile"
+                f" leans by {np.degrees(lean):.3g} deg already; leave rail_cant out, or give a profile without cant"
+            )
+        play = self._flange_play
+        if play is not None and not 0.0 < play < MOST_PLAY:
+            raise ValueError(
+                f"gauge: rails {self.gauge!r} apart leave the flanges {1e3 * play:.4g} mm on either side, of wheels"
+                f" {self.flange_back_distance!r} apart between their inner faces; they must leave 0 to"
+                f" {1e3 * MOST_PLAY:g} mm"
+            )
+        straight = np.zeros(1)
+        roll, found = searched(self._section, straight, straight)
+        angle = patches(self._section, both_sides(straight, roll, straight), found)["contact_angle"][0, :, 0]
+        if not np.abs(angle).max() <= wl.scalar_si(self.flange_angle, "rad"):  # NaN without contact
+            raise ValueError(
+                f"gauge: in the middle of the track the wheels stand on their flanges or beside the rails; wheels"
+                f" {self.flange_back_distance!r} apart between their inner faces do not fit rails {self.gauge!r} apart"
+            )
+        return self
+
+    @property
+    def bodies(self) -> Mapping[str, wl.Body]:
+        """The "wheel" and the "rail"; the radius is the nominal one, and problems have those of their patches."""
+        return {
+            "wheel": wl.Body(self.material, wl.scalar_si(self.nominal_radius, "m")),
+            "rail": wl.Body(self.rail_material or self.material, np.inf),
+        }
+
+    def geometry(
+        self,
+        *,
+        lateral_displacement: wl.QuantityLike,
+        yaw: wl.QuantityLike = "0 mrad",
+        roll: wl.QuantityLike | None = None,
+        within: wl.QuantityLike = "0.1 mm",
+    ) -> Geometry:
+        """Return where rigid wheels touch their rails, at all combinations of lateral displacements and yaws.
+
+        Parameters
+        ----------
+        lateral_displacement : Quantity or str
+            Lateral displacement of the wheelset, positive to the right [m]: one value, or an array with one axis.
+        yaw : Quantity or str
+            Yaw, positive clockwise from above [rad]: one value, or an array with one axis.
+        roll : Quantity or str, optional
+            One roll, positive if it lowers the right wheel [rad]. By default both wheels touch.
+        within : Quantity or str
+            Greatest vertical gap of further places beside the first one [m]. Under load they may touch too.
+
+        Raises
+        ------
+        ConditionsError
+            If a wheel does not touch its rail.
+        UnitError
+            If an argument lacks its unit, is out of bounds or has too many values.
+        """
+        given = {"lateral_displacement": lateral_displacement, "yaw": yaw}
+        arrays = {
+            "lateral_displacement": DISPLACEMENT.si(lateral_displacement, "lateral_displacement"),
+            "yaw": YAW.si(yaw, "yaw"),
+        }
+        for name, array in arrays.items():
+            if array.ndim > 1:
+                raise wl.InputError(f"{name}: must have at most one axis, got an array of shape {array.shape}")
+        axes = {name: wl.parse(value) for name, value in given.items()}
+        displacement, turned = (array.ravel() for array in np.meshgrid(*arrays.values(), indexing="ij"))
+        fixed = None if roll is None else np.full(displacement.shape, _one(ANGLE, roll, "roll"))
+        most = _one(wl.Unit("mm", positive=False, negative=False), within, "within")
+        rolls, found = searched(self._section, displacement, turned, fixed)
+        self._check_contact(displacement, found)
+        position = both_sides(displacement, rolls, turned)
+        return geometry(self._section, axes, rolls, found, position, most, wl.scalar_si(self.nominal_radius, "m"))
+
+    def on_rails(self, displacement: Array) -> NDArray[np.bool_]:
+        """Return whether both wheels touch their rails at lateral displacements [m], without yaw."""
+        _, found = searched(self._section, displacement, np.zeros_like(displacement))
+        return ~np.asarray(np.isnan(found.arc[..., 0]).any(axis=-1))
+
+    def profiles_in_track(self) -> Profiles:
+        """Return the right wheel and its rail in the middle of the track, as SI arrays."""
+        return profiles(self._section, wl.scalar_si(self.nominal_radius, "m"))
+
+    def profile_figures(self, found: Mapping[str, wl.Prediction], name: str = "state") -> tuple[wl.FigureData, ...]:
+        """Return figures of the contacts on the profiles, and of the wear along them by each of several laws.
+
+        Parameters
+        ----------
+        found : mapping of str to Prediction
+            Predictions of one operating point, whose contact model resolves the patches, by name of the law.
+        name : str
+            Name of the operating point.
+        """
+        profiles, first = self.profiles_in_track(), next(iter(found.values()))
+        return contact_figure(profiles, name, first), wear_figure(profiles, name, found)
+
+    def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
+        """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel."""
+        most = _one(wl.Unit("mm"), amplitude, "amplitude")
+        displacement = np.linspace(-most - MARGIN, most + MARGIN, CONICITY_POINTS)
+        rolls, found = searched(self._section, displacement, np.zeros_like(displacement))
+        self._check_contact(displacement, found)
+        position = both_sides(displacement, rolls, np.zeros_like(displacement))
+        radius = patches(self._section, position, found)["rolling_radius"][..., 0]
+        return wl.Q(equivalent_conicity(displacement, radius[:, 1] - radius[:, 0], most), "")
+
+    def problem(self, **conditions: Unpack[WheelsetConditions]) -> wl.Problem:
+        """Return the contact problem that the conditions pose; arrays broadcast against each other.
+
+        The loads do not balance the creep forces yet; `balanced` does that, and a pipeline calls it.
+
+        Raises
+        ------
+        ConditionsError
+            If conditions are missing, contradict each other or do not broadcast, a wheel does not touch its rail, or
+            the torque is greater than friction can transmit.
+        UnitError
+            If a condition lacks its unit or is out of bounds.
+        """
+        if conditions.get("axle_torque") is not None and conditions.get("angular_speed") is not None:
+            raise wl.ConditionsError("give axle_torque or angular_speed, not both")
+        arrays = self.in_si(conditions, yaw=0.0, lateral_velocity=0.0, yaw_velocity=0.0, curve_radius=np.inf)
+        sides = [conditions.get(f"vertical_load_{side}") is None for side in DIMS["side"]]
+        if sides[0] != sides[1] or sides[0] == (conditions.get("vertical_load") is None):
+            raise wl.ConditionsError("give vertical_load, or vertical_load_left and vertical_load_right")
+        if (arrays["curve_radius"] == 0.0).any():
+            raise wl.ConditionsError("curve_radius: must not be zero; straight track has an infinite radius, 'inf m'")
+        shape = arrays["yaw"].shape
+        flat = {name: array.reshape(-1) for name, array in arrays.items()}
+        # Laws of friction stay as they are given: each patch has a creep speed of its own.
+        friction: Mapping[str, Any] = {**conditions, **flat}
+        tread, on_flange = friction["friction_coefficient"], friction.get("flange_friction_coefficient")
+        task = self._task(flat, (tread, tread if on_flange is None else on_flange))
+        balance = self._balance(task, flat.get("roll"))
+        if task.torque.any():
+            balance.check_torque()
+        return self._whole(balance, shape, flat.get("rolled_distance"))
+
+    def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
+        """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
+        assert isinstance(problem, WheelsetProblem)
+        distance = problem.rolled_distance
+        if problem.balance.task.lateral_force is None:
+            balance, climbs = problem.balance.solved(forces), np.zeros(problem.balance.roll.shape, dtype=np.bool_)
+            self._warn_of_climbing(balance)
+        else:
+            balance, climbs = self._guided(problem.balance, forces)
+        if not balance.balanced.all():
+            self._warn_of_jams(balance)
+        self._warn_of_humps(balance)
+        self._warn_of_grids(balance)
+        balance.balanced &= ~climbs
+        left = np.where(balance.balanced, balance.imbalance, 0.0)
+        if (left > IMBALANCE).any():
+            point = int(left.argmax())
+            advice = "see imbalance of the problem" if self.pressure == "half_space" else 'take pressure="half_space"'
+            warnings.warn(
+                f"the loads of {np.count_nonzero(left > IMBALANCE)} of {left.size} positions do not balance: at a"
+                f" lateral displacement of {1e3 * balance.task.displacement[point]:.4g} mm, {left[point]:.2g} of the"
+                f" load is left over, as where a patch joins another one; {advice}",
+                wl.RangeWarning,
+                stacklevel=4,
+            )
+        found = self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
+        self._warn_of_points(found)
+        return found
+
+    def _task(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
+        """Return what is asked at positions; with a lateral force, they are in the middle of the track at first."""
+        speed = np.full(given["yaw"].shape, wl.scalar_si(self.rolling_speed, "m/s"))
+        none, one = np.zeros(speed.shape), given.get("vertical_load")
+        loads = [given[f"vertical_load_{side}"] if one is None else one for side in DIMS["side"]]
+        return Task(
+            given.get("lateral_displacement", none), given["yaw"], speed, given["lateral_velocity"],
+            given["yaw_velocity"], given["yaw_velocity"] + speed / given["curve_radius"], np.stack(loads, axis=-1),
+            friction, wl.scalar_si(self.flange_angle, "rad"), given.get("axle_torque", none),
+            given.get("angular_speed"), "roll" not in given, given.get("lateral_force"),
+        )  # fmt: skip
+
+    def _rigid(self, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
+        """Return the rolls of rigid wheelsets and where they touch; equal positions are searched once."""
+        places = np.stack([displacement, yaw] if roll is None else [displacement, yaw, roll])
+        single, which = np.unique(places, axis=1, return_inverse=True)
+        rolls, found = searched(self._section, single[0], single[1], None if roll is None else single[2])
+        which = which.reshape(-1)
+        return rolls[which], Touching(*(array[which] for array in found))
+
+    def _balance(self, task: Task, roll: Array | None) -> Balance:
+        """Return the loads of a task without creep forces."""
+        rolls, found = self._rigid(task.displacement, task.yaw, roll)
+        self._check_contact(task.displacement, found)
+        return Balance.begun(self._section, self._elastic, task, rolls, found, self.pressure, self.strips)
+
+    def _guided(
+        self, balance: Balance, forces: Callable[[wl.Problem], wl.CreepForces]
+    ) -> tuple[Balance, NDArray[np.bool_]]:
+        """Return the loads of wheelsets where the rails bear their lateral forces, and whether a wheel climbs."""
+        task = balance.task
+        assert task.lateral_force is not None
+        roll = None if task.free else balance.roll
+
+        def solved(part: Task, rows: NDArray[np.intp]) -> Balance:
+            return self._balance(part, None if roll is None else roll[rows]).solved(forces, bounds=False)
+
+        steepest = np.array([one.steepest for one in self._section.sides])
+
+        def stands(displacement: Array, rows: NDArray[np.intp], below: bool) -> NDArray[np.bool_]:
+            _, found = self._rigid(displacement, task.yaw[rows], None if roll is None else roll[rows])
+            return np.asarray((found.arc[..., 0] >= (steepest if below else -np.inf)).all(axis=-1))
+
+        place, climbs, greatest = guided(task, solved, stands)
+        every = np.arange(place.size)
+        balance = solved(task.part(every, place), every)
+        left = np.abs(balance.lateral.sum(axis=-1) - task.lateral_force) / task.load.sum(axis=-1)
+        balance.imbalance = np.maximum(balance.imbalance, left)
+        if climbs.any():
+            point = int(np.argmax(climbs))
+            side = DIMS["side"][int(place[point] > 0.0)]
+            warnings.warn(
+                f"lateral_force: {np.count_nonzero(climbs)} of {climbs.size} positions have no result, the first with"
+                f" {1e-3 * task.lateral_force[point]:.4g} kN: the greatest force found is"
+                f" {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm; beyond it the {side} wheel climbs"
+                " its rail or leaves it",
+                wl.RangeWarning,
+                stacklevel=5,
+            )
+        return balance, climbs
+
+    def _whole(self, balance: Balance, shape: tuple[int, ...], distance: Array | None) -> wl.Problem:
+        """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
+        found = balance.found
+        flat, patch = balance.posed()
+        size = balance.roll.size
+        exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
+        place = found.point, found.side, found.number
+        exists[place] = patch.touch & balance.balanced[found.point]
+
+        def wide(array: Array) -> Array:
+            full = np.full(exists.shape, np.nan)
+            full[place] = array
+            return full.reshape(*shape, 2, PATCHES)
+
+        problem = flat.mapped(wide)
+        side = np.broadcast_to(np.array([-1.0, 1.0])[:, None], exists.shape).reshape(*shape, 2, PATCHES)
+        bodies = {
+            "wheel": wl.Body(
+                self.material, wide(patch.place.radius), profile_position=wide(patch.arc), profile_direction=side
+            ),
+            "rail": wl.Body(
+                self.rail_material or self.material,
+                np.inf,
+                profile_position=wide(patch.place.rail_arc),
+                profile_direction=side,
+            ),
+        }
+        fields = {name: getattr(problem, name) for name in wl.Problem.__dataclass_fields__}
+        if distance is not None:
+            fields["rolled_distance"] = np.broadcast_to(distance[:, None, None], exists.shape).reshape(
+                *shape, 2, PATCHES
+            )
+        fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES)}
+        fields |= {
+            "roll": wide(balance.roll[found.point]),
+            "penetration": wide(balance.penetration[found.wheel] - found.gap),
+            "imbalance": wide(balance.imbalance[found.point]),
+            "lateral_displacement": wide(balance.task.displacement[found.point]),
+            "guiding_force": wide(balance.lateral[found.point, found.side]),
+            "wheel_load": wide(balance.vertical[found.point, found.side]),
+            "derailment_quotient": wide((balance.lateral / balance.vertical)[found.point, found.side]),
+        }
+        return WheelsetProblem(**fields, balance=balance, shape=shape)
+
+    def _check_contact(self, displacement: Array, found: Touching) -> None:
+        """Raise an error where a wheel does not stand on its rail."""
+        lost = np.isnan(found.arc[..., 0])
+        if lost.any():
+            point, side = (int(index[0]) for index in np.nonzero(lost))
+            raise wl.ConditionsError(
+                f"lateral_displacement: at {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel does not"
+                " touch its rail within the profiles; wider profiles are needed, or the wheel has left the rail"
+            )
+
+    def _warn_of_climbing(self, balance: Balance) -> None:
+        """Warn of a wheel that stands on the top of its flange."""
+        found = balance.found
+        over = _climbing(balance)
+        if over.any():
+            point, side = (int(index[over][0]) for index in (found.point, found.side))
+            displacement = 1e3 * balance.task.displacement[point]
+            warnings.warn(
+                f"at a lateral displacement of {displacement:.4g} mm the {DIMS['side'][side]} wheel climbs its rail: it"
+                " stands on its flange beyond the steepest point",
+                wl.RangeWarning,
+                stacklevel=5,
+            )
+
+    def _warn_of_humps(self, balance: Balance) -> None:
+        """Warn of patches with two humps, which strips by virtual penetration get wrong."""
+        if self.pressure != "kpec" or not (humps := balance.humps()).any():
+            return
+        first = int(np.argmax(humps))
+        point, side = balance.found.point[first], DIMS["side"][balance.found.side[first]]
+        warnings.warn(
+            f"{np.count_nonzero(humps)} of {humps.size} patches have two humps, the first on the {side} wheel at a"
+            f" lateral displacement of {1e3 * balance.task.displacement[point]:.4g} mm: the maximum pressure of 'kpec'"
+            ' may be a quarter too low there; take pressure="half_space"',
+            wl.RangeWarning,
+            stacklevel=5,
+        )
+
+    def _warn_of_grids(self, balance: Balance) -> None:
+        """Warn of patches with a hump that is too narrow for the rows of half-spaces."""
+        if self.pressure != "half_space":
+            return
+        error = balance.shapes["error"]
+        if (error > GRID_ERROR).any():
+            worst = int(error.argmax())
+            point, side = balance.found.point[worst], DIMS["side"][balance.found.side[worst]]
+            warnings.warn(
+                f"{np.count_nonzero(error > GRID_ERROR)} of {error.size} patches have a hump that is too narrow for"
+                f" their rows, the worst on the {side} wheel at a lateral displacement of"
+                f" {1e3 * balance.task.displacement[point]:.4g} mm, where the maximum pressure may be off by"
+                f" {100.0 * error[worst]:.0f} %; give more than {self.strips} strips",
+                wl.RangeWarning,
+                stacklevel=5,
+            )
+
+    def _warn_of_points(self, problem: wl.Problem) -> None:
+        """Warn of a pressure that the points of a measured profile give, rather than its shape."""
+        profiles = {name: getattr(self, name) for name in ("wheel", "rail", "left_wheel", "left_rail")}
+        rough = [name for name, one in profiles.items() if one and not one.formula and not one.smoothing.magnitude]
+        greatest = np.nanmax(problem.max_pressure, initial=0.0)
+        if rough and greatest > HIGH_PRESSURE:
+            warnings.warn(
+                f"the maximum pressure of {1e-6 * greatest:.0f} MPa is that of single points: {' and '.join(rough)} run"
+                ' through all of theirs; give smoothing with the profile, such as "0.01 mm"',
+                wl.RangeWarning,
+                stacklevel=5,
+            )
+
+    @staticmethod
+    def _warn_of_jams(balance: Balance) -> None:
+        """Warn of positions without a balance of loads."""
+        point = int(np.argmin(balance.balanced))
+        displacement = float(balance.task.displacement[point])
+        warnings.warn(
+            f"{np.count_nonzero(~balance.balanced)} of {balance.balanced.size} positions have no result, the first at a"
+            f" lateral displacement of {1e3 * displacement:.4g} mm: no normal forces were found that carry the vertical"
+            " load together with the creep forces, as where friction holds a flange",
+            wl.RangeWarning,
+            stacklevel=5,
+        )
+
+    @property
+    def _flange_play(self) -> float | None:
+        """Distance from the flange, below the taping line, to the rail in the middle of the track [m]; None without.
+
+        It is that of the right wheel.
+        """
+        across, radius = self._section.wheel_y.value, self._section.wheel_radius.value
+        deep = np.flatnonzero(radius > wl.scalar_si(self.nominal_radius, "m") + FLANGE_DEPTH)
+        if not deep.size or self.wheel.curve.angle.min() > -FLANGE_SLOPE:
+            return None
+        return 0.5 * wl.scalar_si(self.gauge, "m") - float(across[deep[-1]])
+
+    @cached_property
+    def _section(self) -> Section:
+        def of(wheel: Profile, rail: Profile) -> Section:
+            return section(
+                wheel.curve,
+                rail.curve,
+                nominal_radius=wl.scalar_si(self.nominal_radius, "m"),
+                wheel_offset=0.5 * wl.scalar_si(self.flange_back_distance, "m")
+                - wl.scalar_si(self.flange_back_position, "m"),
+                cant=wl.scalar_si(self.rail_cant, "rad"),
+                gauge=wl.scalar_si(self.gauge, "m"),
+                depth=wl.scalar_si(self.gauge_depth, "m"),
+            )
+
+        right = of(self.wheel, self.rail)
+        if self.left_wheel is None and self.left_rail is None:
+            return right
+        return replace(right, left=of(self.left_wheel or self.wheel, self.left_rail or self.rail))
+
+    @cached_property
+    def _elastic(self) -> Elastic:
+        pair = [body.material for body in self.bodies.values()]
+        (e1, n1), (e2, n2) = ((wl.scalar_si(one.youngs_modulus, "Pa"), one.poisson_ratio) for one in pair)
+        return Elastic(
+            wl.hertz.effective_modulus(e1, n1, e2, n2),
+            wl.hertz.mean_shear_modulus(0.5 * e1 / (1.0 + n1), 0.5 * e2 / (1.0 + n2)),
+            wl.hertz.mean_poisson_ratio(e1, n1, e2, n2),
+            wl.scalar_si(self.material.density, "kg/m^3"),
+        )
+
+
+def _climbing(balance: Balance) -> NDArray[np.bool_]:
+    """Return which places are the first of a wheel and on its flange beyond the steepest place."""
+    steepest = np.array([one.steepest for one in balance.section.sides])
+    return np.asarray((balance.found.number == 0) & (balance.found.arc < steepest[balance.found.side]))
+
+
+def _one(unit: wl.Unit, value: wl.QuantityLike, name: str) -> float:
+    """Return an argument with one value in SI, or raise an error that names it."""
+    array = unit.si(value, name)
+    if array.ndim:
+        raise wl.UnitError(f"{name}: must be one value, got an array of shape {array.shape}")
+    return float(array)

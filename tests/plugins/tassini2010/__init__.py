@@ -1,0 +1,1 @@
+"""Tests of wearlaw_apps.papers.tassini2010."""

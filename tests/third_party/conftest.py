@@ -1,3 +1,0 @@
-"""The outside distribution's own tests run where it is installed, not here."""
-
-collect_ignore = ["wearlaw-outside"]
