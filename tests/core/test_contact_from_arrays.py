@@ -79,6 +79,12 @@ def test_a_patch_with_two_axes_of_nodes_and_a_batch() -> None:
     [
         ({"pressure": [1.0, 2, 3, 4]}, wl.UnitError, "pressure: got .* which has no unit"),
         ({"slip": Q(0.1, "mm")}, wl.UnitError, "slip: got 0.1000 mm, which is not a ratio"),
+        (
+            {"slip": Q([0, 0, 0.6, 2.2], "")},
+            wl.InputError,
+            r"slip: must not exceed 1 in magnitude, got 2.2 at index \[3\]; .* percent as Q\(\.\.\., \"%\"\), divide",
+        ),
+        ({"traction": -FOUR_NODES["traction"], "slip": Q([0, 0, -60, -100.1], "%")}, wl.InputError, "got -1.001 at"),
         ({"area": Q(0, "mm^2")}, wl.InputError, "area: must not be negative, and not zero at all nodes"),
         ({"area": Q([1, 1, -1, 1], "mm^2")}, wl.InputError, "area: must not be negative"),
         ({"rolling_speed": Q(-1, "m/s")}, wl.UnitError, "rolling_speed: must be greater than zero"),
@@ -99,6 +105,11 @@ def test_a_patch_with_two_axes_of_nodes_and_a_batch() -> None:
 def test_wrong_arrays_are_refused(changes: dict[str, Any], error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message):
         wl.Contact.from_arrays(**{**FOUR_NODES, **changes})
+
+
+def test_a_locked_wheel_slides_by_its_rolling_speed() -> None:
+    contact = wl.Contact.from_arrays(**{**FOUR_NODES, "slip": Q(1.0 + EPS, "")})
+    assert contact.wear_index == pytest.approx(contact.tangential_force, rel=8 * EPS)
 
 
 def test_a_law_of_the_patch_is_refused_on_nodes_and_taken_on_their_mean() -> None:

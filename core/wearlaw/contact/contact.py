@@ -53,6 +53,9 @@ def variable_at_nodes(contact: Contact, name: str) -> Array:
 ONE_SIGN = 1e-9
 """Share of traction of the other sign that counts as rounding; it changes the mean slip by no more."""
 
+SLIDING = 1e-9
+"""Share of the rolling speed that counts as rounding in the slip of a body that slides without turning."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LineFields:
@@ -301,7 +304,8 @@ class Contact:
         ----------
         pressure, traction, slip, area : Quantity, (batch, nodes)
             Pressure [Pa], traction [Pa], relative slip [-] and area [m²] of each node; they broadcast against each
-            other. Traction and slip have the same sign, or are magnitudes. There can be several axes of nodes.
+            other. The slip is the slip velocity over the rolling speed, of magnitude at most 1. Traction and slip have
+            the same sign, or are magnitudes. There can be several axes of nodes.
         rolling_speed, density : Quantity, (batch)
             Rolling speed [m/s] and mass density of the body whose wear is predicted [kg/m³].
 
@@ -310,8 +314,8 @@ class Contact:
         UnitError
             If a value lacks its unit or is out of bounds.
         InputError
-            If the shapes do not broadcast, traction and slip have opposite signs anywhere, or traction has both signs
-            in one contact.
+            If the shapes do not broadcast, the slip exceeds 1 or has the opposite sign of the traction anywhere, or
+            traction has both signs in one contact.
         """
         given = {"pressure": pressure, "traction": traction, "slip": slip, "area": area}
         units = expected(*given, "rolling_speed", "density")
@@ -327,6 +331,13 @@ class Contact:
             raise InputError("pressure: must not be negative; a pressure that presses the bodies together is positive")
         if (a < 0).any() or not (a.sum(axis=axes) > 0).all():
             raise InputError("area: must not be negative, and not zero at all nodes of a contact")
+        worst = np.unravel_index(np.abs(s).argmax(), s.shape)
+        if np.abs(s[worst]) > 1.0 + SLIDING:
+            raise InputError(
+                f"slip: must not exceed 1 in magnitude, got {s[worst]:.4g} at index {[int(i) for i in worst]}; it is"
+                ' the slip velocity over the rolling speed. Give percent as Q(..., "%"), divide a slip velocity by'
+                " rolling_speed, and a shift by the distance rolled in its time step"
+            )
         if (q * s < 0).any():
             raise InputError("traction and slip: must have the same sign at every node; turn the sign of one of them")
         force, magnitude = (q * a).sum(axis=axes), (np.abs(q) * a).sum(axis=axes)
