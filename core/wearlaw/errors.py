@@ -19,6 +19,14 @@ import numpy as np
 LONGEST = 400
 """Most characters that a message shows of a value."""
 
+LINE = 900
+"""Most characters on a line of a message."""
+
+
+def cut(text: str, most: int = LONGEST) -> str:
+    """Return a text as far as a message shows it."""
+    return text if len(text) <= most else f"{text[:most]}... ({len(text)} characters)"
+
 
 def shown(value: object) -> str:
     """Return a value as a message shows it: its repr, cut if it is long; of a path, its text between quotes."""
@@ -26,12 +34,14 @@ def shown(value: object) -> str:
         value = os.fspath(value)
     elif isinstance(value, np.generic):
         value = value.item()  # 20.0 rather than np.float64(20.0)
-    text = repr(value)
-    return text if len(text) <= LONGEST else f"{text[:LONGEST]}... ({len(text)} characters)"
+    return cut(repr(value))
 
 
 class WearlawError(Exception):
     """Base of all errors raised by wearlaw."""
+
+    def __str__(self) -> str:
+        return "\n".join(cut(line, LINE) for line in super().__str__().split("\n"))
 
 
 class InputError(WearlawError, ValueError):
@@ -110,7 +120,7 @@ class Fault:
     message: str
 
     def __str__(self) -> str:
-        where = ".".join(self.path)
+        where = cut(".".join(self.path))
         return f"{where}: {self.message}" if where else self.message
 
 
@@ -203,4 +213,4 @@ def with_problems(head: str, problems: Iterable[object]) -> str:
     every = list(problems)
     more = len(every) - PROBLEMS
     lines = [*every[:PROBLEMS], *([f"... and {more} more"] if more > 0 else [])]
-    return head + "".join(f"\n  {line}" for line in lines)
+    return head + "".join(f"\n  {cut(str(line), LINE)}" for line in lines)

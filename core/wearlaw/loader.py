@@ -77,6 +77,10 @@ class Shelf:
             raise TypeError(f"the name of a {self.kind} must be an identifier, got {shown(name)}")
         self.providers.setdefault(name, []).append((item, origin))
 
+    def __contains__(self, name: object) -> bool:
+        """Return whether an item has a name; a file may hold a list in its place."""
+        return isinstance(name, str) and name in self.providers
+
     def origin(self, name: str) -> Origin:
         """Return the origin of the item with a name."""
         return self.providers[name][0][1]
@@ -127,7 +131,7 @@ class Installed:
 
     def find(self, kind: str, name: str) -> Any:
         """Return the item of a kind with a name, or raise an `UnknownModelError` that lists the installed names."""
-        found = self[kind].providers.get(name, [])
+        found = self[kind].providers[name] if name in self[kind] else []
         if len(found) == 1:
             return found[0][0]
         if found:
@@ -357,7 +361,7 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
     Parameters and errors are those of `contact_model`.
     """
     found = installed()
-    if name in found["parameter set"].providers:
+    if name in found["parameter set"]:
         known: WearLaw = found.find("parameter set", name)
         return known_as(name, known.model_copy(update=options))
     made: WearLaw = found.find("wear law", name)(**options)
@@ -384,9 +388,9 @@ def law(name: str, /, **options: Any) -> Law:
     Parameters and errors are those of `contact_model`.
     """
     found = installed()
-    if name in found["wear law"].providers or name in found["parameter set"].providers:
+    if name in found["wear law"] or name in found["parameter set"]:
         return wear_law(name, **options)
-    if name not in found["law"].providers:
+    if name not in found["law"]:
         raise UnknownModelError(found.unknown("law", name, [*laws(), *wear_laws(), *parameter_sets()]))
     made: Law = found.find("law", name)(**options)
     return made
@@ -410,11 +414,11 @@ def material(name: str, /, **options: Any) -> Material:
         If a field is missing or unknown, or has a wrong value.
     """
     found = installed()
-    if name in found["material"].providers:
+    if name in found["material"]:
         known: Material = found.find("material", name)
         changed = known.model_copy(update=options)
         return known if changed == known else changed  # which keeps its name
-    if name not in found["material type"].providers:
+    if name not in found["material type"]:
         names = [*found["material"].items(), *found["material type"].items()]
         raise UnknownModelError(found.unknown("material", name, names))
     made: Material = found.find("material type", name)(**options)

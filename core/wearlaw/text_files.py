@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -13,8 +14,17 @@ from wearlaw.errors import InputError, shown
 
 MIB = 2**20
 
-LARGEST = MIB
+LARGEST = MIB // 4
 """Size of the largest TOML file that is read [bytes]."""
+
+LEVELS = 200
+"""Levels of the deepest table in TOML that is read: `tomllib` calls itself for each, and Python ends it at some 300."""
+
+_TOML = re.compile(
+    r'''"""(?:\\.|[^\\])*?(?:"{3,5}|\Z)|\'{3}.*?(?:\'{3,5}|\Z)|"(?:\\.|[^"\\\n])*"?|\'[^\'\n]*\'?|#[^\n]*|[.\n,[{}\]]''',
+    re.DOTALL,
+)
+"""What tells the levels of TOML: brackets, the dots of keys, and what ends a key, outside of texts and comments."""
 
 _READ: ContextVar[Path | None] = ContextVar("folder of the file that is being read", default=None)
 
@@ -69,7 +79,7 @@ def read_file(path: str | os.PathLike[str], most: int) -> bytes:
     except (OSError, ValueError) as error:
         raise InputError(reason_of(error)) from None
     if len(content) > most:
-        raise InputError(f"it has more than {most / MIB:g} MiB, the most that is read; is it the right file?")
+        raise InputError(f"it has more than {_size(most)}, the most that is read; is it the right file?")
     return content
 
 
@@ -88,20 +98,46 @@ def read_text(path: str | os.PathLike[str], most: int) -> str:
         raise InputError("it is not text in UTF-8; save it in UTF-8") from None
 
 
+def _size(size: int) -> str:
+    return f"{size // MIB} MiB" if size >= MIB else f"{size // 1024} KiB"
+
+
 def parse_toml(text: str) -> dict[str, Any]:
     """Return the contents of a text in TOML.
 
     Raises
     ------
     InputError
-        If it is not TOML; the message follows the name of the file.
+        If it is not TOML, or too large or deep; the message follows the name of the file.
     """
     import tomllib  # most scripts read no such file
+
+    if len(text) > LARGEST:
+        raise InputError(f"has more than {_size(LARGEST)}, the most that is read")
+    if _levels(text) > LEVELS:
+        raise InputError(f"has tables or lists inside each other on more than {LEVELS} levels, the most that are read")
 
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f'is not valid TOML: {error}; texts stand in quotes, as in "7 kN"') from None
+
+
+def _levels(text: str) -> int:
+    """Return at least the levels of the deepest table or list of a text in TOML, without parsing it."""
+    outer, dots, deepest = [0], 0, 0
+    for token in _TOML.findall(text):
+        if token in ("[", "{"):
+            outer.append(outer[-1] + dots + 1)
+            dots = 0
+        elif token in ("]", "}"):
+            outer = outer[:-1] or [0]
+        elif token in (",", "\n"):
+            dots = 0
+        else:
+            dots += token == "."
+        deepest = max(deepest, outer[-1] + dots)
+    return deepest
 
 
 def read_toml(subject: str, path: str | os.PathLike[str]) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import pickle
+import re
 
 import pytest
 
@@ -51,3 +52,23 @@ def test_did_you_mean_sees_through_capitals_and_finds_a_word_in_a_longer_name(
 
 def test_single_letters_are_no_words_of_a_longer_name() -> None:
     assert did_you_mean("m", ["m_c", "tr_sc"]) == "."
+
+
+def test_a_line_of_a_message_is_cut_however_long_what_it_names() -> None:
+    long = "x" * 100_000
+    for error, begin in (
+        (wl.ConfigurationError("Disc", [Fault((long,), "is odd")]), "Disc: xxx"),
+        (wl.ConfigurationError("Disc", [Fault((long,), "is odd")] * 2), "Disc:\n  xxx"),
+        (wl.DataError("the tests are wrong in:", [long]), "the tests are wrong in:\n  xxx"),
+        (wl.InputError(f"is wrong\n{long}"), "is wrong\nxxx"),
+        (wl.OutputError(long), "xxx"),
+    ):
+        assert str(error).startswith(begin)
+        assert max(map(len, str(error).splitlines())) < 1000
+
+
+@pytest.mark.parametrize("name", [["a"], {}, None, 1])
+@pytest.mark.parametrize("kind", ["rig", "contact_model", "stage", "law", "wear_law", "material"])
+def test_a_name_that_is_no_text_is_not_found(kind: str, name: object) -> None:
+    with pytest.raises(wl.UnknownModelError, match=rf"is called {re.escape(repr(name))}"):
+        getattr(wl, kind)(name)

@@ -141,7 +141,8 @@ class Case(Configuration):
     def _has_its_plugins(cls, fields: Any) -> Any:
         """Check for missing plugins first, before something else fails without them."""
         needed = fields.get("plugins") if isinstance(fields, dict) else None
-        unmet = {name: _unmet(name, str(versions)) for name, versions in (needed or {}).items()}
+        named = needed.items() if isinstance(needed, dict) else ()
+        unmet = {name: _unmet(name, str(versions)) for name, versions in named}
         if wrong := [Fault(("plugins", name), fault) for name, fault in unmet.items() if fault]:
             raise ConfigurationError(cls.subject(), wrong)
         return fields

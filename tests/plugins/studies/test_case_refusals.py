@@ -21,6 +21,7 @@ WRONG: list[tuple[str, Any, str]] = [
     ("rig", {"type": "twin_disc"}, "rig.disc_1"),
     ("rig.type", "wheel_rail", "rig.preset"),
     ("rig.preset", "sros", "rig.preset"),
+    ("plugins", ["a"], "plugins"),
     ("rig.diametre", "47 mm", "rig.diametre"),
     ("rig.diameter", 47, "rig.diameter"),
     (
@@ -47,6 +48,9 @@ WRONG: list[tuple[str, Any, str]] = [
 
 WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
     ("rig.diameter", "47 kN", "rig.diameter"),
+    ("rig", {"type": ["a"]}, "rig.type"),
+    ("rig.preset", {"a": 1}, "rig.preset"),
+    ("rig.material", {"type": ["a"]}, "rig.material"),
     ("sweeps.creepage.normal_force", "1 N", "sweeps.creepage"),
     ("sweeps.a b", {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}, "sweeps"),
     ("profiles.partial_slip.creepage", ["1 %"], "profiles.partial_slip"),
