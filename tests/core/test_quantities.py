@@ -148,3 +148,64 @@ def test_a_unit_for_values_from_zero_to_a_limit_names_the_value_that_is_out_of_r
         unit.si(Q([0.0, -0.5], "m"), "depth")
     with pytest.raises(wl.UnitError, match=r"depth: must not exceed 2 m in magnitude, got 3"):
         unit.si(Q([0.0, 0.5, 3.0], "m"), "depth")
+
+
+@pytest.mark.parametrize(
+    "unit",
+    [
+        "m**9**9**9",
+        "m^9^9^9",
+        "m^9 ^9\t^9",
+        "m*9**9**9",
+        "9**9**9*m",
+        "m**(9**9**9)",
+        "m**99**9",
+        "m**999999999",
+        "m^1e9",
+        "m⁹⁹⁹⁹⁹⁹⁹⁹⁹",
+        "m**(999999999/2)",
+        "((m**99)**99)**99",
+        "(9**(99))**99*m",
+        "9**9999*m",
+        "m**--9**9",
+        "m*" + "9" * 5000,
+        "square m**9**9**9",
+        "m**.5.5",
+        "m**x",
+    ],
+)
+def test_a_power_that_no_unit_has_is_refused_and_not_computed(unit: str) -> None:
+    for read in (
+        lambda: wl.Q(1.0, unit),
+        lambda: wl.Unit("m").si(f"1 {unit}", "x"),
+        lambda: wl.Unit(unit).si("1 m", "x"),
+        lambda: wl.Unit("m").si([f"1 {unit}"], "x"),
+    ):
+        with pytest.raises(
+            wl.UnitError, match=r"powers are numbers, as in mm\^2 or MPa\^0\.5|is not a number with a u"
+        ):
+            read()
+
+
+@pytest.mark.parametrize("unit", ["km^400", "nm**40", "kg**-200", "Ym^12*Yg^12", "dB^9"])
+def test_a_unit_beyond_all_floats_is_refused(unit: str) -> None:
+    with pytest.raises(wl.UnitError, match=r"is not a (known )?unit"):
+        wl.Q(1.0, unit)
+
+
+@pytest.mark.parametrize(
+    ("unit", "in_si"),
+    [
+        ("mm**2", 1e-6),
+        ("mm^-2", 1e6),
+        ("mm²", 1e-6),
+        ("MPa^(1/2)", 1e3),
+        ("MPa ** 0.5", 1e3),
+        ("kPa**( -1 / 2 )", 1e3**-0.5),
+        ("square mm", 1e-6),
+        ("mm cubed", 1e-9),
+        ("m^3*s^2/mm^3/ms^2", 1e15),
+    ],
+)
+def test_ordinary_powers_are_computed(unit: str, in_si: float) -> None:
+    assert wl.Unit(unit).si(f"1 {unit}", "x") == pytest.approx(in_si, rel=1e-12)

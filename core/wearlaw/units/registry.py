@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
+import math
 import re
 from threading import RLock
 from typing import Any
 
 import numpy as np
 import pint
+from pint.util import string_preprocessor
 
 from wearlaw.errors import UnitError, shown
 
@@ -16,6 +18,22 @@ _SIGNIFICANT_DIGITS = 4
 
 _MAKING = RLock()
 """Held by the thread that makes a registry or its class of quantities."""
+
+MOST_POWERS = 1000.0
+"""Largest product of the powers in a unit. pint computes numbers with powers, and 9**9**9 for minutes."""
+
+LONGEST_UNIT = 1000
+"""Most characters of a unit."""
+
+_POWER = re.compile(
+    r"""
+    \*\*\s*
+    (?: [+-]? (\d+\.?\d*|\.\d+) (?:e-\d+)? | \(\s* [+-]? (\d+\.?\d*|\.\d+) (?:\s*/\s*\d+)? \s*\) )
+    (?! [\w.] | \s*\*\* )
+""",
+    re.VERBOSE,
+)
+"""A number or a ratio as the power of a unit, to which no other power belongs."""
 
 _ready: object = None
 """The last registry in force, which is certain to be complete."""
@@ -36,12 +54,27 @@ def application_registry() -> pint.UnitRegistry[Any]:
 @functools.lru_cache(maxsize=512)
 def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
     """Return the unit of a text, or raise a `UnitError`."""
+    if not _has_small_powers(str(unit)):
+        raise UnitError(f"{shown(unit)} is not a unit that can be computed; powers are numbers, as in mm^2 or MPa^0.5")
     try:
-        return registry.Unit(re.sub(r"\b([mkM]?)Nm\b", r"(\1N*m)", str(unit)))  # Nm is a count of yarn to pint
+        parsed = registry.Unit(re.sub(r"\b([mkM]?)Nm\b", r"(\1N*m)", str(unit)))  # Nm is a count of yarn to pint
+        in_root_units: Any = registry.get_root_units(parsed)[0]
+        if not 0.0 < in_root_units < np.inf:  # nm^40
+            raise ValueError
+        return parsed
     except pint.UndefinedUnitError:
         raise UnitError(f"{shown(unit)} is not a known unit") from None
     except Exception:  # the registry's expression parser raises many types of error on malformed text
         raise UnitError(f"{shown(unit)} is not a unit") from None
+
+
+def _has_small_powers(unit: str) -> bool:
+    """Return whether a unit can be computed at once."""
+    if len(unit) > LONGEST_UNIT:
+        return False
+    text = string_preprocessor(unit)
+    powers = [float(plain or ratio) for plain, ratio in _POWER.findall(text)]
+    return len(powers) == text.count("**") and math.prod(max(power, 1.0) for power in powers) <= MOST_POWERS
 
 
 def si_factor(quantity: Any, due: str) -> float:
