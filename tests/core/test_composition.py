@@ -90,6 +90,12 @@ def test_a_law_for_unspecified_materials_does_not_warn_of_any() -> None:
     predict(**CONDITIONS).mass_lost("1 km", "disc_2")
 
 
+def test_the_mass_lost_without_a_body_names_the_bodies() -> None:
+    result = (of_discs(BRONZE, BRONZE) | GLOBAL | KTH)(**CONDITIONS)
+    with pytest.raises(wl.InputError, match="body: is missing; its bodies are 'disc_1' and 'disc_2'"):
+        result.mass_lost(over="1 km")
+
+
 class Unnamed(wl.Rig):
     """A rig whose bodies only its problems show."""
 

@@ -526,7 +526,7 @@ class Problem:
         mean: Array = ((along + across) * strips.area).sum(axis=-1) / strips.area.sum(axis=-1)
         return np.sqrt(mean)
 
-    def body(self, name: str) -> Body:
+    def body(self, name: str | None) -> Body:
         """Return the body with a name.
 
         Raises
@@ -536,7 +536,8 @@ class Problem:
         """
         if not isinstance(name, str) or name not in self.bodies:
             names = " and ".join(repr(one) for one in self.bodies) or "not named"
-            raise InputError(f"body: this rig has no {shown(name)}; its bodies are {names}")
+            wrong = "is missing" if name is None else f"this rig has no {shown(name)}"
+            raise InputError(f"body: {wrong}; its bodies are {names}")
         return self.bodies[name]
 
     def worn_on(self, body: str | None) -> Self:

@@ -225,7 +225,7 @@ class Rig(Model):
             return
         for name in conditions:
             if name not in known:
-                raise ConditionsError(f"{name}: {unknown_condition(name, known)}")
+                raise ConditionsError(f"{name}: {unknown_condition(name, known, cls)}")
         for names in cls.choices:
             given = [name for name in names if conditions.get(name) is not None]
             if len(given) != 1:
@@ -261,8 +261,13 @@ class Rig(Model):
         return Pipeline(rig=self, contact_model=model)
 
 
-def unknown_condition(name: str, known: Iterable[str]) -> str:
+def unknown_condition(name: str, known: Iterable[str], rig: type[Rig]) -> str:
     """Return what is wrong with a condition that a rig does not have."""
+    if name in rig.model_fields:
+        return (
+            f"is a field of rig '{rig.name}', with one value for all operating points; give it to the rig. The"
+            f" conditions are: {', '.join(known)}"
+        )
     hint = did_you_mean(name, known)
     if hint == ".":
         hint = did_you_mean(OTHER_NAMES.get(name.lower(), name), known)

@@ -570,7 +570,7 @@ class Prediction:
         return from_si(self._solution.mass_per_distance(), "ug/m")
 
     @steady
-    def mass_lost(self, over: QuantityLike, body: str) -> Quantity:
+    def mass_lost(self, over: QuantityLike, body: str | None = None) -> Quantity:
         """Return the mass that a body loses over a distance rolled [kg]; a rail loses it along the whole distance.
 
         Parameters
@@ -578,8 +578,9 @@ class Prediction:
         over : Quantity or str
             The distance rolled, such as Q(10, "km").
         body : str
-            Its name in the rig, such as "disc_1" or "wheel".
+            Its name in the rig, such as "disc_1" or "wheel". Without it the error names the bodies.
         """
+        self.problem.body(body)
         distance, mass = Unit("km").si(over, "over"), self._solution.mass_per_distance(body)
         try:
             return from_si(mass * distance, "mg")

@@ -217,7 +217,7 @@ def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
     known = rig.conditions()
     unknown = [name for name in given if known and name not in known]
     missing = [name for name, condition in known.items() if condition.required and name not in given]
-    yield from (Fault((name,), unknown_condition(name, known)) for name in unknown)
+    yield from (Fault((name,), unknown_condition(name, known, type(rig))) for name in unknown)
     yield from (Fault((name,), "is missing") for name in missing)
     if unknown or missing:
         return

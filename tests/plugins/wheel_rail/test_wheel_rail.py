@@ -114,6 +114,10 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], str]] = [
         "creepage: unknown condition; did you mean 'longitudinal_creepage'? The conditions are: normal_force, ",
     ),
     (
+        {"rolling_speed": Q(20, "m/s")},
+        "rolling_speed: is a field of rig 'wheel_rail', with one value for all operating points; give it to the rig.",
+    ),
+    (
         {"max_pressure": Q(1, "GPa")},
         "give exactly one of normal_force, max_pressure; got normal_force and max_pressure",
     ),
