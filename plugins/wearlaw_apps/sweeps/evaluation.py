@@ -52,15 +52,13 @@ class Job:
     dims: Mapping[str, tuple[str | int, ...]] = field(default_factory=dict)
     accelerate: bool | None = field(default_factory=kernels.chosen)
 
-    @property
-    def labels(self) -> Mapping[str, Sequence[str | int | float]]:
-        """The axes of the outputs at one operating point, with their labels."""
+    def labels(self, name: str) -> Mapping[str, Sequence[str | int | float]]:  # noqa: ARG002
+        """Return the axes of an output at one operating point, with their labels."""
         return self.dims
 
-    @property
-    def own_shape(self) -> tuple[int, ...]:
-        """Shape of the outputs at one operating point."""
-        return tuple(map(len, self.labels.values()))
+    def own_shape(self, name: str) -> tuple[int, ...]:
+        """Return the shape of an output at one operating point."""
+        return tuple(map(len, self.labels(name).values()))
 
     @property
     def settings(self) -> dict[str, str]:
@@ -81,11 +79,16 @@ class Job:
 
     def outputs(self, prediction: Prediction, part: Points) -> Outputs:  # noqa: ARG002
         """Return the outputs of a prediction at some of the points."""
-        return {name: np.asarray(magnitude(prediction[name], unit)) for name, unit in self.units.items()}
+        return outputs_of(prediction, self.units)
 
     def attributes(self, name: str) -> dict[str, str]:
         """Return the attributes of an output in results: its unit and its long name."""
         return {"units": self.units[name], "long_name": long_name(name, self.pipeline.laws)}
+
+
+def outputs_of(prediction: Prediction, units: Mapping[str, str]) -> Outputs:
+    """Return variables of a prediction in their units."""
+    return {name: np.asarray(magnitude(prediction[name], unit)) for name, unit in units.items()}
 
 
 @dataclass(frozen=True)
@@ -129,7 +132,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
         prediction = job.pipeline.watched(problem, watch)
         outputs = job.outputs(prediction, part)
     else:  # the bodies touch nowhere
-        outputs = {name: np.full((part.size, *job.own_shape), np.nan) for name in job.units}
+        outputs = {name: np.full((part.size, *job.own_shape(name)), np.nan) for name in job.units}
     return outputs, BlockRecord(watch.points, watch.overload, watch.seen, tuple(remarks))
 
 

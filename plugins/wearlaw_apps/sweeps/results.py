@@ -25,7 +25,7 @@ COMPLETE, INCOMPLETE = "complete", "incomplete"
 
 def bytes_of(job: Job, points: Points) -> int:
     """Return the size of the outputs of a sweep."""
-    return points.size * math.prod(job.own_shape) * len(job.units) * ITEM
+    return points.size * sum(math.prod(job.own_shape(name)) for name in job.units) * ITEM
 
 
 class Target(ABC):
@@ -72,12 +72,12 @@ class Memory(Target):
     def __init__(self, job: Job, points: Points) -> None:
         check_memory(bytes_of(job, points), 'give a folder for them, store="..."')
         super().__init__(job, points)
-        self._arrays = {name: np.empty(points.shape + job.own_shape) for name in job.units}
+        self._arrays = {name: np.empty(points.shape + job.own_shape(name)) for name in job.units}
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:
         """Take over a finished block."""
         for name, values in outputs.items():
-            self._arrays[name][block.slices] = values.reshape(block.shape + self.job.own_shape)
+            self._arrays[name][block.slices] = values.reshape(block.shape + self.job.own_shape(name))
         self.done[block.number] = record
 
     def arrays(self) -> dict[str, Array]:
@@ -103,8 +103,9 @@ def dataset(points: Points, variables: Mapping[str, Array], job: Job, attrs: Map
             coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
     fixed = {name: Known.of(value) for name, value in points.fixed.items()}
     coordinates |= {name: ((), float(one.values), {"units": one.unit or ""}) for name, one in fixed.items() if one}
-    dims = (*points.dims, *job.labels)
-    data = {name: (dims, values, job.attributes(name)) for name, values in variables.items()}
+    data = {
+        name: ((*points.dims, *job.labels(name)), values, job.attributes(name)) for name, values in variables.items()
+    }
     others = {name: str(points.fixed[name]) for name, one in fixed.items() if one is None}
     return xarray.Dataset(data, coordinates, {**others, **attrs})
 
@@ -112,7 +113,8 @@ def dataset(points: Points, variables: Mapping[str, Array], job: Job, attrs: Map
 def labels_of(job: Job) -> dict[str, Any]:
     """Return the axes of outputs at a point as coordinates; zarr has a stable format only for texts of any length."""
     found: dict[str, Any] = {}
-    for name, labels in job.labels.items():
+    every = [axis for output in job.units for axis in job.labels(output).items()]
+    for name, labels in dict(every).items():
         numbers = np.array(labels) if all(isinstance(label, int | float) for label in labels) else None
         attrs = {"units": VARIABLES[name].unit} if name in VARIABLES else {}
         found[name] = (name, np.array(labels, dtype=object) if numbers is None else numbers, attrs)

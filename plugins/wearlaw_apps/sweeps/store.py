@@ -65,8 +65,8 @@ class Store(Target):
         there = set(group) if self.resumed else set()
         for name in job.units:
             if name not in there:
-                shape, chunks = points.shape + job.own_shape, points.block_shape + job.own_shape
-                _add_array(group, name, shape, chunks, (*points.dims, *job.labels), job.attributes(name))
+                shape, chunks = points.shape + job.own_shape(name), points.block_shape + job.own_shape(name)
+                _add_array(group, name, shape, chunks, (*points.dims, *job.labels(name)), job.attributes(name))
         if not self.resumed or RECORDS not in group:
             group.create_array(RECORDS, shape=(len(points.blocks()),), chunks=(1,), dtype=str, compressors=CHECKED)
         small = dataset(points, {}, job, attributes(INCOMPLETE, self._folder.provenance))
@@ -95,17 +95,17 @@ class Store(Target):
             record = TypeAdapter(BlockRecord).validate_json(str(text))
             for name in self.job.units:
                 array: Any = zarr.open_array(self.store, path=name, mode="r")
-                if not self._chunk(array, block).is_file():  # zarr would read it as NaN
+                if not self._chunk(name, array, block).is_file():  # zarr would read it as NaN
                     return None
                 array[(*block.slices, ...)]
         except (OSError, ValueError):
             return None
         return record
 
-    def _chunk(self, array: Any, block: Block) -> Path:
+    def _chunk(self, name: str, array: Any, block: Block) -> Path:
         """Return the file of a block in the array of an output."""
         which = [one.start // size for one, size in zip(block.slices, self.points.block_shape, strict=True)]
-        key = array.metadata.encode_chunk_key((*which, *(0 for _ in self.job.labels)))
+        key = array.metadata.encode_chunk_key((*which, *(0 for _ in self.job.labels(name))))
         return self.path / str(array.path) / str(key)
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:  # noqa: ARG002

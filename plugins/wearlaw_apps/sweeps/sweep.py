@@ -89,7 +89,7 @@ def sweep(
         "tangential_force". If laws of one outcome differ by body, the name of the body follows, as in "wear_rate_rail".
         Default: the variables of `Prediction.to_dataset`, as long as they are no more than 2²⁴ numbers (128 MiB), and
         in a larger sweep the outcomes of all laws alone; `attrs["notes"]` then says so. ["wear_profile"] gives the
-        depth and the sliding distance of `Prediction.wear_profile` with `body` and `at`.
+        depth and the sliding distance of `Prediction.wear_profile` with `body` and `at`, and may stand beside others.
     share : str, optional
         For "wear_profile": the column of the table with the share of each row, which add up to one. The results are
         then the weighted sums over all rows, with the mass, at constant memory for a file of any length. A store keeps
@@ -136,10 +136,13 @@ def sweep(
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {shown(workers)}")
     as_csv = {"sep": sep, "decimal": decimal}
-    profile = outputs in ([WEAR_PROFILE], (WEAR_PROFILE,))
+    others = None if outputs is None else names_in(outputs, "outputs")
+    profile = others is not None and WEAR_PROFILE in others
+    if others is not None and profile:
+        others.remove(WEAR_PROFILE)
     if share is not None:
-        if table is None or not profile:
-            raise InputError('share: belongs to a table and outputs=["wear_profile"]')
+        if table is None or not profile or others:
+            raise InputError('share: belongs to a table and outputs=["wear_profile"] alone, whose sum has the mass too')
         keep = {**(keep or {}), SHARE: share}
     summed = share is not None
     with (
@@ -149,11 +152,13 @@ def sweep(
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
         check_importable(predict, workers, client)
-        if profile:
+        if profile and not others:
             job: Job = ProfileJob.of(predict, first, body, at, summed)
             notes: list[str] = []
         else:
-            job, notes = _checked_job(predict, first, points, outputs)
+            job, notes = _checked_job(predict, first, points, others)
+            if profile:
+                job = ProfileJob.of(predict, first, body, at, summed, job.units)
         points = dataclasses.replace(points, weight=job.weight(first))
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")

@@ -21,7 +21,7 @@ from wearlaw.units.quantities import Q, QuantityLike, coefficient
 from wearlaw.units.variables import VARIABLES
 from wearlaw_apps.output.notes import caught_warnings
 from wearlaw_apps.output.wear_profile import PATCH, POSITION
-from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs, unsolved
+from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs, outputs_of, unsolved
 from wearlaw_apps.sweeps.points import Block, Points
 from wearlaw_apps.sweeps.provenance import digest, provenance_of
 from wearlaw_apps.sweeps.results import COMPLETE, Target, attributes, labels_of
@@ -60,15 +60,24 @@ class ProfileJob(Job):
         Arc lengths of its profile [m].
     summed : bool
         Whether the points are weighted by their shares and summed. The sum has the mass too.
+    others : mapping of str to str
+        The units of other outputs, by their names.
     """
 
     body: str
     at: Array
     summed: bool
+    others: Mapping[str, str]
 
     @classmethod
     def of(
-        cls, pipeline: Pipeline[...], first: Problem, body: str, at: QuantityLike | None, summed: bool
+        cls,
+        pipeline: Pipeline[...],
+        first: Problem,
+        body: str,
+        at: QuantityLike | None,
+        summed: bool,
+        others: Mapping[str, str] = {},
     ) -> ProfileJob:
         """Return the job of a pipeline, after a prediction at the first operating point.
 
@@ -83,11 +92,12 @@ class ProfileJob(Job):
         turns = bool(np.isfinite(pipeline.rig.bodies[body].rolling_radius).any())
         units = {name: unit for name, unit in UNITS[0 if turns else 1].items() if summed or name != "mass"}
         positions = VARIABLES[POSITION].expected.si(at, "at")
-        return cls(pipeline, units, first.dims, body=body, at=positions, summed=summed)
+        return cls(pipeline, {**units, **others}, first.dims, body=body, at=positions, summed=summed, others=others)
 
-    @property
-    def labels(self) -> Mapping[str, Sequence[str | int | float]]:
-        """The axes of the outputs: those of the rig but for patches, and the positions [mm]."""
+    def labels(self, name: str) -> Mapping[str, Sequence[str | int | float]]:
+        """Return the axes of an output; those of the profile are the rig's but for patches, and the positions [mm]."""
+        if name in self.others:
+            return super().labels(name)
         own = {name: labels for name, labels in self.dims.items() if name != PATCH}
         return {**own, POSITION: tuple((1e3 * self.at).tolist())}
 
@@ -103,12 +113,14 @@ class ProfileJob(Job):
 
     def attributes(self, name: str) -> dict[str, str]:
         """Return the attributes of an output in results: its unit and its long name."""
+        if name in self.others:
+            return super().attributes(name)
         per = "passage of a wheel" if self.units["depth"] == UNITS[1]["depth"] else "distance rolled"
         return {"units": self.units[name], "long_name": f"{name.replace('_', ' ')} of the {self.body} per {per}"}
 
     def weight(self, problem: Problem) -> float:
         """Return the size of an operating point: four columns of its positions, of which 16 numbers are one patch."""
-        return super().weight(problem) + 0.25 * math.prod(self.own_shape)
+        return super().weight(problem) + 0.25 * math.prod(self.own_shape("depth"))
 
     def posed(self, conditions: Mapping[str, Any]) -> Problem:
         """Return the problem of conditions; a state that has no place in a sum over service is an error."""
@@ -135,7 +147,7 @@ class ProfileJob(Job):
             if name in across
         }
         if not self.summed:
-            return found
+            return {**found, **outputs_of(prediction, self.others)}
         mass = prediction.mass_lost("1 km" if "km" in self.units["mass"] else "1 m", self.body).m_as("mg")
         if PATCH in self.dims:
             mass = np.nansum(mass, axis=self._patches)

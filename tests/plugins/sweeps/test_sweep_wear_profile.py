@@ -90,11 +90,25 @@ def test_profiles_in_a_store_are_those_in_memory(tmp_path: Path) -> None:
         assert stored["profile_position"].values == pytest.approx(AT.magnitude)
 
 
+def test_profiles_stand_beside_other_outputs(tmp_path: Path) -> None:
+    given = {"lateral_displacement": Q(PLACES, "mm"), **GIVEN, "outputs": ["wear_profile", "mass_per_distance"]}
+    found = wl.sweep(PREDICT, **given)
+    assert found["depth"].dims == ("lateral_displacement", "side", "profile_position")
+    mass = found["mass_per_distance"]
+    assert mass.dims == ("lateral_displacement", "side", "patch")
+    assert mass.values == pytest.approx(single().mass_per_distance.m_as(mass.units), rel=1e-12, nan_ok=True)
+    with pytest.raises(wl.InputError, match=r"outputs: .*'wear_rat'"):
+        wl.sweep(PREDICT, **{**given, "outputs": ["wear_profile", "wear_rat"]})
+    with wl.sweep(PREDICT, store=tmp_path / "both.zarr", **given) as stored:
+        xr.testing.assert_equal(stored.load()[["depth", "mass_per_distance"]], found[["depth", "mass_per_distance"]])
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
         ({"share": "part"}, "no column 'part'"),
         ({"share": "share", "outputs": ["wear_rate"]}, "share: belongs to"),
+        ({"share": "share", "outputs": ["wear_profile", "wear_rate"]}, "share: belongs to .* alone"),
         ({"share": "share", "at": None}, "at: .* needs positions"),
         ({"share": "share", "body": "axle"}, "axle"),
     ],
