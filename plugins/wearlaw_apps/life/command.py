@@ -15,7 +15,7 @@ from wearlaw_apps.output.commands import folder_for, print_notes, print_results,
 from wearlaw_apps.output.curves import FigureFormat
 from wearlaw_apps.output.files import write_files, writes_results
 from wearlaw_apps.output.folder import results_folder
-from wearlaw_apps.output.notes import Notes
+from wearlaw_apps.output.notes import Notes, caught_warnings
 from wearlaw_apps.studies.case import load_case
 
 LIFE = "life.json"
@@ -26,6 +26,8 @@ LIFE = "life.json"
 @click.argument("case")
 @click.argument("line", type=click.Path(path_type=Path))
 @click.option("--over", required=True, metavar="DISTANCE", help='Distance, as in "100000 km"; passages for a rail.')
+@click.option("--sep", help="What separates the cells of LINE [default: semicolon, tab or comma].")
+@click.option("--decimal", default=".", show_default=True, help="Decimal mark of LINE.")
 @click.option("--until", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
 @click.option("--set", "settings", metavar="NAME=VALUE", multiple=True,
               help="Condition of all states, or argument of wl.wear_out, such as sides=each.")  # fmt: skip
@@ -36,6 +38,8 @@ def life(
     case: str,
     line: Path,
     over: str,
+    sep: str | None,
+    decimal: str,
     until: tuple[str, ...],
     settings: tuple[str, ...],
     workers: int,
@@ -60,20 +64,21 @@ def life(
     loaded, notes = load_case(case), Notes()
     given: dict[str, Any] = values("--set", settings)
     with results_folder(folder, overwrite, LIFE) as fresh:
-        with notes.of("life"):
+        with notes.of("life"), caught_warnings(wl.ResumeWarning) as resumed:
             predict: wl.Pipeline[...] = loaded.rig | loaded.contact_models[0]
             for stage in loaded.stages:
                 predict = predict | stage
             predict = predict | loaded.wear_laws[0]
             found = wl.wear_out(
-                predict, line, over=value(over), until=values("--until", until), workers=workers, store=partial,
-                resume=resume, progress=True, **given,
+                predict, line, over=value(over), sep=sep, decimal=decimal, until=values("--until", until),
+                workers=workers, store=partial, resume=resume, progress=True, **given,
             )  # fmt: skip
         laws = [repr(law) for law in found.pipeline.laws]
-        record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": notes.texts}
+        record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": notes.texts,
+                  "notes_of_steps": found.notes}  # fmt: skip
         names = write_files(fresh, LIFE, record, _tables(found), [found.figure()], figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
-    print_notes(notes.texts)
+    print_notes([*map(str, resumed), *notes.texts])
     click.echo(repr(found))
     print_results(folder, names)
 

@@ -62,6 +62,8 @@ class Life:
         the sections of the first profile and this one. `factor` is what the step's depths were multiplied by so that
         the removed mass is the predicted one. Where each side has its own profile, the names of their columns end with
         "_left" and "_right".
+    notes : tuple of tuple of str
+        Notes on each step, such as how many patches lie outside the range of the law.
     """
 
     pipeline: wl.Pipeline[...]
@@ -69,6 +71,7 @@ class Life:
     ended: str
     worn_profiles: tuple[tuple[Profile, ...], ...]
     table: pd.DataFrame
+    notes: tuple[tuple[str, ...], ...]
 
     @property
     def profile(self) -> Profile:

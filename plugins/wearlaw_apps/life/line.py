@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import re
 import warnings
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -13,6 +14,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw.errors import warn
 from wearlaw_apps.output.notes import caught_warnings
 from wearlaw_apps.sweeps.located import posed
 from wearlaw_apps.sweeps.points import Points
@@ -22,6 +24,10 @@ from wearlaw_apps.sweeps.wear_profile import ProfileJob, Sum
 
 if TYPE_CHECKING:
     from wearlaw_apps.sweeps.folder import Parts
+
+
+NUMBER = re.compile(r"\d[\d.e+-]*")
+"""A number in a warning. Steps repeat warnings with other numbers, and the first of them is enough."""
 
 
 class Wear(NamedTuple):
@@ -45,8 +51,9 @@ class Line:
         self.job = ProfileJob.of(predict, first, body, wl.Q(1e3 * at, "mm"), True)
         self.sides = len(self.job.dims.get("side", "-"))
         self.points = dataclasses.replace(points, weight=self.job.weight(first))
-        self._workers, self._client, self._quiet = workers, client, False
+        self._workers, self._client = workers, client
         self._kept: Parts | None = None
+        self._said: set[str] = set()
 
     def keep(self, store: str | os.PathLike[str], life: Mapping[str, Any], resume: bool) -> Parts:
         """Keep the wear of each step in a store, of a life with these settings, and return the store."""
@@ -59,8 +66,10 @@ class Line:
             warnings.warn(text, wl.ResumeWarning, stacklevel=3)
         return self._kept
 
-    def wear(self, step: int, predict: wl.Pipeline[...], at: Array) -> Wear:
-        """Return the wear of both sides at arc lengths of the profiles at the beginning of a step [m].
+    def wear(self, step: int, predict: wl.Pipeline[...], at: Array) -> tuple[Wear, tuple[str, ...]]:
+        """Return the wear of both sides at arc lengths of the profiles at the beginning of a step [m], and notes on it.
+
+        A note of a new kind is a warning, too.
 
         Raises
         ------
@@ -69,14 +78,17 @@ class Line:
         """
         part = None if self._kept is None else self._kept[step]
         if part is not None:
-            return Wear(**part.arrays)
-        total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at), self.points)
-        for warning in run(total, lambda _: None, self._workers, self._client):
-            if not self._quiet:
-                warnings.warn(warning, stacklevel=4)
-        self._quiet = True
-        depth, mass = (wl.Q(total.arrays()[name], self.job.units[name]).to_base_units() for name in Wear._fields)
-        found = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude))
-        if self._kept is not None:
-            self._kept.add(step, found._asdict(), {})
-        return found
+            wear, notes = Wear(**part.arrays), part.record["notes"]
+        else:
+            total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at), self.points)
+            found = run(total, lambda _: None, self._workers, self._client)
+            notes = [[type(one).__name__, str(one)] for one in found]
+            depth, mass = (wl.Q(total.arrays()[name], self.job.units[name]).to_base_units() for name in Wear._fields)
+            wear = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude))
+            if self._kept is not None:
+                self._kept.add(step, wear._asdict(), {"notes": notes})
+        for kind, text in notes:
+            if (words := NUMBER.sub("", text)) not in self._said:
+                self._said.add(words)
+                warn(f"step {step + 1}: {text}" if step else text, getattr(wl, kind))
+        return wear, tuple(text for _, text in notes)

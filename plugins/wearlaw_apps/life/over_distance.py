@@ -36,6 +36,8 @@ def wear_out(
     over: wl.QuantityLike | float,
     share: str = "share",
     columns: Mapping[str, str] | None = None,
+    sep: str | None = None,
+    decimal: str = ".",
     depth_step: wl.QuantityLike = "0.05 mm",
     smoothing: wl.QuantityLike = "3 mm",
     spacing: wl.QuantityLike = "0.1 mm",
@@ -71,7 +73,10 @@ def wear_out(
     share : str
         The column with the shares, which add up to one.
     columns : mapping of str to str, optional
-        The column of each condition, as in `wearlaw.sweep`.
+        The column of each condition, as in `wearlaw.sweep`. Default: columns have the names of conditions, and a
+        warning names the others, which are ignored.
+    sep, decimal : str, optional
+        Of a CSV file: what separates its cells, and its decimal mark, as in `wearlaw.read_table`.
     depth_step : Quantity or str
         Largest depth of a step, at most 0.1 mm [m].
     smoothing : Quantity or str
@@ -80,7 +85,9 @@ def wear_out(
     spacing : Quantity or str
         Distance between the positions of the wear along the profile [m].
     until : mapping, optional
-        Limits of measures in `Life.table` that end the life, such as {"flange_thickness": "25 mm"}.
+        Limits of measures in `Life.table` that end the life, such as {"flange_thickness": "25 mm"}. Limits of the
+        flange's thickness and gradient lie below the measure of the new profile, those of the conicity on either side,
+        and all others above.
     body : str
         "wheel" or "rail".
     sides : "mean" or "each"
@@ -109,9 +116,10 @@ def wear_out(
     ------
     DataError
         If the line is wrong, its shares do not add up to one, or a state is impossible, has no result or its wheel
-        climbs; the message names the row. If steps were finished before, the error's attribute `life` holds them.
+        climbs; the message names the step and the row. If steps were finished before, the error's attribute `life`
+        holds them.
     InputError
-        If an argument is wrong, or the profile is too short for the wear.
+        If an argument is wrong, the new profile is beyond a limit, or it is too short for the wear.
     OutputError
         If `store` holds anything but the same life.
     """
@@ -132,11 +140,14 @@ def wear_out(
     at = positions(new, math.ceil(longest / length.si(spacing, "spacing")) + 1)
     with ExitStack() as stack:
         points = stack.enter_context(
-            operating_points(predict, line, conditions, columns, {SHARE: share}, {}, store, True)
+            operating_points(
+                predict, line, conditions, columns, {SHARE: share}, {"sep": sep, "decimal": decimal}, store, True, True
+            )
         )
         steps = Steps(Line(predict, points, body, at, workers, client), body, new, **settings)
         now = steps.begin(predict)
         rows, profiles = [now.row], [now.profiles]
+        notes: list[tuple[str, ...]] = []
         limits = Limits(until or {}, distance, now.row)
         if store is not None:
             settings |= {"sides": sides, "limits": limits.ends}
@@ -146,7 +157,7 @@ def wear_out(
         bar.stage(along)
 
         def life(ended: str = "") -> Life:
-            return Life(now.predict, body, ended, tuple(profiles), pd.DataFrame(rows))
+            return Life(now.predict, body, ended, tuple(profiles), pd.DataFrame(rows), tuple(notes))
 
         try:
             while not (ended := limits.reached(now.row)):
@@ -154,6 +165,7 @@ def wear_out(
                 bar(round(now.row[along]) - round(rows[-1][along]))
                 rows.append(now.row)
                 profiles.append(now.profiles)
+                notes.append(now.notes)
         except (wl.WearlawError, KeyboardInterrupt) as error:
             if now.number:
                 error.life = life()  # type: ignore[union-attr]

@@ -45,6 +45,17 @@ NEAR = 1e-9
 CONICITY = "equivalent_conicity"
 """Its column."""
 
+TOWARDS = {
+    "mass": 1.0,
+    "depth": 1.0,
+    "worn_area": 1.0,
+    "flange_height": 1.0,
+    "flange_thickness": -1.0,
+    "flange_gradient": -1.0,
+    "hollow": 1.0,
+}
+"""The sign of the change of each measure on its way to a limit; others, such as the conicity, have limits both ways."""
+
 
 class Limits:
     """Limits that end a life: those of measures, as in `wear_out`, and the distance in the unit of its column.
@@ -64,8 +75,15 @@ class Limits:
             if not found:
                 raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
             unit, what = name_and_unit(there[found[0]])[1], f"until: {name}"
-            value = wl.Unit(unit).si(limit, what) / unit_in_si(unit) if unit else wl.coefficient(limit, what)
-            self.ends |= {one: (there[one], float(value)) for one in found}
+            value = float(wl.Unit(unit).si(limit, what) / unit_in_si(unit) if unit else wl.coefficient(limit, what))
+            for one in found:
+                first = start[there[one]]
+                towards = TOWARDS.get(one.removesuffix("_left").removesuffix("_right"), value - first)
+                if (value - first) * towards <= 0.0:
+                    must = {1.0: "lie above", -1.0: "lie below"}.get(towards, "differ from")
+                    has = f"{first:.4g} {unit}".rstrip()
+                    raise wl.InputError(f"{what}: must {must} that of the new profile, {has}; got {wl.shown(limit)}")
+                self.ends[one] = there[one], value
         self.ends["over"] = along, over
 
     def _ways(self, row: Mapping[str, float]) -> Array:
@@ -103,6 +121,8 @@ class State(NamedTuple):
     """Wear of both sides at the beginning of the last step; None at the start."""
     change: float = 0.0
     """Change of the conicity in the last step."""
+    notes: tuple[str, ...] = ()
+    """Notes on the last step."""
 
 
 @dataclass(frozen=True)
@@ -129,12 +149,16 @@ class Steps:
     def step(self, now: State, limits: Limits) -> State:
         """Return the state after one more step."""
         at = positions(now.profiles, self.line.job.at.size)
-        wear = self.line.wear(now.number, now.predict, at)
+        along, unit = self.along
+        try:
+            wear, notes = self.line.wear(now.number, now.predict, at)
+        except wl.InputError as error:
+            done = f"{now.row[along]:.6g} {name_and_unit(along)[1] or along}"
+            raise type(error)(f"step {now.number + 1}, after {done}: {error}") from None
         wear = wear._replace(depth=smoothed(wear.depth, at, self.smoothing))
         deepest = float(self._of_profiles(wear.depth).max())
         if not deepest > 0.0:
             raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
-        along, unit = self.along
         distance = min(self._distance(now, wear), (limits.ends["over"][1] - now.row[along]) / unit)
         after = self._after(now, at, wear, distance)
         for _ in range(TRIES - 1):
@@ -145,7 +169,7 @@ class Steps:
             else:
                 break
             after = self._after(now, at, wear, distance)
-        return after
+        return after._replace(notes=notes)
 
     def _distance(self, now: State, wear: Wear) -> float:
         """Return the distance that a step tries first."""

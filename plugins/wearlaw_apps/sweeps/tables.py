@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from difflib import get_close_matches
 from pathlib import Path
 from typing import IO, Any, cast
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.errors import ConditionsError, DataError, InputError, UnitError
-from wearlaw.pipeline.pipeline import Pipeline
+from wearlaw.errors import ConditionsError, DataError, InputError, UnitError, WearlawWarning, warn
+from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.units.quantities import Q
 from wearlaw.units.variables import VARIABLES
 from wearlaw_apps.sweeps.located import advice
@@ -23,6 +24,9 @@ from wearlaw_apps.tables import Column, Table, open_table
 
 Columns = Mapping[str, str]
 """The columns of a table by the names that they get, as in {"normal_force": "-Fz [N]"}."""
+
+MISSPELT = 0.8
+"""Likeness to the name of a condition from which a column is taken for a misspelt condition, by difflib's ratio."""
 
 
 @contextmanager
@@ -35,12 +39,14 @@ def operating_points(
     as_csv: Mapping[str, Any],
     store: str | os.PathLike[str] | None,
     summed: bool,
+    ignoring: bool = False,
 ) -> Iterator[Points]:
     """Give the operating points of a sweep: combinations of conditions, or rows of a table that share conditions.
 
     Arguments are those of `sweep`; `as_csv` has `sep` and `decimal`. If the points are to be summed, the kept column
-    `SHARE` has their shares. The numbers of a file that need not fit into memory, since there is a store or only a sum,
-    are kept in a temporary file while the context lasts.
+    `SHARE` has their shares. With `ignoring` a warning names the columns that are no conditions, which are an error
+    without it. The numbers of a file that need not fit into memory, since there is a store or only a sum, are kept in a
+    temporary file while the context lasts.
 
     Raises
     ------
@@ -62,7 +68,7 @@ def operating_points(
     for name in arrays:
         raise DataError(f"{name}: beside a table it must be one value; add it to the table as a column")
     table = open_table(source, **as_csv)
-    kept, given = _chosen(table, columns, keep)
+    kept, given = _chosen(table, columns, keep, predict.rig if ignoring else None)
     for name in given:
         if name in fixed or name in kept:
             raise DataError(f"{table.label}: {name} is given twice; keep one")
@@ -99,8 +105,10 @@ def operating_points(
         yield points
 
 
-def _chosen(table: Table, columns: Columns | None, keep: Columns | None) -> tuple[dict[str, Column], dict[str, Column]]:
-    """Return the columns to keep and those of conditions, by name."""
+def _chosen(
+    table: Table, columns: Columns | None, keep: Columns | None, rig: Rig | None
+) -> tuple[dict[str, Column], dict[str, Column]]:
+    """Return the columns to keep and those of conditions, by name; of a rig, without those that it does not know."""
     wrong: list[str] = []
     kept: dict[str, Column] = {}
     given: dict[str, Column] = {}
@@ -114,6 +122,9 @@ def _chosen(table: Table, columns: Columns | None, keep: Columns | None) -> tupl
     if columns is None:
         places = {column.place for column in kept.values()}
         given = {name: column for name, column in given.items() if column.place not in places}
+        if rig is not None and (unknown := _unknown(given, rig)):
+            heads = ", ".join(f"'{given.pop(name).head}'" for name in unknown)
+            warn(f"{table.label}: ignored columns {heads}; rig '{rig.name}' has no such conditions", WearlawWarning)
     for name, column in given.items():
         try:
             if column.unit is None and columns is not None and name in VARIABLES and VARIABLES[name].unit:
@@ -124,6 +135,13 @@ def _chosen(table: Table, columns: Columns | None, keep: Columns | None) -> tupl
     if wrong:
         raise DataError(f"{table.label} is wrong in:", wrong)
     return kept, given
+
+
+def _unknown(names: Iterable[str], rig: Rig) -> list[str]:
+    """Return the names that are neither conditions nor fields of a rig, nor misspelt conditions."""
+    known = list(rig.conditions())
+    near = (name for name in names if name not in known and name not in type(rig).model_fields)
+    return [name for name in near if known and not get_close_matches(name.lower(), known, n=1, cutoff=MISSPELT)]
 
 
 def _files(folder: Path, count: int, stack: ExitStack) -> list[IO[bytes]]:

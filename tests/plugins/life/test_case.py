@@ -41,14 +41,18 @@ def test_section_has_the_life_and_which_states_wear_where(case: Path, monkeypatc
 
 def test_command_writes_tables_a_figure_and_the_worn_profile(case: Path, tmp_path: Path) -> None:
     table, folder = tmp_path / "line.csv", tmp_path / "out"
-    line(3).to_csv(table, index=False)
+    line(3).to_csv(table, index=False, sep=";", decimal=",")
     given = ["--set", "vertical_load=60 kN", "--set", "friction_coefficient=0.3", "--set", "sides=each"]
-    result = CliRunner().invoke(life, [str(case), str(table), "--over", "20 km", *given, "-o", str(folder)])
+    result = CliRunner().invoke(
+        life, [str(case), str(table), "--over", "20 km", "--decimal", ",", *given, "-o", str(folder)]
+    )
     assert result.exit_code == 0, result.output
     names = {"life.csv", "profiles.csv", "worn_left.csv", "worn_right.csv", "life.png", "life.json"}
     assert {path.name for path in folder.iterdir()} >= names
     measures = pd.read_csv(folder / "life.csv")
     assert measures["distance [km]"].iloc[-1] == pytest.approx(20.0)
-    assert json.loads((folder / "life.json").read_text())["ended"] == "over"
+    record = json.loads((folder / "life.json").read_text())
+    assert record["ended"] == "over"
+    assert record["notes_of_steps"]
     assert not (tmp_path / "out.partial").exists()
     assert "Life of a wheel: 20 km" in result.output

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,8 @@ from wearlaw_apps.life.removal import (  # private: the parts of a step in close
     smoothed,
     swept,
 )
+from wearlaw_apps.life.steps import Limits  # private: the limits alone
+from wearlaw_apps.sweeps.sweep import run  # private: the warnings of a step
 from wearlaw_models.rigs import wheelset as ws
 
 GIVEN: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
@@ -267,14 +270,24 @@ def changed(**columns: Any) -> pd.DataFrame:
         (changed(share=[-0.2, 1.0, 0.2]), {}, wl.DataError, "row 0"),
         (line(3).drop(columns="share"), {}, wl.DataError, "share"),
         (line(3).set_axis(["lateral_displacement", "share"], axis=1), {}, wl.UnitError, "lateral_displacement"),
-        (changed(y=[0.0, 1.0, 7.0]), {}, wl.DataError, r"row 2 .*lateral_displacement = 7 mm.*climbs"),
+        (
+            changed(y=[0.0, 1.0, 7.0]),
+            {},
+            wl.DataError,
+            r"^step 1, after 0 km: .*row 2 .*lateral_displacement = 7 mm.*climbs",
+        ),
         (changed(y=[-7.0, 1.0, 7.0]), {}, wl.DataError, r"row 0 .*lateral_displacement = -7 mm.*climbs"),
+        (changed(rolling_speed=20.0), {}, wl.ConditionsError, "rolling_speed: is a field of rig 'wheelset'"),
+        (changed(**{"yaww [mrad]": 0.0}), {}, wl.ConditionsError, "yaww.*did you mean 'yaw'"),
         (changed(y=[0.0, 60.0, 1.0]), {}, wl.DataError, r"row 1 .*60 mm"),
         (line(3), {"over": "100"}, wl.UnitError, "over"),
         (line(3), {"depth_step": "0.2 mm"}, wl.InputError, "depth_step"),
         (line(3), {"until": {"flange": "25 mm"}}, wl.InputError, "until"),
         (line(3), {"until": {"flange_thickness": 25.0}}, wl.UnitError, "flange_thickness"),
         (line(3), {"body": "rail", "over": 10.0, "until": {"hollow": "1 mm"}}, wl.InputError, "has no 'hollow'"),
+        (line(3), {"until": {"flange_thickness": "33 mm"}}, wl.InputError, r"must lie below .*, 32\.5 mm; got '33 mm'"),
+        (line(3), {"until": {"flange_gradient": "11 mm"}}, wl.InputError, "flange_gradient: must lie below"),
+        (line(3), {"until": {"flange_height": "27.9 mm"}}, wl.InputError, "flange_height: must lie above"),
         (line(3), {"body": "axle"}, wl.InputError, "body"),
         (line(3), {"body": "rail"}, wl.InputError, "passages"),
     ],
@@ -284,6 +297,28 @@ def test_mistakes_name_row_value_and_remedy(
 ) -> None:
     with pytest.raises(error, match=named):
         wl.wear_out(pipeline(), states, **{"over": "10 km", **GIVEN, **options})
+
+
+def test_limits_lie_on_the_side_to_which_a_measure_wears() -> None:
+    """The conicity has two such sides."""
+    start = {"distance [km]": 0.0, "flange_thickness_left [mm]": 30.0, "flange_thickness_right [mm]": 32.5}
+    start["equivalent_conicity"] = 0.18
+    for conicity in (0.17, 0.19):
+        limits = Limits({"flange_thickness": "28 mm", "equivalent_conicity": conicity}, 10.0, start)
+        assert limits.reached({**start, "equivalent_conicity": conicity}) == "equivalent_conicity"
+        assert limits.reached({**start, "flange_thickness_right [mm]": 28.0}) == "flange_thickness_right"
+    for name, limit in (("flange_thickness", wl.Q(31.0, "mm")), ("equivalent_conicity", wl.Q(0.18, ""))):
+        with pytest.raises(wl.InputError, match=name):
+            Limits({name: limit}, 10.0, start)
+
+
+def test_columns_that_are_no_conditions_are_ignored_with_a_word(tmp_path: Path) -> None:
+    table = changed(**{"distance [km]": 1.0, "track": "A"})
+    table.to_csv(tmp_path / "line.csv", index=False, sep=";", decimal=",")
+    with pytest.warns(wl.WearlawWarning, match=r"ignored columns 'distance \[km\]', 'track'"):
+        found = wl.wear_out(pipeline(), tmp_path / "line.csv", over="10 km", sep=";", decimal=",", **GIVEN)
+    same = wl.wear_out(pipeline(), line(3), over="10 km", **GIVEN)
+    assert last(found, "mass [kg]") == pytest.approx(last(same, "mass [kg]"), rel=1e-12)
 
 
 def test_profile_too_short_for_the_wear() -> None:
@@ -309,7 +344,37 @@ def test_interrupted_life_goes_on(tmp_path: Path, short: Life) -> None:
     with pytest.warns(wl.ResumeWarning, match="kept"):
         again = wl.wear_out(pipeline(), line(), over="1500 km", store=path, resume=True, **GIVEN)
     assert again.table.equals(short.table)
+    assert all(short.notes)
+    assert again.notes == short.notes
     assert first.stat().st_mtime_ns == written  # it was not computed again
+
+
+def test_a_step_warns_of_what_none_before_it_had(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each step of this line leaves the law's range, which the first one says; the third says something new."""
+
+    def noted(*given: Any) -> Any:
+        every.append(given)
+        more = [wl.RangeWarning(f"{0.1 * len(every)} of the load is left over")] if len(every) > 2 else []
+        return [*run(*given), *more]
+
+    every: list[Any] = []
+    monkeypatch.setattr("wearlaw_apps.life.line.run", noted)  # private: as above
+    texts = []
+    for resume in (False, True):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", wl.WearlawWarning)
+            found = wl.wear_out(
+                pipeline(), line(3), over="1000 km", conicity_step=1.0, store=tmp_path / "life", resume=resume, **GIVEN
+            )
+        texts.append([str(one.message) for one in caught if isinstance(one.message, wl.RangeWarning)])
+        computed = len(every)  # none anew in the second life
+    assert computed == len(found.notes) == 3
+    assert all(found.notes)
+    assert "of the load is left over" in found.notes[2][-1]
+    *first, third = texts[0]
+    assert len(first) == len(found.notes[0])
+    assert third == f"step 3: {found.notes[2][-1]}"
+    assert texts[0] == texts[1]
 
 
 def test_finished_steps_stay_when_a_step_fails(monkeypatch: pytest.MonkeyPatch) -> None:
