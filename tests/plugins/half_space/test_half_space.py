@@ -42,6 +42,64 @@ def test_displacements_are_those_of_point_forces(place: tuple[float, float]) -> 
     assert across == pytest.approx(float(turned[0]), rel=1e-14)
 
 
+def uneven_strips() -> wl.Problem:
+    """Return three contacts on strips of unequal length, width and pressure, with a gap between two of them."""
+    random = np.random.default_rng(1876)
+    width, half_length = random.uniform(0.1, 0.5, (3, 17)), random.uniform(0.3, 1.5, (3, 17))
+    y = np.cumsum(width, axis=1) - 0.5 * width
+    y[:, 9:] += 0.7
+    strips = wl.Strips(y=y, width=width, half_length=half_length, max_pressure=random.uniform(0.2, 2.0, (3, 17)))
+    one, load = np.ones(3), strips.normal_force.sum(axis=1)
+    return wl.Problem.of_strips(
+        strips,
+        shear_modulus=1e3 * one,
+        poisson_ratio=0.28 * one,
+        a=half_length.max(axis=1),
+        b=0.5 * width.sum(axis=1),
+        friction_coefficient=0.3 * one,
+        longitudinal_creepage=load * [5e-5, 2e-5, 0.0],
+        lateral_creepage=load * [0.0, -3e-5, 0.0],
+        spin=load * [0.0, 2e-5, 5e-5],
+        rolling_speed=one,
+        density=one,
+    )
+
+
+@pytest.mark.parametrize(
+    ("problem", "cells"), [(random_ellipses(6), 10), (random_ellipses(6), 17), (uneven_strips(), 17)]
+)
+def test_elements_stick_or_slip_along_their_traction(problem: wl.Problem, cells: int) -> None:
+    contact = wl.contact_model("half_space", cells=cells).solve(problem)
+    partial = 0
+    for at in range(problem.size):
+        posed, inside = problem[at], contact.area[at] > 0.0
+        x, y, area, bound = (
+            field[at][inside] for field in (contact.x, contact.y, contact.area, contact.traction_bound)
+        )
+        q = np.stack([contact.traction_x[at][inside], contact.traction_y[at][inside]])
+        step = contact.x[at, 1, 0] - contact.x[at, 0, 0]
+        # Cerruti's displacements of all pairs, at the middles of elements and one element before: no FFT, no grid.
+        moved = []
+        for back in (0.0, step):
+            xx, yy, xy = wearlaw_models.contact_models.half_space.influence(
+                x[:, None] - x - back, y[:, None] - y, step, area / step, posed.poisson_ratio
+            )
+            moved.append(np.stack([xx @ q[0] - xy @ q[1], yy @ q[1] - xy @ q[0]]) / (np.pi * posed.shear_modulus))
+        xi, eta, phi = posed.longitudinal_creepage, posed.lateral_creepage, posed.spin
+        rigid = np.stack([xi - phi * y, eta - phi * (x - 0.5 * step)])
+        slip = rigid - (moved[0] - moved[1]) / step
+        # Newton's method leaves 1e-10 of the greatest traction, and so 3e-9 of the slip that it takes up.
+        little = 1e-8 * np.hypot(*rigid).max()
+        sticks = np.hypot(*q) < bound * (1.0 - 1e-9)
+        partial += 0 < np.count_nonzero(sticks) < sticks.size
+        assert np.hypot(*slip)[sticks].max(initial=0.0) < little
+        along, across = (q * slip).sum(axis=0) / bound, (q[0] * slip[1] - q[1] * slip[0]) / bound
+        assert along[~sticks].min(initial=0.0) > -little
+        assert np.abs(across[~sticks]).max(initial=0.0) < little
+        assert (np.hypot(*q) <= bound * (1.0 + 1e-9)).all()
+    assert partial >= 2
+
+
 def cylinder(creepage: float) -> wl.Problem:
     """Return CONTACT's cylinder as one strip, 40 times as wide as half its length."""
     a, width, load = 5e-3, 0.2, CARTER / 0.3

@@ -1,0 +1,141 @@
+"""A grid of rectangular elements between two like half-spaces that roll steadily, and the slip that tractions take up.
+
+All quantities are reduced: lengths by some length c, tractions by a force F over c², and slip by F/(G c²). x runs from
+the leading to the trailing edge, and tractions have the signs of the creepages, so that along x they are positive
+against x. Fields have the shape (rows, columns), and vectors of them (2, rows, columns).
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import Any, TypeAlias
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from wearlaw import Array
+from wearlaw_models.contact_models.half_space.cerruti import influence
+
+Field: TypeAlias = NDArray[np.floating[Any]]
+Spectra: TypeAlias = NDArray[np.complexfloating[Any, Any]]
+
+EQUAL = 1e-10
+"""Difference between widths, or distances, of rows that count as equal, over the width."""
+
+
+class Grid:
+    """Elements in rows along x, with equal distances along x.
+
+    What tractions take up is a convolution along x. Rows that are equally wide and far apart make it one across x too,
+    and FFTs on twice the grid compute it. Other rows, such as the strips of a wheelset, take part in pairs: FFTs along
+    x leave a matrix of all rows for each wave number. That costs the square of their number, but rows are few there,
+    and the elements are exactly those of the strips.
+
+    Parameters
+    ----------
+    x : ndarray, (columns)
+        Middles of the elements along x.
+    y, width : ndarray, (rows)
+        Middles and widths of the rows.
+    poisson_ratio : float
+    """
+
+    def __init__(self, x: Array, y: Array, width: Array, poisson_ratio: float) -> None:
+        self.x, self.y, self.width, self.poisson_ratio = x, y, width, poisson_ratio
+        self.shape = rows, columns = y.size, x.size
+        self.step = float(x[1] - x[0])
+        distance, least = np.diff(y), EQUAL * width.min()
+        self.regular = bool(np.ptp(width) <= least and (np.abs(distance - width[0]) <= least).all())
+        sources = 1 if self.regular else rows
+        along, across, mixed = self._growth(y[:, None] - y[:sources], width[:sources])
+        self.growth = np.stack([along, across, -mixed]).astype(np.float32)
+        """Growth along x by x, y by y, and x by y, by pairs of rows and distances along x from 1 - columns on."""
+        self.stiffness = float(along[0, 0, columns - 1])
+        """Slip that an element takes up by a unit traction of its own."""
+        self.size = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in (rows, columns))
+        place = np.arange(1 - columns, columns) % self.size[1]
+        kernels = np.zeros((3, *along.shape[:2], self.size[1]))
+        kernels[..., place] = along, across, -mixed
+        self.spectra = self._spectra(kernels)
+        """What tractions take up half-way from the element before, over the tractions, by wave number."""
+        self.single = self.spectra.astype(np.complex64)
+
+    def _growth(self, apart: Array, width: Array) -> tuple[Array, Array, Array]:
+        """Return the growth of the displacement per way from the element before, (rows, rows, distances along x)."""
+        columns = self.x.size
+        far: Array = self.step * np.arange(columns + 1.0)
+        tables = influence(far, apart[..., None], self.step, width[:, None], self.poisson_ratio)
+        signs = 1.0, 1.0, -1.0  # on the other side, at negative distances
+        both = (np.concatenate([s * one[..., :0:-1], one], axis=-1) for s, one in zip(signs, tables, strict=True))
+        along, across, mixed = (np.diff(one[..., :-1], axis=-1) / (math.pi * self.step) for one in both)
+        return along, across, mixed
+
+    def _spectra(self, kernels: Array) -> Spectra:
+        """Return the transforms of kernels along x by x, y by y and x by y, (3, rows, rows, distances)."""
+        if not self.regular:
+            along, across, mixed = np.moveaxis(scipy.fft.rfft(kernels), -1, 1)
+            return np.block([[along, mixed], [mixed, across]])
+        rows = self.y.size
+        both = np.zeros((3, *self.size))
+        both[:, :rows] = kernels[:, :, 0]
+        both[:, self.size[0] - rows + 1 :] = np.array([1.0, 1.0, -1.0])[:, None, None] * kernels[:, :0:-1, 0]
+        spectra: Spectra = scipy.fft.rfft2(both)
+        return spectra
+
+    def between(self, row: NDArray[np.intp], column: NDArray[np.intp]) -> Field:
+        """Return the growth along x by x, y by y, and x by y, of all pairs of elements, (3, elements, elements)."""
+        apart, other = row[:, None] - row, row
+        if self.regular:
+            row, other = np.abs(apart), 0 * row
+        else:
+            row = row[:, None]
+        growth: Field = self.growth[:, row, other, column[:, None] - column + self.x.size - 1]
+        if self.regular:
+            growth[2] *= np.sign(apart)
+        return growth
+
+    def taken_up(self, q: Field) -> Field:
+        """Return the slip that tractions take up half-way from the element before, in their precision."""
+        return self._product(self.single if q.dtype == np.float32 else self.spectra, q)
+
+    def taken_up_around(self, q: Array) -> Field:
+        """Return the mean of the slip that tractions take up half-way from the element before and to the next one.
+
+        By Betti's theorem the same influences, transposed, give what is taken up on the way to the next element.
+        """
+        return self._product(self._around, q)
+
+    @functools.cached_property
+    def _around(self) -> Spectra:
+        if self.regular:
+            return 1j * self.spectra.imag
+        width = np.tile(self.width, 2)
+        before = self.spectra * width[:, None]
+        after: Spectra = -before.conj().swapaxes(1, 2)
+        return (before + after) / (2.0 * width[:, None])
+
+    def _product(self, spectra: Spectra, q: Field) -> Field:
+        rows, columns = self.shape
+        slip: Field
+        if self.regular:
+            along, across, mixed = spectra
+            first, second = scipy.fft.rfft2(q, s=self.size)
+            waves = np.stack([along * first + mixed * second, mixed * first + across * second])
+            slip = scipy.fft.irfft2(waves, s=self.size)[:, :rows, :columns]
+        else:
+            waves = scipy.fft.rfft(q, n=self.size[1]).reshape(2 * rows, -1, 1)
+            waves = (spectra @ waves.swapaxes(0, 1)).swapaxes(0, 1).reshape(2, rows, -1)
+            slip = scipy.fft.irfft(waves, n=self.size[1])[..., :columns]
+        return slip
+
+    @functools.cached_property
+    def coarser(self) -> Grid:
+        """A grid of elements twice as long and wide; odd numbers are made even at the end."""
+        rows, columns = self.shape
+        x = np.append(self.x, self.x[-1] + self.step) if columns % 2 else self.x
+        y = np.append(self.y, self.y[-1] + self.width[-1]) if rows % 2 else self.y
+        width = np.append(self.width, self.width[-1]) if rows % 2 else self.width
+        x, y, width = (one.reshape(-1, 2).mean(axis=1) for one in (x, y, 2.0 * width))
+        return Grid(x, y, width, self.poisson_ratio)
