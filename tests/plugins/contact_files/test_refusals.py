@@ -61,6 +61,18 @@ CHANGES: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
     "modulus": (replaced(10, 3, "0"), r"line 10, column 3 \(GG1\): must be positive"),
     "ratio": (replaced(10, 6, "0.7"), r"line 10, column 6 \(POISS2\): must lie between 0 and 0.5, got 0.7"),
     "standstill": (replaced(12, 3, "0.0"), r"line 12, column 3 \(VELOC\): must be positive"),
+    "a long row": (
+        lambda lines: [*lines[:30], lines[30].replace("\n", " 0.0" * 3_000_000 + "\n"), *lines[31:]],
+        "line 31: is longer than any row of CONTACT",
+    ),
+    "a long row at once": (
+        lambda lines: [*lines[:1], " 0.0" * 3_000_000 + "\n"],
+        "line 2: is longer than any row of CONTACT",
+    ),
+    "more rows than the grid": (
+        lambda lines: [*lines[:13], *lines[13:14] * 700],
+        "line 702: is row 695 of numbers, but by the header there are at most 694",
+    ),
     "an element outside among those in contact": (
         replaced(15, 2, "0"), "ends after 130 elements, but the grid has 43 x 16 = 688, and the file lists those"
     ),
