@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import functools
 import json
+import os
 import pickle
 import signal
 import sys
+import time
 import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import asdict
+from threading import Thread
 from typing import Any, TypeAlias
 
 from wearlaw.errors import ModelError, SweepError, WorkerWarning, described
@@ -30,6 +33,9 @@ AHEAD = 4
 
 IDLE_S = 300
 """Seconds after which a worker process without work ends; loky warns of one that ends just as it is given work."""
+
+PARENT_S = 1.0
+"""Seconds between looks at whether the parent of a worker process is there."""
 
 DEATHS = 3
 """Deaths of worker processes at which a sweep is given up."""
@@ -89,7 +95,7 @@ def in_processes(workers: int, job: bytes, store: str | None, points: Points, bl
 
     waiting, deaths = deque(blocks), 0
     while waiting:
-        pool = loky.get_reusable_executor(workers, timeout=IDLE_S, initializer=_leave_ctrl_c_to_the_parent)
+        pool = loky.get_reusable_executor(workers, timeout=IDLE_S, initializer=_obey, initargs=(os.getpid(),))
         try:
             yield from _in_pool(pool, lambda: workers, job, store, points, waiting)
         except BrokenProcessPool:
@@ -105,8 +111,17 @@ def in_processes(workers: int, job: bytes, store: str | None, points: Points, bl
             raise
 
 
-def _leave_ctrl_c_to_the_parent() -> None:
+def _obey(parent: int) -> None:
+    """Leave Ctrl-C to the parent process, and end with it even if it is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=_end_with, args=(parent,), daemon=True).start()
+
+
+def _end_with(parent: int) -> None:
+    """End this process once another one is its parent, at once and whatever its main thread waits for."""
+    while os.getppid() == parent:  # in Windows for ever, as the number stays when the parent is gone
+        time.sleep(PARENT_S)
+    os._exit(1)
 
 
 def on_cluster(client: Any, job: bytes, store: str | None, points: Points, blocks: Iterable[Block]) -> Evaluated:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -109,3 +110,22 @@ def test_a_script_needs_no_guard_and_laws_of_its_own_are_refused_with_a_reason(t
     assert first == "9"
     assert second.startswith("mine: is defined in the running script or notebook")
     assert done.stderr == ""
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="child processes are listed in /proc")
+def test_workers_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
+    script = tmp_path / "killed.py"
+    script.write_text("""\
+import os, signal
+from pathlib import Path
+import wearlaw as wl
+
+predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
+wl.sweep(predict, max_pressure="1500 MPa", creepage=wl.Q([1.0, 2.0], "%"), friction_coefficient=[0.3, 0.4], workers=2)
+print(len([child for task in Path("/proc/self/task").iterdir() for child in (task / "children").read_text().split()]))
+os.kill(os.getpid(), signal.SIGKILL)
+""")
+    # This returns once no process has the pipe any more; the workers got it from their parent.
+    killed = subprocess.run([sys.executable, script], stdout=subprocess.PIPE, text=True, timeout=60)
+    assert killed.returncode == -signal.SIGKILL
+    assert int(killed.stdout) >= 2
