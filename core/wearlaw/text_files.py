@@ -26,6 +26,12 @@ _TOML = re.compile(
 )
 """What tells the levels of TOML: brackets, the dots of keys, and what ends a key, outside of texts and comments."""
 
+SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
+"""First bytes of spreadsheets: .xlsx and .ods, and .xls."""
+
+NOT_A_SPREADSHEET = 'it is a spreadsheet, not text; save its sheet as CSV, in Excel by "Save As" and "CSV UTF-8"'
+"""The error for a spreadsheet."""
+
 _READ: ContextVar[Path | None] = ContextVar("folder of the file that is being read", default=None)
 
 
@@ -69,7 +75,7 @@ def read_file(path: str | os.PathLike[str], most: int) -> bytes:
     FileNotFoundError
         If there is no such file.
     InputError
-        If it is larger or cannot be read; the message follows the name of the file.
+        If it is larger, cannot be read or is a spreadsheet; the message follows the name of the file.
     """
     try:
         with open(path, "rb") as file:
@@ -78,6 +84,8 @@ def read_file(path: str | os.PathLike[str], most: int) -> bytes:
         raise
     except (OSError, ValueError) as error:
         raise InputError(reason_of(error)) from None
+    if content.startswith(SPREADSHEETS):
+        raise InputError(NOT_A_SPREADSHEET)
     if len(content) > most:
         raise InputError(f"it has more than {_size(most)}, the most that is read; is it the right file?")
     return content

@@ -25,6 +25,7 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.errors import PROBLEMS, DataError, UnitError, did_you_mean, shown
 from wearlaw.late import needed_for
+from wearlaw.text_files import NOT_A_SPREADSHEET, SPREADSHEETS
 from wearlaw.units.quantities import Q, Quantity
 from wearlaw.units.registry import symbol
 
@@ -393,6 +394,8 @@ class CsvTable(Table):
         """Give the file as text, behind the lines to skip."""
         try:
             with io.BytesIO(self._source) if isinstance(self._source, bytes) else self._source.open("rb") as raw:
+                if isinstance(raw, io.BufferedReader) and raw.peek(1).startswith(SPREADSHEETS):
+                    raise DataError(f"{self.label} cannot be read: {NOT_A_SPREADSHEET}")
                 file = io.TextIOWrapper(raw, encoding="utf-8-sig", newline="")
                 for _ in range(self._skip):
                     file.readline()

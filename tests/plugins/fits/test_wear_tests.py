@@ -100,6 +100,12 @@ def test_a_mask_a_slice_and_an_index_select_tests() -> None:
     assert [one.labels for one in tests] == [("a",), ("b",), ("c",)]
 
 
+def test_a_spreadsheet_is_told(tmp_path: Path) -> None:
+    (tmp_path / "tests.xlsx").write_bytes(b"PK\x03\x04\x14\x00\x06\x00")
+    with pytest.raises(wl.DataError, match=r"cannot read the tests '.*tests\.xlsx': it is a spreadsheet, not text"):
+        wl.read_tests(tmp_path / "tests.xlsx")
+
+
 def test_selecting_none_is_refused_and_there_is_no_fourth_of_three() -> None:
     tests = made()
     with pytest.raises(wl.DataError, match="none of the 3 tests is selected"):

@@ -154,6 +154,9 @@ def test_what_is_no_table_is_refused(tmp_path: Path) -> None:
     dataset().to_netcdf(tmp_path / "run.nc")
     (tmp_path / "old.csv").write_bytes("Größe\n1\n".encode("cp1252"))
     (tmp_path / "none.csv").write_bytes(b"")
+    (tmp_path / "run.xlsx").write_bytes(b"PK\x03\x04\x14\x00\x06\x00")
+    with pytest.raises(wl.DataError, match="cannot be read: it is a spreadsheet, not text; save its sheet as CSV"):
+        wl.read_table(tmp_path / "run.xlsx")
     for wrong in ("run.nc", "old.csv", "none.csv", "missing.csv", ""):
         with pytest.raises(wl.DataError, match=re.escape(str(tmp_path / wrong))):
             wl.read_table(tmp_path / wrong)
