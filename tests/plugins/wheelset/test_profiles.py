@@ -403,9 +403,11 @@ def looped() -> tuple[Array, Array]:
         ),
         (np.delete(Y, np.s_[200:240]), np.delete(Z, np.s_[200:240]), r"point 199 .* the next point is 16\.\d+ mm away"),
         (*looped(), r"the profile crosses itself: the line behind point 29\d .* meets that behind point 3\d\d"),
-        (Y * 1e-3, Z * 1e-3, "0.13 mm wide, but a profile has 20 to 300 mm; were they in metres"),
-        (Y * 1e3, Z * 1e3, "130000 mm wide, but a profile has 20 to 300 mm; is their unit right"),
-        (Y * 0.1, Z * 0.1, "13 mm wide, but a profile has 20 to 300 mm$"),
+        (Y * 1e-3, Z * 1e-3, "0.13 mm wide, but a profile has 5 to 300 mm; were they in metres"),
+        (Y * 1e3, Z * 1e3, "130000 mm wide, but a profile has 5 to 300 mm; is their unit right"),
+        (Y * 0.03, Z * 0.03, "3.9 mm wide, but a profile has 5 to 300 mm$"),
+        (Z, Y, r"the wheel lies on its side: it is 30.6\d* mm wide and 130 mm high; are y and z swapped"),
+        (0.1 * Z, Y, "3.06.* mm wide, but a profile has 5 to 300 mm; are y and z swapped"),
         (-Y, Z, r"the wheel is mirrored: its flange must be at y < 0, but has point \d+ \(y = 5\d.* mirror_y=True"),
         (Y, -Z, r"the wheel is upside down: z is positive down, but its flange has point .* mirror_z=True"),
         (-Y, -Z, "the wheel is upside down"),
@@ -421,6 +423,8 @@ def test_a_rail_upside_down_is_refused_and_hollows_are_not() -> None:
     y, z = RAIL.points
     with pytest.raises(wl.InputError, match="the rail is upside down: z is positive down, but its side has point"):
         ws.Profile.from_points(y=y, z=Q(-z.magnitude, "mm"), kind="rail")
+    with pytest.raises(wl.InputError, match=r"the rail lies on its side: .* are y and z swapped"):
+        ws.Profile.from_points(y=z, z=y, kind="rail")
     assert circle(-500.0, "rail").curve.curvature.max() < 0.0
 
 

@@ -44,6 +44,8 @@ TEXTS = ("file", "file.mtime", "comment", "type", "units.len", "units.ang")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
 TAPING = "WheelDiameterTaperline"
 """Key of a MiniProf file for the distance of the taping line from the back of the flange."""
+DIAMETER = "DiameterTaperline"
+"""Key of a MiniProf file for the diameter at the taping line."""
 
 
 class FileError(wl.InputError):
@@ -52,13 +54,18 @@ class FileError(wl.InputError):
 
 @dataclass(frozen=True)
 class Points:
-    """The points of a file [m], outwards and down, each with its line; the kind is that of the content, if any."""
+    """The points of a file [m], outwards and down, each with its line; the kind is that of the content, if any.
+
+    The height of points that are `taped` counts from the taping line, wherever that is, and the diameter is there [m].
+    """
 
     y: Array
     z: Array
     weights: Array | None
     lines: NDArray[np.intp]
     kind: Kind | None
+    taped: bool = False
+    diameter: float | None = None
 
 
 def points_of(
@@ -251,8 +258,8 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
     """Return the points of a MiniProf file.
 
     The header ends with an empty line. In the newer generation it has lines such as Key=Value. X of a wheel is
-    outwards from the back of the flange, and its Y positive towards the flange, so down. X of a rail is positive
-    towards the gauge side, and its Y positive up.
+    outwards from the back of the flange, and its Y positive towards the flange, so down, from any height. X of a rail
+    is positive towards the gauge side, and its Y positive up.
     """
     header: dict[str, str] = {}
     table, ended = _Table(), False
@@ -281,7 +288,7 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
     found, rows = table.columns()
     x, y = found[columns.index("X")], found[columns.index("Y")]
     offset = {}
-    for key in ("xoffset", "yoffset", TAPING.lower()):
+    for key in ("xoffset", "yoffset", TAPING.lower(), DIAMETER.lower()):
         text = header.get(key, "")
         offset[key] = _number(text, 1, f"{key} in the header") if text else 0.0
     told = header.get("xypoints", "")
@@ -290,7 +297,8 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
     factor = _factor(units)
     x, y = factor * (x + offset["xoffset"]), factor * (y + offset["yoffset"])
     if kind == "wheel":
-        return Points(x - factor * offset[TAPING.lower()], y, None, rows, None)
+        diameter = factor * offset[DIAMETER.lower()] or None
+        return Points(x - factor * offset[TAPING.lower()], y, None, rows, None, taped=True, diameter=diameter)
     return Points(-x, -y, None, rows, None)
 
 

@@ -50,6 +50,15 @@ def _first_below(y: Array, z: Array, level: float) -> float:
     return float(y[place - 1] + share * (y[place] - y[place - 1]))
 
 
+def side(y: Array, z: Array, depth: float) -> float:
+    """Return y of the gauge side of a rail at a depth below its top [m]; NaN if it does not reach there."""
+    top = int(np.argmin(z))
+    up = slice(top, None, -1)
+    if z[up].max() <= z[top] + depth:
+        return np.nan
+    return _first_below(y[up], -z[up], -z[top] - depth)
+
+
 def hollow(z: Array) -> float:
     """Return the largest rise of the radius of a wheel from the top of its flange outwards [m]."""
     tread = z[int(np.argmax(z)) :]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -19,12 +18,10 @@ LONGEST_STEP, TIMES_MEDIAN = 5e-3, 10.0
 """A step that is longer [m], and longer than so many times the median one, is a gap."""
 SHARPEST = 150.0
 """Turn at a point beyond which the profile runs back on itself [deg]."""
-NARROWEST, WIDEST = 20e-3, 300e-3
-"""Bounds of the width of a profile [m]."""
+NARROWEST, WIDEST = 5e-3, 300e-3
+"""Bounds of the width of a profile, from that of a small roller [m]."""
 CLEAR = 5e-3
 """Height by which a profile must stand out to show which way up it is, or on which side its flange is [m]."""
-CROWN, WIDEST_HEAD = 12e-3, 92e-3
-"""Depth below its top at which the width of a rail's head is taken, and the width beyond which it is doubted [m]."""
 TIP = 1e-3
 """Height by which the top of a flange stands above both ends of the profile [m]."""
 BLOCK = 64
@@ -52,8 +49,9 @@ def check_points(y: Array, z: Array, name: Name) -> None:
     with np.errstate(over="ignore"):  # an infinite extent is refused
         width, height = y.max() - y.min(), z.max() - z.min()
     if not NARROWEST <= width <= WIDEST:
-        hint = "; were they in metres? Give their unit" if width < 1e-2 * NARROWEST else ""
+        hint = "; were they in metres? Give their unit" if width < WIDEST * 1e-3 else ""
         hint = "; is their unit right?" if width > WIDEST else hint
+        hint = "; are y and z swapped?" if width < NARROWEST <= height <= WIDEST else hint
         raise wl.InputError(
             f"the points are {_mm(width)} wide, but a profile has {1e3 * NARROWEST:g} to {1e3 * WIDEST:g} mm{hint}"
         )
@@ -83,8 +81,8 @@ def check_points(y: Array, z: Array, name: Name) -> None:
     if crossing is not None:
         first, second = crossing
         raise wl.InputError(
-            f"the profile crosses itself: the line behind {_point(first, y, z, name)} meets that behind"
-            f" {_point(second, y, z, name)}; leave out the points of the loop, or put all points in their order"
+            f"the profile crosses itself: the line behind {point(first, y, z, name)} meets that behind"
+            f" {point(second, y, z, name)}; leave out the points of the loop, or put all points in their order"
         )
 
 
@@ -94,33 +92,31 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
     Raises
     ------
     InputError
-        If the profile stands out from its median height by more than 5 mm to the wrong side.
+        If y and z are swapped, or if the profile stands out from its median height by more than 5 mm to the wrong side.
     """
+    if swapped(kind, y, z):
+        raise wl.InputError(
+            f"the {kind} lies on its side: it is {_mm(float(np.ptp(y)))} wide and {_mm(float(np.ptp(z)))} high; are y"
+            " and z swapped? y goes across the track and comes first in a file, unless its columns are named"
+        )
     order = np.argsort(y)
     across = np.linspace(y.min(), y.max(), 201)
     level = float(np.median(np.interp(across, y[order], z[order])))
     up, down = level - float(z.min()), float(z.max()) - level
-    # The field side of a wheel may rise more than its flange falls, up to the end of the profile.
-    tip = kind == "rail" or z.min() + TIP < min(z[0], z[-1])
-    if up > max(down, CLEAR) and tip:
+    # The field side of a wheel may rise more than its flange falls, up to the end of the profile. A rail that is upside
+    # down has its highest places at its ends; a nose between low plates has not.
+    at_end = z.min() + TIP >= min(z[0], z[-1])
+    if up > max(down, CLEAR) and at_end == (kind == "rail"):
         part = "flange" if kind == "wheel" else "side"
         place = int(np.argmin(z))
         raise wl.InputError(
-            f"the {kind} is upside down: z is positive down, but its {part} has {_point(place, y, z, name)}, above its"
+            f"the {kind} is upside down: z is positive down, but its {part} has {point(place, y, z, name)}, above its"
             f" median height of {_mm(level)}; change the sign of z, in a file by mirror_z=True"
-        )
-    top = y[z < z.min() + CROWN]
-    if kind == "rail" and np.ptp(top) > WIDEST_HEAD:
-        warnings.warn(
-            f"the rail is {_mm(float(np.ptp(top)))} wide {_mm(CROWN)} below its top, but heads of rails have 60 to"
-            " 80 mm; is it the profile of a wheel?",
-            wl.RangeWarning,
-            stacklevel=2,
         )
     place = int(np.argmax(z))
     if kind != "wheel" or down <= CLEAR or y[place] < 0.0:
         return
-    flange = _point(place, y, z, name)
+    flange = point(place, y, z, name)
     if y[place] > 0.5 * (y.min() + y.max()):
         raise wl.InputError(
             f"the wheel is mirrored: its flange must be at y < 0, but has {flange}; change the sign of y, in a file by"
@@ -130,6 +126,19 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
         f"the wheel must have its origin at the taping line, with the flange at y < 0, but its flange has {flange};"
         ' shift it, in a file by shift_y, such as shift_y="-70 mm" if y = 0 is the back of the flange'
     )
+
+
+def swapped(kind: str, y: Array, z: Array) -> bool:
+    """Return whether a profile lies on its side: a wheel that is higher than wide, or a rail whose top looks sideways.
+
+    Such a rail has its ends above each other, and its middle beside both. The gauge side alone has its middle between
+    its ends, and a whole rail has its ends beside each other.
+    """
+    if np.ptp(y) >= np.ptp(z):
+        return False
+    ends = sorted((float(y[0]), float(y[-1])))
+    beside = y.min() < ends[0] - CLEAR or y.max() > ends[1] + CLEAR
+    return kind == "wheel" or bool(beside and abs(z[-1] - z[0]) > 0.5 * np.ptp(z))
 
 
 def crossed_steps(y: Array, z: Array) -> tuple[int, int] | None:
@@ -178,10 +187,11 @@ def _refuse(wrong: NDArray[np.bool_], y: Array, z: Array, name: Name, what: str,
     places = np.flatnonzero(wrong)
     if places.size:
         more = f" ({places.size} points in all)" if places.size > 1 else ""
-        raise wl.InputError(f"{_point(int(places[0]), y, z, name)} {what}{more}; {fix}")
+        raise wl.InputError(f"{point(int(places[0]), y, z, name)} {what}{more}; {fix}")
 
 
-def _point(index: int, y: Array, z: Array, name: Name) -> str:
+def point(index: int, y: Array, z: Array, name: Name) -> str:
+    """Return the name and place of a point in messages."""
     return f"{name(index)} (y = {_mm(y[index])}, z = {_mm(z[index])})"
 
 

@@ -3,23 +3,33 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
 from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
-from pydantic import Field, GetJsonSchemaHandler, model_serializer, model_validator
+from numpy.typing import NDArray
+from pydantic import (
+    Field,
+    GetJsonSchemaHandler,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    model_serializer,
+    model_validator,
+)
 from pydantic_core import core_schema
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw_models.rigs.wheelset import doubts
 from wearlaw_models.rigs.wheelset.curve import Curve, joined, through_points
 from wearlaw_models.rigs.wheelset.files import Kind, points_of, write_points
 from wearlaw_models.rigs.wheelset.formulas import FORMULAS
 from wearlaw_models.rigs.wheelset.measures import depth_between, flange, hollow
-from wearlaw_models.rigs.wheelset.points import check_orientation, check_points
+from wearlaw_models.rigs.wheelset.points import check_orientation, check_points, point
+from wearlaw_models.rigs.wheelset.reach import without_spots
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +37,21 @@ if TYPE_CHECKING:
 
 CONVEX = {"wheel": -1.0, "rail": 1.0}
 """Sign of dθ/ds where a body is convex: the wheel lies above its profile, the rail below."""
+
+
+KNOWN = "_known"
+"""Key of what is known of a profile among its fields."""
+
+
+class _Fields(dict[str, Any]):
+    """The fields of a profile with what is known of it."""
+
+    lines: NDArray[np.intp] | None = None
+    """Line of each point in its file."""
+    worn: bool = False
+    """Whether wearlaw wore it, so that nothing about its shape is doubted."""
+    told: bool = False
+    """Whether they were checked, and what is unlikely about them was told."""
 
 
 class _Coordinates:
@@ -105,6 +130,12 @@ class Profile(wl.Configuration):
     """Shift outwards [m]."""
     shift_z: Shift = Field(default="0 mm", validate_default=True)
     """Shift down [m]."""
+    diameter: Annotated[wl.Quantity, wl.Unit("mm")] | None = None
+    """Diameter of the wheel at the taping line, as the header of a MiniProf file has it [m]."""
+
+    _lines: NDArray[np.intp] | None = PrivateAttr(default=None)
+    _worn: bool = PrivateAttr(default=False)
+    _told: bool = PrivateAttr(default=False)
 
     if TYPE_CHECKING:
 
@@ -121,6 +152,7 @@ class Profile(wl.Configuration):
             turn: wl.QuantityLike = "0 deg",
             shift_y: wl.QuantityLike = "0 mm",
             shift_z: wl.QuantityLike = "0 mm",
+            diameter: wl.QuantityLike | None = None,
         ) -> None: ...
 
     @classmethod
@@ -172,10 +204,29 @@ class Profile(wl.Configuration):
         given = None if weights is None else tuple(float(weight) for weight in weights)
         return cls(kind=kind, y=y, z=z, smoothing=smoothing, weights=given)
 
-    @model_validator(mode="before")
+    @model_validator(mode="wrap")
+    @classmethod
+    def _checked(cls, given: Any, handler: ModelWrapValidatorHandler[Profile]) -> Profile:
+        """Take the name of a formula or the path of a file for a table, and check the points."""
+        if isinstance(given, Profile):
+            return handler(given)
+        fields = cls._of_text(given)
+        if isinstance(fields, _Fields):  # pydantic passes fields to __init__, which comes here once more
+            return handler({**fields, KNOWN: fields})
+        known = fields.get(KNOWN) if isinstance(fields, Mapping) else None
+        if not isinstance(known, _Fields):
+            profile = handler(fields)
+        else:
+            profile = handler(known)
+            profile._lines, profile._worn, profile._told = known.lines, known.worn, known.told
+        if not profile._told:
+            profile._check()
+            profile._told = True
+        return profile
+
     @classmethod
     def _of_text(cls, given: Any) -> Any:
-        """Take the name of a formula or the path of a file for a table, and add the kind of a formula."""
+        """Return the fields of the name of a formula or of the path of a file, and add the kind of a formula."""
         if isinstance(given, str | os.PathLike):
             given = _named(os.fspath(given))
         elif isinstance(given, Mapping) and "file" in given:
@@ -189,8 +240,10 @@ class Profile(wl.Configuration):
             return {"kind": FORMULAS[name].kind, **given}
         return given
 
-    @model_validator(mode="after")
-    def _is_a_profile(self) -> Profile:
+    def _check(self) -> None:
+        """Raise an error if the fields make no profile, and warn of a shape that profiles hardly have."""
+        if self.diameter is not None and self.kind == "rail":
+            raise ValueError("diameter: a rail has none")
         if self.formula is not None:
             if self.y is not None or self.z is not None or self.weights is not None:
                 raise ValueError("takes a formula or points, not both")
@@ -203,11 +256,26 @@ class Profile(wl.Configuration):
             if self.weights is not None and len(self.weights) != self.y.size:
                 raise ValueError(f"weights: must be one for each of {self.y.size} points, got {len(self.weights)}")
         check_orientation(self.kind, *self._moved(*self._given), self._name)
-        return self
+        if self.formula is None and not self._worn:
+            self._warn()
+
+    def _warn(self) -> None:
+        """Warn of what is unlikely about a profile of points."""
+        curve, spots = self._curve_and_spots
+        y, z = self._moved(*self._given)
+        texts = [f"{point(spot, y, z, self._name)} alone stands out and is passed over" for spot in spots]
+        lean = wl.scalar_si(self.apparent_cant, "rad")
+        texts += doubts.of_shape(self.kind, curve, lean)
+        if self.smoothing.magnitude:
+            kept = np.ones(y.size, dtype=np.bool_)
+            kept[list(spots)] = False
+            texts += doubts.of_smoothing(self.kind, curve, y[kept], z[kept])
+        for text in texts:
+            doubts.warn(text)
 
     def _name(self, index: int) -> str:
         """Return the name of a point in messages."""
-        return f"point {index}"
+        return f"point {index}" if self._lines is None else f"line {self._lines[index]}"
 
     @property
     def _given(self) -> tuple[Array, Array]:
@@ -233,17 +301,31 @@ class Profile(wl.Configuration):
         cosine, sine = np.cos(turn), np.sin(turn)
         return cosine * sign * y - sine * z + shift_y, sine * sign * y + cosine * z + shift_z
 
-    @cached_property
+    @property
     def curve(self) -> Curve:
-        """The profile by its arc length."""
+        """The profile by its arc length; single points that stand out are passed over."""
+        return self._curve_and_spots[0]
+
+    @cached_property
+    def _curve_and_spots(self) -> tuple[Curve, tuple[int, ...]]:
+        """The curve, and the points that it passes over, by their index."""
         if self.formula is not None:
-            base = _by_formula(self.formula)
-        else:
-            weights = None if self.weights is None else np.array(self.weights)
-            y, z = self._given
-            way = slice(None, None, -1 if y[-1] < y[0] else 1)
-            smoothing, sign = wl.scalar_si(self.smoothing, "m"), CONVEX[self.kind]
-            base = through_points(y[way], z[way], smoothing, None if weights is None else weights[way], sign)
+            return self._in_place(_by_formula(self.formula)), ()
+        if self._worn:
+            return self._through(slice(None)), ()
+        return without_spots(*self._moved(*self._given), self._through)
+
+    def _through(self, keep: slice | NDArray[np.bool_]) -> Curve:
+        """Return the curve of the points to keep."""
+        y, z = (value[keep] for value in self._given)
+        weights = None if self.weights is None else np.array(self.weights)[keep]
+        way = slice(None, None, -1 if y[-1] < y[0] else 1)
+        smoothing = wl.scalar_si(self.smoothing, "m")
+        weights = None if weights is None else weights[way]
+        return self._in_place(through_points(y[way], z[way], smoothing, weights, CONVEX[self.kind]))
+
+    def _in_place(self, base: Curve) -> Curve:
+        """Return a curve after the mirror, the turn and the shifts."""
         sign, turn, *shifts = self._motion
         if (sign, turn, *shifts) == (1.0, 0.0, 0.0, 0.0):
             return base
@@ -268,6 +350,20 @@ class Profile(wl.Configuration):
         so far down. Wear of one side changes it, by about 1/110 for 5 mm.
         """
         return wl.Q(_lean(self.curve) if self.kind == "rail" else np.nan, "rad")
+
+    def _fields(self, *, told: bool = False) -> _Fields:
+        """Return the fields, with what is known of the profile."""
+        fields = _Fields({name: getattr(self, name) for name in self.model_fields_set})
+        fields.lines, fields.worn, fields.told = self._lines, self._worn, told
+        return fields
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Profile:  # noqa: ARG002
+        """Return a copy with some fields changed, checked like a new profile."""
+        fields = self._fields()
+        fields.update(update or {})
+        if update and {"y", "z"} & update.keys():
+            fields.lines, fields.worn = None, False
+        return type(self).model_validate(fields)
 
     def mirrored(self) -> Profile:
         """Return the profile with the sign of y changed, as of a rail whose gauge side is at y > 0."""
@@ -342,7 +438,9 @@ class Profile(wl.Configuration):
         y = curve.y - CONVEX[self.kind] * np.sin(curve.angle) * depths
         z = curve.z + CONVEX[self.kind] * np.cos(curve.angle) * depths
         new = through_points(y, z, 0.0, None, CONVEX[self.kind])
-        return Profile(kind=self.kind, y=wl.Q(1e3 * new.y, "mm"), z=wl.Q(1e3 * new.z, "mm"), smoothing=smoothing)
+        fields = _Fields(kind=self.kind, y=wl.Q(1e3 * new.y, "mm"), z=wl.Q(1e3 * new.z, "mm"), smoothing=smoothing)
+        fields.worn = True
+        return Profile.model_validate(fields)
 
     def depth_to(self, worn: Profile, s: wl.Quantity) -> wl.Quantity:
         """Return the depth between this profile and a worn one, such as a measured one, along this one's normals.
@@ -376,7 +474,8 @@ class Profile(wl.Configuration):
             The flange height Sh, from the tread datum to the top of the flange; the flange thickness Sd, from the back
             to the flank, 10 mm above the datum (towards the flange's top); the flange gradient qR, parallel to the
             axle, between the flank 10 mm above the datum and 2 mm below the top; and the hollow of the tread [m]. Those
-            of the flange are NaN without a flange, or if the profile does not reach the datum.
+            of the flange are NaN without a flange, or if the profile does not reach the datum. Height and gradient are
+            also NaN, with a warning, if the profile ends before the top of the flange.
 
         Notes
         -----
@@ -389,8 +488,15 @@ class Profile(wl.Configuration):
             return {}
         y, z = self.curve.y, self.curve.z
         back = float(wl.Unit("mm", positive=False).si(flange_back_position, "flange_back_position"))
+        height, thickness, gradient = flange(y, z, back)
+        for text in doubts.of_tip(y, z, self.curve.angle, height):
+            doubts.warn(text)
+            height = gradient = np.nan
+        for text in doubts.of_back(self.curve, back):
+            doubts.warn(text)
         names = ("flange_height", "flange_thickness", "flange_gradient", "hollow")
-        return {name: wl.Q(1e3 * one, "mm") for name, one in zip(names, (*flange(y, z, back), hollow(z)), strict=True)}
+        values = (height, thickness, gradient, hollow(z))
+        return {name: wl.Q(1e3 * one, "mm") for name, one in zip(names, values, strict=True)}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the profile as it lies, with z down, and return matplotlib's axes."""
@@ -422,7 +528,7 @@ class Profile(wl.Configuration):
     def _changed(self) -> list[str]:
         """The fields that are not at their defaults, without the kind of a formula."""
         texts = ("turn", "shift_y", "shift_z", "smoothing")
-        found = [name for name in ("formula", "y", "z", "weights") if getattr(self, name) is not None]
+        found = [name for name in ("formula", "y", "z", "weights", "diameter") if getattr(self, name) is not None]
         found += ["mirror"] if self.mirror else []
         found += [name for name in texts if getattr(self, name).magnitude]
         return found if self.formula else ["kind", *found]
@@ -439,7 +545,8 @@ class Profile(wl.Configuration):
     @cached_property
     def _identity(self) -> tuple[object, ...]:
         points = tuple(_si(value).tobytes() for value in (self.y, self.z) if value is not None)
-        return self.kind, self.formula, points, self.weights, wl.scalar_si(self.smoothing, "m"), self._motion
+        diameter = None if self.diameter is None else wl.scalar_si(self.diameter, "m")
+        return self.kind, self.formula, points, self.weights, wl.scalar_si(self.smoothing, "m"), self._motion, diameter
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Profile):
@@ -505,7 +612,7 @@ class _File(wl.Configuration):
     def fields(self) -> dict[str, Any]:
         """Return the fields of the profile in the file."""
         found = read_profile(wl.beside(self.file), **{name: value for name, value in self if name != "file"})
-        return {name: getattr(found, name) for name in found.model_fields_set}
+        return found._fields(told=True)
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -557,20 +664,22 @@ def read_profile(
         found, told = points_of(Path(path), kind, units, sep, decimal)
         length = wl.Unit("mm", positive=False)
         y = (-1.0 if mirror_y else 1.0) * found.y + float(length.si(shift_y, "shift_y"))
-        z = (-1.0 if mirror_z else 1.0) * found.z + float(length.si(shift_z, "shift_z"))
-
-        def name(index: int) -> str:
-            return f"line {found.lines[index]}"
-
-        check_points(y, z, name)
-        check_orientation(told, y, z, name)
-        return Profile(
-            kind=told,
-            y=wl.Q(1e3 * y, "mm"),
-            z=wl.Q(1e3 * z, "mm"),
-            weights=None if found.weights is None else tuple(found.weights.tolist()),
-            smoothing=smoothing,
-        )
+        z = (-1.0 if mirror_z else 1.0) * found.z
+        if found.taped and y.min() <= 0.0 <= y.max():
+            check_points(y, z, lambda index: f"line {found.lines[index]}")
+            way = slice(None, None, -1 if y[-1] < y[0] else 1)
+            width = float(length.si(smoothing, "smoothing"))
+            z = z - float(through_points(y[way], z[way], width, None, CONVEX[told]).at(0.0)[1])
+        z = z + float(length.si(shift_z, "shift_z"))
+        fields = _Fields(kind=told, y=wl.Q(1e3 * y, "mm"), z=wl.Q(1e3 * z, "mm"), smoothing=smoothing)
+        if found.weights is not None:
+            fields["weights"] = tuple(found.weights.tolist())
+        if found.diameter is not None:
+            fields["diameter"] = wl.Q(1e3 * found.diameter, "mm")
+        fields.lines = found.lines
+        return Profile.model_validate(fields)
+    except wl.ConfigurationError as error:
+        raise wl.DataError(f"profile {wl.shown(path)}: {'; '.join(map(str, error.problems))}") from None
     except wl.InputError as error:
         raise wl.DataError(f"profile {wl.shown(path)}: {error}") from None
 
@@ -593,6 +702,33 @@ def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
     if profile.smoothing.magnitude:
         y, z = profile.curve.y, profile.curve.z
     write_points(Path(path), profile.kind, y, z)
+
+
+def unlikely(profile: Profile, cant: float, radius: float, back: float) -> Iterator[str]:
+    """Yield what is unlikely about a profile in a rig: with a cant [rad], a radius and a place of the back [m]."""
+    yield from _of_ends(profile, cant)
+    if profile.kind == "rail" and not profile._worn:
+        yield from doubts.of_lean(wl.scalar_si(profile.apparent_cant, "rad"), cant)
+    if profile.kind == "wheel":
+        yield from doubts.of_back(profile.curve, back)
+        if profile.diameter is not None:
+            yield from doubts.of_radius(radius, profile.curve, wl.scalar_si(profile.diameter, "m"))
+
+
+def faults(profile: Profile, cant: float) -> Iterator[str]:
+    """Yield why a profile may not fit others, beside their distances; the cant is that of a rail [rad]."""
+    yield from _of_ends(profile, cant)
+    if profile.kind == "wheel":
+        yield from doubts.of_height(profile.curve)
+
+
+def _of_ends(profile: Profile, cant: float) -> Iterator[str]:
+    y, z = profile._moved(*profile._given)
+
+    def near(across: float, down: float) -> str:
+        return point(int(np.hypot(y - across, z - down).argmin()), y, z, profile._name)
+
+    yield from doubts.of_ends(profile.curve, cant if profile.kind == "rail" else 0.0, near)
 
 
 DEEP, TOP = 10e-3, 20e-3

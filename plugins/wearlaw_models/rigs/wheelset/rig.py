@@ -15,11 +15,12 @@ from pydantic import BeforeValidator, Field, model_validator
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.conicity import equivalent_conicity
+from wearlaw_models.rigs.wheelset.doubts import warn
 from wearlaw_models.rigs.wheelset.geometry import Geometry, geometry, patches, profiles
 from wearlaw_models.rigs.wheelset.guidance import guided
 from wearlaw_models.rigs.wheelset.loads import Balance, Elastic, Friction, Pressure, Task
 from wearlaw_models.rigs.wheelset.pictures import Profiles, contact_figure, wear_figure
-from wearlaw_models.rigs.wheelset.profile import Profile
+from wearlaw_models.rigs.wheelset.profile import Profile, faults, unlikely
 from wearlaw_models.rigs.wheelset.search import Section, Touching, both_sides, searched, section
 from wearlaw_models.rigs.wheelset.search_loops import PATCHES
 
@@ -111,7 +112,7 @@ MARGIN = 1e-3
 CONICITY_POINTS = 801
 """Displacements at which the conicity takes radii."""
 
-RATIO = re.compile(r"\s*1\s*[:/]\s*([0-9]+\.?[0-9]*)\s*")
+RATIO = re.compile(r"\s*([+-]?)\s*1\s*[:/]\s*([0-9]+\.?[0-9]*)\s*")
 
 
 def _cant(value: object) -> object:
@@ -119,7 +120,9 @@ def _cant(value: object) -> object:
     if isinstance(value, int | float):
         raise wl.UnitError(f"got {value!r}; give a ratio or an angle, such as '1:40' or '1.4 deg'")
     ratio = RATIO.fullmatch(value) if isinstance(value, str) else None
-    return wl.Q(float(np.arctan2(1.0, float(ratio[1]))), "rad") if ratio else value
+    if ratio and ratio[1] == "-":
+        raise wl.UnitError(f"got {value!r}; rails lean inwards with a cant without a sign, such as '1:{ratio[2]}'")
+    return wl.Q(float(np.arctan2(1.0, float(ratio[2]))), "rad") if ratio else value
 
 
 Cant = Annotated[wl.Quantity, wl.Unit("rad", positive=False, limit=0.2), BeforeValidator(_cant)]
@@ -286,25 +289,25 @@ class Wheelset(wl.Rig):
 
     @model_validator(mode="after")
     def _fits(self) -> Wheelset:
-        for name in ("wheel", "rail", "left_wheel", "left_rail"):
-            given, kind = getattr(self, name), name.removeprefix("left_")
-            if given is not None and given.kind != kind:
-                raise ValueError(f"{name} is the profile of a {given.kind}; give that of a {kind}")
+        for name, profile in self._profiles.items():
+            if profile.kind != (kind := name.removeprefix("left_")):
+                raise ValueError(f"{name} is the profile of a {profile.kind}; give that of a {kind}")
         if wl.scalar_si(self.nominal_radius, "m") > LARGEST_RADIUS:
             warnings.warn(
                 f"nominal_radius: {self.nominal_radius!r} is more than wheels in service have; is it the diameter?",
                 wl.RangeWarning,
                 stacklevel=4,
             )
-        lean, cant = (wl.scalar_si(angle, "rad") for angle in (self.rail.apparent_cant, self.rail_cant))
-        if abs(lean) > 0.5 * cant > 0.0:
-            raise ValueError(
-                f"rail_cant: is {np.degrees(cant):.3g} deg, but the head of the rail's profile"
-                f" leans by {np.degrees(lean):.3g} deg already; leave rail_cant out, or give a profile without cant"
-            )
+        cant, radius, back = (
+            wl.scalar_si(value, unit)
+            for value, unit in ((self.rail_cant, "rad"), (self.nominal_radius, "m"), (self.flange_back_position, "m"))
+        )
+        for name, profile in self._profiles.items():
+            for text in unlikely(profile, cant, radius, back):
+                warn(f"{name}: {text}")
         play = self._flange_play
         if play is not None and not 0.0 < play < MOST_PLAY:
-            raise ValueError(
+            raise self._misfit(
                 f"gauge: rails {self.gauge!r} apart leave the flanges {1e3 * play:.4g} mm on either side, of wheels"
                 f" {self.flange_back_distance!r} apart between their inner faces; they must leave 0 to"
                 f" {1e3 * MOST_PLAY:g} mm"
@@ -313,11 +316,28 @@ class Wheelset(wl.Rig):
         roll, found = searched(self._section, straight, straight)
         angle = patches(self._section, both_sides(straight, roll, straight), found)["contact_angle"][0, :, 0]
         if not np.abs(angle).max() <= wl.scalar_si(self.flange_angle, "rad"):  # NaN without contact
-            raise ValueError(
+            raise self._misfit(
                 f"gauge: in the middle of the track the wheels stand on their flanges or beside the rails; wheels"
                 f" {self.flange_back_distance!r} apart between their inner faces do not fit rails {self.gauge!r} apart"
             )
         return self
+
+    def _misfit(self, text: str) -> ValueError:
+        """Return the error for wheels that do not fit the rails, by the faults of profiles if there are any."""
+        cant = wl.scalar_si(self.rail_cant, "rad")
+        told = [f"{name}: {one}" for name, profile in self._profiles.items() for one in faults(profile, cant)]
+        return ValueError("; ".join(told) or text)
+
+    @property
+    def _profiles(self) -> Mapping[str, Profile]:
+        """The profiles by their fields."""
+        fields = {name: getattr(self, name) for name in ("wheel", "rail", "left_wheel", "left_rail")}
+        return {name: profile for name, profile in fields.items() if profile is not None}
+
+    @property
+    def _rough(self) -> list[str]:
+        """The fields of profiles that run through all of their points."""
+        return [name for name, one in self._profiles.items() if not one.formula and not one.smoothing.magnitude]
 
     @property
     def bodies(self) -> Mapping[str, wl.Body]:
@@ -578,6 +598,7 @@ class Wheelset(wl.Rig):
             raise wl.ConditionsError(
                 f"lateral_displacement: at {1e3 * displacement[point]:.4g} mm the {DIMS['side'][side]} wheel does not"
                 " touch its rail within the profiles; wider profiles are needed, or the wheel has left the rail"
+                + (f", or single points of {' or '.join(self._rough)} are off: give smoothing" if self._rough else "")
             )
 
     def _warn_of_climbing(self, balance: Balance) -> None:
@@ -627,12 +648,11 @@ class Wheelset(wl.Rig):
 
     def _warn_of_points(self, problem: wl.Problem) -> None:
         """Warn of a pressure that the points of a measured profile give, rather than its shape."""
-        profiles = {name: getattr(self, name) for name in ("wheel", "rail", "left_wheel", "left_rail")}
-        rough = [name for name, one in profiles.items() if one and not one.formula and not one.smoothing.magnitude]
         greatest = np.nanmax(problem.max_pressure, initial=0.0)
-        if rough and greatest > HIGH_PRESSURE:
+        if self._rough and greatest > HIGH_PRESSURE:
             warnings.warn(
-                f"the maximum pressure of {1e-6 * greatest:.0f} MPa is that of single points: {' and '.join(rough)} run"
+                f"the maximum pressure of {1e-6 * greatest:.0f} MPa is that of single points:"
+                f" {' and '.join(self._rough)} run"
                 ' through all of theirs; give smoothing with the profile, such as "0.01 mm"',
                 wl.RangeWarning,
                 stacklevel=5,

@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.curve import Curve
+from wearlaw_models.rigs.wheelset.reach import reach
 from wearlaw_models.rigs.wheelset.search_loops import (
     FIRST,
     PATCHES,
@@ -50,9 +51,6 @@ COARSE = 0.5e-3
 
 FINE = 0.05e-3
 """Spacing of the tables of profiles [m]."""
-
-STEEPEST = np.radians(86.0)
-"""Steepest slope of a profile on which contact is looked for [rad]."""
 
 ACCURATE = {"xatol": 1e-9}
 """Accuracy of the place of a rail's top along its profile [m]; that of its height is quadratic in it."""
@@ -227,17 +225,13 @@ def section(
     Raises
     ------
     InputError
-        If the rail does not reach down to that depth on its gauge side.
+        If the rail does not reach down to that depth on its gauge side, or if a profile is too steep at its top.
     """
-    inside = np.flatnonzero(wheel.y < 0.0)
-    tip = inside[wheel.z[inside].argmax()] if inside.size else 0
-    steep = np.flatnonzero(np.abs(wheel.angle[tip:]) > STEEPEST)
-    end = tip + steep[0] if steep.size else wheel.s.size
-    kept = slice(tip, end)
+    kept = _reached("wheel", wheel)
     step = (wheel.s[-1] - wheel.s[0]) / (wheel.s.size - 1)
     cos, sin = np.cos(wheel.angle[kept]), np.sin(wheel.angle[kept])
-    across = Table.of(wheel.s[tip], step, wheel.y[kept] + wheel_offset, cos)
-    radius = Table.of(wheel.s[tip], step, wheel.z[kept] + nominal_radius, sin)
+    across = Table.of(float(wheel.s[kept.start]), step, wheel.y[kept] + wheel_offset, cos)
+    radius = Table.of(float(wheel.s[kept.start]), step, wheel.z[kept] + nominal_radius, sin)
 
     def leaned(s: Any) -> tuple[Any, Any]:
         y, z, _, _ = rail.at(s)
@@ -259,16 +253,26 @@ def section(
         lambda s: leaned(s)[1] - crown.fun - depth, rail.s[below], rail.s[below + 1], xtol=1e-15
     )
     y = y + (0.5 * gauge - leaned(at_depth)[0])
-    steep = np.abs(angle) > STEEPEST
-    first = max((int(index) + 1 for index in np.flatnonzero(steep) if index < top), default=0)
-    last = min((int(index) for index in np.flatnonzero(steep) if index > top), default=y.size)
-    kept = slice(first, last)
-    count = int((y[last - 1] - y[first]) / FINE)
-    at = y[first] + FINE * np.arange(count + 1)
+    kept = _reached("rail", rail, cant)
+    count = int((y[kept.stop - 1] - y[kept.start]) / FINE)
+    at = y[kept.start] + FINE * np.arange(count + 1)
     height = scipy.interpolate.CubicHermiteSpline(y[kept], z[kept], np.tan(angle[kept]))
     place = scipy.interpolate.CubicHermiteSpline(y[kept], rail.s[kept], 1.0 / np.cos(angle[kept]))
     rail_z, position = (Table.of(at[0], FINE, of(at), of(at, 1)) for of in (height, place))
     return Section(across, radius, rail_z, position, wheel, rail)
+
+
+def _reached(kind: str, curve: Curve, cant: float = 0.0) -> slice:
+    """Return the part of a profile that a contact can reach, or raise an error if it is too short for a table."""
+    part = reach(curve, cant).part
+    if part.stop - part.start < 2 or curve.y[part.stop - 1] - curve.y[part.start] < 2.0 * FINE:
+        place = min(part.start, curve.s.size - 1)
+        top = "top of the flange" if kind == "wheel" else "top"
+        raise wl.InputError(
+            f"{kind}: the profile is too steep for contact at its {top}, y = {1e3 * curve.y[place]:.6g} mm,"
+            f" z = {1e3 * curve.z[place]:.6g} mm; mend its points there"
+        )
+    return part
 
 
 class Position(NamedTuple):
