@@ -13,16 +13,18 @@ from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, get_args, get_o
 
 import pint
 from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
+from pydantic.errors import PydanticSchemaGenerationError
 from pydantic.json_schema import GenerateJsonSchema
 
 from wearlaw.errors import (
     ConfigurationError,
     Fault,
     FrozenError,
+    ModelError,
     did_you_mean,
     shown,
 )
-from wearlaw.units.quantities import plain_number, text_of
+from wearlaw.units.quantities import Unit, plain_number, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -90,9 +92,18 @@ class Configuration(BaseModel):
 
         @classmethod
         def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **options: Any) -> bool | None:
-            """Build the validators, in one thread at a time; pydantic does so at the first use if nobody calls this."""
+            """Build the validators, in one thread at a time; pydantic does so at the first use if nobody calls this.
+
+            Raises
+            ------
+            ModelError
+                If a field holds quantities without a unit, or has another type that pydantic does not know.
+            """
             with _BUILDING:  # pydantic before 2.14 has no lock of its own
-                return super().model_rebuild(_parent_namespace_depth=_parent_namespace_depth + 1, **options)
+                try:
+                    return super().model_rebuild(_parent_namespace_depth=_parent_namespace_depth + 1, **options)
+                except PydanticSchemaGenerationError as error:
+                    raise ModelError(_unknown_type(cls, error)) from None
 
         def __init__(self, /, **fields: Any) -> None:
             try:
@@ -151,6 +162,26 @@ class Configuration(BaseModel):
                 text = text.rstrip() + "\n    "
             text += f"{field}, "
         return text.removesuffix(", ") + ")"
+
+
+def _unknown_type(cls: type[BaseModel], error: PydanticSchemaGenerationError) -> str:
+    """Return the message for a class whose fields have types without a schema."""
+    for name, field in cls.model_fields.items():
+        if not any(isinstance(one, Unit) for one in field.metadata) and _is_plain_quantity(field.annotation):
+            return (
+                f"{cls.__name__}.{name}: its annotation has no unit; write {name}: Annotated[wl.Quantity, wl.Unit(...)]"
+                ' with the customary unit, such as wl.Unit("mm"), and a default as text, such as "1 mm"'
+            )
+    return f"{cls.__name__}: a field has a type that pydantic cannot check; {str(error).partition('. Set')[0]}"
+
+
+def _is_plain_quantity(annotation: Any) -> bool:
+    """Return whether a type is `Quantity`, or a union with it, without a `Unit`."""
+    if isinstance(annotation, type):
+        return issubclass(annotation, pint.Quantity)
+    if get_origin(annotation) is Annotated and any(isinstance(one, Unit) for one in annotation.__metadata__):
+        return False
+    return any(map(_is_plain_quantity, get_args(annotation)))
 
 
 def _is_number(annotation: Any) -> bool:
@@ -226,7 +257,9 @@ def configuration_error(subject: str, model: type[BaseModel], error: ValidationE
         if isinstance(cause, ConfigurationError):
             problems += [Fault(path + inner.path, inner.message) for inner in cause.problems]
         else:
-            problems.append(Fault(path, _message(details, model)))
+            field = model.model_fields.get(path[0]) if len(path) == 1 else None
+            of_class = field is not None and field.default is details["input"]
+            problems.append(Fault(path, f"{'its default: ' if of_class else ''}{_message(details, model)}"))
     return ConfigurationError(subject, problems)
 
 

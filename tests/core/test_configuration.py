@@ -8,6 +8,7 @@ import pickle
 from collections.abc import Callable
 from typing import Annotated, Any
 
+import numpy as np
 import pytest
 
 import wearlaw as wl
@@ -42,6 +43,48 @@ def test_a_wrong_field_is_named_with_value_unit_and_fix(make: Callable[[], objec
     with pytest.raises(wl.ConfigurationError) as caught:
         make()
     assert message in str(caught.value)
+
+
+class Plain(Configuration):
+    """A record with a quantity without its unit."""
+
+    film: Annotated[wl.Quantity, wl.Unit("um")] = Q(1.0, "um")
+    depth: wl.Quantity = Q(3.0, "mm")
+
+
+class Perhaps(Configuration):
+    """A record with a quantity or nothing, without its unit."""
+
+    depth: wl.Quantity | None = None
+
+
+class Odd(Configuration):
+    """A record with a type that pydantic does not know."""
+
+    film: Annotated[wl.Quantity, wl.Unit("um")] | None = None
+    depth: np.ndarray
+
+
+class Bare(Configuration):
+    """A record whose default lacks its unit."""
+
+    depth: Annotated[wl.Quantity, wl.Unit("mm")] = 3.0  # type: ignore[assignment]  # pyright: ignore
+
+
+@pytest.mark.parametrize(
+    ("record", "said"),
+    [
+        (Plain, "Plain.depth: its annotation has no unit; write depth: Annotated[wl.Quantity, wl.Unit(...)] with the"),
+        (Perhaps, "Perhaps.depth: its annotation has no unit; write depth: Annotated[wl.Quantity, wl.Unit(...)]"),
+        (Odd, "Odd: a field has a type that pydantic cannot check; Unable to generate pydantic-core schema for <class"),
+        (Bare, f"Bare: depth: its default: got the bare number 3.0, which has no unit; {IN_MM}"),
+    ],
+)
+@pytest.mark.parametrize("use", [lambda record: record(), lambda record: record.model_validate({})])
+def test_a_field_without_its_unit_says_what_to_write(record: type[Any], said: str, use: Any) -> None:
+    with pytest.raises(wl.WearlawError) as caught:
+        use(record)
+    assert str(caught.value).startswith(said)
 
 
 def test_all_wrong_fields_are_named_at_once_with_their_paths() -> None:
