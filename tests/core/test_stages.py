@@ -169,7 +169,17 @@ class Wrong(wl.Stage):
                 return problem[:1]
             case "raises":
                 return 1 / 0
-        raise AssertionError
+        return problem.replaced(friction_coefficient=WRONG_FRICTION[self.fault](problem.friction_coefficient))
+
+
+WRONG_FRICTION: dict[str, Any] = {
+    "column": lambda friction: friction[..., None],
+    "one number": lambda friction: np.float64(0.3),  # noqa: ARG005
+    "seven": lambda friction: np.full(7, 0.3),  # noqa: ARG005
+    "no array": lambda friction: 0.3,  # noqa: ARG005
+    "none": lambda friction: None,  # noqa: ARG005
+}
+"""Frictions that are not of the shape of the problem, or no arrays."""
 
 
 class WrongContact(Wrong):
@@ -202,6 +212,26 @@ def test_a_wrong_stage_is_named(stage: wl.Stage, said: str) -> None:
     predict = silently(RIG, EXACT, stage, KTH)
     with pytest.raises(wl.ModelError, match=said):
         predict(**{**CONDITIONS, "creepage": Q([0.3, 1.0], "%")})
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        ("column", r"of shape \(2, 1\); it must be \(2,\)"),
+        ("one number", r"of shape \(\); it must be \(2,\)"),
+        ("seven", r"of shape \(7,\); it must be \(2,\)"),
+        ("no array", "of type float; it must be an array"),
+        ("none", "of type NoneType; it must be an array"),
+    ],
+)
+@pytest.mark.parametrize("model", [EXACT, FASTSIM])
+def test_a_stage_with_the_wrong_shape_of_friction_is_named(model: wl.ContactModel, fault: str, said: str) -> None:
+    predict = silently(RIG, model, Wrong(fault=fault), KTH)
+    with pytest.raises(wl.ModelError, match=f"stage 'wrong' posed a problem with a friction coefficient {said}"):
+        predict(**{**CONDITIONS, "creepage": Q([0.3, 1.0], "%")})
+    if fault != "one number":
+        with pytest.raises(wl.ModelError, match="stage 'wrong' posed a problem with a friction coefficient of"):
+            predict(**{**CONDITIONS, "creepage": Q(0.3, "%")})
 
 
 def test_a_stage_that_changes_nothing_is_refused() -> None:

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable
 from functools import partial
 from operator import attrgetter
+from types import NoneType
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,12 @@ POSED = {name: 0.0 if name in ABOVE_ZERO else -math.inf for name in ARRAYS if na
 """The numbers of a problem, each with the bound that it must be above."""
 
 _posed, _above_zero = attrgetter(*POSED), attrgetter(*ABOVE_ZERO)
+
+IF_KNOWN = ("traction_coefficient", "contact_angle", "rolled_distance")
+"""Numbers of a problem that may be missing."""
+
+ONE_POINT = {np.float64, NoneType}
+"""Types of the numbers of one operating point."""
 
 LINE_TOTALS = ("rolling_speed", "normal_force", "tangential_force", "wear_index", "density")
 """The totals that a line contact does not derive from others."""
@@ -160,21 +167,32 @@ class Solver:
 
 
 def check_problem(maker: Model, problem: Problem) -> None:
-    """Raise a `ModelError` that names a rig or a stage if its problem has numbers that no contact has."""
+    """Raise a `ModelError` that names a rig or a stage if its problem has numbers that no contact has.
+
+    Their shape is that of the batch; a rig may give one number for all operating points.
+    """
     posed = _posed(problem)
-    one_point = problem.batch_shape == () and problem.strips is None
-    if one_point and min(_above_zero(problem)) > 0.0 and math.isfinite(sum(one for one in posed if one is not None)):
+    one_point = problem.batch_shape == () and problem.strips is None and ONE_POINT.issuperset(map(type, posed))
+    above_zero = _above_zero(problem)
+    if one_point and None not in above_zero and min(above_zero) > 0.0 and math.isfinite(sum(filter(None, posed))):
         return  # much faster than one by one
     for (name, least), values in zip(POSED.items(), posed, strict=True):
-        if values is not None:
-            _check_posed(maker, problem, name, values, least)
+        if values is None and name in IF_KNOWN:
+            continue
+        if not isinstance(values, np.ndarray | np.number):
+            raise fault(maker, f"posed a problem with {_words(name)} of type {type_name(values)}; it must be an array")
+        if values.shape != problem.batch_shape and not (maker.kind == "rig" and values.shape == ()):
+            raise fault(
+                maker, f"posed a problem with {_words(name)} of shape {values.shape}; it must be {problem.batch_shape}"
+            )
+        _check_posed(maker, problem, name, values, least)
     for name in Strips.__slots__ if problem.strips is not None else ():
         _check_posed(maker, problem, f"{name} of strips", getattr(problem.strips, name), -math.inf)
 
 
 def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: float) -> None:
     values = np.asarray(values)
-    if problem.exists is not None:
+    if problem.exists is not None and values.shape:
         values = values[problem.exists]
     lowest, highest = extremes(values) if values.size else (1.0, 1.0)
     if not least < lowest <= highest < math.inf:  # as for NaN

@@ -67,7 +67,7 @@ class Staged(ContactModel):
         there = problem.existing()
         with Blame(self.stage):
             found = self.stage.altered(there, forces)
-        returned = (found.geometry, found.batch_shape) if isinstance(found, Problem) else type(found).__name__
+            returned = (found.geometry, found.batch_shape) if isinstance(found, Problem) else type(found).__name__
         if returned != (due := (there.geometry, there.batch_shape)):
             raise fault(self.stage, f"returned {returned} from `altered`; it must return a wearlaw.Problem of {due}")
         check_problem(self, found)
