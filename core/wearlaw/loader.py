@@ -229,8 +229,17 @@ def _hooks(entry_point: EntryPoint, origin: Origin) -> pluggy.HookRelay:
     return manager.hook
 
 
+def _answers(hooks: pluggy.HookRelay, name: str) -> list[Any]:
+    """Return the answers of a plugin's hook, or raise `TypeError` if it returns None, which pluggy leaves out."""
+    hook = getattr(hooks, name)
+    answers: list[Any] = hook()
+    if hook.get_hookimpls() and not answers:
+        raise TypeError(f"{name}: returned None; is its `return` missing? Without anything to provide, leave it out")
+    return answers
+
+
 def _add_models(hooks: pluggy.HookRelay, origin: Origin, found: Installed) -> None:
-    for model in chain.from_iterable(hooks.wearlaw_models()):
+    for model in chain.from_iterable(_answers(hooks, "wearlaw_models")):
         kind = getattr(model, "kind", None)
         if kind not in MODELS or not isinstance(model, type):
             raise TypeError(f"wearlaw_models: {shown(model)} is no {', '.join(MODELS)}; return classes of models")
@@ -244,7 +253,7 @@ def _add_models(hooks: pluggy.HookRelay, origin: Origin, found: Installed) -> No
 
 
 def _add_kinds(hooks: pluggy.HookRelay, found: Installed) -> None:
-    for answer in hooks.wearlaw_resources():
+    for answer in _answers(hooks, "wearlaw_resources"):
         for kind, made in answer.get("kind", {}).items():
             found.shelves[kind] = Shelf(kind, made.type)
             found.explanations[kind] = made.explanation
@@ -252,7 +261,7 @@ def _add_kinds(hooks: pluggy.HookRelay, found: Installed) -> None:
 
 def _add_named(hooks: pluggy.HookRelay, origin: Origin, found: Installed) -> None:
     """Add parameter sets, materials, resources and commands."""
-    for name, item in chain.from_iterable(answer.items() for answer in hooks.wearlaw_named()):
+    for name, item in chain.from_iterable(answer.items() for answer in _answers(hooks, "wearlaw_named")):
         if not isinstance(item, WearLaw):
             _add_material(name, item, origin, found)
         elif name in found["wear law"].providers:  # the look-up would give the law
@@ -268,7 +277,7 @@ def _add_named(hooks: pluggy.HookRelay, origin: Origin, found: Installed) -> Non
             raise TypeError(f"wearlaw_resources: no kind {shown(kind)}{did_you_mean(kind, found.explanations)}")
         for name, item in items.items():
             found[kind].add(name, item, origin)
-    for command in chain.from_iterable(hooks.wearlaw_commands()):
+    for command in chain.from_iterable(_answers(hooks, "wearlaw_commands")):
         found["command"].add(command.name, command, origin)
 
 

@@ -36,6 +36,13 @@ BROKEN = {
         "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    raise KeyError('lost')",
         "KeyError: 'lost'",
     ),
+    **{
+        f"{hook}_that_returns_nothing": (
+            f"import wearlaw\n@wearlaw.hookimpl\ndef {hook}():\n    pass",
+            f"TypeError: {hook}: returned None; is its `return` missing?",
+        )
+        for hook in ("wearlaw_models", "wearlaw_named", "wearlaw_resources", "wearlaw_commands")
+    },
     "instance_in_place_of_a_class": (
         "import wearlaw\n@wearlaw.hookimpl\ndef wearlaw_models():\n    return ['exact']",
         "TypeError: wearlaw_models: 'exact' is no rig, contact model, stage, wear law, law, reader",
@@ -150,7 +157,7 @@ def test_one_name_of_two_distributions_is_an_error_that_names_both(install: Inst
     assert wl.wear_law("usfd").name == "usfd"
 
 
-def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_return_nothing(install: Install) -> None:
+def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_provide_nothing(install: Install) -> None:
     hooks = """
     @wl.hookimpl(optionalhook=True)
     def wearlaw_of_tomorrow():
@@ -162,7 +169,7 @@ def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_return_nothing(ins
 
     @wl.hookimpl
     def wearlaw_resources():
-        return None
+        return {}
     """
     install("outside_plugin", LAW.format(name="outside") + hooks)
     assert "outside" in wl.wear_laws()
