@@ -208,7 +208,9 @@ class Behind(wl.WearLaw):
         return 5e-9 * contact.wear_index_density * np.where(contact.x < 1e-3, 1.0, 2.0)
 
 
-RIGHT: list[Any] = [*(Lubricated(), wl.patch_mean(), Damage(), AreaMean(), Power(), RunningIn(), Behind())]
+RIGHT: list[Any] = [
+    *(Lubricated(), Lubricated(share=0.9), wl.patch_mean(), Damage(), AreaMean(), Power(), RunningIn(), Behind())
+]
 """Stages and laws that pass."""
 
 CAUGHT: dict[Any, str] = {
