@@ -140,7 +140,13 @@ def describe(model: type[Model], head: str | None = None, law: Law | None = None
             default = model()
     headline = f"{model.name}: a {model.kind} of {loader.installed()[model.kind].origin(model.name)}"
     lines = [*([head] if head else []), headline, "", inspect.getdoc(model) or ""]
-    lines += ["", *wrapped("source: ", model.source), "", "fields:", *fields_of(model, default)]
+    lines += [
+        "",
+        *wrapped("source: ", getattr(model, "source", "not stated")),
+        "",
+        "fields:",
+        *fields_of(model, default),
+    ]
     if issubclass(model, Rig):
         lines += ["", "conditions:", *_conditions(model), *_example(model)]
     declared = list(_declared(model, default))

@@ -40,6 +40,15 @@ def exemptions_are_claims(model: Model) -> None:
         assert str(reason or "").strip(), f"the exemption from '{claim}' has no reason"
 
 
+@rule(Model, always=True)
+def source_is_stated(model: Model) -> None:
+    """`source` says where the theory comes from: literature, a report, or whose idea it is."""
+    assert str(getattr(model, "source", "")).strip(), (
+        f'{type(model).__name__} has no source; write source: ClassVar[str] = "..." into the class, such as the'
+        " authors, journal and year of its formula"
+    )
+
+
 @dataclass(frozen=True)
 class Check:
     """One invariant of one model; calling it raises an `AssertionError` if the model breaks it.

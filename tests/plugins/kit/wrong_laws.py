@@ -222,6 +222,12 @@ class NoReason(Linear):
         return {"each_node_wears_by_itself": " "}
 
 
+class NoSource(Linear):
+    """States no source."""
+
+    source: ClassVar[str] = " "
+
+
 OF_RATE: dict[str, Any] = {name: of_rate(name, rate) for name, (_, rate) in WRONG_RATES.items()}
 """The classes of these laws."""
 
@@ -236,5 +242,6 @@ CAUGHT: dict[Any, str] = {
     BandUpsideDown: "band_is_ordered",
     UnknownClaim: "exemptions_are_claims",
     NoReason: "exemptions_are_claims",
+    NoSource: "source_is_stated",
 }
 """The check that must catch each."""

@@ -97,6 +97,17 @@ def test_a_law_that_declares_nothing_or_must_be_given_a_field_is_described(monke
     assert must.endswith("declares: what depends on its fields")
 
 
+def test_a_law_without_a_source_is_described(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Unsaid(wl.WearLaw):
+        """Wears nothing."""
+
+        name = "unsaid"
+        rate = Silent.rate
+
+    cases.installer(monkeypatch)(Unsaid)
+    assert "source: not stated" in said(Unsaid)
+
+
 def test_a_stage_is_described() -> None:
     mean = said(wl.stages()["patch_mean"])
     assert mean.startswith("patch_mean: a stage of wearlaw")
