@@ -80,7 +80,10 @@ def test_every_array_of_a_problem_takes_part_in_its_batch() -> None:
         rolled_distance="5 km",
     )
     given = found.replaced(
-        traction_coefficient=np.array([0.1, 0.2, 0.3]), exists=np.array([True, True, False]), dims={"patch": (1, 2, 3)}
+        traction_coefficient=np.array([0.1, 0.2, 0.3]),
+        exists=np.array([True, True, False]),
+        dims={"patch": (1, 2, 3)},
+        unloaded=np.array([False, False, True]),
     )
     fields = {field.name: getattr(given, field.name) for field in dataclasses.fields(given)}
     assert [name for name, value in fields.items() if value is None] == ["strips"]

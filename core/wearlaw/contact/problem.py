@@ -232,6 +232,9 @@ class Problem:
         its entries, such as {"side": ("left", "right"), "patch": (1, 2, 3)}.
     exists : array of bool, or None
         Marks the existing patches; the others are not solved, and their results are NaN. None if all patches exist.
+    unloaded : array of bool, or None
+        Marks those of the missing patches that bear no load, such as those of a lifted wheel; their results are zero.
+        None if there are none.
     """
 
     geometry: Geometry
@@ -254,6 +257,7 @@ class Problem:
     bodies: Mapping[str, Body] = field(default_factory=dict)
     dims: Mapping[str, tuple[str | int, ...]] = field(default_factory=dict)
     exists: NDArray[np.bool_] | None = None
+    unloaded: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -328,11 +332,17 @@ class Problem:
         ConditionsError
             If sizes or coefficients are so extreme that floats overflow or lose their precision.
         """
+        there = self.existing()
+        if not there.size:
+            return self
         if self.geometry == "line":
-            sizes = {"half width": self.a}
+            sizes = {"half width": there.a}
         else:
-            sizes = {"longer semi-axis": np.maximum(self.a, self.b), "shorter semi-axis": np.minimum(self.a, self.b)}
-        for name, value in {**sizes, "max pressure": self.max_pressure, "normal force": self.normal_force}.items():
+            sizes = {
+                "longer semi-axis": np.maximum(there.a, there.b),
+                "shorter semi-axis": np.minimum(there.a, there.b),
+            }
+        for name, value in {**sizes, "max pressure": there.max_pressure, "normal force": there.normal_force}.items():
             low, high = extremes(value)
             if not (low > TINY and high < 1.0 / TINY):
                 spread = f"{low:g}" if low == high else f"{low:g} to {high:g}"
@@ -341,7 +351,7 @@ class Problem:
                     " which no contact has; check the units of the load and of the rig"
                 )
         for name in ("friction_coefficient", "traction_coefficient"):
-            if (value := getattr(self, name)) is None:
+            if (value := getattr(there, name)) is None:
                 continue
             low, high = extremes(value)
             if low < LEAST_FRICTION or high > MOST_FRICTION:
@@ -461,6 +471,11 @@ class Problem:
     def size(self) -> int:
         """The number of operating points or, with several patches, of existing patches."""
         return math.prod(self.batch_shape) if self.exists is None else int(self.exists.sum())
+
+    @property
+    def resolved(self) -> NDArray[np.bool_] | None:
+        """Marks the patches with results: those that exist, and those that bear no load. None if all have."""
+        return self.exists if self.unloaded is None or self.exists is None else self.exists | self.unloaded
 
     @property
     def results(self) -> Mapping[str, str]:
@@ -611,7 +626,7 @@ class Problem:
         if self.longitudinal_creepage.ndim == 1 and not self.dims and self.exists is None:
             return self
         if self.exists is not None:
-            return self[self.exists].replaced(dims={}, exists=None)
+            return self[self.exists].replaced(dims={}, exists=None, unloaded=None)
         flat = self.mapped(_flat, _flat_strips)
         return flat.replaced(dims={}) if flat.dims else flat
 

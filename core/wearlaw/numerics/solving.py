@@ -57,7 +57,7 @@ ABOVE_ZERO = (
 )  # fmt: skip
 """Numbers of a problem that must be above zero."""
 
-POSED = {name: 0.0 if name in ABOVE_ZERO else -math.inf for name in ARRAYS if name != "exists"}
+POSED = {name: 0.0 if name in ABOVE_ZERO else -math.inf for name in ARRAYS if name not in ("exists", "unloaded")}
 """The numbers of a problem, each with the bound that it must be above."""
 
 _posed, _above_zero = attrgetter(*POSED), attrgetter(*ABOVE_ZERO)
@@ -192,7 +192,7 @@ def check_problem(maker: Model, problem: Problem) -> None:
 
 def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: float) -> None:
     values = np.asarray(values)
-    if problem.exists is not None and values.shape:
+    if problem.exists is not None and (values.shape or not problem.batch_shape):
         values = values[problem.exists]
     lowest, highest = extremes(values) if values.size else (1.0, 1.0)
     if not least < lowest <= highest < math.inf:  # as for NaN

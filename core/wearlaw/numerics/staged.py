@@ -73,7 +73,9 @@ class Staged(ContactModel):
         check_problem(self, found)
         if there is problem:
             return found
-        return found.mapped(problem.unflatten, problem.unflatten).replaced(dims=problem.dims, exists=problem.exists)
+        return found.mapped(problem.unflatten, problem.unflatten).replaced(
+            dims=problem.dims, exists=problem.exists, unloaded=problem.unloaded
+        )
 
     def refined(self) -> ContactModel | None:
         """Return the stage around the refined model, or None if the model cannot be refined."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
@@ -60,6 +60,12 @@ class Across(NamedTuple):
     slid: Array
 
     @classmethod
+    def missing(cls, problem: Problem) -> Across:
+        """Return the strips of a problem none of whose patches exists, two of NaN."""
+        none = problem.unflatten(np.empty((0, 2)))
+        return cls(none, none, none, none)
+
+    @classmethod
     def of(cls, contact: Contact, wear: Array) -> Across:
         """Return the slip of a contact on strips, with the wear along them."""
         return cls(contact.y[..., 0, :], contact.strip_width, wear, contact.over_strip(contact.slip))
@@ -106,6 +112,15 @@ class Totals(NamedTuple):
     def of_forces(cls, forces: CreepForces) -> Totals:
         """Return the totals of forces alone."""
         return cls(longitudinal=forces.longitudinal, lateral=forces.lateral, spin_moment=forces.spin_moment)
+
+    @classmethod
+    def missing(cls, problem: Problem, laws: Sequence[object]) -> Totals:
+        """Return the totals of a problem none of whose patches exists."""
+        none = problem.unflatten(np.empty(0))
+        every = (none,) * len(laws)
+        return cls(
+            every, every, none, none, none, none, slip=SlipTotals(none, none, none, none), across=(None,) * len(laws)
+        )
 
     @property
     def forces(self) -> CreepForces:

@@ -332,7 +332,7 @@ def _masked(problem: Problem) -> Problem:
     masked = problem.mapped(
         lambda array: np.where(exists, array, np.nan), lambda array: np.where(of_strips, array, np.nan)
     )
-    return masked.replaced(exists=exists)
+    return masked.replaced(exists=exists, unloaded=problem.unloaded)
 
 
 def _read_only(value: Any) -> Any:
@@ -478,7 +478,7 @@ class Pipeline(Configuration, Generic[P]):
         return self._predicted(problem, RangeWatch(*self.laws, on_block=on_block))
 
     def _predicted(self, problem: Problem, watch: RangeWatch, given: Mapping[str, Any] | None = None) -> Prediction:
-        if problem.exists is not None and not problem.exists.any():
+        if problem.resolved is not None and not problem.resolved.any():
             raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
         self.warn_of_problem(problem)
         found = self.watched(problem, watch, given)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 import pint
 
-from wearlaw.arrays import same, steady
+from wearlaw.arrays import Array, same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
@@ -171,11 +171,11 @@ class Prediction:
         named = named_outcomes(self.laws)
         if name in named:
             index = named[name]
-            return from_si(self._solution.value(index), self.laws[index].outcome.unit)
+            return self._si(self._solution.value(index), self.laws[index].outcome.unit)
         if name.endswith(ERROR) and name.removesuffix(ERROR) in named:
             return self._error(named[name.removesuffix(ERROR)])
         if name in self.problem.results:
-            return from_si(getattr(self.problem, name), self.problem.results[name])
+            return self._si(getattr(self.problem, name), self.problem.results[name])
         if not name.startswith("_") and hasattr(type(self), name):
             value = getattr(self, name)
             if isinstance(value, pint.Quantity):
@@ -207,6 +207,11 @@ class Prediction:
     def __hash__(self) -> int:
         return hash((self.problem.geometry, self.problem.batch_shape))
 
+    def _si(self, values: Array, unit: str) -> Quantity:
+        """Return SI values of the patches as a quantity, zero for patches that bear no load."""
+        unloaded = self.problem.unloaded
+        return from_si(values if unloaded is None else np.where(unloaded, 0.0, values)[()], unit)
+
     def outcome(self, name: str, body: str | None = None) -> Quantity:
         """Return the outcome of a law, with its unit.
 
@@ -223,10 +228,10 @@ class Prediction:
             If no law predicts the outcome, or the laws differ by body and none is given.
         """
         index = self._solution.law(name, body)
-        return from_si(self._solution.value(index, body), self.laws[index].outcome.unit)
+        return self._si(self._solution.value(index, body), self.laws[index].outcome.unit)
 
     def _error(self, index: int) -> Quantity:
-        return from_si(self._solution.error_with_energy(index), self.laws[index].outcome.unit)
+        return self._si(self._solution.error_with_energy(index), self.laws[index].outcome.unit)
 
     def to_dataset(self, names: Sequence[str] | None = None) -> xarray.Dataset:
         """Return the prediction as a labelled dataset.
@@ -300,28 +305,28 @@ class Prediction:
     @property
     def longitudinal_force(self) -> Quantity:
         """Longitudinal force, Fx [N], with the sign of the longitudinal creepage."""
-        return from_si(self._solution.forces.longitudinal, "N")
+        return self._si(self._solution.forces.longitudinal, "N")
 
     @property
     def lateral_force(self) -> Quantity:
         """Lateral force, Fy [N], with the sign of the lateral creepage and of the spin."""
-        return from_si(self._solution.forces.lateral, "N")
+        return self._si(self._solution.forces.lateral, "N")
 
     @property
     def spin_moment(self) -> Quantity:
         """Spin moment, Mz [N m], with the sign of the spin."""
-        return from_si(self._solution.forces.spin_moment, "N*m")
+        return self._si(self._solution.forces.spin_moment, "N*m")
 
     @property
     def tangential_force(self) -> Quantity:
         """Tangential force, T [N]: on a line with the sign of the creepage, on an ellipse √(Fx² + Fy²)."""
-        return from_si(self._solution.force, "N")
+        return self._si(self._solution.force, "N")
 
     @property
     @steady
     def traction_coefficient(self) -> Quantity:
         """Tangential over normal force, T/N [-]."""
-        return from_si(self._solution.force / self.problem.normal_force, "")
+        return self._si(self._solution.force / self.problem.normal_force, "")
 
     @property
     def wear_index(self) -> Quantity:
@@ -330,7 +335,7 @@ class Prediction:
         This is the energy that the creepages feed in (Tassini et al. 2010, eq. 5). The energy that the nodes of the
         patch dissipate is `cell_wear_index`.
         """
-        return from_si(self._solution.power, "N")
+        return self._si(self._solution.power, "N")
 
     @property
     def cell_wear_index(self) -> Quantity:
@@ -338,7 +343,7 @@ class Prediction:
 
         Local wear laws see this energy. In the simplified theory with spin it differs from `wear_index`.
         """
-        return from_si(self._solution.slip.cell_wear_index, "N")
+        return self._si(self._solution.slip.cell_wear_index, "N")
 
     @property
     @steady
@@ -355,82 +360,82 @@ class Prediction:
             out=np.zeros_like(slip.slip_area),
             where=slip.slip_area > 0,
         )
-        return from_si(slipping * np.abs(self._solution.force), "N")
+        return self._si(slipping * np.abs(self._solution.force), "N")
 
     @property
     @steady
     def wear_index_density(self) -> Quantity:
         """Wear index over the area of the patch, Tγ/A [N/m²]."""
-        return from_si(self._solution.power / self._solution.patch_area, "N/mm^2")
+        return self._si(self._solution.power / self._solution.patch_area, "N/mm^2")
 
     @property
     def normal_force(self) -> Quantity:
         """Normal force, N [N]; on a line, over its whole width."""
-        return from_si(self.problem.normal_force, "kN")
+        return self._si(self.problem.normal_force, "kN")
 
     @property
     def normal_force_per_width(self) -> Quantity:
         """Normal force per unit width of a line, P [N/m]."""
-        return from_si(self.problem.normal_force_per_width, "kN/m")
+        return self._si(self.problem.normal_force_per_width, "kN/m")
 
     @property
     def creepage(self) -> Quantity:
         """Longitudinal creepage, ξ [-], positive if body 1 is the faster one."""
-        return from_si(self.problem.longitudinal_creepage, "%")
+        return self._si(self.problem.longitudinal_creepage, "%")
 
     @property
     def lateral_creepage(self) -> Quantity:
         """Lateral creepage, η [-]; zero on a line."""
-        return from_si(self.problem.lateral_creepage, "%")
+        return self._si(self.problem.lateral_creepage, "%")
 
     @property
     def spin(self) -> Quantity:
         """Spin, φ [1/m]; zero on a line."""
-        return from_si(self.problem.spin, "1/m")
+        return self._si(self.problem.spin, "1/m")
 
     @property
     def contact_angle(self) -> Quantity:
         """Contact angle, δ [rad], of the surface to the axle; zero if the problem gives none."""
         angle, level = self.problem.contact_angle, 0.0 * self.problem.normal_force  # NaN where there is no patch
-        return from_si(level if angle is None else angle, "deg")
+        return self._si(level if angle is None else angle, "deg")
 
     @property
     def friction_coefficient(self) -> Quantity:
         """Friction coefficient, μ [-]."""
-        return from_si(self.problem.friction_coefficient, "")
+        return self._si(self.problem.friction_coefficient, "")
 
     @property
     def half_width(self) -> Quantity:
         """Half the length of a line's patch in the rolling direction, a [m]."""
         self.problem.needs("line", "half_width")
-        return from_si(self.problem.a, "mm")
+        return self._si(self.problem.a, "mm")
 
     @property
     def semi_axis_a(self) -> Quantity:
         """Semi-axis of an ellipse in the rolling direction, a [m]."""
         self.problem.needs("ellipse", "semi_axis_a")
-        return from_si(self.problem.a, "mm")
+        return self._si(self.problem.a, "mm")
 
     @property
     def semi_axis_b(self) -> Quantity:
         """Semi-axis of an ellipse across the rolling direction, b [m]."""
         self.problem.needs("ellipse", "semi_axis_b")
-        return from_si(self.problem.b, "mm")
+        return self._si(self.problem.b, "mm")
 
     @property
     def max_pressure(self) -> Quantity:
         """Hertz's maximum pressure, p0 [Pa]."""
-        return from_si(self.problem.max_pressure, "MPa")
+        return self._si(self.problem.max_pressure, "MPa")
 
     @property
     def first_yield(self) -> Quantity:
         """Maximum pressure at which a body first yields under this traction [Pa]; see `elastic_limit`."""
-        return from_si(self._solution.elastic_limits[0], "MPa")
+        return self._si(self._solution.elastic_limits[0], "MPa")
 
     @property
     def shakedown_limit(self) -> Quantity:
         """Maximum pressure at the shakedown limit under this traction [Pa]; see `elastic_limit`."""
-        return from_si(self._solution.elastic_limits[1], "MPa")
+        return self._si(self._solution.elastic_limits[1], "MPa")
 
     @property
     def outside_range(self) -> Quantity:
@@ -443,22 +448,22 @@ class Prediction:
         for law in self.laws:
             outside |= outside_range(problem, totals, law) | bool(other_materials(problem.bodies, law))
         marks = outside.astype(np.float64)
-        return from_si(marks if problem.exists is None else np.where(problem.exists, marks, np.nan), "")
+        return self._si(marks if problem.exists is None else np.where(problem.exists, marks, np.nan), "")
 
     @property
     def patch_area(self) -> Quantity:
         """Area of the patch, A [m²], the sum of its nodes' areas; in Hertz's theory 2a × track width, or πab."""
-        return from_si(self._solution.patch_area, "mm^2")
+        return self._si(self._solution.patch_area, "mm^2")
 
     @property
     def stick_ratio(self) -> Quantity:
         """Share of the patch that sticks [-]."""
-        return from_si(1.0 - self._solution.slip.slip_area / self._solution.slip.patch_area, "")
+        return self._si(1.0 - self._solution.slip.slip_area / self._solution.slip.patch_area, "")
 
     @property
     def mean_slip(self) -> Quantity:
         """Mean magnitude of the relative slip over the whole patch [-]."""
-        return from_si(self._solution.slip.mean_slip, "%")
+        return self._si(self._solution.slip.mean_slip, "%")
 
     @property
     def contact(self) -> Contact:
@@ -518,7 +523,7 @@ class Prediction:
         If the law gives a volume and the densities of the bodies differ, the mass is that of body 1. With a single law
         for one body it is the wear of that body; if each body has its own law, take `wear_rate_of`.
         """
-        return from_si(self._solution.value(self._solution.law()), WEAR_RATE)
+        return self._si(self._solution.value(self._solution.law()), WEAR_RATE)
 
     def wear_rate_of(self, body: str) -> Quantity:
         """Return the mass that a body loses per metre rolled and contact area, mean over the patch [kg/m/m²].
@@ -528,7 +533,7 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        return from_si(self._solution.value(self._solution.law(body=body), body), WEAR_RATE)
+        return self._si(self._solution.value(self._solution.law(body=body), body), WEAR_RATE)
 
     @property
     def wear_rate_error(self) -> Quantity:
@@ -552,7 +557,7 @@ class Prediction:
         body : str
             Its name in the rig, such as "disc_1" or "wheel".
         """
-        return from_si(0.5 * self._solution.section_per_distance(body) / self.problem.b, "um/km")
+        return self._si(0.5 * self._solution.section_per_distance(body) / self.problem.b, "um/km")
 
     @steady
     def profile_area_rate(self, body: str) -> Quantity:
@@ -561,13 +566,13 @@ class Prediction:
         This is the measure of the BRR law (Pearce and Sherratt, Wear 144 (1991) 343-351, after Tassini et al.
         2010, section 4.1): the depth per distance, times the width of the patch.
         """
-        return from_si(self._solution.section_per_distance(body), "mm^2/km")
+        return self._si(self._solution.section_per_distance(body), "mm^2/km")
 
     @property
     @steady
     def mass_per_distance(self) -> Quantity:
         """Mass that a body loses per metre rolled [kg/m]; of body 1, like `wear_rate`."""
-        return from_si(self._solution.mass_per_distance(), "ug/m")
+        return self._si(self._solution.mass_per_distance(), "ug/m")
 
     @steady
     def mass_lost(self, over: QuantityLike, body: str | None = None) -> Quantity:
@@ -583,7 +588,7 @@ class Prediction:
         self.problem.body(body)
         distance, mass = Unit("km").si(over, "over"), self._solution.mass_per_distance(body)
         try:
-            return from_si(mass * distance, "mg")
+            return self._si(mass * distance, "mg")
         except ValueError:
             raise InputError(
                 f"over: an array of shape {distance.shape} does not broadcast to the operating points, of shape"
@@ -594,7 +599,7 @@ class Prediction:
     def mass_per_cycle(self, body: str) -> Quantity:
         """Return the mass that a body loses in one of its revolutions, over πD rolled [kg]."""
         solution = self._solution
-        return from_si(solution.mass_per_distance(body) * solution.circumference(body), "ug")
+        return self._si(solution.mass_per_distance(body) * solution.circumference(body), "ug")
 
     def __repr__(self) -> str:
         return "".join([self._head, *(f"\n  {name:<20} {text}" for name, text in self._summary.items())])
@@ -633,7 +638,10 @@ def solved(
 
     `given` are the conditions.
     """
-    totals = integrate.integrate_laws(model, laws, problem, watch.see)
+    if problem.exists is not None and not problem.size:
+        totals = Totals.missing(problem, laws)
+    else:
+        totals = integrate.integrate_laws(model, laws, problem, watch.see)
     solution = Solution(problem, model, laws, totals, given)
     for index, law in enumerate(laws):
         if law.outcome.of == "patch":

@@ -90,7 +90,8 @@ class Selection:
         exists = None if problem.exists is None else self.of(problem.exists)
         if exists is not None and exists.all():
             exists = None
-        return problem.mapped(self.of, self.of).replaced(dims=dims, exists=exists)
+        unloaded = None if problem.unloaded is None else self.of(problem.unloaded)
+        return problem.mapped(self.of, self.of).replaced(dims=dims, exists=exists, unloaded=unloaded)
 
     def of_solved(self, contact: Contact, problem: Problem) -> Contact:
         """Return the chosen ones of the existing patches, which lie along the one batch axis of a solved contact."""

@@ -171,7 +171,9 @@ class Solution:
         kept = self.totals.across[index] if strips is None and self._holds_for(index, body) else None
         if kept is not None:
             return kept
-        if self.problem.size == 0 and self.whole is not None:  # a missing patch alone has no strips
+        if self.problem.size == 0:  # a missing patch alone has no strips
+            if self.whole is None:
+                return Across.missing(self.problem)
             whole, chosen = self.whole
             return each(chosen.of, whole.across(index, body, strips))  # type: ignore[no-any-return]
         law = self._law_of(index, body)

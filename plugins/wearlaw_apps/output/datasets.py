@@ -87,8 +87,8 @@ def to_dataframe(prediction: Prediction, solution: Solution, names: Sequence[str
     problem = prediction.problem
     (dims, *_) = (list(one.dims) for one in found.data_vars.values())
     rows = found.to_dataframe(dim_order=dims) if dims else found.expand_dims(POINT).to_dataframe()
-    if problem.exists is not None:
-        rows = rows[problem.exists.reshape(-1)]
+    if problem.resolved is not None:
+        rows = rows[problem.resolved.reshape(-1)]
     order = [*conditions.numbers, *problem.dims, *found.data_vars]
     columns = [name for name in dict.fromkeys(order) if name in found.variables]
     table = rows.reset_index()[columns]

@@ -52,7 +52,7 @@ def wear_profile(solution: Solution, body: str, strips: int | None, at: Quantity
         raise InputError(f"strips: must be a whole number from 2 to {MOST_STRIPS}, such as 101; got {shown(strips)}")
     across = solution.across(solution.law(body=body), body, strips)
     radius = np.asarray(worn.rolling_radius)
-    turns = bool(np.isfinite(radius).any())
+    turns = not np.isinf(radius).any()
     once = (2.0 * np.pi * radius if turns else np.ones_like(radius))[..., None]
     units = ("um/km", "mm/m") if turns else ("nm", "um")
     depth = across.wear / (scalar_si(worn.material.density, "kg/m^3") * once)
@@ -62,6 +62,10 @@ def wear_profile(solution: Solution, body: str, strips: int | None, at: Quantity
         columns["depth_vertical"] = depth * np.cos(angle), units[0]
         columns["depth_lateral"] = depth * np.abs(np.sin(angle)), units[0]
     per = "metre rolled" if turns else "passage of a wheel"
+    if problem.unloaded is not None:
+        columns = {
+            name: (np.where(problem.unloaded[..., None], 0.0, one), unit) for name, (one, unit) in columns.items()
+        }
     if at is not None:
         return _on_profile(problem, worn, across.y, across.width, columns, per, at)
     batch = axis_names(problem)

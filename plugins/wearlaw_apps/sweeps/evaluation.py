@@ -128,11 +128,7 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
         _check_axes(job, problem, part)
         on_block = on_block and _in_points(on_block, part.size, problem.size)
     watch = RangeWatch(*job.pipeline.laws, on_block=on_block)
-    if problem.size:
-        prediction = job.pipeline.watched(problem, watch)
-        outputs = job.outputs(prediction, part)
-    else:  # the bodies touch nowhere
-        outputs = {name: np.full((part.size, *job.own_shape(name)), np.nan) for name in job.units}
+    outputs = job.outputs(job.pipeline.watched(problem, watch), part)
     return outputs, BlockRecord(watch.points, watch.overload, watch.seen, tuple(remarks))
 
 

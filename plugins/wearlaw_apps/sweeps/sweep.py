@@ -259,7 +259,7 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
             return posed(line, lambda given: pipeline.rig.checked_problem({**not_given, **given}))
 
     first = along(points.dims[0], slice(0, SAMPLE))
-    slipperiest, there = first, first if first.size else None
+    slipperiest, there = first, first if first.size or first.unloaded is not None else None
     known = points.sizes[points.dims[0]] <= SAMPLE
     for dim in points.dims[1 if known else 0 :]:
         size = points.sizes[dim]

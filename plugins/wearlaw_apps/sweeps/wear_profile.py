@@ -127,7 +127,7 @@ class ProfileJob(Job):
         problem = super().posed(conditions)
         if not self.summed:
             return problem
-        if problem.exists is not None and PATCH in problem.dims and not problem.exists.any(self._patches).all():
+        if problem.resolved is not None and PATCH in problem.dims and not problem.resolved.any(self._patches).all():
             wrong = "no normal forces balance this state, as where friction holds a flange"
         elif np.any(getattr(problem, "climbs", False)):
             wrong = "the wheel climbs its rail, beyond the steepest point of its flange, as no wheel does in service"

@@ -28,10 +28,10 @@ class WheelRailConditions(TypedDict, total=False):
     positive lateral creepage at the leading edge. The contact angle is positive where the surface falls towards y.
     """
 
-    normal_force: Annotated[wl.QuantityLike, wl.Unit("kN")]
-    """Normal force, N [N]."""
-    max_pressure: Annotated[wl.QuantityLike, wl.Unit("MPa")]
-    """Hertz's maximum pressure, p0 [Pa]."""
+    normal_force: Annotated[wl.QuantityLike, wl.Unit("kN", positive=False, negative=False)]
+    """Normal force, N [N]; zero where the wheel is lifted, and all results with it."""
+    max_pressure: Annotated[wl.QuantityLike, wl.Unit("MPa", positive=False, negative=False)]
+    """Hertz's maximum pressure, p0 [Pa]; zero as for the normal force."""
     longitudinal_creepage: Required[wl.Creepage]
     """Longitudinal creepage, ξ [-], of magnitude at most 1; positive if the wheel is braked."""
     lateral_creepage: wl.Creepage
@@ -188,10 +188,13 @@ class WheelRail(wl.Rig):
         if "max_pressure" in arrays:
             pressure = arrays.pop("max_pressure")
             arrays["normal_force"] = (pressure / patch.max_pressure) ** 3
+        loaded = arrays["normal_force"] > 0.0
         scale = np.cbrt(arrays["normal_force"])
         a, b = patch.a * scale, patch.b * scale
         same: dict[str, Any] = constants._asdict()
         same = {name: np.broadcast_to(value, shape) if shape else np.float64(value) for name, value in same.items()}
+        if not loaded.all():
+            same |= {"exists": loaded, "unloaded": ~loaded}
         return wl.Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **same).checked()
 
     @cached_property

@@ -154,6 +154,8 @@ class Task:
         V and v_y [m/s], the rate of the yaw and ω_z [rad/s].
     load : ndarray, (positions, 2)
         Vertical load of each wheel, Q [N].
+    bears : ndarray of bool, (positions, 2)
+        Whether each wheel bears a load; the small load of one that does not is left out of the results.
     friction : pair of ndarray or FallingFriction
         Friction coefficient on the tread and on the flange [-].
     flange_angle : float
@@ -175,6 +177,7 @@ class Task:
     yaw_velocity: Array
     turn_rate: Array
     load: Array
+    bears: NDArray[np.bool_]
     friction: tuple[Friction, Friction]
     flange_angle: float
     torque: Array

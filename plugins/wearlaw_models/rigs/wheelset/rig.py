@@ -35,7 +35,7 @@ HUGE = 1e12
 
 DISPLACEMENT, ANGLE = (wl.Unit(unit, positive=False, limit=HUGE) for unit in ("mm", "mrad"))
 YAW = wl.Unit("mrad", positive=False, limit=200.0)  # a locomotive in the tightest curve has a tenth of it
-LOAD = wl.Unit("kN", limit=HUGE)
+LOAD = wl.Unit("kN", positive=False, negative=False, limit=HUGE)
 
 
 class WheelsetConditions(TypedDict, total=False):
@@ -47,7 +47,8 @@ class WheelsetConditions(TypedDict, total=False):
     """Lateral force on the wheelset, positive to the right [N], in place of a displacement. The wheelset stands where
     the rails bear it, at the nearest stable place to the middle of the track."""
     vertical_load: Annotated[wl.QuantityLike, LOAD]
-    """Vertical load of each wheel, Q [N]."""
+    """Vertical load of each wheel, Q [N]. It is zero for a lifted wheel, and so are its results; the other wheel rolls
+    as if the lifted one just touched its rail."""
     vertical_load_left: Annotated[wl.QuantityLike, LOAD]
     """Vertical load of the left wheel [N]; with `vertical_load_right` in place of `vertical_load`."""
     vertical_load_right: Annotated[wl.QuantityLike, LOAD]
@@ -95,6 +96,9 @@ MOST_PLAY = 40e-3
 
 LARGEST_RADIUS = 0.7
 """Radius of a wheel beyond which it is taken for a diameter [m]: locomotives have up to 0.63."""
+
+JUST_TOUCHING = 1e-3
+"""Share of the load of the other wheel with which a lifted one is taken to touch its rail."""
 
 HIGH_PRESSURE = 3.5e9
 """Maximum pressure that only the noise of points gives [Pa]: new flanges have up to about 3."""
@@ -489,12 +493,15 @@ class Wheelset(wl.Rig):
         """Return what is asked at positions; with a lateral force, they are in the middle of the track at first."""
         speed = np.full(given["yaw"].shape, wl.scalar_si(self.rolling_speed, "m/s"))
         none, one = np.zeros(speed.shape), given.get("vertical_load")
-        loads = [given[f"vertical_load_{side}"] if one is None else one for side in DIMS["side"]]
+        loads = np.stack([given[f"vertical_load_{side}"] if one is None else one for side in DIMS["side"]], axis=-1)
+        bears = loads > 0.0
+        touching = JUST_TOUCHING * np.maximum(loads.max(axis=-1, keepdims=True), 1.0)
         return Task(
             given.get("lateral_displacement", none), given["yaw"], speed, given["lateral_velocity"],
-            given["yaw_velocity"], given["yaw_velocity"] + speed / given["curve_radius"], np.stack(loads, axis=-1),
-            friction, wl.scalar_si(self.flange_angle, "rad"), given.get("axle_torque", none),
-            given.get("angular_speed"), "roll" not in given, given.get("lateral_force"),
+            given["yaw_velocity"], given["yaw_velocity"] + speed / given["curve_radius"],
+            np.where(bears, loads, touching), bears, friction, wl.scalar_si(self.flange_angle, "rad"),
+            given.get("axle_torque", none), given.get("angular_speed"), "roll" not in given,
+            given.get("lateral_force"),
         )  # fmt: skip
 
     def _rigid(self, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
@@ -553,7 +560,9 @@ class Wheelset(wl.Rig):
         size = balance.roll.size
         exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
         place = found.point, found.side, found.number
-        exists[place] = patch.touch & balance.balanced[found.point]
+        bears = balance.task.bears
+        exists[place] = patch.touch & balance.balanced[found.point] & bears[found.point, found.side]
+        lifted = None if bears.all() else np.repeat(~bears[..., None], PATCHES, axis=-1).reshape(*shape, 2, PATCHES)
 
         def wide(array: Array) -> Array:
             full = np.full(exists.shape, np.nan)
@@ -578,7 +587,7 @@ class Wheelset(wl.Rig):
             fields["rolled_distance"] = np.broadcast_to(distance[:, None, None], exists.shape).reshape(
                 *shape, 2, PATCHES
             )
-        fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES)}
+        fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES), "unloaded": lifted}
         fields |= {
             "roll": wide(balance.roll[found.point]),
             "penetration": wide(balance.penetration[found.wheel] - found.gap),
@@ -717,7 +726,9 @@ class Wheelset(wl.Rig):
 def _climbing(balance: Balance) -> NDArray[np.bool_]:
     """Return which places are the first of a wheel and on its flange beyond the steepest place."""
     steepest = np.array([one.steepest for one in balance.section.sides])
-    return np.asarray((balance.found.number == 0) & (balance.found.arc < steepest[balance.found.side]))
+    found = balance.found
+    over = (found.number == 0) & (found.arc < steepest[found.side])
+    return np.asarray(over & balance.task.bears[found.point, found.side])
 
 
 def _one(unit: wl.Unit, value: wl.QuantityLike, name: str) -> float:
