@@ -41,7 +41,7 @@ def pair(**changed: Any) -> ws.Wheelset:
         ({"gauge": "1.435 mm"}, "gauge"),
         ({"gauge_depth": "80 mm"}, "gauge_depth: 80 mm is below the gauge side of the rail"),
         *(({"rail_cant": cant}, "rail_cant") for cant in ("1:4", "steep", "40", "1:0", "1:4.0.0")),
-        *(({"rail_cant": cant}, "rail_cant.* such as '1:40'") for cant in (20, 0.025, "-1:40", " -1/40")),
+        *(({"rail_cant": cant}, "rail_cant.* such as '1:40'") for cant in (20, 0.025, "-1:40", " -1/40", "1:-40")),
         ({"pressure": "carter"}, "pressure"),
         ({"strips": 2}, "strips"),
         ({"wheel": "s1200"}, "s1200.*did you mean 's1002'"),

@@ -14,12 +14,15 @@ from wearlaw_models.rigs.wheelset.curve import Curve
 STEEPEST = np.radians(86.0)
 """Steepest slope of a profile on which contact is looked for [rad]."""
 
-HEAD = 60e-3
-"""Depth below a rail's top to which its head reaches at most; the foot, which is wider, lies deeper [m]."""
-
+DEEPEST = 36e-3
+"""Depth below a rail's top that no flange reaches, where a foot or a plate beside a nose lies [m]."""
 
 LOST = 0.5e-3
-"""Width beyond an end that is worth a word [m]: noise on the sides of a rail makes up to 0.3 mm."""
+"""Width beyond an end that is worth a word [m]."""
+
+PIECE, GENTLE = 2e-3, np.radians(80.0)
+"""Length of the pieces beyond an end [m], so that noise does not count, and the slope up to which their width does
+[rad]: the sides of rails are steeper even under the greatest cant."""
 
 LEANING = np.radians(3.0)
 """Greatest cant in use, 1 in 20, rounded up; single points that are too steep under it are passed over [rad]."""
@@ -41,7 +44,7 @@ NEAR = 2
 class End(NamedTuple):
     """Where the reachable part of a profile ends, as an index of the curve, and the width that lies beyond [m].
 
-    The width counts only slopes that a contact could have and what is not undercut, so none is beyond a rail's sides.
+    The width is that of pieces that are flatter than the sides of rails and not undercut.
     """
 
     place: int
@@ -73,27 +76,31 @@ def reach(curve: Curve, lean: float = 0.0, steepest: float = STEEPEST) -> Reach:
     across = curve.y * np.cos(lean) + curve.z * np.sin(lean)
     down = curve.z * np.cos(lean) - curve.y * np.sin(lean)
     steep = np.cos(curve.angle - lean) < np.cos(steepest)  # a loop adds a turn to the angles behind it
+    size = round(PIECE * (curve.s.size - 1) / (curve.s[-1] - curve.s[0]))
     if curve.sign < 0.0:
         flange = np.flatnonzero(curve.y < 0.0)
         tip = int(flange[curve.z[flange].argmax()]) if flange.size else 0
-        last, ends = _outwards(across, steep, tip)
+        last, ends = _outwards(across, steep, tip, size)
         return Reach(slice(tip, last), ends)
     top = int(down.argmin())
-    across = np.where(down < down[top] + HEAD, across, across[top])
-    last, ends = _outwards(across, steep, top)
-    end = curve.s.size - 1
-    first, others = _outwards(-across[::-1], steep[::-1], end - top)
-    return Reach(slice(end + 1 - first, last), tuple(End(end - one.place, one.lost) for one in others) + ends)
+    across = np.where(down < down[top] + DEEPEST, across, across[top])
+    last, ends = _outwards(across, steep, top, size)
+    final = curve.s.size - 1
+    first, others = _outwards(-across[::-1], steep[::-1], final - top, size)
+    return Reach(slice(final + 1 - first, last), tuple(End(final - end.place, end.lost) for end in others) + ends)
 
 
-def _outwards(y: Array, steep: NDArray[np.bool_], start: int) -> tuple[int, tuple[End, ...]]:
-    """Return the index behind the part from a start to greater y, and its end if it is too steep."""
-    found = np.flatnonzero(steep[start:])
-    if not found.size:
+def _outwards(y: Array, steep: NDArray[np.bool_], start: int, size: int) -> tuple[int, tuple[End, ...]]:
+    """Return the index behind the part from a start to greater y, and its end if it is too steep.
+
+    The size is the number of steps of a piece.
+    """
+    places = np.flatnonzero(steep[start:])
+    if not places.size:
         return y.size, ()
-    index = start + int(found[0])
-    gained = np.diff(np.maximum.accumulate(y[index:]))
-    return index, (End(index, float(gained[~steep[index + 1 :]].sum())),)
+    index = start + int(places[0])
+    gained = np.diff(np.maximum.accumulate(y[index:])[::size])
+    return index, (End(index, float(gained[gained > PIECE * np.cos(GENTLE)].sum())),)
 
 
 def without_spots(y: Array, z: Array, through: Callable[[NDArray[np.bool_]], Curve]) -> tuple[Curve, tuple[int, ...]]:
@@ -110,7 +117,7 @@ def without_spots(y: Array, z: Array, through: Callable[[NDArray[np.bool_]], Cur
     curve = through(keep)
     while len(spots) <= MOST_SPOTS:
         tried = (_passed_over(y, z, through, keep, curve, end) for end in _early(curve))
-        step = next((one for one in tried if one is not None), None)
+        step = next((choice for choice in tried if choice is not None), None)
         if step is None:
             return curve, tuple(sorted(spots))
         spot, curve = step
@@ -125,8 +132,8 @@ def _spikes(y: Array, z: Array) -> list[int]:
     before, here, behind = turn[:-2], turn[1:-1], turn[2:]
     back = np.minimum(-before * np.sign(here), -behind * np.sign(here))
     sharp = max(SHARP, RARE * float(np.median(np.abs(turn))) / MEDIAN)
-    found: list[int] = (2 + np.flatnonzero((np.abs(here) > sharp) & (back > SHARE * np.abs(here)))).tolist()
-    return found
+    places: list[int] = (2 + np.flatnonzero((np.abs(here) > sharp) & (back > SHARE * np.abs(here)))).tolist()
+    return places
 
 
 def _early(curve: Curve) -> list[End]:
@@ -144,12 +151,12 @@ def _passed_over(
     nearest = int(np.hypot(y[kept] - at[0], z[kept] - at[1]).argmin())
     around = kept[max(nearest - NEAR, 0) : nearest + NEAR + 1]
     size = float(np.hypot(y[around[0]] - y[around[-1]], z[around[0]] - z[around[-1]]))
-    found: list[tuple[float, int, Curve]] = []  # with the sharpest bend, which is least without the point in the wrong
+    choices: list[tuple[float, int, Curve]] = []  # with the sharpest bend, least without the point that is off
     for spot in around.tolist():
         rest = keep.copy()
         rest[spot] = False
         new = through(rest)
-        if all(np.hypot(new.y[one.place] - at[0], new.z[one.place] - at[1]) > size for one in _early(new)):
+        if all(np.hypot(new.y[other.place] - at[0], new.z[other.place] - at[1]) > size for other in _early(new)):
             near = np.hypot(new.y - at[0], new.z - at[1]) < size
-            found.append((float(np.abs(new.curvature[near]).max(initial=0.0)), spot, new))
-    return min(found, key=lambda one: one[0])[1:] if found else None
+            choices.append((float(np.abs(new.curvature[near]).max(initial=0.0)), spot, new))
+    return min(choices, key=lambda choice: choice[0])[1:] if choices else None

@@ -116,7 +116,7 @@ MARGIN = 1e-3
 CONICITY_POINTS = 801
 """Displacements at which the conicity takes radii."""
 
-RATIO = re.compile(r"\s*([+-]?)\s*1\s*[:/]\s*([0-9]+\.?[0-9]*)\s*")
+RATIO = re.compile(r"\s*(-?)\s*1\s*[:/]\s*(-?)\s*([0-9]+\.?[0-9]*)\s*")
 
 
 def _cant(value: object) -> object:
@@ -124,9 +124,9 @@ def _cant(value: object) -> object:
     if isinstance(value, int | float):
         raise wl.UnitError(f"got {value!r}; give a ratio or an angle, such as '1:40' or '1.4 deg'")
     ratio = RATIO.fullmatch(value) if isinstance(value, str) else None
-    if ratio and ratio[1] == "-":
-        raise wl.UnitError(f"got {value!r}; rails lean inwards with a cant without a sign, such as '1:{ratio[2]}'")
-    return wl.Q(float(np.arctan2(1.0, float(ratio[2]))), "rad") if ratio else value
+    if ratio and (ratio[1] or ratio[2]):
+        raise wl.UnitError(f"got {value!r}; rails lean inwards with a cant without a sign, such as '1:{ratio[3]}'")
+    return wl.Q(float(np.arctan2(1.0, float(ratio[3]))), "rad") if ratio else value
 
 
 Cant = Annotated[wl.Quantity, wl.Unit("rad", positive=False, limit=0.2), BeforeValidator(_cant)]
