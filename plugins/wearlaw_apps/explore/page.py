@@ -18,6 +18,7 @@ import wearlaw as wl
 from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.prediction import SHOWN
+from wearlaw.text_files import reason_of
 from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_apps.explore.subject import Subject, numbered
 from wearlaw_apps.output.commands import values
@@ -236,7 +237,7 @@ def explore(predict: Any, /, **conditions: Any) -> Any:
 @click.argument("rig", default="wheel_rail")
 @click.option("--law", "laws", metavar="LAW", multiple=True, help="Wear law to start with: its name or TOML file.")
 @click.option("--set", "conditions", metavar="CONDITION=VALUE", multiple=True, help="Start value of a condition.")
-@click.option("--port", default=0, help="Port of the page [default: a free one].")
+@click.option("--port", type=click.IntRange(0, 65535), default=0, help="Port of the page [default: a free one].")
 @click.option("--browser/--no-browser", default=True, help="Whether to open a browser.")
 def command(rig: str, laws: tuple[str, ...], conditions: tuple[str, ...], port: int, browser: bool) -> None:
     """Explore a rig on a local page: RIG is an installed rig, such as wheelset, or a case.
@@ -260,7 +261,11 @@ def command(rig: str, laws: tuple[str, ...], conditions: tuple[str, ...], port: 
 
     Page(subject, start)  # an error before the server starts
     look: dict[str, Any] = {"show": browser, "verbose": False, "title": f"wearlaw: {subject.rig.name}"}
-    server: Any = pn.serve(opened, port=port, address="localhost", start=False, **look)
+    try:
+        server: Any = pn.serve(opened, port=port, address="localhost", start=False, **look)
+    except OSError as error:  # another program uses it, or only the system may
+        hint = "choose another, or leave --port out for a free one"
+        raise click.ClickException(f"--port: cannot use {port}: {reason_of(error)}; {hint}") from None
     click.echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
     server.run_until_shutdown()
 

@@ -6,6 +6,7 @@ The browser needs chromium and chromedriver, as for the report.
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -30,6 +31,8 @@ pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning")  #
 
 needs_browser = pytest.mark.skipif(BROWSER is None or DRIVER is None, reason="needs chromium and chromedriver on PATH")
 
+EXPLORE = [sys.executable, "-c", "from wearlaw.cli import main; main()", "explore", "wheel_rail", "--no-browser"]
+
 DEEP = """
     const found = [];
     const visit = root => root.querySelectorAll("*").forEach(e => {
@@ -44,9 +47,8 @@ DEEP = """
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    command = [sys.executable, "-c", "from wearlaw.cli import main; main()", "explore", "wheel_rail", "--no-browser"]
     with subprocess.Popen(
-        command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}
+        EXPLORE, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}
     ) as it:
         assert it.stdout is not None
         line = it.stdout.readline()
@@ -208,6 +210,17 @@ def opened(browser: webdriver.Chrome, address: str, width: int) -> webdriver.Chr
     browser.get(address)
     wait(browser, lambda: "wear rate by usfd" in text(browser) and deep(browser, ".main-svg"))
     return browser
+
+
+def test_a_port_in_use_is_told() -> None:
+    with socket.create_server(("localhost", 0)) as used:
+        port = used.getsockname()[1]
+        refused = subprocess.run([*EXPLORE, "--port", str(port)], capture_output=True, text=True, timeout=120)
+    assert refused.returncode == 1
+    assert refused.stdout == ""
+    assert refused.stderr.splitlines()[-1].startswith(f"Error: --port: cannot use {port}: ")
+    assert refused.stderr.endswith("; choose another, or leave --port out for a free one\n")
+    assert "Traceback" not in refused.stderr
 
 
 def test_a_notebook_gets_a_page_that_renders() -> None:
