@@ -49,6 +49,14 @@ def minimum(session: nox.Session) -> None:
 
 
 @nox.session(python="3.11", default=False)
+@nox.parametrize("extra", ["none", "sweeps", "fits", "studies", "explore", "check", "dask", "fast"])
+def extras(session: nox.Session, extra: str) -> None:
+    """Install each extra alone, and run what it is for."""
+    session.install("." if extra == "none" else f".[{extra}]")
+    session.run("python", "tests/extras.py", extra)
+
+
+@nox.session(python="3.11", default=False)
 def docs(session: nox.Session) -> None:
     session.install("-e", ".[studies]", *nox.project.dependency_groups(PYPROJECT, "docs"))
     session.run("sphinx-build", "-W", "--keep-going", "-b", "html", "docs", "docs/_build/html")

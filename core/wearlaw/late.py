@@ -36,14 +36,20 @@ class MissingPackageError(WearlawError, ModuleNotFoundError):
 
 @contextmanager
 def needed_for(use: str, extra: str | None) -> Iterator[None]:
-    """Say how to install a package that is missing, while this context lasts; without an extra the error stays."""
+    """Say how to install a package that is missing, while this context lasts; without an extra the error stays.
+
+    A package that is there may still fail to import, because it is too old, or lacks a package or library of its own.
+    """
     try:
         yield
-    except ModuleNotFoundError as error:
-        if extra is None or error.name is None or error.name.startswith("wearlaw"):
+    except ImportError as error:
+        chain = (error, error.__cause__, error.__context__)  # pandas names what it misses in its text alone
+        cause = next((one for one in chain if isinstance(one, ImportError) and one.name), error)
+        if extra is None or (cause.name or "").startswith("wearlaw"):
             raise
-        message = f'{use} needs {error.name}; install it with: python -m pip install "wearlaw[{extra}]"'
-        raise MissingPackageError(message, name=error.name) from error
+        what = f"needs {cause.name}" if isinstance(cause, ModuleNotFoundError) else f"cannot be loaded: {error}"
+        message = f'{use} {what}; install it with: python -m pip install "wearlaw[{extra}]"'
+        raise MissingPackageError(message, name=cause.name) from error
 
 
 def load(place: str, name: str, use: str) -> Any:
