@@ -11,6 +11,7 @@ import sys
 import tempfile
 import warnings
 from collections.abc import Callable
+from importlib import import_module
 from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
@@ -77,9 +78,9 @@ def of_check() -> None:
 
 
 def of_dask() -> None:
-    from distributed import Client
+    distributed: Any = import_module("distributed")
 
-    with Client(processes=False, dashboard_address=None) as client:
+    with distributed.Client(processes=False, dashboard_address=None) as client:
         creepage = wl.Q([1, 2], "%")
         swept = wl.sweep(predict(), max_pressure="1500 MPa", creepage=creepage, friction_coefficient=0.4, client=client)
     assert swept.wear_rate.notnull().all()
