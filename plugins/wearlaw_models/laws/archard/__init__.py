@@ -86,8 +86,9 @@ class Archard(wl.WearLaw):
     converts it. H and the density ρ are those of the body that wears. If you give no hardness, it is the field
     `hardness` of the body's material, such as a `SteelWithHardness`.
 
-    Prefer this law where k was measured under one regime of wear. It can't tell mild from severe wear; use `kth` for
-    Archard's law with a map of k.
+    Prefer this law where k was measured under one regime of wear. It can't tell mild from severe wear or seizure; use
+    `kth` for Archard's law with a map of k. The law holds as long as p is well below H, since p/H is the share of the
+    surface that touches: at a p beyond H it still returns a number, without a meaning.
     """
 
     name: ClassVar[str] = "archard"
