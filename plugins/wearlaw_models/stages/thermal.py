@@ -80,17 +80,24 @@ class Thermal(wl.Stage):
 
         μ = μ0 [1 - (1 - h) min(max((θ - θ0)/Δθ, 0), 1)],
 
-    with μ0 of the conditions, and θ the rise of the surface temperature in the patch, as a mean weighted by the
-    pressure. Bulk temperatures do not enter: μ0 is the friction of the bodies as they roll in.
+    with μ0 of the conditions, and θ a mean rise of the surface temperature. Bulk temperatures do not enter: μ0 is the
+    friction of the bodies as they roll in.
 
-    The heat Tγ V is spread like Hertz's pressure p, and both surfaces pass it at the rolling speed V, so fast that heat
-    flows into the depth alone. A point at x then has the rise
+    Both surfaces pass the heat of friction q·s V at the rolling speed V, so fast that heat flows into the depth alone.
+    A point at x then has the rise
 
-        θ(x, y) = TγV/(N (β1 + β2) √(πV)) ∫ p(x', y)/√(x - x') dx' from the leading edge to x,
+        θ(x, y) = V/((β1 + β2) √(πV)) ∫ q·s(x', y)/√(x - x') dx' from the leading edge to x,
 
-    with the effusivities β = √(λρc) of the bodies, which share the heat in proportion to them.
+    with the effusivities β = √(λρc) of the bodies, which share the heat in proportion to them. `flash_temperature` and
+    `mean_rise` are the greatest θ of a solved contact and its mean, weighted by the pressure p.
 
-    θ depends on μ through Tγ, and μ on θ. A bracketing method finds the μ from h μ0 to μ0 that satisfies both, to
+    In the source, friction falls at each point with the temperature there, which counts only where the bodies slip. So
+    the θ of the friction is the mean over the points that slip, weighted by p: in full slip it gives the force of
+    friction that falls linearly at each point. For this mean alone the heat Tγ V is taken for spread like p, as it is
+    in full slip. In partial slip the two differ: in Carter's theory the mean over the points that slip is 0.82 of that
+    where all of the patch begins to slip, 1.14 at half that creepage and 1.84, of little heat, at a fifth.
+
+    This θ depends on μ through Tγ, and μ on θ. A bracketing method finds the μ from h μ0 to μ0 that satisfies both, to
     rounding. It exists, because θ is continuous in μ and the right side stays in that range. It is the only one if Tγ
     does not fall as μ grows, because μ minus the right side then grows. So it is with the contact models that ship with
     wearlaw, at pure longitudinal or lateral creepage.
@@ -98,13 +105,13 @@ class Thermal(wl.Stage):
     Notes
     -----
     Prefer this where friction falls at high speed or creepage and its dependence on temperature is known. It can't tell
-    apart the friction of points in the patch, and takes heat for spread like the pressure, as it is in full slip. In
-    partial slip heat arises near the trailing edge: in Carter's theory the true θ is 0.82 of this one where all of the
-    patch begins to slip, and 0.57 at half that creepage.
+    apart the friction of points in the patch. `mean_rise` and `flash_temperature` leave out the bulk temperature, the
+    heat of earlier passages and the roughness, whose summits become hotter.
 
     wearlaw warns where the Péclet number Va/(2κ), with the larger diffusivity κ = λ/(ρc) of the bodies, is below 5, or
-    below 5 (a/b)² on a long patch. From there on the mean rise of like bodies is within 6 % of that with conduction in
-    all directions.
+    below 5 (a/b)² on a long patch. From there on the mean rise of like bodies under heat that is spread like p is
+    within 6 % of that with conduction in all directions. The greatest rise on a line is within 1.2 % if Va/(2κ) is at
+    least 5 with half the length of the zone that slips for a.
     """
 
     name: ClassVar[str] = "thermal"
@@ -138,7 +145,7 @@ class Thermal(wl.Stage):
         def excess(friction: Array) -> Array:
             """Return μ minus the friction at the temperature that μ leads to."""
             part = problem.replaced(friction_coefficient=friction)
-            difference: Array = friction - cold * self._share(self._mean_rise(part, part.power(forces(part))))
+            difference: Array = friction - cold * self._share(self._spread_rise(part, part.power(forces(part))))
             return difference
 
         hot = _root(excess, self.hot_ratio * cold, cold)
@@ -147,18 +154,54 @@ class Thermal(wl.Stage):
         return found
 
     def mean_rise(self, contact: wl.Contact) -> wl.Quantity:
-        """Return the mean rise of the surface temperature in a solved contact, weighted by the pressure, θ [K]."""
-        problem = _problem(contact)
-        return wl.Q(self._mean_rise(problem, contact.wear_index), "K")
+        """Return the mean rise of the surface temperature over the patch, weighted by the pressure [K].
+
+        Of a contact that holds the means of the patch in one node, the heat is spread like Hertz's pressure. So the θ
+        of the friction is `mean_rise(contact.patch_mean())`.
+        """
+        problem = self._warned(contact)
+        if _is_mean(contact):
+            return wl.Q(self._spread_rise(problem, contact.wear_index), "K")
+        heated = contact.integral(self._rises(contact, problem), contact.pressure)
+        return wl.Q(heated / problem.normal_force, "K")
 
     def flash_temperature(self, contact: wl.Contact) -> wl.Quantity:
-        """Return the largest rise of the surface temperature in a solved contact [K]."""
-        problem = _problem(contact)
+        """Return the largest rise of the surface temperature at the nodes of a solved contact [K].
+
+        On a line it lies at most 1 % below the largest rise of all points, on an ellipse of 10 strips 4 %, and of 20
+        strips 1.3 %. With spin the root mean square is 3.5 and 1 %, and single points are four times further off. Of a
+        contact that holds the means of the patch in one node, the heat is spread like Hertz's pressure.
+        """
+        problem = self._warned(contact)
+        if not _is_mean(contact):
+            nodes = tuple(range(contact.rolling_speed.ndim, contact.pressure.ndim))
+            return wl.Q(self._rises(contact, problem).max(axis=nodes), "K")
         if problem.strips is None:
             sharpest = problem.max_pressure * np.sqrt(problem.a)
         else:
             sharpest = (problem.strips.max_pressure * np.sqrt(problem.strips.half_length)).max(axis=-1)
-        return wl.Q(HOTTEST * sharpest * self._scale(problem, contact.wear_index), "K")
+        return wl.Q(HOTTEST * sharpest * self._spread(problem, contact.wear_index), "K")
+
+    def _warned(self, contact: wl.Contact) -> wl.Problem:
+        """Return the problem of a contact, after a warning if it is slow."""
+        if contact.problem is None:
+            raise wl.InputError("temperature: the contact has no problem, and so no size and speed of its patch")
+        self._warn_if_slow(contact.problem, contact.wear_index > 0.0)
+        return contact.problem
+
+    def _rises(self, contact: wl.Contact, problem: wl.Problem) -> Array:
+        """Return θ [K] at the nodes, each with its heat spread evenly over the length that it represents."""
+        width = contact.strip_width[..., None, :] if contact.on_strips else problem.track_width[..., None]
+        half = 0.5 * contact.area / width
+        along = contact.rolling_speed.ndim  # the axis of the nodes of a strip
+        begin, end = contact.x - half, contact.x + half
+        heat = 2.0 * contact.wear_index_density
+        rises = np.empty(heat.shape)
+        for node in range(heat.shape[along]):
+            here = (slice(None),) * along + (slice(node, node + 1),)
+            reach = np.sqrt(np.maximum(contact.x[here] - begin, 0.0)) - np.sqrt(np.maximum(contact.x[here] - end, 0.0))
+            rises[here] = (heat * reach).sum(axis=along, keepdims=True)
+        return rises * contact.per_node(np.sqrt(contact.rolling_speed / np.pi)) / self._effusivity
 
     def _share(self, rise: Array) -> Array:
         """Return μ/μ0."""
@@ -166,30 +209,34 @@ class Thermal(wl.Stage):
         share: Array = np.maximum(1.0 - (1.0 - self.hot_ratio) * np.maximum(fallen, 0.0), self.hot_ratio)
         return share
 
-    def _mean_rise(self, problem: wl.Problem, power: Array) -> Array:
-        """Return θ [K] for Tγ [N]: the integral of θ p over the patch, over N."""
+    def _spread_rise(self, problem: wl.Problem, power: Array) -> Array:
+        """Return the integral of θ p over the patch, over N [K], for Tγ [N] that is spread like the pressure."""
         if problem.strips is not None:
             strips = problem.strips
             heated: Array = (strips.width * strips.max_pressure**2 * strips.half_length**1.5).sum(axis=-1)
         else:
             width = 2.0 if problem.geometry == "line" else TOTAL_OF_ELLIPSE
             heated = width * problem.b * problem.max_pressure**2 * problem.a**1.5
-        return TOTAL_OF_STRIP * heated / problem.normal_force * self._scale(problem, power)
+        return TOTAL_OF_STRIP * heated / problem.normal_force * self._spread(problem, power)
 
-    def _scale(self, problem: wl.Problem, power: Array) -> Array:
+    def _spread(self, problem: wl.Problem, power: Array) -> Array:
         """Return TγV/(N (β1 + β2) √(πV)) [K/(Pa √m)]."""
-        effusivity = self.body_1.effusivity + self.body_2.effusivity
-        return power * np.sqrt(problem.rolling_speed / np.pi) / (effusivity * problem.normal_force)
+        return power * np.sqrt(problem.rolling_speed / np.pi) / (self._effusivity * problem.normal_force)
 
-    def _warn_if_slow(self, problem: wl.Problem, falls: NDArray[np.bool_]) -> None:
+    @property
+    def _effusivity(self) -> float:
+        """Sum of the effusivities, β1 + β2 [W√s/(m² K)]."""
+        return self.body_1.effusivity + self.body_2.effusivity
+
+    def _warn_if_slow(self, problem: wl.Problem, counts: NDArray[np.bool_]) -> None:
         diffusivity = max(self.body_1.diffusivity, self.body_2.diffusivity)
         slender = np.maximum(problem.a / problem.b, 1.0) ** 2
-        peclet = (0.5 * problem.rolling_speed * problem.a / (diffusivity * slender))[falls]
+        peclet = (0.5 * problem.rolling_speed * problem.a / (diffusivity * slender))[counts]
         slow = peclet < LEAST_PECLET
         if slow.any():
             warnings.warn(
                 f"stage 'thermal' assumes heat that flows into the depth alone, with a Péclet number Va/(2κ), over"
-                f" (a/b)² on a long patch, of at least {LEAST_PECLET:g}; {slow.sum()} of {falls.size} contacts have"
+                f" (a/b)² on a long patch, of at least {LEAST_PECLET:g}; {slow.sum()} of {counts.size} contacts have"
                 f" less, down to {peclet.min():.2g}. Their temperature may be off by more than 6 %; check against data",
                 wl.RangeWarning,
                 stacklevel=2,
@@ -228,10 +275,9 @@ def _root(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
     return best[()]
 
 
-def _problem(contact: wl.Contact) -> wl.Problem:
-    if contact.problem is None:
-        raise wl.InputError("temperature: the contact has no problem, and so no size and speed of its patch")
-    return contact.problem
+def _is_mean(contact: wl.Contact) -> bool:
+    """Return whether a contact holds the means of the patch in one node."""
+    return contact.pressure.size == contact.rolling_speed.size
 
 
 @wl.hookimpl
