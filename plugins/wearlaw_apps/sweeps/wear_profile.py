@@ -127,8 +127,15 @@ class ProfileJob(Job):
         problem = super().posed(conditions)
         if not self.summed:
             return problem
-        if problem.resolved is not None and PATCH in problem.dims and not problem.resolved.any(self._patches).all():
-            wrong = "no normal forces balance this state, as where friction holds a flange"
+        resolved = problem.resolved if PATCH in problem.dims else None
+        if resolved is not None and (missing := ~resolved.any(self._patches)).any():
+            status = getattr(problem, "status", None)
+            why = (
+                ", as where friction holds a flange"
+                if status is None
+                else f": {np.take(status, 0, self._patches)[missing][0]}"
+            )
+            wrong = f"no normal forces balance this state{why}"
         elif np.any(getattr(problem, "climbs", False)):
             wrong = "the wheel climbs its rail, beyond the steepest point of its flange, as no wheel does in service"
         else:
