@@ -230,6 +230,32 @@ def test_rows_have_the_energy_of_the_half_spaces_in_full_slip(
         assert found.max() == pytest.approx(due.max(), rel=peak), (ratio, creepage)
 
 
+def misplaced(model: wl.ContactModel, half: wl.Contact) -> Array:
+    """Return the share of the energy that lies in other rows than those of half-spaces, at each point."""
+    assert half.problem is not None
+    due = half.over_strip(half.wear_index_density) * half.strip_width
+    found = []
+    for point, problem in enumerate(half.problem[index : index + 1] for index in range(half.rolling_speed.size)):
+        contact = model.on_strips(problem, half.y[point, 0] / problem.b)
+        assert contact is not None
+        rows = (contact.over_strip(contact.wear_index_density) * contact.strip_width)[0]
+        found.append(0.5 * np.abs(rows / rows.sum() - due[point] / due[point].sum()).sum())
+    return np.array(found)
+
+
+def test_in_partial_slip_without_spin_fastsims_rows_are_better_on_long_patches_and_worse_on_wide_ones() -> None:
+    ratio, size = np.repeat([0.4, 2.0, 3.0], 2), np.tile([0.1, 0.13], 3)
+    problem = ellipses(ratio, 0.8 * size, 0.6 * size, np.zeros(6))
+    half = wl.contact_model("half_space", cells=64).solve(problem)
+    share = half.forces.tangential / (problem.friction_coefficient * problem.normal_force)
+    assert ((share > 0.3) & (share < 0.7)).all()
+    strips, fastsim = (misplaced(model, half) for model in (MODEL, FASTSIM))
+    # The ranges of the table on the page about the theory of elliptic contact.
+    assert ((strips[:2] < 0.06) & (fastsim[:2] > 0.04) & (fastsim[:2] < 0.08)).all()
+    assert ((strips[2:] > 0.04) & (strips[2:] < 0.13) & (fastsim[2:] < 0.05)).all()
+    assert ((strips < fastsim) == (ratio < 1.0)).all()
+
+
 # --------------------------------------------------------------------------------------------------------- given strips
 
 

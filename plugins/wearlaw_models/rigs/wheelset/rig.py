@@ -633,7 +633,7 @@ class Wheelset(wl.Rig):
         warnings.warn(
             f"{np.count_nonzero(humps)} of {humps.size} patches have two humps, the first on the {side} wheel at a"
             f" lateral displacement of {1e3 * balance.task.displacement[point]:.4g} mm: the maximum pressure of 'kpec'"
-            ' may be a quarter too low there; take pressure="half_space"',
+            ' may be a third too low there; take pressure="half_space"',
             wl.RangeWarning,
             stacklevel=5,
         )
