@@ -12,10 +12,7 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.contact_models.half_space.cerruti import influence as influence
 from wearlaw_models.contact_models.half_space.grid import Grid
-from wearlaw_models.contact_models.half_space.rolling import Patch
-
-SETTLED, ROUNDS = 1e-7, 100
-"""Change of the friction coefficient, over that at rest, at which local friction is found, and most rounds."""
+from wearlaw_models.contact_models.half_space.rolling import Friction, Patch
 
 
 class HalfSpace(wl.ContactModel):
@@ -111,6 +108,7 @@ class HalfSpace(wl.ContactModel):
         size = np.sqrt(flat.a * flat.b)
         # Of tractions and slip along x and along y, and of the bound.
         fields, forces = np.zeros((5, *pressure.shape)), np.zeros((3, flat.size))
+        decay = wl.scalar_si(self.decay, "s/m")
         for point in range(flat.size):
             one = flat[point]
             c, force = float(size[point]), float(one.friction_coefficient * one.normal_force)
@@ -122,9 +120,10 @@ class HalfSpace(wl.ContactModel):
                 float(one.lateral_creepage) / unit,
                 float(one.spin) * c / unit,
             )
-            q, slip, bound = self._rolling(patch, creepages, unit * float(one.rolling_speed))
-            stress = force / c**2
-            fields[:, point] = np.stack([*(stress * q), *(unit * slip), stress * bound]).swapaxes(1, 2)
+            friction = Friction(self.limit_ratio, decay * unit * float(one.rolling_speed))
+            q, slip, bound = patch.solved(friction, creepages)
+            stress, share = force / c**2, unit * slip / np.where(patch.inside, bound, 1.0)
+            fields[:, point] = np.stack([*(stress * q), *(share * q), stress * bound]).swapaxes(1, 2)
             forces[:, point] = force * patch.forces(q) * [1.0, 1.0, c]
         contact = wl.Contact.from_strips(
             flat,
@@ -139,18 +138,6 @@ class HalfSpace(wl.ContactModel):
             pressure=pressure,
         )
         return contact.unflattened(problem)
-
-    def _rolling(self, patch: Patch, creepages: tuple[float, float, float], speed: float) -> tuple[Array, Array, Array]:
-        """Return tractions, slip in the middle of the elements, and the bound; `speed` is that of a slip of one."""
-        falling = wl.FallingFriction(static_coefficient=1.0, limit_ratio=self.limit_ratio, decay=self.decay)
-        bound, q = patch.pressure, None
-        for _ in range(ROUNDS):
-            q, slip = patch.solved(bound, *creepages, q)
-            new = patch.pressure * falling.coefficient(speed * np.hypot(*slip))
-            if np.abs(new - bound).max() <= SETTLED * patch.pressure.max():
-                return q, slip, bound
-            bound = 0.5 * (new + bound)
-        raise ArithmeticError("friction falls too fast with the slip for a steady solution")
 
 
 @wl.hookimpl

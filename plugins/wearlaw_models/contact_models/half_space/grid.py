@@ -58,9 +58,8 @@ class Grid:
         place = np.arange(1 - columns, columns) % self.size[1]
         kernels = np.zeros((3, *along.shape[:2], self.size[1]))
         kernels[..., place] = along, across, -mixed
-        self.spectra = self._spectra(kernels)
+        self.spectra = _in_both(self._spectra(kernels))
         """What tractions take up half-way from the element before, over the tractions, by wave number."""
-        self.single = self.spectra.astype(np.complex64)
 
     def _growth(self, apart: Array, width: Array) -> tuple[Array, Array, Array]:
         """Return the growth of the displacement per way from the element before, (rows, rows, distances along x)."""
@@ -98,23 +97,23 @@ class Grid:
 
     def taken_up(self, q: Field) -> Field:
         """Return the slip that tractions take up half-way from the element before, in their precision."""
-        return self._product(self.single if q.dtype == np.float32 else self.spectra, q)
+        return self._product(self.spectra[q.dtype.name], q)
 
-    def taken_up_around(self, q: Array) -> Field:
+    def taken_up_around(self, q: Field) -> Field:
         """Return the mean of the slip that tractions take up half-way from the element before and to the next one.
 
         By Betti's theorem the same influences, transposed, give what is taken up on the way to the next element.
         """
-        return self._product(self._around, q)
+        return self._product(self._around[q.dtype.name], q)
 
     @functools.cached_property
-    def _around(self) -> Spectra:
+    def _around(self) -> dict[str, Spectra]:
+        before = self.spectra["float64"]
         if self.regular:
-            return 1j * self.spectra.imag
+            return _in_both(1j * before.imag)
         width = np.tile(self.width, 2)
-        before = self.spectra * width[:, None]
-        after: Spectra = -before.conj().swapaxes(1, 2)
-        return (before + after) / (2.0 * width[:, None])
+        after: Spectra = -before.conj().swapaxes(1, 2) * width / width[:, None]
+        return _in_both(0.5 * (before + after))
 
     def _product(self, spectra: Spectra, q: Field) -> Field:
         rows, columns = self.shape
@@ -139,3 +138,8 @@ class Grid:
         width = np.append(self.width, self.width[-1]) if rows % 2 else self.width
         x, y, width = (one.reshape(-1, 2).mean(axis=1) for one in (x, y, 2.0 * width))
         return Grid(x, y, width, self.poisson_ratio)
+
+
+def _in_both(spectra: Spectra) -> dict[str, Spectra]:
+    """Return spectra for fields in double and in single precision, by their names."""
+    return {"float64": spectra, "float32": spectra.astype(np.complex64)}
