@@ -266,6 +266,14 @@ def compare(
     ConditionsError
         If the friction coefficient is unknown, or a predictor's rig does not take the conditions of the tests.
 
+    Warns
+    -----
+    CalibrationWarning, RangeWarning, PlasticityWarning
+        If parameters were fitted for another contact or other materials, or tests lie outside the range of a law or
+        beyond the elastic limit.
+    FitWarning
+        If the ranking is less certain than its numbers suggest. There is one warning a kind; `notes` has them all.
+
     Notes
     -----
     A law fitted to these tests follows their scatter too: the more parameters it has, the better it agrees. AIC (see
@@ -286,7 +294,11 @@ def compare(
     names = _names(given, outcome)
     if isinstance(predictors, Mapping):
         names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
-    return compare_named(list(zip(names, given, strict=True)), tests, friction_coefficient, outcome, cross_validate)
+    notes = Notes()
+    named = list(zip(names, given, strict=True))
+    found = compare_named(named, tests, friction_coefficient, outcome, cross_validate, notes=notes)
+    notes.warn()
+    return found
 
 
 @steady
@@ -297,8 +309,12 @@ def compare_named(
     outcome: str | None = None,
     cross_validate: Folds | None = None,
     progress: bool = False,
+    notes: Notes | None = None,
 ) -> Comparison:
-    """Compare predictors that have names already; see `compare`. With `progress`, show that of cross-validation."""
+    """Compare predictors that have names already, without a warning; see `compare`.
+
+    With `progress`, show that of cross-validation. The notes are also added to `notes`.
+    """
     taken = [names.label for names, _ in named]
     twice = [name for name in taken if taken.count(name) > 1]
     if twice:
@@ -307,13 +323,13 @@ def compare_named(
     outcome = _outcome(given, tests, outcome)
     unit = _law(given[0], outcome).outcome.unit
     tests = tests.measuring([name for one in given for name in named_outcomes(_pipeline(one).laws)])
-    notes = Notes()
+    notes = Notes() if notes is None else notes
     measured, name = tests.measured(outcome, unit), name_of(outcome)
     there = ~np.isnan(measured)
     if not there.any():
         raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
     if not there.all():
-        notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out")
+        notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out", FitWarning)
     task = _Task(tests[there], outcome, unit, measured[there], friction_coefficient, notes)
     compared = [task.compared(*one) for one in named]
     how = ""
@@ -326,13 +342,14 @@ def compare_named(
                 for old, one in zip(compared, given, strict=True)
             ]
     if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
-        notes.add("AIC is left blank, since the fits take the tests to scatter in different ways")
+        notes.add("AIC is left blank, since the fits take the tests to scatter in different ways", FitWarning)
         compared = [replace(one, fitted=None, aic=None, aicc=None) for one in compared]
     seen = [f"{one.names.label} ({one.in_sample} of {len(task.tests)})" for one in compared if one.in_sample]
     if seen:
         notes.add(
             f"fitted to these tests, which flatters their rank: {', '.join(seen)}; compare on other tests, or"
-            " cross-validate"
+            " cross-validate",
+            FitWarning,
         )
     ranked = sorted(compared, key=lambda one: one.agreement.rank)
     return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, unit, how)
@@ -417,7 +434,8 @@ class _Task:
             self.notes.add(
                 f"{names.label}: either the predicted or the measured {name_of(self.outcome)} is {sign} in"
                 f" {errors.without_ratio} of {len(self.tests)} tests, which no factor can express; these count first in"
-                " the ranking"
+                " the ranking",
+                FitWarning,
             )
         calibration = _law(predictor, self.outcome).calibration
         known = set(calibration.tests if calibration else ())
@@ -502,7 +520,8 @@ class _Task:
         """Return a predictor with the AIC of its fit; add a note if it was not fitted to exactly these tests."""
         digests, *others = (one.tests.digests(one.observable, one.unit) for one in fit.observations)
         if others or digests != self.tests.digests(self.outcome, self.unit):
-            self.notes.add(f"{found.names.label}: was fitted to other tests or measurements, so its AIC is left blank")
+            text = f"{found.names.label}: was fitted to other tests or measurements, so its AIC is left blank"
+            self.notes.add(text, FitWarning)
             return found
         free = len(fit.parameters)
         k = free + (fit.scatter != "uncertainty")

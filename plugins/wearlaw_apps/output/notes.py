@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from threading import RLock, get_ident
 from typing import TextIO
 
-from wearlaw.errors import WearlawWarning
+from wearlaw.errors import WearlawWarning, warn, with_problems
 
 _CATCHING = RLock()
 
@@ -47,14 +47,25 @@ def caught_warnings(*kinds: type[Warning]) -> Iterator[list[Warning]]:
 
 @dataclass
 class Notes:
-    """Collects notes for the reader of the results, each once."""
+    """Collects notes for the reader of the results, each once.
+
+    Attributes
+    ----------
+    texts : list of str
+        The notes.
+    kinds : dict of str to type
+        The class of the warning that a note is, by the note; others state what was done.
+    """
 
     texts: list[str] = field(default_factory=list)
+    kinds: dict[str, type[Warning]] = field(default_factory=dict)
 
-    def add(self, text: str) -> None:
+    def add(self, text: str, kind: type[Warning] | None = None) -> None:
         """Add a note unless it is there already."""
         if text not in self.texts:
             self.texts.append(text)
+            if kind is not None:
+                self.kinds[text] = kind
 
     @contextmanager
     def of(self, subject: str) -> Iterator[None]:
@@ -62,7 +73,13 @@ class Notes:
         with caught_warnings() as caught:
             yield
         for warning in caught:
-            self.add(f"{subject}: {warning}")
+            self.add(f"{subject}: {warning}", type(warning))
+
+    def warn(self) -> None:
+        """Raise the notes that are warnings, one warning a kind."""
+        for kind in dict.fromkeys(self.kinds.values()):
+            (first, *others) = grouped(text for text, of in self.kinds.items() if of is kind)
+            warn(with_problems(first, others), kind)
 
 
 def grouped(texts: Iterable[str]) -> list[str]:

@@ -26,6 +26,8 @@ from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_apps.fits.agreement import agreement  # private: errors of made-up rates, without a law
 
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")  # most compare fits to the tests themselves
+
 
 def test_tests_without_a_wear_rate_are_left_out_for_all() -> None:
     rates = made().wear_rate.magnitude.copy()
@@ -52,6 +54,7 @@ def test_the_global_model_takes_the_measured_traction_and_that_is_noted() -> Non
 # Names
 
 
+@pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning")
 def test_predictors_are_called_after_their_law_and_contact_model_as_in_a_study() -> None:
     fastsim = RIG | wl.contact_model("fastsim")
     with warnings.catch_warnings():
@@ -90,16 +93,40 @@ def test_what_holds_no_wear_rate_cannot_be_compared() -> None:
 # Notes
 
 
-def test_parameters_fitted_for_another_contact_and_tests_beyond_the_range_are_noted_and_not_warned_of() -> None:
+def test_notes_on_parameters_range_and_load_are_a_warning_each_kind() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.CalibrationWarning)
         pipeline = EXACT | usfd(fitted_for="global")
     beyond = made(max_pressure="1600 MPa")
-    notes = wl.compare([pipeline], beyond).notes
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        notes = wl.compare([pipeline], beyond).notes
+    assert {one.category: str(one.message) for one in caught} == {
+        wl.CalibrationWarning: notes[0],
+        wl.PlasticityWarning: notes[1],
+        wl.RangeWarning: notes[2],
+    }
+    assert {one.filename for one in caught} == {__file__}
     assert len(notes) == 3
     assert notes[0].startswith("usfd on exact: the parameters of wear law 'usfd' were fitted for patch means")
     assert notes[1].startswith("tests: the maximum pressure of 1600 MPa at T/N = 0.46 is beyond the shakedown limit")
     assert notes[2].startswith("tests: wear law 'usfd' has a known range of mean wear index density from")
+
+
+def test_notes_of_one_kind_are_one_warning_and_statements_are_none() -> None:
+    rates = made().wear_rate.magnitude.copy()
+    rates[[1, 4]], rates[2] = np.nan, 0.0
+    data = made(wear_rate=Q(rates, "ug/m/mm^2"), traction_coefficient=TRACTION)
+    predict = GLOBAL | usfd(fitted_for="global")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        notes = wl.compare({"a": predict, "b": predict}, data).notes
+    (message,) = [str(one.message) for one in caught if one.category is wl.FitWarning]
+    zero = "either the predicted or the measured wear rate is zero in 1 of 6 tests"
+    assert message.startswith(f"2 of 8 tests have no wear rate and are left out\n  a, b: {zero}")
+    assert len([note for note in notes if zero in note]) == 2
+    assert "a: takes the traction that was measured in the tests" in notes
+    assert not [one for one in caught if "takes the traction" in str(one.message)]
 
 
 # Fits

@@ -12,6 +12,8 @@ from tests.core.outcome_laws import CONDITIONS, Damage, Heat
 from tests.plugins.fits.fits import EXACT
 from tests.plugins.fits.test_fit_stages import SOFT, Softer, made_up
 
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")  # most compare fits to the tests themselves
+
 FASTSIM = wl.contact_model("fastsim")
 
 

@@ -13,6 +13,8 @@ from tests.plugins.fits.comparisons import EXACT, GLOBAL, SCATTER, by_label, mad
 from tests.plugins.fits.fits import sloping
 from wearlaw import Q
 
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")  # most compare fits to the tests themselves
+
 MARK = "fitted to these tests, which flatters their rank: "
 
 
