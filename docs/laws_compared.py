@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from wearlaw import Array, Q
-from wearlaw.loader import installed
+from wearlaw.loader import discovered
 from wearlaw_apps.output.drawing import PALETTE, STYLE, WIDTH
 
 DPI = 110
@@ -121,7 +121,7 @@ def _texts(annotation: Any) -> Iterator[str]:
 
 def published() -> Iterator[tuple[wl.WearLaw, dict[str, str]]]:
     """Yield the shipped wear laws in all their sets, each with what chooses the set."""
-    found = installed()["wear law"]
+    found = discovered()["wear law"]
     for name, law in found.items().items():
         if found.origin(name).distribution == "wearlaw":
             fields = options(law)
@@ -135,7 +135,7 @@ def published() -> Iterator[tuple[wl.WearLaw, dict[str, str]]]:
 
 def left_out() -> set[str]:
     """Return the names of the shipped wear laws without values of their own."""
-    found = installed()["wear law"]
+    found = discovered()["wear law"]
     shipped = {name for name in found.items() if found.origin(name).distribution == "wearlaw"}
     return shipped - {law.name for law, _ in published()}
 

@@ -12,11 +12,10 @@ from typing import Any, NamedTuple
 
 import wearlaw as wl
 from wearlaw.configuration import field_docstrings
-from wearlaw.loader import installed
+from wearlaw.loader import discovered
 from wearlaw.parameters import numbers
 from wearlaw.units.variables import UNITS, VARIABLES
 from wearlaw_apps.output.labels import label
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset.rig import WheelsetProblem
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
@@ -57,7 +56,7 @@ def documented() -> Iterator[Documented]:
     for cls in CLASSES:
         for name, text in (*attributes(cls), *properties(cls)):
             yield read(name, cls.__name__, text)
-    for rig in (wl.TwinDisc, wl.WheelRail, ws.Wheelset):
+    for rig in (wl.TwinDisc, wl.WheelRail, wl.Wheelset):
         for name, condition in rig.conditions().items():
             yield read(name, "conditions", condition.meaning)
     for record in (wl.TwinDisc.suros(), wheel_rail(), wheelset(), falling_friction()):
@@ -73,9 +72,9 @@ def wheel_rail() -> wl.WheelRail:
     return wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 
 
-def wheelset() -> ws.Wheelset:
+def wheelset() -> wl.Wheelset:
     """Return a wheelset on its rails."""
-    return ws.Wheelset.model_validate({**ws.Wheelset.example_fields, "material": wl.steel()})
+    return wl.Wheelset.model_validate({**wl.Wheelset.example_fields, "material": wl.steel()})
 
 
 def falling_friction() -> wl.FallingFriction:
@@ -85,7 +84,7 @@ def falling_friction() -> wl.FallingFriction:
 
 def shipped_models() -> Iterator[wl.Law | wl.ContactModel]:
     """Yield the models that ship with wearlaw, with their defaults, and laws with numbers in place of names."""
-    found = installed()
+    found = discovered()
     for name, model in found["contact model"].items().items():
         if found["contact model"].origin(name).distribution == "wearlaw":
             yield model()

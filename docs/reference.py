@@ -14,8 +14,14 @@ import wearlaw as wl
 MARK = "(The build of this page writes the entries of all public names here.)"
 """Line of the page in whose place the entries stand."""
 
-OTHERS = ("wearlaw_models.rigs.wheelset", "wearlaw_kit", "wearlaw_apps.life")
-"""Plugins whose top package has public names beside those of `wearlaw`."""
+OTHERS = (
+    "wearlaw_apps.fits",
+    "wearlaw_apps.studies",
+    "wearlaw_apps.life",
+    "wearlaw_models.rigs.wheelset",
+    "wearlaw_kit",
+)
+"""Plugins with public names beside those of `wearlaw`: what their functions return, and the kit."""
 
 TITLES = {
     "units": "Quantities and units",
@@ -99,7 +105,7 @@ def entries() -> Iterator[Entry]:
     """Give the public names in the order in which they are imported."""
     sources = {
         name.asname or name.name: str(one.module)
-        for one in ast.walk(ast.Module(tree("wearlaw"), []))
+        for one in ast.walk(ast.Module([*tree("wearlaw"), *tree("wearlaw.late")], []))
         if isinstance(one, ast.ImportFrom)
         for name in one.names
     }

@@ -18,7 +18,6 @@ from matplotlib.figure import Figure
 import wearlaw as wl
 from wearlaw import Array, Q
 from wearlaw_apps.output.drawing import PALETTE, STYLE, WIDTH
-from wearlaw_models.rigs import wheelset as ws
 
 FOLDER = Path(__file__).parent / "wheelset-benchmark"
 DATA = Path(__file__).parents[1] / "tests" / "data"
@@ -38,12 +37,12 @@ FLANGE = 0.2
 Rows = list[tuple[str, ...]]
 
 
-def wheelset(pressure: Pressure = "kpec", speed: float = 2.0) -> ws.Wheelset:
+def wheelset(pressure: Pressure = "kpec", speed: float = 2.0) -> wl.Wheelset:
     """Return the wheelset of the benchmark at a speed [m/s]."""
     steel = wl.Material(youngs_modulus="209.92 GPa", poisson_ratio=0.28, density="7850 kg/m^3")  # G is 82 GPa
-    return ws.Wheelset(
-        wheel=ws.Profile.s1002(),
-        rail=ws.Profile.uic60(),
+    return wl.Wheelset(
+        wheel=wl.Profile.s1002(),
+        rail=wl.Profile.uic60(),
         nominal_radius="460 mm",
         flange_back_distance="1360 mm",
         gauge="1435 mm",
@@ -75,7 +74,7 @@ def two_patches(pressure: Pressure) -> dict[str, Array]:
     )
 
 
-def solved(rig: ws.Wheelset, **conditions: Any) -> dict[str, Array]:
+def solved(rig: wl.Wheelset, **conditions: Any) -> dict[str, Array]:
     """Return results under 10 kN at a friction coefficient of 0.3, in CONTACT's signs and units."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.RangeWarning)  # from 6.5 mm on the wheel climbs
@@ -100,7 +99,7 @@ def solved(rig: ws.Wheelset, **conditions: Any) -> dict[str, Array]:
     }
 
 
-def in_track(rig: ws.Wheelset, arc: Array) -> Array:
+def in_track(rig: wl.Wheelset, arc: Array) -> Array:
     """Return y in the track of places on the rails, by their arc lengths [m]; the arrays end in side and patch."""
     cant, rail = rig.rail_cant.m_as("rad"), rig.rail.curve
     across = rail.y * np.cos(cant) + rail.z * np.sin(cant)

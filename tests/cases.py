@@ -122,7 +122,7 @@ InstallModel = Callable[[type[Model]], None]
 
 def installer(monkeypatch: pytest.MonkeyPatch) -> InstallModel:
     """Return what puts a model among the installed ones until the test ends, as one of the plugin "testing"."""
-    found = loader.installed()
+    found = loader.discovered()
     origin = Origin("testing", "wearlaw-testing", "9.8.7")
 
     def install(model: type[Model]) -> None:

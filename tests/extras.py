@@ -108,7 +108,7 @@ USES: dict[str, tuple[Callable[[], None], frozenset[str]]] = {
 def check_commands(extra: str) -> None:
     """Raise an error unless every command shows its help, or names an extra that it needs."""
     there = USES[extra][1]
-    for name, command in loader.installed()["command"].items().items():
+    for name, command in loader.discovered()["command"].items().items():
         needs = extra_of(command.function.partition(":")[0])
         try:
             wearlaw(name, "--help")

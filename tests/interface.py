@@ -14,6 +14,7 @@ from typing import Any
 import wearlaw
 import wearlaw_kit
 from wearlaw import hookspecs  # private: hooks are an interface by name
+from wearlaw_apps import fits, life, studies
 
 AGREED = Path(__file__).with_suffix(".txt")
 FIRST = f"INTERFACE_VERSION = {wearlaw.INTERFACE_VERSION}"
@@ -23,10 +24,13 @@ def interface() -> list[str]:
     """Return the lines: hooks, public names, and what public classes add to their bases."""
     hooks = (name + arguments(hook) for name, hook in vars(hookspecs).items() if name.startswith("wearlaw_"))
     names = (line for name in wearlaw.__all__ for line in described(name, getattr(wearlaw, name)))
-    kit = (
-        line for name in wearlaw_kit.__all__ for line in described(f"wearlaw_kit.{name}", getattr(wearlaw_kit, name))
+    faces = (
+        line
+        for face in (wearlaw_kit, fits, studies, life)
+        for name in face.__all__
+        for line in described(f"{face.__name__}.{name}", getattr(face, name))
     )
-    return [FIRST, *sorted({*hooks, *names, *kit} - {"INTERFACE_VERSION"})]
+    return [FIRST, *sorted({*hooks, *names, *faces} - {"INTERFACE_VERSION"})]
 
 
 def described(name: str, value: Any) -> Iterator[str]:

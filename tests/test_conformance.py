@@ -138,7 +138,13 @@ def test_a_model_is_the_same_after_toml_json_and_pickle(model: Any) -> None:
 
 def test_every_model_that_comes_with_wearlaw_is_checked() -> None:
     own = {entry_point.value for entry_point in distribution("wearlaw").entry_points if entry_point.group == "wearlaw"}
-    installed = {**wl.contact_models(), **wl.stages(), **wl.wear_laws(), **wl.laws(), **wl.rigs()}
+    installed = {
+        **wl.installed("contact model"),
+        **wl.installed("stage"),
+        **wl.installed("wear law"),
+        **wl.installed("law"),
+        **wl.installed("rig"),
+    }
     assert {model.name for model in [*CONTACT_MODELS, *WEAR_LAWS, *LAWS, *STAGES, *RIGS.values()]} == {
         name for name, cls in installed.items() if cls.__module__ in own or cls.__module__.rpartition(".")[0] in own
     }

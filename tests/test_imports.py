@@ -35,7 +35,6 @@ DEFERRED = {
     ("wearlaw_apps.tables", "pandas"): "takes half as long to load as the rest of wearlaw",
     ("wearlaw_kit.kit", "pytest"): "is not needed to run the checks of the kit",
     ("wearlaw_apps.fits.wear_tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
-    ("wearlaw_apps.life", "wearlaw_apps.life"): "needs pandas and xarray, which looking up a plugin must not load",
     ("wearlaw_apps.life", "wearlaw_apps.life.section"): "is needed for a report alone",
     ("wearlaw_apps.life.line", "wearlaw_apps.sweeps.folder"): "zarr takes as long to load as all else",
     ("wearlaw_models.rigs.wheelset", "wearlaw_models.rigs.wheelset.section"): "is needed for a report alone",
@@ -51,7 +50,7 @@ DEFERRED = {
     ): "its sections need pandas, which looking up a plugin must not load",
 }
 """All imports inside functions: by file and what is imported, and why. scipy loads its other parts by itself when they
-are used; `wearlaw.__getattr__` and the table of commands load the applications."""
+are used; `wearlaw.late` and the table of commands load the applications."""
 
 
 def modules() -> dict[str, Path]:
@@ -101,9 +100,8 @@ def circles(graph: Mapping[str, set[str]]) -> list[set[str]]:
 def graph() -> dict[str, set[str]]:
     known = modules()
     graph = {name: set(imported(path.read_text(encoding="utf-8"), known)) for name, path in known.items()}
-    graph["wearlaw"] = {
-        name for name in graph["wearlaw"] if not name.startswith("wearlaw_")
-    }  # loaded at their first use
+    late = graph["wearlaw.late"]
+    graph["wearlaw.late"] = {name for name in late if not name.startswith("wearlaw_")}  # loaded at their first use
     return graph
 
 

@@ -74,7 +74,9 @@ def test_all_fields_of_the_records_and_all_conditions_are_in_the_table(documente
     for record in (wl.Problem, wl.Contact, wl.CreepForces):
         numbers = {field.name for field in dataclasses.fields(record)} - OF_OTHER_KINDS
         assert numbers <= names(documented, record.__name__)
-    assert names(documented, "conditions") == {name for rig in wl.rigs().values() for name in rig.conditions()}
+    assert names(documented, "conditions") == {
+        name for rig in wl.installed("rig").values() for name in rig.conditions()
+    }
 
 
 def test_all_quantities_of_results_are_in_the_table_with_a_unit_of_their_dimension(

@@ -11,7 +11,7 @@ from matplotlib.quiver import Quiver
 from docs import choosing, pictures, regimes
 from docs.conventions import conventions
 from tests.environments import ROOT
-from wearlaw.loader import installed  # private: all that is installed, by kind
+from wearlaw.loader import discovered  # private: all that is installed, by kind
 
 
 def test_the_theory_states_the_errors_that_are_computed() -> None:
@@ -57,7 +57,7 @@ def test_the_picture_of_the_readme_has_the_regimes_laws_and_tests_of_the_papers(
 
 def test_every_shipped_contact_model_and_law_can_be_chosen() -> None:
     shown = [name for _, name in (*choosing.MODELS, *choosing.LAWS) if name]
-    plugins = installed()
+    plugins = discovered()
     shipped = [
         name
         for kind in map(plugins.__getitem__, ("contact model", "wear law", "law"))

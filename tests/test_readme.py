@@ -33,7 +33,7 @@ def test_everything_that_comes_with_wearlaw_comes_by_the_hooks_of_plugins(monkey
     monkeypatch.setattr(loader, "_entry_points", lambda: iter(()))
     loader._FOUND.clear()
     try:
-        assert not any(shelf.items() for shelf in loader.installed().shelves.values())
+        assert not any(shelf.items() for shelf in loader.discovered().shelves.values())
     finally:
         loader._FOUND.clear()
 

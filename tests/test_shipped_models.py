@@ -39,7 +39,13 @@ FEW = {
 """The checks of models of which the others take from two seconds to minutes; `test_conformance.py` runs them."""
 
 OURS = {point.value for point in distribution("wearlaw").entry_points if point.group == "wearlaw"}
-INSTALLED = {**wl.contact_models(), **wl.stages(), **wl.wear_laws(), **wl.laws(), **wl.rigs()}
+INSTALLED = {
+    **wl.installed("contact model"),
+    **wl.installed("stage"),
+    **wl.installed("wear law"),
+    **wl.installed("law"),
+    **wl.installed("rig"),
+}
 SHIPPED = {
     name: cls for name, cls in INSTALLED.items() if cls.__module__ in OURS or cls.__module__.rpartition(".")[0] in OURS
 }

@@ -10,6 +10,7 @@
 import sys as _sys
 from typing import TYPE_CHECKING
 
+from wearlaw import late as _late
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
@@ -46,23 +47,15 @@ from wearlaw.errors import (
 from wearlaw.fields import ContactModelField, MaterialField, WearLawField, read_law
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
 from wearlaw.kernels import accelerate, accelerated, compiled_loop
-from wearlaw.late import load as _load
 from wearlaw.loader import (
     contact_model,
-    contact_models,
+    installed,
     law,
-    laws,
     material,
-    materials,
-    parameter_sets,
     patch_mean,
-    readers,
     rig,
-    rigs,
     stage,
-    stages,
     wear_law,
-    wear_laws,
 )
 from wearlaw.models.contact_model import (
     ContactModel,
@@ -102,13 +95,10 @@ __all__ = [
     "BreakpointMap",
     "Calibration",
     "CalibrationWarning",
-    "Case",
     "CaseError",
-    "CheckedClaim",
     "Claim",
     "Coefficient",
     "Command",
-    "Comparison",
     "CompositionError",
     "Condition",
     "ConditionsError",
@@ -120,14 +110,10 @@ __all__ = [
     "CreepForceModel",
     "CreepForces",
     "Creepage",
-    "Curve",
     "DataError",
     "Density",
-    "Disc",
     "FallingFriction",
     "FieldVariable",
-    "FigureData",
-    "Fit",
     "FitError",
     "FitWarning",
     "Forces",
@@ -148,10 +134,8 @@ __all__ = [
     "Numbers",
     "Outcome",
     "OutputError",
-    "Panel",
     "Pipeline",
     "PlasticityWarning",
-    "PlotAxis",
     "PluginWarning",
     "Prediction",
     "Problem",
@@ -164,133 +148,52 @@ __all__ = [
     "ResumeWarning",
     "Rig",
     "Scale",
-    "Section",
     "Solve",
     "Speed",
     "Stage",
     "Stress",
     "Strips",
-    "Study",
     "SweepError",
-    "Table",
-    "TwinDisc",
-    "Uncertainty",
     "Unit",
     "UnitError",
     "UnknownModelError",
-    "Verdict",
     "WearLaw",
     "WearLawField",
-    "WearTests",
     "WearlawError",
     "WearlawWarning",
-    "WheelRail",
     "WorkerWarning",
     "__version__",
     "accelerate",
     "accelerated",
     "beside",
     "coefficient",
-    "compare",
     "compiled_loop",
     "contact_model",
-    "contact_models",
-    "creepage_for",
     "elastic_limit",
-    "explore",
-    "fit",
     "hertz",
     "hertz_ellipse",
     "hookimpl",
+    "installed",
     "kalker",
     "law",
-    "laws",
-    "load_case",
-    "lognormal",
     "material",
-    "materials",
-    "normal",
-    "parameter_sets",
     "parse",
     "patch_mean",
-    "published_range",
-    "read_contact",
     "read_file",
     "read_law",
-    "read_table",
-    "read_tests",
-    "readers",
     "rig",
-    "rigs",
-    "run",
     "scalar_si",
     "shown",
     "stage",
-    "stages",
     "steel",
-    "sweep",
-    "uncertainty",
-    "uniform",
-    "wear_coefficient",
     "wear_law",
-    "wear_laws",
-    "wear_out",
 ]
+__all__ += _late.__all__
 
 if TYPE_CHECKING:
-    from wearlaw_apps.contact_files.reading import read_contact
-    from wearlaw_apps.explore.page import explore
-    from wearlaw_apps.fits.comparison import Comparison, compare
-    from wearlaw_apps.fits.distributions import lognormal, normal, published_range, uniform
-    from wearlaw_apps.fits.fit import fit
-    from wearlaw_apps.fits.read_tests import read_tests
-    from wearlaw_apps.fits.result import Fit
-    from wearlaw_apps.fits.uncertainty import Uncertainty, uncertainty
-    from wearlaw_apps.fits.wear_tests import WearTests
-    from wearlaw_apps.life import wear_out
-    from wearlaw_apps.output.curves import Curve, FigureData, Panel, PlotAxis
-    from wearlaw_apps.studies.case import Case, load_case
-    from wearlaw_apps.studies.sections import CheckedClaim, Section, Verdict
-    from wearlaw_apps.studies.study import Study, run
-    from wearlaw_apps.sweeps.inverse import creepage_for
-    from wearlaw_apps.sweeps.sweep import sweep
-    from wearlaw_apps.tables import Table, read_table
-    from wearlaw_models.laws.archard.coefficients import wear_coefficient
-    from wearlaw_models.rigs.twin_disc import Disc, TwinDisc
-    from wearlaw_models.rigs.wheel_rail import WheelRail
+    from wearlaw.late import *  # noqa: F403
 
-_LATE = {
-    "wearlaw_apps.sweeps.inverse": ("creepage_for",),
-    "wearlaw_models.laws.archard.coefficients": ("wear_coefficient",),
-    "wearlaw_apps.contact_files.reading": ("read_contact",),
-    "wearlaw_apps.explore.page": ("explore",),
-    "wearlaw_apps.fits.comparison": ("Comparison", "compare"),
-    "wearlaw_apps.fits.fit": ("fit",),
-    "wearlaw_apps.fits.result": ("Fit",),
-    "wearlaw_apps.fits.distributions": ("lognormal", "normal", "published_range", "uniform"),
-    "wearlaw_apps.fits.uncertainty": ("Uncertainty", "uncertainty"),
-    "wearlaw_apps.fits.read_tests": ("read_tests",),
-    "wearlaw_apps.fits.wear_tests": ("WearTests",),
-    "wearlaw_apps.life": ("wear_out",),
-    "wearlaw_apps.output.curves": ("Curve", "FigureData", "Panel", "PlotAxis"),
-    "wearlaw_apps.studies.case": ("Case", "load_case"),
-    "wearlaw_apps.studies.sections": ("CheckedClaim", "Section", "Verdict"),
-    "wearlaw_apps.studies.study": ("Study", "run"),
-    "wearlaw_apps.sweeps.sweep": ("sweep",),
-    "wearlaw_apps.tables": ("Table", "read_table"),
-    "wearlaw_models.rigs.twin_disc": ("Disc", "TwinDisc"),
-    "wearlaw_models.rigs.wheel_rail": ("WheelRail",),
-}
-"""Public names that come from plugins, by the module that is imported at their first use."""
-
-
-def __getattr__(name: str) -> object:
-    for module, names in _LATE.items():
-        if name in names:
-            return _load(module, name, f"wearlaw.{name}")
-    of_wheelsets = name in ("Wheelset", "Profile", "read_profile", "write_profile")
-    hint = f"; it is wearlaw_models.rigs.wheelset.{name}" if of_wheelsets else ""
-    raise AttributeError(f"module 'wearlaw' has no attribute {name!r}{hint}")
+__getattr__ = _late.face("wearlaw", _late.PUBLIC)
 
 
 def __dir__() -> list[str]:
@@ -298,7 +201,4 @@ def __dir__() -> list[str]:
     return __all__
 
 
-if _sys.modules.get("hypothesis") is not None:  # its entry point ran before the types existed
-    from _wearlaw_hypothesis import register_types as _register_types
-
-    _register_types(_sys.modules[__name__])
+_late.register_types(_sys.modules[__name__])

@@ -13,19 +13,19 @@ import click
 from wearlaw import loader
 from wearlaw.errors import WearlawError, described, did_you_mean, shown
 from wearlaw.hookspecs import Command
-from wearlaw.late import MissingPackageError, load
+from wearlaw.late import COMMANDS, MissingPackageError, load
 from wearlaw.version import __version__
 
 OWN = (
-    Command("plugins", "wearlaw_apps.show:list_plugins", "List what the installed plugins provide."),
-    Command("show", "wearlaw_apps.show:show", "Explain anything that wearlaw plugins lists."),
+    Command("plugins", COMMANDS["plugins"], "List what the installed plugins provide."),
+    Command("show", COMMANDS["show"], "Explain anything that wearlaw plugins lists."),
 )
 """The commands that are there whatever plugin is broken; their module is imported when one is called."""
 
 
 def commands() -> dict[str, Command]:
     """Return all commands by name, those of plugins among them; a name of wearlaw itself cannot be taken."""
-    from_plugins = loader.installed()["command"].items()
+    from_plugins = loader.discovered()["command"].items()
     return dict(sorted((from_plugins | {command.name: command for command in OWN}).items()))
 
 
@@ -59,7 +59,7 @@ class _Commands(click.Group):
         except MissingPackageError as error:
             raise click.ClickException(str(error)) from error
         except Exception as error:
-            of = loader.installed()["command"].origin(cmd_name)
+            of = loader.discovered()["command"].origin(cmd_name)
             message = f"command {shown(cmd_name)} of {of} cannot be loaded: {described(error)}"
             raise click.ClickException(message) from error
         return command

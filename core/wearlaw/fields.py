@@ -63,7 +63,7 @@ def specification(model: Model) -> dict[str, Any]:
     key = "type" if model.kind == "rig" else "model"
     fields = model.model_dump(mode="json", exclude_none=True)
     known = known_name(model)
-    if known is not None and known in loader.parameter_sets() and loader.wear_law(known, **fields) == model:
+    if known is not None and known in loader.installed("parameter set") and loader.wear_law(known, **fields) == model:
         return {key: known, **fields}
     return {key: model.name, **fields}
 
@@ -122,7 +122,7 @@ def _rig(value: Any) -> Any:
         preset = _named("preset", "preset", given.pop("preset"))
         fields = preset_fields(preset)(**given)
         return preset.make(**{name: getattr(fields, name) for name in fields.model_fields_set})
-    rigs, presets = loader.rigs(), loader.installed()["preset"].items()
+    rigs, presets = loader.installed("rig"), loader.discovered()["preset"].items()
     fitting = [name for name, rig in rigs.items() if given and given.keys() <= rig.model_fields.keys()]
     raise InputError(
         f'needs a type, such as type = "{[*fitting, *rigs][0]}". Installed: {", ".join(rigs)}; or a preset:'
@@ -132,7 +132,7 @@ def _rig(value: Any) -> Any:
 
 def _named(kind: str, key: str, name: Any) -> Any:
     try:
-        return loader.installed().find(kind, name)
+        return loader.discovered().find(kind, name)
     except InputError as error:
         raise ConfigurationError("rig", [Fault((key,), str(error))]) from None
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 PROJECT = "wearlaw"
 
-INTERFACE_VERSION = 3
+INTERFACE_VERSION = 4
 """Version of the interface that a plugin can rely on: these hooks and the public names of `wearlaw`.
 
 It rises when a change could break a working plugin. wearlaw loads a plugin module that sets ``wearlaw_interface = N``

@@ -25,7 +25,6 @@ from wearlaw.errors import PluginWarning, UnknownModelError, described, did_you_
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, WearLaw
 from wearlaw.models.model import Model
-from wearlaw.models.reader import Reader
 
 MODELS = ("rig", "contact model", "stage", "wear law", "law", "reader")
 """The kinds of models."""
@@ -98,7 +97,7 @@ class Shelf:
 
 
 class Installed:
-    """Everything found by discovery: a shelf for each kind, as in ``installed()["wear law"]``.
+    """Everything found by discovery: a shelf for each kind, as in ``discovered()["wear law"]``.
 
     Attributes
     ----------
@@ -154,7 +153,7 @@ _FOUND: list[Installed] = []
 """What discovery found, or has found so far, so that a hook that returns a parameter set can look up its law."""
 
 
-def installed() -> Installed:
+def discovered() -> Installed:
     """Return all installed plugins; the search runs once in a process."""
     with _SEARCHING:  # other threads wait
         if not _FOUND:
@@ -295,44 +294,26 @@ def _add_material(name: str, item: Any, origin: Origin, found: Installed) -> Non
         found["material type"].add(cls.__name__, cls, origin)
 
 
-def rigs() -> Mapping[str, type[Any]]:
-    """Return the installed rigs by name."""
-    return installed()["rig"].items()
+def installed(kind: str) -> Mapping[str, Any]:
+    """Return what the installed plugins provide of a kind, by name.
 
+    Parameters
+    ----------
+    kind : str
+        As ``wearlaw plugins`` lists it: "rig", "contact model", "stage", "wear law", "law" or "reader" for classes of
+        models, "parameter set" or "material" for instances, or what an application looks up, such as "case".
 
-def contact_models() -> Mapping[str, type[ContactModel]]:
-    """Return the installed contact models by name."""
-    return installed()["contact model"].items()
-
-
-def wear_laws() -> Mapping[str, type[WearLaw]]:
-    """Return the installed wear laws by name."""
-    return installed()["wear law"].items()
-
-
-def stages() -> Mapping[str, type[Stage]]:
-    """Return the installed stages by name."""
-    return installed()["stage"].items()
-
-
-def laws() -> Mapping[str, type[Law]]:
-    """Return the installed laws of other outcomes than wear by name."""
-    return installed()["law"].items()
-
-
-def readers() -> Mapping[str, type[Reader]]:
-    """Return the installed readers of other programs' contacts by name."""
-    return installed()["reader"].items()
-
-
-def materials() -> Mapping[str, Material]:
-    """Return the installed materials by name."""
-    return installed()["material"].items()
-
-
-def parameter_sets() -> Mapping[str, WearLaw]:
-    """Return the installed parameter sets by name."""
-    return installed()["parameter set"].items()
+    Raises
+    ------
+    UnknownModelError
+        If there is no such kind.
+    """
+    shelves = discovered().shelves
+    if kind not in shelves:
+        raise UnknownModelError(
+            f"there is no kind {shown(kind)}{did_you_mean(kind, shelves)} Kinds: {', '.join(shelves)}"
+        )
+    return shelves[kind].items()
 
 
 def rig(name: str, /, **options: Any) -> Any:
@@ -340,7 +321,7 @@ def rig(name: str, /, **options: Any) -> Any:
 
     Parameters and errors are those of `contact_model`. Type checkers know the conditions of a rig only from its class.
     """
-    return installed().find("rig", name)(**options)
+    return discovered().find("rig", name)(**options)
 
 
 def contact_model(name: str, /, **options: Any) -> ContactModel:
@@ -349,7 +330,7 @@ def contact_model(name: str, /, **options: Any) -> ContactModel:
     Parameters
     ----------
     name : str
-        Name of the model, such as "exact"; `contact_models()` lists all names.
+        Name of the model, such as "exact"; ``installed("contact model")`` lists all names.
     **options
         The model's fields, such as ``bound="elliptic"``; ``wearlaw show NAME`` lists them.
 
@@ -360,7 +341,7 @@ def contact_model(name: str, /, **options: Any) -> ContactModel:
     ConfigurationError
         If an option is unknown or has a wrong value.
     """
-    made: ContactModel = installed().find("contact model", name)(**options)
+    made: ContactModel = discovered().find("contact model", name)(**options)
     return made
 
 
@@ -369,7 +350,7 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
 
     Parameters and errors are those of `contact_model`.
     """
-    found = installed()
+    found = discovered()
     if name in found["parameter set"]:
         known: WearLaw = found.find("parameter set", name)
         return known_as(name, known.model_copy(update=options))
@@ -382,7 +363,7 @@ def stage(name: str, /, **options: Any) -> Stage:
 
     Parameters and errors are those of `contact_model`.
     """
-    made: Stage = installed().find("stage", name)(**options)
+    made: Stage = discovered().find("stage", name)(**options)
     return made
 
 
@@ -396,11 +377,12 @@ def law(name: str, /, **options: Any) -> Law:
 
     Parameters and errors are those of `contact_model`.
     """
-    found = installed()
+    found = discovered()
     if name in found["wear law"] or name in found["parameter set"]:
         return wear_law(name, **options)
     if name not in found["law"]:
-        raise UnknownModelError(found.unknown("law", name, [*laws(), *wear_laws(), *parameter_sets()]))
+        kinds = ("law", "wear law", "parameter set")
+        raise UnknownModelError(found.unknown("law", name, [known for kind in kinds for known in installed(kind)]))
     made: Law = found.find("law", name)(**options)
     return made
 
@@ -422,7 +404,7 @@ def material(name: str, /, **options: Any) -> Material:
     ConfigurationError
         If a field is missing or unknown, or has a wrong value.
     """
-    found = installed()
+    found = discovered()
     if name in found["material"]:
         known: Material = found.find("material", name)
         changed = known.model_copy(update=options)
@@ -439,7 +421,7 @@ Material._look_up = staticmethod(material)  # for tables of materials with a `ty
 
 def _provided_by(cls: type[Any]) -> str:
     """Return the plugin that provides a class of models, or the module of a class from no plugin, in words."""
-    for shelf in installed().shelves.values():
+    for shelf in discovered().shelves.values():
         for provided, origin in shelf.providers.get(getattr(cls, "name", ""), ()):
             if provided is cls:
                 return f" of {origin}"

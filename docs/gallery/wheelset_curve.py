@@ -5,11 +5,10 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_models.rigs import wheelset as ws
 
-wheel, sizes = ws.Profile.s1002(), {"nominal_radius": "460 mm", "flange_back_distance": "1360 mm", "gauge": "1435 mm"}
-sizes |= {"rail": ws.Profile.uic60(), "rail_cant": "1:40", "material": wl.steel()}
-pair = ws.Wheelset(wheel=wheel, **sizes, rolling_speed="20 m/s")
+wheel, sizes = wl.Profile.s1002(), {"nominal_radius": "460 mm", "flange_back_distance": "1360 mm", "gauge": "1435 mm"}
+sizes |= {"rail": wl.Profile.uic60(), "rail_cant": "1:40", "material": wl.steel()}
+pair = wl.Wheelset(wheel=wheel, **sizes, rolling_speed="20 m/s")
 predict = pair | wl.contact_model("strip_theory") | wl.wear_law("energy", mass_per_energy="5.3 ug/J")
 form = {"figsize": (6.4, 5.0), "layout": "constrained", "gridspec_kw": {"height_ratios": (2, 3)}}
 figure, (shape, loss) = plt.subplots(2, 1, sharex=True, **form)

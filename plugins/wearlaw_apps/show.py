@@ -37,7 +37,7 @@ def list_plugins() -> None:
     """List what the installed plugins provide, by kind and name, and the plugins that failed to load."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PluginWarning)  # the listing below names what is left out
-        found = loader.installed()
+        found = loader.discovered()
     rows = [("kind", "name", "distribution", "version")]
     rows += [
         (kind, name, origin.distribution, origin.version)
@@ -76,7 +76,7 @@ def explain(name: str) -> str:
     if is_law_file(name):
         law = read_law(name)
         return describe(type(law), f"{name}: parameters for", law)
-    found = loader.installed()
+    found = loader.discovered()
     kinds = [kind for kind, shelf in found.shelves.items() if name in shelf.providers]
     if not kinds:
         known = dict.fromkeys(one for shelf in found.shelves.values() for one in shelf.items())
@@ -85,7 +85,7 @@ def explain(name: str) -> str:
 
 
 def _explained(kind: str, name: str, item: Any) -> str:
-    found = loader.installed()
+    found = loader.discovered()
     head = f"{name}: a {kind} of {found[kind].origin(name)}"
     if kind == "parameter set":
         return describe(type(item), f"{head}, for", item)
@@ -138,7 +138,7 @@ def describe(model: type[Model], head: str | None = None, law: Law | None = None
     if law is None:
         with suppress(InputError):  # some fields have no default
             default = model()
-    headline = f"{model.name}: a {model.kind} of {loader.installed()[model.kind].origin(model.name)}"
+    headline = f"{model.name}: a {model.kind} of {loader.discovered()[model.kind].origin(model.name)}"
     lines = [*([head] if head else []), headline, "", inspect.getdoc(model) or ""]
     lines += [
         "",

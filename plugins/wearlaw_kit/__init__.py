@@ -5,10 +5,10 @@ hypothesis draws from for arguments typed `Problem` and `Contact`.
 """
 
 from collections.abc import Iterable
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 import wearlaw as wl
+from wearlaw.late import face
 
 if TYPE_CHECKING:
     from wearlaw_kit.kit import Check, checks, conformance
@@ -30,19 +30,13 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> object:
-    """Return a public name. Its module is imported at its first use: looking up the plugin needs none."""
-    if name in ("Check", "checks", "conformance"):
-        return getattr(import_module("wearlaw_kit.kit"), name)
-    if name not in __all__:
-        raise AttributeError(f"module 'wearlaw_kit' has no attribute {name!r}")
-    try:
-        return getattr(import_module("wearlaw_kit.strategies"), name)
-    except ModuleNotFoundError as error:
-        if error.name != "hypothesis":
-            raise
-        message = f'wearlaw_kit.{name} needs hypothesis; install it with: pip install "wearlaw[check]"'
-        raise ModuleNotFoundError(message, name=error.name) from error
+__getattr__ = face(
+    "wearlaw_kit",
+    {
+        "wearlaw_kit.kit": ("Check", "checks", "conformance"),
+        "wearlaw_kit.strategies": ("contacts", "elliptic_problems", "line_problems", "problems"),
+    },
+)
 
 
 @wl.hookimpl

@@ -128,7 +128,7 @@ def _installed(name: str) -> type[Model] | Law:
     """Return the class of the model with this name, or the law of a parameter set or of a file."""
     if is_law_file(name):
         return read_law(name)
-    found = loader.installed()
+    found = loader.discovered()
     kinds = ("wear law", "law", "contact model", "stage", "rig", "reader", "parameter set")
     for kind in kinds:
         if name in found[kind].providers:

@@ -26,8 +26,8 @@ WHEEL_RAIL = wl.WheelRail(
     material=wl.steel(),
     rolling_speed=Q(30, "m/s"),
 )
-ELLIPTIC = [name for name, model in wl.contact_models().items() if "ellipse" in model.geometries()]
-LINE = [name for name, model in wl.contact_models().items() if "line" in model.geometries()]
+ELLIPTIC = [name for name, model in wl.installed("contact model").items() if "ellipse" in model.geometries()]
+LINE = [name for name, model in wl.installed("contact model").items() if "line" in model.geometries()]
 
 
 @pytest.mark.validates(

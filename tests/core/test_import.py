@@ -71,7 +71,7 @@ def test_dir_shows_the_public_names_also_those_loaded_later_and_no_room() -> Non
     assert "wearlaw_apps.studies.study" in loaded(code)
     modules = [name for name in dir(wl) if inspect.ismodule(getattr(wl, name))]
     assert modules == ["elastic_limit", "hertz", "hertz_ellipse", "kalker"]
-    assert {"fit", "sweep", "Uncertainty", "load_case"} <= set(dir(wl))
+    assert {"fit", "sweep", "Profile", "load_case"} <= set(dir(wl))
 
 
 def test_every_public_name_is_there() -> None:

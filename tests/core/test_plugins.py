@@ -49,7 +49,7 @@ BROKEN = {
     ),
     "built_for_a_newer_interface": (
         "wearlaw_interface = 99",
-        "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version 3;"
+        "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version 4;"
         " upgrade the older of the two",
     ),
     "abstract_model": (
@@ -65,17 +65,17 @@ BROKEN = {
 
 
 def test_the_first_party_plugins_are_found_by_name_in_order() -> None:
-    assert list(wl.contact_models()) == sorted(FIRST_PARTY_MODELS)
-    assert list(wl.wear_laws()) == sorted(FIRST_PARTY_LAWS)
-    assert {origin.distribution for origin in loader.installed().plugins} == {"wearlaw"}
-    assert not loader.installed().broken
+    assert list(wl.installed("contact model")) == sorted(FIRST_PARTY_MODELS)
+    assert list(wl.installed("wear law")) == sorted(FIRST_PARTY_LAWS)
+    assert {origin.distribution for origin in loader.discovered().plugins} == {"wearlaw"}
+    assert not loader.discovered().broken
 
 
 def test_an_outside_law_is_found_beside_the_others(install: Install) -> None:
     install("outside_plugin", LAW.format(name="outside"), version="3.2")
     assert wl.wear_law("outside").name == "outside"
-    assert set(wl.wear_laws()) == FIRST_PARTY_LAWS | {"outside"}
-    assert str(loader.installed()["wear law"].origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
+    assert set(wl.installed("wear law")) == FIRST_PARTY_LAWS | {"outside"}
+    assert str(loader.discovered()["wear law"].origin("outside")) == "outside_plugin 3.2 (plugin 'outside_plugin')"
 
 
 def test_a_command_of_a_plugin_is_imported_when_it_is_called_and_named_if_that_fails(install: Install) -> None:
@@ -109,13 +109,13 @@ def test_a_broken_plugin_is_warned_of_and_left_out_while_the_others_work(case: s
     install(f"broken_{case}", source)
     install("working_plugin", LAW.format(name="working"))
     with pytest.warns(wl.PluginWarning) as caught:
-        laws = wl.wear_laws()
+        laws = wl.installed("wear law")
     assert len(caught) == 1
     assert str(caught[0].message).startswith(f"left out: broken_{case} 1.0 (plugin 'broken_{case}'): ")
     assert cause in str(caught[0].message)
     assert caught[0].filename == __file__
     assert set(laws) == FIRST_PARTY_LAWS | {"working"}
-    assert set(wl.contact_models()) == FIRST_PARTY_MODELS
+    assert set(wl.installed("contact model")) == FIRST_PARTY_MODELS
     with pytest.raises(wl.UnknownModelError) as error:
         wl.wear_law("half")
     assert f"left out: broken_{case} 1.0" in str(error.value)
@@ -125,17 +125,17 @@ def test_a_broken_plugin_is_warned_of_and_left_out_while_the_others_work(case: s
 def test_a_broken_plugin_is_warned_of_once_and_then_left_alone(install: Install) -> None:
     install("broken_plugin", "raise RuntimeError")
     with pytest.warns(wl.PluginWarning):
-        wl.wear_laws()
+        wl.installed("wear law")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        wl.wear_laws()
+        wl.installed("wear law")
         wl.contact_model("exact")
 
 
 def test_ctrl_c_while_a_plugin_is_loading_ends_the_program(install: Install) -> None:
     install("slow_plugin", "raise KeyboardInterrupt")
     with pytest.raises(KeyboardInterrupt):
-        wl.wear_laws()
+        wl.installed("wear law")
 
 
 def test_what_a_plugin_gave_before_it_broke_stays(install: Install) -> None:
@@ -153,7 +153,7 @@ def test_one_name_of_two_distributions_is_an_error_that_names_both(install: Inst
         "wear law 'twin' is provided more than once, by one_plugin 1.5 (plugin 'one_plugin')"
         " and other_plugin 2.5 (plugin 'other_plugin'); remove one"
     )
-    assert "twin" not in wl.wear_laws()
+    assert "twin" not in wl.installed("wear law")
     assert wl.wear_law("usfd").name == "usfd"
 
 
@@ -172,8 +172,8 @@ def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_provide_nothing(in
         return {}
     """
     install("outside_plugin", LAW.format(name="outside") + hooks)
-    assert "outside" in wl.wear_laws()
-    assert "outside_steel" in wl.materials()
+    assert "outside" in wl.installed("wear law")
+    assert "outside_steel" in wl.installed("material")
 
 
 def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
@@ -182,7 +182,7 @@ def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
     install("doubled_plugin", LAW.format(name="doubled"), version="2.0")
     write_distribution(tmp_path / "later", "doubled_plugin", LAW.format(name="doubled"), version="1.0")
     monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path / "later")])
-    assert str(loader.installed()["wear law"].origin("doubled")).startswith("doubled_plugin 2.0 ")
+    assert str(loader.discovered()["wear law"].origin("doubled")).startswith("doubled_plugin 2.0 ")
     assert wl.wear_law("doubled").name == "doubled"
 
 

@@ -14,7 +14,6 @@ import pandas as pd
 import wearlaw as wl
 from tests.oracle.cases import CONTACTS, HOLLOW, LAWS, POINT, RIGS, STAGES, seen, thinned
 from wearlaw import Q
-from wearlaw_models.rigs import wheelset as ws
 
 FILES = Path(__file__).parents[2] / "docs" / "examples"
 EXACT, FASTSIM = RIGS["twin_disc"] | CONTACTS["exact"], RIGS["wheel_rail"] | CONTACTS["fastsim"]
@@ -195,10 +194,10 @@ def _of_contact_files(options: dict[str, Any]) -> dict[str, Any]:
 def _of_profiles() -> dict[str, Any]:
     places = 1e-3 * np.array([-44.0, -20.0, 3.0, 25.0])
     y = np.linspace(-35.0, 35.0, 141)
-    points = ws.Profile.from_points(y=Q(y, "mm"), z=Q(y**2 / 600.0 + 0.01 * np.cos(9.0 * y), "mm"), kind="rail",
+    points = wl.Profile.from_points(y=Q(y, "mm"), z=Q(y**2 / 600.0 + 0.01 * np.cos(9.0 * y), "mm"), kind="rail",
         smoothing="0.01 mm")  # fmt: skip
-    turned = ws.Profile.uic60().turned("-1.4 deg").shifted(z="0.1 mm")
-    profiles = {"s1002": ws.Profile.s1002(), "worn": HOLLOW, "turned": turned, "measured": points}
+    turned = wl.Profile.uic60().turned("-1.4 deg").shifted(z="0.1 mm")
+    profiles = {"s1002": wl.Profile.s1002(), "worn": HOLLOW, "turned": turned, "measured": points}
     found: dict[str, Any] = {name: np.array(profile.curve.at(0.7 * places)) for name, profile in profiles.items()}
     rig: Any = RIGS["wheelset"]
     return found | {"cant": turned.apparent_cant, "conicity": rig.equivalent_conicity(amplitude="3 mm")}

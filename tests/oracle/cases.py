@@ -12,11 +12,10 @@ import xarray as xr
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_models.rigs import wheelset as ws
 
 BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.33, density="8800 kg/m^3")
-HOLLOW = ws.Profile.s1002().worn(Q([-20, 0, 20], "mm"), Q([0, 0.5, 0], "mm"))
-WHEEL_RAIL, WHEELSET = dict(wl.WheelRail.example_fields), dict(ws.Wheelset.example_fields)
+HOLLOW = wl.Profile.s1002().worn(Q([-20, 0, 20], "mm"), Q([0, 0.5, 0], "mm"))
+WHEEL_RAIL, WHEELSET = dict(wl.WheelRail.example_fields), dict(wl.Wheelset.example_fields)
 
 RIGS: dict[str, wl.Rig] = {
     "twin_disc": wl.TwinDisc.suros(),

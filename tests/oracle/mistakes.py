@@ -14,7 +14,6 @@ import wearlaw as wl
 from tests.oracle.applications import TESTS, USFD
 from tests.oracle.cases import CONTACTS, LAWS, POINT, RIGS, WHEEL_RAIL, WHEELSET
 from wearlaw import Q
-from wearlaw_models.rigs import wheelset as ws
 
 PREDICT = {
     "twin_disc": USFD,
@@ -98,7 +97,7 @@ FILES: list[tuple[str, str, Callable[[Any], Any], str, str]] = [
     ("a case with a misspelt field", "case.toml", wl.load_case, 'title = "x"\ncontact_modls = ["exact"]\n',
         "contact_modls"),
     ("a case that is no TOML", "case.toml", wl.load_case, "title = x\n", "case"),
-    ("a profile in metres", "wheel.csv", partial(ws.read_profile, kind="wheel"),
+    ("a profile in metres", "wheel.csv", partial(wl.read_profile, kind="wheel"),
         "".join(f"{0.001 * y},{1e-6 * y * y}\n" for y in range(-60, 61)), "wheel"),
 ]  # fmt: skip
 

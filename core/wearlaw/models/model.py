@@ -12,7 +12,7 @@ import numpy as np
 
 from wearlaw.configuration import Configuration
 from wearlaw.errors import CompositionError, InputError, ModelError, WearlawError, described, did_you_mean
-from wearlaw.late import load
+from wearlaw.late import method
 
 Claim: TypeAlias = str
 """Name of an invariant that a model keeps unless it declares itself exempt; see `Model.exemptions`.
@@ -64,7 +64,7 @@ class Model(Configuration, ABC):
 
     def _repr_html_(self) -> str:
         """Return the model for a notebook: its fields, with a drawing of a rig or the curve of a law."""
-        shown: str = load("wearlaw_apps.output.notebook", "html", "a notebook")(self)
+        shown: str = method("html", "a notebook")(self)
         return shown
 
     @property

@@ -107,7 +107,7 @@ def check_scale(scale: Scale, model: ContactModel, law: Law, remedy: str = TAKE_
 def check_geometry(rig: Model, model: ContactModel, geometry: Geometry | None) -> None:
     """Raise an error if a contact model does not solve the geometry of a rig; None if the geometry is not known."""
     if geometry is not None and geometry not in model.geometries():
-        able = [name for name, one in loader.contact_models().items() if geometry in one.geometries()]
+        able = [name for name, one in loader.installed("contact model").items() if geometry in one.geometries()]
         raise CompositionError(
             f"contact model '{model.name}' solves {' and '.join(PATCHES[known] for known in model.geometries())} only,"
             f" but a {type(rig).__name__} makes {PATCHES[geometry]}; those that solve them: {', '.join(able)}"

@@ -29,7 +29,7 @@ from wearlaw.errors import (
     warn,
 )
 from wearlaw.fields import RIG, ContactModelField, LawField, StageField
-from wearlaw.late import load
+from wearlaw.late import method
 from wearlaw.models.contact_model import ContactModel, Scale, Stage
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.model import ORDER, Blame, Model, fault
@@ -53,7 +53,7 @@ from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.registry import with_magnitude
 
 if TYPE_CHECKING:
-    from wearlaw_apps.sweeps.several import Pipelines
+    from wearlaw.late import Pipelines
 
 OTHER_NAMES = {"mu": "friction_coefficient", "cof": "friction_coefficient", "load": "normal_force", "slip": "creepage"}
 """What people call conditions, and the names that most rigs have for them."""
@@ -522,4 +522,4 @@ class Pipeline(Configuration, Generic[P]):
 
 def _several(*parts: Any, **more: Any) -> Any:
     """Return the pipelines of lists of models, which give a dataset and need what sweeps need."""
-    return load("wearlaw_apps.sweeps.several", "Pipelines", "a list of models")(*parts, **more)
+    return method("Pipelines", "a list of models")(*parts, **more)

@@ -14,7 +14,7 @@ from wearlaw.arrays import Array, same, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
-from wearlaw.late import load
+from wearlaw.late import method
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.models.reader import Solved, flat
@@ -250,9 +250,7 @@ class Prediction:
             of that condition; other axes are point_0, point_1 and so on, as in `isel`. A rig's own axes follow, with
             their labels; missing patches are NaN.
         """
-        made: xarray.Dataset = load("wearlaw_apps.output.datasets", "to_dataset", "a dataset")(
-            self, self._solution, names
-        )
+        made: xarray.Dataset = method("to_dataset", "a dataset")(self, self._solution, names)
         return made
 
     def to_dataframe(self, names: Sequence[str] | None = None) -> pandas.DataFrame:
@@ -269,9 +267,7 @@ class Prediction:
             The conditions, the labels of the patches and the variables. The heads hold the units, as in
             "wear_rate [ug/m/mm^2]"; `wearlaw.sweep` and `wearlaw.read_tests` read such heads.
         """
-        made: pandas.DataFrame = load("wearlaw_apps.output.datasets", "to_dataframe", "a table")(
-            self, self._solution, names
-        )
+        made: pandas.DataFrame = method("to_dataframe", "a table")(self, self._solution, names)
         return made
 
     def plot(self, name: str | None = None, *, x: str | None = None, ax: Axes | None = None) -> Axes:
@@ -298,7 +294,7 @@ class Prediction:
         InputError
             If there is nothing to draw, or too many axes.
         """
-        draw = load("wearlaw_apps.output.pictures", "draw", "a picture")
+        draw = method("draw", "a picture")
         drawn: Axes = draw(self, self._solution, name, x, ax)
         return drawn
 
@@ -473,7 +469,7 @@ class Prediction:
     @property
     def profile(self) -> xarray.Dataset:
         """Pressure, traction, traction bound, slip and outcomes along the patch of a line, with units."""
-        fields: xarray.Dataset = load("wearlaw_apps.output.datasets", "profile", "a profile")(self._solution)
+        fields: xarray.Dataset = method("profile", "a profile")(self._solution)
         return fields
 
     def wear_profile(self, body: str, strips: int | None = None, at: QuantityLike | None = None) -> xarray.Dataset:
@@ -512,7 +508,7 @@ class Prediction:
         CompositionError
             If the contact is a line or is not resolved across the patch.
         """
-        of_strips = load("wearlaw_apps.output.wear_profile", "wear_profile", "a wear profile")
+        of_strips = method("wear_profile", "a wear profile")
         depth: xarray.Dataset = of_strips(self._solution, body, strips, at)
         return depth
 
@@ -605,7 +601,7 @@ class Prediction:
         return "".join([self._head, *(f"\n  {name:<20} {text}" for name, text in self._summary.items())])
 
     def _repr_html_(self) -> str:
-        of_prediction = load("wearlaw_apps.output.notebook", "of_prediction", "a notebook")
+        of_prediction = method("of_prediction", "a notebook")
         html: str = of_prediction(self, self._solution, self._head, self._summary)
         return html
 

@@ -38,8 +38,8 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
         The file of one contact. Several files make a batch in their order, padded with nodes of no area to the most
         nodes of a file; their bodies must be of the same materials.
     reader : str, optional
-        Name of the reader, such as "contact_mat"; `readers()` lists all. By default it is the one that recognises the
-        file.
+        Name of the reader, such as "contact_mat"; ``installed("reader")`` lists all. By default it is the one that
+        recognises the file.
     **options
         The reader's fields, for what the file does not hold; ``wearlaw show NAME`` lists them.
 
@@ -65,7 +65,7 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
 def _read(path: Path, name: str | None, options: dict[str, Any]) -> Contact:
     """Return the contact in a file, checked."""
     head = _head(path)
-    reader = (_recognised(path, head) if name is None else loader.installed().find("reader", name))(**options)
+    reader = (_recognised(path, head) if name is None else loader.discovered().find("reader", name))(**options)
     with Blame(reader):
         contact = reader.read(path)
     if not isinstance(contact, Contact) or contact.problem is None:
@@ -92,7 +92,7 @@ def _head(path: Path) -> bytes:
 
 def _recognised(path: Path, head: bytes) -> type[Reader]:
     """Return the one reader for the ending and the content of a file."""
-    every: dict[str, list[tuple[type[Reader], Any]]] = loader.installed()["reader"].providers
+    every: dict[str, list[tuple[type[Reader], Any]]] = loader.discovered()["reader"].providers
     candidates = [
         (one, f"{shown(name)} of {origin}")
         for name, providers in every.items()

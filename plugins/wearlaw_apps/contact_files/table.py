@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw_apps import tables
 
 LARGEST = 256 * 2**20
 """Size of the largest file that is read [bytes]."""
@@ -128,7 +129,7 @@ def _parsed(path: Path, text: str) -> Table:
     return Table(path, values, table.lines)
 
 
-def _numbers(table: wl.Table, name: str) -> Array:
+def _numbers(table: tables.Table, name: str) -> Array:
     """Return a column, with NaN for what is no number."""
     try:
         return table.numbers(name)

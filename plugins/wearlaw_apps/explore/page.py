@@ -276,7 +276,7 @@ def named(rig: str, chosen: Iterable[str] = ()) -> Subject:
     for name in chosen:
         read = wl.read_law if is_law_file(name) else wl.wear_law
         laws[read(name)] = f"wl.{read.__name__}({name!r})"
-    found = wl.rigs().get(rig)
+    found = wl.installed("rig").get(rig)
     if found is not None:
         given = "".join(f", {name}={text!r}" for name, text in found.example_fields.items())
         return Subject(wl.rig(rig, **found.example_fields), "rig", f"rig = wl.rig({rig!r}{given})", own_laws=laws)

@@ -31,10 +31,10 @@ class Subject:
     stages: Mapping[Any, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        by_use = sorted(wl.contact_models(), key=lambda name: name != FIRST)
+        by_use = sorted(wl.installed("contact model"), key=lambda name: name != FIRST)
         models = {**self.own_models, **_installed(wl.contact_model, by_use)}
         own = {law: code for law, code in self.own_laws.items() if isinstance(law, wl.WearLaw)}
-        laws = {**own, **_installed(wl.wear_law, [*wl.wear_laws(), *wl.parameter_sets()])}
+        laws = {**own, **_installed(wl.wear_law, [*wl.installed("wear law"), *wl.installed("parameter set")])}
         self.codes = {MEANS: "wl.patch_mean()", **self.stages, **models, **laws}
         fitting = []
         for model in models:

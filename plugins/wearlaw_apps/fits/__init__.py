@@ -1,6 +1,25 @@
 """Wear tests, parameters of laws fitted to them, comparisons with predictions, and uncertainties of predictions."""
 
+from typing import TYPE_CHECKING
+
 import wearlaw as wl
+from wearlaw.late import face
+
+if TYPE_CHECKING:
+    from wearlaw_apps.fits.comparison import Comparison
+    from wearlaw_apps.fits.result import Fit
+    from wearlaw_apps.fits.uncertainty import Uncertainty
+
+__all__ = ["Comparison", "Fit", "Uncertainty"]
+
+__getattr__ = face(
+    "wearlaw_apps.fits",
+    {
+        "wearlaw_apps.fits.comparison": ("Comparison",),
+        "wearlaw_apps.fits.result": ("Fit",),
+        "wearlaw_apps.fits.uncertainty": ("Uncertainty",),
+    },
+)
 
 
 @wl.hookimpl

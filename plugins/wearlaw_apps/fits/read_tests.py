@@ -62,7 +62,7 @@ def read_tests(
 
 def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
     """Return the text of a CSV file, or of shipped tests by their name."""
-    found = loader.installed()
+    found = loader.discovered()
     if path_or_name in found["test set"].providers:
         text: str = found.find("test set", str(path_or_name))
         return text
@@ -90,8 +90,8 @@ def parse_tests(
 def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     """Return the tests of a table."""
     table.label = f"the tests {shown(Path(name))}"
-    conditions = {name for rig in loader.rigs().values() for name in rig.conditions()}
-    measured = {*outcomes, *(law.outcome.name for law in loader.laws().values())}
+    conditions = {name for rig in loader.installed("rig").values() for name in rig.conditions()}
+    measured = {*outcomes, *(law.outcome.name for law in loader.installed("law").values())}
     wrong = list(_unknown(table, {*conditions, *measured}))
     if wrong:
         raise DataError(f"{table.label} are wrong in:", wrong)

@@ -112,7 +112,7 @@ class Fit:
     @property
     def provenance(self) -> dict[str, Any]:
         """Versions, stages with their fitted numbers, tests, settings and sums, as a TOML table."""
-        found, model = loader.installed(), self.predict.contact_model
+        found, model = loader.discovered(), self.predict.contact_model
         return {
             "wearlaw": __version__,
             "laws": {law.name: found[law.kind].distribution(law.name, type(law)) for law in self.predict.laws},

@@ -6,20 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import wearlaw as wl
+from wearlaw.late import face
 
 if TYPE_CHECKING:
     from wearlaw_apps.life.life import Life
-    from wearlaw_apps.life.over_distance import wear_out
 
-__all__ = ["Life", "wear_out"]
+__all__ = ["Life"]
 
-
-def __getattr__(name: str) -> object:
-    if name not in __all__:
-        raise AttributeError(f"module 'wearlaw_apps.life' has no attribute {name!r}")
-    from wearlaw_apps.life import over_distance  # needs pandas and xarray, which looking up a plugin must not load
-
-    return getattr(over_distance, name)
+__getattr__ = face("wearlaw_apps.life", {"wearlaw_apps.life.life": ("Life",)})
 
 
 @wl.hookimpl

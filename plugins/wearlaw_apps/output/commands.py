@@ -122,7 +122,7 @@ def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
 def _form(name: str, given: Mapping[str, str | float]) -> str:
     """Return a law with its required fields, and those with an example, as it stands on the command line."""
     parts = [name]
-    for field, about in {**loader.wear_laws(), **loader.laws()}[name].model_fields.items():
+    for field, about in {**loader.installed("wear law"), **loader.installed("law")}[name].model_fields.items():
         if field in given or about.is_required() or about.examples:
             shown = given.get(field, (about.examples or ["VALUE"])[0])
             parts.append(f'{field}="{shown}"' if " " in str(shown) else f"{field}={shown}")

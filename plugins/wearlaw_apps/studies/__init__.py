@@ -2,9 +2,17 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import wearlaw as wl
+from wearlaw.late import face
+
+if TYPE_CHECKING:
+    from wearlaw_apps.studies.case import Case
+
+__all__ = ["Case"]
+
+__getattr__ = face("wearlaw_apps.studies", {"wearlaw_apps.studies.case": ("Case",)})
 
 STARTERS = ("two_discs", "my_tests")
 """Short cases to start from; `wheel_on_rail` and `wheelset` are those of their rigs."""

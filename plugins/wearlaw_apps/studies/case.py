@@ -96,7 +96,7 @@ def _unmet(name: str, versions: str) -> str:
 
 
 def _section(name: str) -> str:
-    loader.installed().find("section", name)
+    loader.discovered().find("section", name)
     return name
 
 
@@ -278,7 +278,7 @@ def case_text(name_or_path: str) -> str:
     UnknownModelError
         If several plugins ship a case of that name.
     """
-    found = loader.installed()
+    found = loader.discovered()
     known = found["case"].items()
     if name_or_path in found["case"].providers:
         text: str = found.find("case", name_or_path)
@@ -298,7 +298,7 @@ def case_schema() -> dict[str, Any]:
     """Return the JSON Schema of a case file, with the options of all installed models."""
     schema = Case.model_json_schema(by_alias=True)
     definitions = schema["$defs"]
-    properties, found = schema["properties"], loader.installed()
+    properties, found = schema["properties"], loader.discovered()
     for field in ("contact_models", "stages", "laws", "wear_laws"):
         shelf = found[field.replace("_", " ").removesuffix("s")]
         properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
@@ -359,7 +359,7 @@ def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Itera
     """Yield the schemas of a rig's table: one with its fields, and one for each preset."""
     yield _model_schema(name, rig, definitions, "type")
     for preset in _presets(rig):
-        fields = preset_fields(loader.installed().find("preset", preset))
+        fields = preset_fields(loader.discovered().find("preset", preset))
         table = fields.model_json_schema(ref_template=f"#/$defs/{name}.{preset}.{{model}}")
         definitions.update({f"{name}.{preset}.{key}": value for key, value in table.pop("$defs", {}).items()})
         required = ["preset", *table.get("required", [])]
@@ -369,7 +369,7 @@ def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Itera
 
 def _presets(rig: type[Rig]) -> list[str]:
     """Return the names of the presets of a rig."""
-    return [name for name, preset in loader.installed()["preset"].items().items() if preset.rig is rig]
+    return [name for name, preset in loader.discovered()["preset"].items().items() if preset.rig is rig]
 
 
 def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
@@ -438,7 +438,7 @@ def load_case(name_or_path: str) -> Case:
     except InputError as error:
         raise CaseError(f"case {shown(Path(name_or_path))} {error}") from None
     try:
-        if name_or_path in loader.installed()["case"].providers:
+        if name_or_path in loader.discovered()["case"].providers:
             return known_as(name_or_path, Case(**fields))
         with reading(name_or_path):
             return Case(**fields)

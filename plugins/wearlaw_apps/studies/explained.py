@@ -40,7 +40,7 @@ def explain_section(name: str, make: Callable[..., Any]) -> Iterator[str]:
     if documented:
         yield from (documented, "")
     yield f'A case adds it to its report with sections = ["{name}"].'
-    cases = loader.installed()["case"].items()
+    cases = loader.discovered()["case"].items()
     users = [case for case, text in cases.items() if name in parse_toml(text).get("sections", [])]
     if users:
         yield f"Shipped cases with it: {', '.join(users)}"

@@ -150,7 +150,7 @@ def _check_figures(case: Case, pairs: list[Pair], profiles: dict[str, xarray.Dat
 
 def _section(name: str, study: Study, notes: Notes) -> Section:
     """Return the section that a plugin makes from a study."""
-    found = loader.installed()
+    found = loader.discovered()
     make = found.find("section", name)
     subject = f"section '{name}' of {found['section'].origin(name)}"
     try:
@@ -187,7 +187,7 @@ def provenance(case: Case) -> dict[str, Any]:
 
 def used(case: Case) -> dict[str, dict[str, str]]:
     """Return the models and other named items of a case, by kind and name, with distribution and version."""
-    found = loader.installed()
+    found = loader.discovered()
     named: dict[type, Shelf] = {
         WearLaw: found["parameter set"],
         Material: found["material"],

@@ -27,7 +27,7 @@ Provenance = dict[str, Any]
 
 def provenance_of(job: Job, points: Points) -> Provenance:
     """Return versions, pipeline, conditions, outputs and blocks of a sweep; columns of numbers by their digest."""
-    installed = loader.installed()
+    installed = loader.discovered()
     provided = {
         f"{part.kind} {part.name}": installed[part.kind].distribution(part.name, type(part))
         for part in parts(job.pipeline)

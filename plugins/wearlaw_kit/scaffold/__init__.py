@@ -83,7 +83,7 @@ def write_plugin(name: str, kind: Kind, parent: Path) -> Path:
 
 def _holders(name: str) -> Iterator[str]:
     """Yield what already has a name, where a look-up or an entry point would confuse the two."""
-    installed = loader.installed()
+    installed = loader.discovered()
     for kind in ("wear law", "contact model", "rig", "stage", "law", "parameter set"):
         if name in installed[kind].providers:
             yield f"the {kind} of {installed[kind].origin(name)}"

@@ -13,7 +13,6 @@ import wearlaw as wl
 from tests.plugins.contact_files.files import FILES, HEAD, PRINTED, SUBSURFACE, of_version, rows_of, turned, write_rows
 from wearlaw import Q
 from wearlaw_apps.contact_files import ContactMat
-from wearlaw_apps.contact_files.subsurface import read_subsurface  # private: one reader, without the look-up
 
 PRINTING = 5e-4
 """Largest relative error of a number printed with four digits."""
@@ -230,7 +229,7 @@ def test_materials_keep_all_but_the_elastic_constants_of_the_file() -> None:
 
 
 def test_the_stresses_below_the_surface_are_in_equilibrium_with_the_surface() -> None:
-    below, contact = read_subsurface(SUBSURFACE), wl.read_contact(FILES["half_space"])
+    below, contact = wl.read_subsurface(SUBSURFACE), wl.read_contact(FILES["half_space"])
     assert dict(below.sizes) == {"x": 7, "y": 5, "z": 8}
     assert below.attrs["blocks"] == 1
     trace = below.sigma_xx + below.sigma_yy + below.sigma_zz
@@ -257,12 +256,12 @@ def test_the_order_of_points_and_several_blocks_do_not_matter(tmp_path: Path) ->
     rng = np.random.default_rng(1)
     shuffled = np.concatenate([rows[:1], rng.permutation(rows[1:])])
     path = write_rows(tmp_path / "two.subs", np.concatenate([shuffled, rows]))
-    first, second = (read_subsurface(path, block=block) for block in (1, 2))
+    first, second = (wl.read_subsurface(path, block=block) for block in (1, 2))
     assert first.attrs["blocks"] == 2
     assert first.equals(second)
     for block in (0, 3):
         with pytest.raises(wl.InputError, match="has blocks 1 to 2"):
-            read_subsurface(path, block=block)
+            wl.read_subsurface(path, block=block)
 
 
 @pytest.mark.parametrize("law", ["usfd", "kth"])

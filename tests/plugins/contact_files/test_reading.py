@@ -62,8 +62,8 @@ def printed(folder: Path, creepage: str = "0.2", name: str = "one.prt", mark: st
 
 def test_a_reader_of_a_plugin_is_found_by_the_ending_and_takes_its_fields(install: Install, tmp_path: Path) -> None:
     install("wearlaw_prt", reader())
-    assert "printed" in wl.readers()
-    assert "contact_mat" in wl.readers()
+    assert "printed" in wl.installed("reader")
+    assert "contact_mat" in wl.installed("reader")
     contact = wl.read_contact(printed(tmp_path))
     assert contact.problem is not None
     assert contact.problem.longitudinal_creepage == pytest.approx(0.002)
@@ -158,7 +158,7 @@ def test_a_reader_needs_endings_and_starts_no_pipeline() -> None:
         with pytest.raises(TypeError, match="suffixes must be a tuple"):
             exec(f"class Wrong(wl.Reader):\n    name = 'wrong'\n    suffixes = {wrong}", {"wl": wl})
     with pytest.raises(wl.CompositionError, match="reader 'contact_mat' cannot start a pipeline"):
-        _ = wl.readers()["contact_mat"]() | wl.wear_law("usfd")  # type: ignore[operator]
+        _ = wl.installed("reader")["contact_mat"]() | wl.wear_law("usfd")
 
 
 def test_a_batch_of_files_has_the_results_of_each_of_them() -> None:

@@ -11,7 +11,6 @@ import pytest
 import wearlaw as wl
 from tests.plugins.contact_files.files import FILES, SUBSURFACE, changed, of_version, rows_of, write_rows
 from wearlaw import Array
-from wearlaw_apps.contact_files.subsurface import read_subsurface  # private: one reader, without the look-up
 
 TREAD = FILES["tread"]
 FIRST_ELEMENT = 14
@@ -125,24 +124,24 @@ def below(change: Callable[[Array], Array], tmp_path: Path) -> Path:
 
 def test_damaged_stresses_are_refused(tmp_path: Path) -> None:
     with pytest.raises(wl.DataError, match=r"line 101: ends after 99 points of the block .* 7 x 5 x 8; .* cut short"):
-        read_subsurface(below(lambda rows: rows[:100], tmp_path))
+        wl.read_subsurface(below(lambda rows: rows[:100], tmp_path))
     with pytest.raises(wl.DataError, match=r"has 5 columns, but a .subs file has 4, 8 or 14; is it one\?"):
-        read_subsurface(below(lambda rows: rows[:, :5], tmp_path))
+        wl.read_subsurface(below(lambda rows: rows[:, :5], tmp_path))
     twice = rows_of(SUBSURFACE)
     twice[9] = twice[8]
     with pytest.raises(wl.DataError, match="line 3: the points of this block are no grid of 7 x 5 x 8"):
-        read_subsurface(below(lambda _: twice, tmp_path))
+        wl.read_subsurface(below(lambda _: twice, tmp_path))
     with pytest.raises(wl.DataError, match=r"line 2, column 1 \(NX\): must be from 1 to"):
-        read_subsurface(below(lambda rows: 0.0 * rows, tmp_path))
+        wl.read_subsurface(below(lambda rows: 0.0 * rows, tmp_path))
     with pytest.raises(wl.DataError, match=r"cannot read .*No such file"):
-        read_subsurface(tmp_path / "nowhere.subs")
+        wl.read_subsurface(tmp_path / "nowhere.subs")
 
 
 def test_few_columns_of_stresses_are_read(tmp_path: Path) -> None:
-    rows, whole = rows_of(SUBSURFACE), read_subsurface(SUBSURFACE)
-    eight = read_subsurface(below(lambda _: rows[:, :8], tmp_path))
+    rows, whole = rows_of(SUBSURFACE), wl.read_subsurface(SUBSURFACE)
+    eight = wl.read_subsurface(below(lambda _: rows[:, :8], tmp_path))
     assert list(eight) == ["ux", "uy", "uz", "sigma_hydrostatic", "sigma_von_mises"]
     assert eight.equals(whole[list(eight)])
-    four = read_subsurface(below(lambda _: rows[:, [0, 1, 2, 7]], tmp_path))
+    four = wl.read_subsurface(below(lambda _: rows[:, [0, 1, 2, 7]], tmp_path))
     assert list(four) == ["sigma_von_mises"]
     assert four.equals(whole[["sigma_von_mises"]])

@@ -139,7 +139,7 @@ def test_a_wheelset_shows_its_profiles_their_contacts_and_the_wear_along_them() 
     assert [*page.patch.options] == ["left, patch 1", "right, patch 1"]
     *_, lines = drawn(page)["contact_state_1"]["data"]
     worn = drawn(page)["wear_state_1"]["data"][0]
-    at = wl.rig("wheelset", **wl.rigs()["wheelset"].example_fields).profiles_in_track().wheel
+    at = wl.rig("wheelset", **wl.installed("rig")["wheelset"].example_fields).profiles_in_track().wheel
     y = np.interp(1e-3 * worn["x"][np.nanargmax(np.array(worn["y"], float))], at[0], 1e3 * at[1])
     assert y == pytest.approx(lines["x"][0], abs=2.0)  # most wear where the right wheel touches
 
@@ -224,7 +224,7 @@ def test_a_port_in_use_is_told() -> None:
 
 
 def test_a_notebook_gets_a_page_that_renders() -> None:
-    rig = wl.rig("twin_disc", **wl.rigs()["twin_disc"].example_fields)
+    rig = wl.rig("twin_disc", **wl.installed("rig")["twin_disc"].example_fields)
     page = wl.explore(rig | wl.contact_model("exact") | wl.wear_law("usfd"), creepage=wl.Q(3, "%"))
     with pn.config.set(console_output="disable"):  # which needs IPython
         bundle, _ = page._repr_mimebundle_()

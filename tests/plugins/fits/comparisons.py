@@ -8,6 +8,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw_apps.fits import Comparison
 from wearlaw_apps.fits.comparison import Compared  # private: for its type
 
 RIG = wl.TwinDisc.suros()
@@ -37,9 +38,9 @@ def scattered(**columns: Any) -> wl.WearTests:
     return made(wear_rate=made().wear_rate * SCATTER, **columns)
 
 
-def by_label(comparison: wl.Comparison) -> dict[str, Compared]:
+def by_label(comparison: Comparison) -> dict[str, Compared]:
     return {one.names.label: one for one in comparison.compared}
 
 
-def order(comparison: wl.Comparison) -> list[str]:
+def order(comparison: Comparison) -> list[str]:
     return [one.names.label for one in comparison.compared]

@@ -13,6 +13,7 @@ from tests.core.test_own_rigs import Roller
 from tests.plugins.fits.fits import sloping
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw_apps.fits import Fit
 
 WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 KTH = wl.wear_law("kth")
@@ -89,7 +90,7 @@ def on_rail(model: str, **changes: Any) -> wl.WearTests:
     return wl.WearTests.from_arrays(**{**LOADS, **measured, "other_conditions": ON_RAIL, **changes})
 
 
-def fitted(predict: Any, tests: wl.WearTests, **more: Any) -> wl.Fit:
+def fitted(predict: Any, tests: wl.WearTests, **more: Any) -> Fit:
     free = ["bend", "slope", "friction_coefficient"]
     return wl.fit(predict, tests, free=free, starts=4, bootstrap=0, **{"friction_coefficient": 0.3, **more})
 

@@ -24,6 +24,7 @@ from tests.plugins.fits.comparisons import (
 )
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw_apps.fits import Comparison, Fit
 from wearlaw_apps.fits.agreement import agreement  # private: errors of made-up rates, without a law
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")  # most compare fits to the tests themselves
@@ -132,7 +133,7 @@ def test_notes_of_one_kind_are_one_warning_and_statements_are_none() -> None:
 # Fits
 
 
-def predicted(fit: wl.Fit, friction: float) -> wl.Array:
+def predicted(fit: Fit, friction: float) -> wl.Array:
     """Return the predictions of the fitted law [kg/m/m²], through the public interface."""
     assert isinstance(fit.predict, wl.Pipeline)
     conditions: dict[str, Any] = {"creepage": Q(CREEPAGE, "%"), "max_pressure": "1500 MPa"}
@@ -247,7 +248,7 @@ def test_the_figure_has_a_panel_for_each_contact_model_with_measured_over_predic
 
 
 @pytest.fixture(scope="module")
-def with_zeros() -> wl.Comparison:
+def with_zeros() -> Comparison:
     """A law that predicts no wear in the first tests, beside one that is far off, and a measured rate of zero."""
     rates = made().wear_rate.magnitude.copy()
     rates[3] = 0.0
@@ -255,7 +256,7 @@ def with_zeros() -> wl.Comparison:
     return wl.compare(laws, made(wear_rate=Q(rates, "ug/m/mm^2")))
 
 
-def test_no_predicted_wear_where_some_was_measured_ranks_last_and_is_noted(with_zeros: wl.Comparison) -> None:
+def test_no_predicted_wear_where_some_was_measured_ranks_last_and_is_noted(with_zeros: Comparison) -> None:
     found = by_label(with_zeros)
     missed = int(((found["above"].predicted == 0) != (with_zeros.tests.columns["wear_rate"] == 0)).sum())
     assert missed > 1, "the law must miss some tests here"

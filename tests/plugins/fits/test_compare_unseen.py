@@ -12,6 +12,7 @@ import wearlaw as wl
 from tests.plugins.fits.comparisons import EXACT, GLOBAL, SCATTER, by_label, made, scattered, usfd
 from tests.plugins.fits.fits import sloping
 from wearlaw import Q
+from wearlaw_apps.fits import Comparison
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")  # most compare fits to the tests themselves
 
@@ -26,7 +27,7 @@ def folds(points: Any, how: Any) -> list[Any]:
     return [np.flatnonzero(np.isin(points, dealt[fold::number])) for fold in range(number)]
 
 
-def seen(comparison: wl.Comparison) -> dict[str, int]:
+def seen(comparison: Comparison) -> dict[str, int]:
     return {one.names.label: one.in_sample for one in comparison.compared}
 
 

@@ -15,15 +15,16 @@ import wearlaw as wl
 from tests.plugins.fits.fits import ALL, CREEPAGE, EXACT, FRICTION, PRESSURE, RIG, made_up, usfd
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw_apps.fits import Fit
 
 
 @pytest.fixture(scope="module")
-def exact_fit() -> wl.Fit:
+def exact_fit() -> Fit:
     predict = usfd("exact")
     return wl.fit(predict, made_up(predict, 0.1, source="made up"), free=ALL, bootstrap=300)
 
 
-def test_the_fitted_law_knows_what_it_was_fitted_to(exact_fit: wl.Fit) -> None:
+def test_the_fitted_law_knows_what_it_was_fitted_to(exact_fit: Fit) -> None:
     law: Any = exact_fit.law
     calibration = law.calibration
     assert calibration.source == "fitted to 20 tests of made up"
@@ -47,7 +48,7 @@ def test_the_fitted_law_knows_what_it_was_fitted_to(exact_fit: wl.Fit) -> None:
     assert calibration.bodies == (RIG.disc_1.material, RIG.disc_2.material)
 
 
-def test_the_fitted_pipeline_predicts_what_the_residuals_say(exact_fit: wl.Fit) -> None:
+def test_the_fitted_pipeline_predicts_what_the_residuals_say(exact_fit: Fit) -> None:
     table = exact_fit.residuals
     predicted: Any = exact_fit.predict(creepage=Q(CREEPAGE, "%"), max_pressure=PRESSURE, friction_coefficient=FRICTION)
     np.testing.assert_allclose(table["predicted"], predicted.wear_rate.magnitude, rtol=1e-9)
@@ -58,7 +59,7 @@ def test_the_fitted_pipeline_predicts_what_the_residuals_say(exact_fit: wl.Fit) 
     assert exact_fit.aic == pytest.approx(20 * np.log(exact_fit.chi2 / 20) + 2 * 5, rel=1e-9)
 
 
-def test_standard_errors_and_correlations_are_those_of_the_covariance(exact_fit: wl.Fit) -> None:
+def test_standard_errors_and_correlations_are_those_of_the_covariance(exact_fit: Fit) -> None:
     reach = stats.t.ppf(0.975, 16)
     for name, (low, high) in exact_fit.covariance_intervals.items():
         value, error = exact_fit.parameters[name].magnitude, exact_fit.standard_errors[name].magnitude
@@ -76,7 +77,7 @@ def test_standard_errors_and_correlations_are_those_of_the_covariance(exact_fit:
     source="the first fit",
     held_to="to the bit",
 )
-def test_a_fit_is_determined_by_its_seed(exact_fit: wl.Fit) -> None:
+def test_a_fit_is_determined_by_its_seed(exact_fit: Fit) -> None:
     predict, tests = usfd("exact"), exact_fit.tests
     again = wl.fit(predict, tests, free=ALL, bootstrap=300)
     other = wl.fit(predict, tests, free=ALL, bootstrap=300, seed=1)
@@ -93,7 +94,7 @@ def test_a_fit_is_determined_by_its_seed(exact_fit: wl.Fit) -> None:
     source="the law before",
     held_to="equal",
 )
-def test_a_law_that_was_written_reads_back_equal(exact_fit: wl.Fit, tmp_path: Path) -> None:
+def test_a_law_that_was_written_reads_back_equal(exact_fit: Fit, tmp_path: Path) -> None:
     path = tmp_path / "my-usfd.toml"
     path.write_text("an older file")
     exact_fit.to_toml(path)
@@ -107,7 +108,7 @@ def test_a_law_that_was_written_reads_back_equal(exact_fit: wl.Fit, tmp_path: Pa
     assert provenance["chi2"] == exact_fit.chi2
 
 
-def test_the_figure_holds_the_measurements_and_a_curve_through_the_fit_with_a_band(exact_fit: wl.Fit) -> None:
+def test_the_figure_holds_the_measurements_and_a_curve_through_the_fit_with_a_band(exact_fit: Fit) -> None:
     (panel,) = exact_fit.figure_data().panels
     curve, points = panel.curves
     np.testing.assert_allclose(points.y, exact_fit.tests.wear_rate.magnitude, rtol=1e-12)
@@ -171,7 +172,7 @@ def test_tests_that_differ_in_one_condition_have_a_curve_over_it(varied: str) ->
 
 
 @pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")
-def test_a_notebook_shows_a_fit_and_a_comparison_as_tables(exact_fit: wl.Fit) -> None:
+def test_a_notebook_shows_a_fit_and_a_comparison_as_tables(exact_fit: Fit) -> None:
     html = exact_fit._repr_html_()
     assert html.count("<tr>") == len(exact_fit.parameters) + 2
     assert "<td>q_s</td>" in html

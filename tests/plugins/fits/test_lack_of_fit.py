@@ -11,6 +11,7 @@ from scipy import stats
 import wearlaw as wl
 from tests.plugins.fits.fits import FRICTION, PRESSURE, usfd
 from wearlaw import Q
+from wearlaw_apps.fits import Fit
 from wearlaw_apps.fits.lack_of_fit import lack_of_fit, repeats  # private: the example of a textbook
 
 CREEPAGE = [0.2, 0.4, 0.6, 0.8]
@@ -26,7 +27,7 @@ def repeated(effect: Any, each: int, scatter: float, **more: Any) -> wl.WearTest
     return wl.WearTests.from_arrays(**conditions, wear_rate=usfd("exact")(**conditions).wear_rate * factor, **more)
 
 
-def fitted(tests: wl.WearTests, poor: bool, **options: Any) -> wl.Fit:
+def fitted(tests: wl.WearTests, poor: bool, **options: Any) -> Fit:
     """Return the fit of m_m, which warns if it is poor."""
     if poor:
         with pytest.warns(wl.FitWarning, match="lack of fit.*wear rate"):

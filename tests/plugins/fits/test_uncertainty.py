@@ -23,6 +23,7 @@ from tests.plugins.fits.fits import (
 )
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw_apps.fits import Fit
 
 
 class Linear(wl.WearLaw):
@@ -182,12 +183,12 @@ def test_the_figure_of_several_points_is_a_band_in_their_order() -> None:
 
 
 @pytest.fixture(scope="module")
-def fit() -> wl.Fit:
+def fit() -> Fit:
     tests = made_up(usfd("exact"), 0.1)
     return wl.fit(usfd("exact"), tests, ["q_s", "m_c", "tr_sc"], friction_coefficient=FRICTION, bootstrap=256)
 
 
-def test_the_parameters_of_a_fit_move_together_with_its_replicates(fit: wl.Fit) -> None:
+def test_the_parameters_of_a_fit_move_together_with_its_replicates(fit: Fit) -> None:
     """With as many samples as there are replicates, each is drawn once, and gives what its law predicts."""
     conditions: Any = {"max_pressure": PRESSURE, "creepage": Q(19, "%"), "friction_coefficient": FRICTION}
     u = wl.uncertainty(fit, **conditions, samples=256)
@@ -218,7 +219,7 @@ def test_a_fitted_friction_coefficient_is_a_condition_unless_it_is_given() -> No
     assert set(both.sobol().index) == {"creepage", "fit"}
 
 
-def test_a_fit_without_replicates_and_a_number_given_twice_are_refused(fit: wl.Fit) -> None:
+def test_a_fit_without_replicates_and_a_number_given_twice_are_refused(fit: Fit) -> None:
     conditions: Any = {"max_pressure": PRESSURE, "creepage": Q(1, "%"), "friction_coefficient": FRICTION}
     with pytest.raises(wl.InputError, match="q_s"):
         wl.uncertainty(fit, **conditions, law={"q_s": wl.normal("50 ug/m/mm^2", "1 ug/m/mm^2")})

@@ -26,7 +26,6 @@ from wearlaw_apps.life.removal import (  # private: the parts of a step in close
 )
 from wearlaw_apps.life.steps import Limits  # private: the limits alone
 from wearlaw_apps.sweeps.sweep import run  # private: the warnings of a step
-from wearlaw_models.rigs import wheelset as ws
 
 GIVEN: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
 
@@ -98,7 +97,7 @@ def test_smoothing_keeps_the_sum_and_has_its_length() -> None:
 
 def test_one_factor_makes_the_mass_exact_on_a_flange() -> None:
     """In the root of the flange, of radius 13 mm, removal along the normal alone misses by depth/2 × curvature."""
-    start = even(ws.Profile.s1002())
+    start = even(wl.Profile.s1002())
     at = positions([start], 3000)
     depth = 0.1e-3 * np.exp(-0.5 * ((at + 37e-3) / 2e-3) ** 2)
     volume = 2.0 * np.pi * R0 * float(np.trapezoid(depth, at))
@@ -172,7 +171,7 @@ def test_a_line_of_right_hand_curves_wears_its_sides_differently() -> None:
 
 
 def test_a_pair_of_unlike_wheels_has_no_mean() -> None:
-    unlike = pipeline(left_wheel=ws.Profile.s1002())
+    unlike = pipeline(left_wheel=wl.Profile.s1002())
     with pytest.raises(wl.InputError, match="'each'"):
         wl.wear_out(unlike, line(3), over="10 km", **GIVEN)
 
@@ -324,7 +323,7 @@ def test_columns_that_are_no_conditions_are_ignored_with_a_word(tmp_path: Path) 
 def test_profile_too_short_for_the_wear() -> None:
     narrow = cone(0.05)
     points = [one[(narrow.points[0].magnitude > -12.0) & (narrow.points[0].magnitude < 12.0)] for one in narrow.points]
-    wheel = ws.Profile.from_points(y=points[0], z=points[1], kind="wheel")
+    wheel = wl.Profile.from_points(y=points[0], z=points[1], kind="wheel")
     with pytest.raises(wl.InputError, match="too short"):
         wl.wear_out(pipeline(wheel=wheel), line(3), over="10 km", **GIVEN)
 

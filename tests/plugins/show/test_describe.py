@@ -17,7 +17,7 @@ from wearlaw.configuration import field_docstrings  # private: what `show`, sche
 from wearlaw.models.model import Model  # private: the bound of a quadrature
 from wearlaw_apps.show import describe
 
-MODELS: dict[str, type[Model]] = {**wl.contact_models(), **wl.wear_laws()}
+MODELS: dict[str, type[Model]] = {**wl.installed("contact model"), **wl.installed("wear law")}
 
 
 def said(model: type[Model]) -> str:
@@ -109,13 +109,13 @@ def test_a_law_without_a_source_is_described(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_a_stage_is_described() -> None:
-    mean = said(wl.stages()["patch_mean"])
+    mean = said(wl.installed("stage")["patch_mean"])
     assert mean.startswith("patch_mean: a stage of wearlaw")
     assert mean.endswith(
         "fields: none declares: works around the contact model, and may change the solved contact gives the means of"
         " the whole patch, for laws stated for them"
     )
-    assert said(wl.stages()["thermal"]).endswith(
+    assert said(wl.installed("stage")["thermal"]).endswith(
         "declares: changes the problem before the contact model solves it, and leaves the solved contact as it is"
     )
 
@@ -123,7 +123,7 @@ def test_a_stage_is_described() -> None:
 def test_a_law_of_another_outcome_is_described_with_unit_and_sign(monkeypatch: pytest.MonkeyPatch) -> None:
     cases.installer(monkeypatch)(Heat)
     assert "declares: predicts: heat_flux [W/mm²], mean over the area of the patch scale:" in said(Heat)
-    wlrm = said(loader.installed()["law"].items()["wlrm"])
+    wlrm = said(loader.discovered()["law"].items()["wlrm"])
     assert wlrm.startswith("wlrm: a law of wearlaw")
     assert "body = None The body that the law is for, by its name in the rig" in wlrm
     assert "declares: predicts: rcf_damage [-], one value for the whole patch, may be negative" in wlrm
@@ -133,7 +133,7 @@ def test_a_law_of_another_outcome_is_described_with_unit_and_sign(monkeypatch: p
 def test_the_example_of_a_rig_is_a_script_that_runs(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     cases.installer(monkeypatch)(Weight)
     monkeypatch.setattr(Weight, "example", {**Weight.example, "mass": wl.Q(20, "kg")})
-    rig = wl.rigs()[name]
+    rig = wl.installed("rig")[name]
     script = textwrap.dedent(describe(rig).partition("\nexample:\n")[2])
     made: dict[str, Any] = {}
     exec(script.replace("predict(", "found = predict("), made)
@@ -166,7 +166,7 @@ def test_what_a_rig_does_not_keep_is_said(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_everything_that_is_listed_is_shown_by_its_name() -> None:
-    every = [(kind, name) for kind, shelf in loader.installed().shelves.items() for name in shelf.items()]
+    every = [(kind, name) for kind, shelf in loader.discovered().shelves.items() for name in shelf.items()]
     for kind, name in every:
         shown = cases.wearlaw("show", name)
         assert shown.exit_code == 0, shown.output

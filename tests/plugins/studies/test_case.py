@@ -14,10 +14,11 @@ import wearlaw as wl
 from tests import cases
 from tests.cases import OWN_TESTS, STEEL, case, changed, load, table
 from wearlaw_apps.output.labels import labels  # private: the names of models in results, without running them
+from wearlaw_apps.studies import Case
 from wearlaw_apps.studies.case import written  # private: a case without its files
 
 
-def rewritten(read: wl.Case) -> str:
+def rewritten(read: Case) -> str:
     return tomli_w.dumps(read.model_dump(mode="json", by_alias=True, exclude_none=True))
 
 
@@ -158,7 +159,7 @@ REQUIRED: dict[str, dict[str, Any]] = {"archard": {"coefficient": 1e-4}, "energy
 
 @pytest.mark.parametrize("kind", ["contact_models", "wear_laws"])
 def test_the_schema_accepts_each_installed_model_by_name_and_as_a_table(validator: Any, kind: str) -> None:
-    for name in getattr(wl, kind)():
+    for name in wl.installed(kind.replace("_", " ").removesuffix("s")):
         given = REQUIRED.get(name, {})
         assert validator.is_valid(table(**{kind: [name]}))
         assert validator.is_valid(table(**{kind: [{"model": name, **given}]}))

@@ -16,6 +16,7 @@ import wearlaw as wl
 from tests import cases
 from tests.cases import assert_refused, files, table, wearlaw, write
 from tests.core.distributions import Install
+from wearlaw_apps.studies import Case
 
 LATTICE = {**cases.SWEEP, "friction_coefficient": [0.3, 0.4]}
 MEASURED = {**cases.POINT, "traction_coefficient": [0.1, 0.2]}
@@ -26,7 +27,7 @@ SMALL = table(contact_models=["exact"], wear_laws=["kth"], profiles={})
 
 @pytest.fixture(scope="module")
 def study() -> wl.Study:
-    return wl.run(wl.Case(**RAN))
+    return wl.run(Case(**RAN))
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +132,7 @@ def test_the_netcdf_file_holds_every_dataset_whole_in_a_group(study: wl.Study, r
     assert groups.keys() == datasets.keys()
     for path, dataset in datasets.items():
         xarray.testing.assert_identical(groups[path], dataset)
-        assert wl.Case(**json.loads(groups[path].attrs["provenance"])["case"]) == study.case
+        assert Case(**json.loads(groups[path].attrs["provenance"])["case"]) == study.case
         assert all("units" in values.attrs for values in groups[path].data_vars.values())
 
 

@@ -16,6 +16,7 @@ from tests.cases import InstallModel, case, table
 from tests.plugins.studies.panels import LOADS, assert_shows, by_label, by_name, one_panel, shown
 from tests.plugins.studies.test_rigs import ON_RAIL
 from tests.strategies import EPS
+from wearlaw_apps.studies import Case
 
 WEAR = {"sweep": "creepage", "x": "wear_index", "y": "wear_rate"}
 PATCH = {"profile": "partial_slip", "y": "slip"}
@@ -299,7 +300,7 @@ def test_what_is_wrong_with_a_figure_is_named_before_anything_is_swept(spec: dic
     fields = ON_RAIL if spec.get("profile") == "curve" else table(sweeps=both)
     swept: list[int] = []
     with pytest.raises(wl.ConfigurationError) as refused:
-        wl.run(wl.Case(**{**fields, "figures": {"one": spec}}), swept.append)
+        wl.run(Case(**{**fields, "figures": {"one": spec}}), swept.append)
     assert [".".join(problem.path) for problem in refused.value.problems] == [f"figures.one.{path}"]
     assert not swept
 
@@ -313,7 +314,7 @@ def test_the_schema_or_the_loader_refuses_a_figure_that_no_case_can_have(changes
     spec = {**WEAR, **changes}
     good = table(figures={"one": WEAR})
     validator.validate(good)
-    assert wl.Case(**good) == wl.Case(**wl.Case(**good).model_dump(mode="json", by_alias=True, exclude_none=True))
+    assert Case(**good) == Case(**Case(**good).model_dump(mode="json", by_alias=True, exclude_none=True))
     if changes not in ({"x": "wear_indx"}, {"y": "wear_rat"}):  # which depend on the laws of the case
         with pytest.raises(wl.ConfigurationError, match=r"figures\.one\."):
             case(figures={"one": spec})

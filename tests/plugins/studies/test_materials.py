@@ -16,6 +16,7 @@ import wearlaw as wl
 from tests.cases import POINT, case, load, table
 from tests.core.distributions import Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
+from wearlaw_apps.studies import Case
 from wearlaw_apps.studies.case import case_schema, load_case, written  # private: a case without its files
 from wearlaw_apps.studies.report.tables import parameters  # private: a part of the report, without its page
 from wearlaw_apps.studies.study import provenance, run  # private: a case run without its files
@@ -135,7 +136,7 @@ def test_a_material_of_a_script_works_everywhere_but_in_files(tmp_path: Path) ->
     rig = wl.TwinDisc.suros(material=own())
     assert pickle.loads(pickle.dumps(rig)).disc_1.material == own()
     fields = {**table(sweeps={"point": POINT}, profiles={}), "rig": rig}
-    study = run(wl.Case(**fields))
+    study = run(Case(**fields))
     assert provenance(study.case)["material_types"] == {"Own": "not installed"}
     assert "disc_2.material.hardness" in set(parameters(study).frame["parameter"])
     (tmp_path / "case.toml").write_text(written(study.case)["case.toml"], encoding="utf-8")
@@ -236,5 +237,5 @@ def test_a_wrong_class_of_materials_is_left_out_with_the_reason(
     assert old in STEELS
     install("steels", STEELS.replace(old, new))
     with pytest.warns(wl.PluginWarning, match="left out: steels 1.0"):
-        (broken,) = loader.installed().broken
+        (broken,) = loader.discovered().broken
     assert cause in broken.cause

@@ -31,7 +31,7 @@ RIG = wl.TwinDisc.suros()
 def test_a_parameter_set_is_looked_up_like_a_law_and_takes_options(install: Install) -> None:
     install("lab", LAB)
     law = wl.wear_law("lab_2026")
-    assert law == wl.parameter_sets()["lab_2026"]
+    assert law == wl.installed("parameter set")["lab_2026"]
     assert law.name == "usfd"
     assert wl.wear_law("lab_2026", m_c=wl.Q(75, "ug/m/N")) == law.model_copy(update={"m_c": "75 ug/m/N"}) != law
     with pytest.raises(wl.ConfigurationError, match="usfd: mc: unknown field; did you mean 'm_c'"):
@@ -118,7 +118,7 @@ def test_what_is_not_of_its_kind_is_left_out_with_the_reason(
     assert old in LAB
     install("lab", LAB.replace(old, new))
     with pytest.warns(wl.PluginWarning, match="left out: lab 1.0"):
-        found = loader.installed()
+        found = loader.discovered()
     assert cause in found.broken[0].cause
 
 
@@ -158,5 +158,5 @@ def test_a_parameter_set_with_the_name_of_a_law_is_left_out_by_name(install: Ins
         "left out: lab 1.0 (plugin 'lab'): parameter set 'kth' has the name of a wear law of"
         f" wearlaw {wl.__version__} (plugin 'kth'); give it another name"
     ]
-    assert "kth" not in wl.parameter_sets()
+    assert "kth" not in wl.installed("parameter set")
     assert wl.material("soft_steel").density == wl.Q(7800, "kg/m^3")

@@ -23,6 +23,7 @@ from tests.plugins.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_A
 from tests.plugins.studies.panels import by_label, by_name, one_panel
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw_apps.studies import Case
 
 THERE: list[dict[str, Any]] = [
     {"side": "left", "patch": 1}, {"side": "left", "patch": 2}, {"side": "right", "patch": 1},
@@ -41,7 +42,7 @@ def _axle(install: Install) -> None:
 def ran(**changes: Any) -> wl.Study:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.WearlawWarning)
-        return wl.run(wl.Case(**{**ON_AXLE, **changes}))
+        return wl.run(Case(**{**ON_AXLE, **changes}))
 
 
 def small(**changes: Any) -> wl.Study:
@@ -256,7 +257,7 @@ def test_patches_of_lines_have_profiles_along_them(install_model: InstallModel) 
         "sweeps": {"lifting": {**down, "lift": ["0 mm", "1 mm"]}},
         "profiles": {"down": down, "up": up},
     }
-    study = wl.run(wl.Case(**fields))
+    study = wl.run(Case(**fields))
     lifting = study.sweeps["lifting"].wear_rate.values[0]
     assert lifting[0, 0] == lifting[0, 1] == lifting[1, 0]
     assert np.isnan(lifting[1, 1])

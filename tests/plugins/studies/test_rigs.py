@@ -19,6 +19,7 @@ from tests.plugins.studies.panels import by_label, by_name
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.units.variables import UNITS  # private: the one table of variables
+from wearlaw_apps.studies import Case
 
 WHEEL = {
     "type": "wheel_rail",
@@ -90,7 +91,7 @@ ON_ROLLER: Table = {
 
 @pytest.fixture(scope="module")
 def on_rail() -> wl.Study:
-    return wl.run(wl.Case(**ON_RAIL))
+    return wl.run(Case(**ON_RAIL))
 
 
 @pytest.fixture
@@ -183,7 +184,7 @@ def test_a_figure_shows_what_is_asked_for_of_a_wheel() -> None:
         "forces": {"sweep": "braking", "x": "longitudinal_creepage", "y": "longitudinal_force", "x_scale": "log"},
         "rail": {"profile": "curve", "x": "y", "y": "depth", "body": "rail", "y_range": ["0 nm", "10 nm"]},
     }
-    shown = by_name(wl.run(wl.Case(**{**ON_RAIL, "figures": figures})))
+    shown = by_name(wl.run(Case(**{**ON_RAIL, "figures": figures})))
     assert list(by_label(shown["patch"].panels[0])) == ["semi-axis a", "semi-axis b"]
     assert list(by_label(shown["forces"].panels[0])) == ["fastsim", "polach"]
     assert shown["rail"].panels[0].y.ends == (0.0, 10.0)
@@ -244,7 +245,7 @@ def test_the_schema_knows_the_rig_of_a_plugin() -> None:
 @pytest.mark.usefixtures("roller")
 def test_what_is_wrong_with_the_case_of_a_plugin_is_named_by_its_path(path: str, value: Any, named: str) -> None:
     with pytest.raises(wl.ConfigurationError) as refusal:
-        wl.Case(**changed(path, value, ON_ROLLER))
+        Case(**changed(path, value, ON_ROLLER))
     assert [".".join(problem.path) for problem in refusal.value.problems] == [named]
 
 
@@ -266,9 +267,9 @@ BROKEN = """
 
 def test_a_rig_that_fails_is_named_and_leaves_the_others_alone(install: Install) -> None:
     install("broken_rigs", BROKEN)
-    assert wl.Case(**{**cases.table(), "profiles": {}}).rig == wl.TwinDisc.suros()
+    assert Case(**{**cases.table(), "profiles": {}}).rig == wl.TwinDisc.suros()
     printed = wearlaw("schema")
     assert jsonschema.Draft202012Validator(json.loads(printed.stdout)).is_valid(cases.table())
     sweeps = {"one": {"mass": "1 kg", "creepage": "1 %"}}
     with pytest.raises(wl.ConfigurationError, match=r"sweeps\.one: rig 'broken' failed: KeyError: 'lost'"):
-        wl.Case(**{**cases.table(), "rig": {"type": "broken"}, "sweeps": sweeps, "profiles": {}})
+        Case(**{**cases.table(), "rig": {"type": "broken"}, "sweeps": sweeps, "profiles": {}})

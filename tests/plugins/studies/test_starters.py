@@ -10,7 +10,6 @@ import pytest
 
 import wearlaw as wl
 from tests.cases import wearlaw
-from wearlaw_models.rigs import wheelset as ws
 
 STARTERS = ("two_discs", "my_tests", "wheel_on_rail", "wheelset")
 OWN_STEEL = '{ youngs_modulus = "210 GPa", poisson_ratio = 0.3, density = "7800 kg/m^3" }'
@@ -34,8 +33,8 @@ def run(folder: Path, text: str) -> Path:
     """Run a case beside a CSV file and two profiles, and return the folder of its results."""
     (folder / "case.toml").write_text(text, encoding="utf-8")
     (folder / "my-tests.csv").write_text(OWN_TESTS, encoding="utf-8")
-    ws.write_profile(folder / "worn.prw", ws.Profile.s1002())
-    ws.write_profile(folder / "rail.prr", ws.Profile.uic60())
+    wl.write_profile(folder / "worn.prw", wl.Profile.s1002())
+    wl.write_profile(folder / "rail.prr", wl.Profile.uic60())
     done = wearlaw("run", "case.toml", "-o", "out")
     assert done.exit_code == 0, done.output
     return folder / "out"

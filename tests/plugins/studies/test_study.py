@@ -17,6 +17,7 @@ from tests.cases import InstallModel, case
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_apps.output.notes import grouped  # private: what commands print of notes
+from wearlaw_apps.studies import Case
 
 LOADS = ["1000 MPa", "1500 MPa"]
 FRICTIONS = [0.3, 0.4, 0.5]
@@ -220,7 +221,7 @@ def test_the_provenance_is_the_case_and_the_versions_of_all_that_was_used(instal
         assert said["contact_models"] == {"exact": f"wearlaw {version}", "global": f"wearlaw {version}"}
         assert said["wear_laws"] == {"kth": f"wearlaw {version}", "linear": "wearlaw-testing 9.8.7"}
         assert said["parameter_sets"] == said["materials"] == said["cases"] == {}
-        assert wl.Case(**said["case"]) == ran
+        assert Case(**said["case"]) == ran
     assert study.case == ran
 
 

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw_apps.tables import Table
 
 FORCE, SLIP = np.linspace(5.0, 7.0, 50), np.linspace(-0.02, 0.03, 50)
 COLUMNS = {"force": "Fz", "creepage": "-slip [-]"}
@@ -32,7 +33,7 @@ def dataset() -> xr.Dataset:
     return xr.Dataset(along, {"Time": ("time", np.arange(50) / 8.0, {"units": "s"})})
 
 
-def text(content: str, columns: Any = None, **options: Any) -> wl.Table:
+def text(content: str, columns: Any = None, **options: Any) -> Table:
     return wl.read_table(io.StringIO(content), columns, **options)
 
 

@@ -18,7 +18,6 @@ import wearlaw as wl
 from tests.plugins.full_theory import rows
 from tests.plugins.wheelset.wheelsets import R0, Body, wheelset
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 
 SIDES = ("left", "right")
 JUMPS = (0.0, 0.5, 5.0)
@@ -88,7 +87,7 @@ def problem_and_patches(rolled: bool) -> tuple[wl.Problem, Patches]:
     return result.problem, patches(pair, result, 2.0)
 
 
-def patches(pair: ws.Wheelset, result: wl.Prediction, speed: float) -> Patches:
+def patches(pair: wl.Wheelset, result: wl.Prediction, speed: float) -> Patches:
     """Return the patches that carry most."""
     problem = result.problem
     force = np.asarray(problem.normal_force)

@@ -10,7 +10,6 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_models.rigs import wheelset as ws
 
 RIG = """
 title = "A worn wheel"
@@ -46,8 +45,8 @@ def worn(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the path of a case beside a folder with the profiles that it names."""
     folder = tmp_path_factory.mktemp("wheelset") / "study" / "profiles"
     folder.mkdir(parents=True)
-    ws.write_profile(folder / "worn.prw", ws.Profile.s1002())
-    ws.write_profile(folder / "rail.prr", ws.Profile.uic60())
+    wl.write_profile(folder / "worn.prw", wl.Profile.s1002())
+    wl.write_profile(folder / "rail.prr", wl.Profile.uic60())
     case = folder.parent / "worn.toml"
     case.write_text(RIG, encoding="utf-8")
     return case
@@ -63,8 +62,8 @@ def study(worn: Path) -> wl.Study:
 def test_paths_of_profiles_are_relative_to_the_case_file(worn: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(worn.parent.parent)
     rig = wl.load_case("study/worn.toml").rig
-    assert isinstance(rig, ws.Wheelset)
-    formula = rig.model_copy(update={"wheel": ws.Profile.s1002(), "rail": ws.Profile.uic60()})
+    assert isinstance(rig, wl.Wheelset)
+    formula = rig.model_copy(update={"wheel": wl.Profile.s1002(), "rail": wl.Profile.uic60()})
     at = Q(np.linspace(0.0, 5.0, 6), "mm")
     found, expected = (
         one.geometry(lateral_displacement=at).dataset["rolling_radius_difference"].values for one in (rig, formula)

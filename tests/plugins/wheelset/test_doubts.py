@@ -12,27 +12,26 @@ import wearlaw as wl
 from tests.plugins.wheelset.test_input import pair
 from tests.plugins.wheelset.wheelsets import through
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 
-WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()
+WHEEL, RAIL = wl.Profile.s1002(), wl.Profile.uic60()
 CANTED = RAIL.turned(Q(-np.arctan(1.0 / 40.0), "rad"))
 PLACES = np.linspace(-60.0, 0.0, 601)
 GAUGE_WEAR = Q(PLACES, "mm"), Q(1.5 * np.exp(-0.5 * ((PLACES + 25.0) / 6.0) ** 2), "mm")
 """Arc lengths and depth of a wear of the gauge corner, after which the head seems to lean by more than 1 in 80."""
 
 
-def sampled(profile: ws.Profile, spacing: float = 0.4e-3) -> tuple[Array, Array]:
+def sampled(profile: wl.Profile, spacing: float = 0.4e-3) -> tuple[Array, Array]:
     """Return points of a profile at even arc lengths [m]."""
     curve = profile.curve
     y, z, *_ = curve.at(np.arange(curve.s[0], curve.s[-1], spacing))
     return y, z
 
 
-def measured(profile: ws.Profile, kind: str) -> ws.Profile:
+def measured(profile: wl.Profile, kind: str) -> wl.Profile:
     return through(*sampled(profile), kind)
 
 
-def conicity(rig: ws.Wheelset) -> float:
+def conicity(rig: wl.Wheelset) -> float:
     return float(rig.equivalent_conicity(amplitude="3 mm").magnitude)
 
 
@@ -63,12 +62,12 @@ def test_a_mirrored_rail_is_told_when_it_is_made(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("".join(f"{1e3 * one:.5f},{1e3 * other:.5f}\n" for one, other in zip(y, z, strict=True)))
     with pytest.warns(wl.RangeWarning, match=r"leans outwards by 1\.43 deg: .* mirror_y=True") as caught:
-        ws.read_profile(path, kind="rail")
+        wl.read_profile(path, kind="rail")
     assert [Path(warning.filename).name for warning in caught] == ["test_doubts.py"]
     with pytest.warns(wl.RangeWarning, match="leans outwards") as caught:
         pair(rail={"file": str(path), "kind": "rail"}, rail_cant="0 rad")
     assert len(caught) == 1
-    assert ws.read_profile(path, kind="rail", mirror_y=True).apparent_cant.m_as("rad") == pytest.approx(0.025, abs=1e-4)
+    assert wl.read_profile(path, kind="rail", mirror_y=True).apparent_cant.m_as("rad") == pytest.approx(0.025, abs=1e-4)
     measured(CANTED, "rail")
 
 
@@ -93,7 +92,7 @@ def test_a_mirrored_rail_is_told_when_it_is_made(tmp_path: Path) -> None:
 )
 @pytest.mark.parametrize("way", [1, -1])
 def test_a_single_point_that_stands_out_is_passed_over(
-    profile: ws.Profile, spacing: float, near: tuple[float, float], off: tuple[float, float], way: int
+    profile: wl.Profile, spacing: float, near: tuple[float, float], off: tuple[float, float], way: int
 ) -> None:
     """The curve is the one without it, and the warning has its place."""
     y, z = sampled(profile, spacing * 1e-3)
@@ -120,7 +119,7 @@ def test_several_points_and_the_line_of_a_file_are_named(tmp_path: Path) -> None
     lines = [f"{1e3 * across:.9f},{1e3 * down:.9f}" for across, down in zip(y, z, strict=True)]
     path.write_text("\n".join(["y,z", *lines]))
     with pytest.warns(wl.RangeWarning, match="alone stands out") as caught:
-        found = ws.read_profile(path, kind="wheel")
+        found = wl.read_profile(path, kind="wheel")
     assert [str(warning.message).split(" (")[0] for warning in caught] == ["line 112", "line 118"]
     assert found.curve.z == pytest.approx(clean.curve.z, abs=1e-9)
 
@@ -157,7 +156,7 @@ def test_sides_and_feet_are_not_cut_off() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_noise_on_the_sides_of_a_rail_is_no_dent(cant: str, seed: int) -> None:
     random = np.random.default_rng(seed)
-    curve = ws.Profile.named(("uic60", "rail_60e1", "rail_60e2", "rail_54e1")[seed]).curve
+    curve = wl.Profile.named(("uic60", "rail_60e1", "rail_60e2", "rail_54e1")[seed]).curve
     y, z, angle, _ = curve.at(np.arange(curve.s[0], curve.s[-1], 0.25e-3))
     off = random.normal(0.0, 0.01e-3, y.size)
     pair(rail=through(y - off * np.sin(angle), z + off * np.cos(angle), "rail"), rail_cant=cant)
@@ -195,7 +194,7 @@ def test_a_wheel_without_the_top_of_its_flange_has_no_height() -> None:
 @pytest.mark.parametrize(
     ("profile", "name"), [(WHEEL, "flange height from 27.99 mm"), (RAIL, "gauge side 14 mm below")]
 )
-def test_smoothing_that_moves_a_measure_is_told(profile: ws.Profile, name: str) -> None:
+def test_smoothing_that_moves_a_measure_is_told(profile: wl.Profile, name: str) -> None:
     y, z = sampled(profile)
     for smoothing in ("0.5 mm", "1 mm"):
         with pytest.warns(wl.RangeWarning, match=r"^smoothing moves the .* mm to ") as caught:
@@ -209,12 +208,12 @@ def test_smoothing_that_moves_a_measure_is_told(profile: ws.Profile, name: str) 
 @pytest.mark.parametrize("profile", [WHEEL, RAIL])
 @pytest.mark.parametrize("spacing", [0.2e-3, 0.5e-3])
 @pytest.mark.parametrize("noise", [0.005e-3, 0.02e-3, 0.05e-3])
-def test_smoothing_of_noise_is_not_doubted(profile: ws.Profile, spacing: float, noise: float) -> None:
+def test_smoothing_of_noise_is_not_doubted(profile: wl.Profile, spacing: float, noise: float) -> None:
     """Up to a tenth of the distance between points, which is what the page about profiles asks for."""
     curve = profile.curve
     y, z, angle, _ = curve.at(np.arange(curve.s[0], curve.s[-1], spacing))
     off = np.random.default_rng(3).normal(0.0, min(noise, 0.1 * spacing), y.size)
-    ws.Profile.from_points(
+    wl.Profile.from_points(
         y=Q(y - off * np.sin(angle), "m"),
         z=Q(z + off * np.cos(angle), "m"),
         kind=profile.kind,

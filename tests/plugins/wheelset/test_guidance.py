@@ -11,7 +11,6 @@ import pytest
 import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import through, wheelset
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset.guidance import BORNE  # private: the accuracy that a search ends at
 from wearlaw_models.rigs.wheelset.loads import BALANCED  # private: the accuracy that a search ends at
 
@@ -122,7 +121,7 @@ def test_mirrored_forces_have_mirrored_results(found: wl.Prediction) -> None:
 # --------------------------------------------------------------------------------------------------------- the flange
 
 
-def plane_flange() -> ws.Profile:
+def plane_flange() -> wl.Profile:
     """Return a wheel with a tread at 1:40 and a flange that is straight at 70 deg between arcs of 14 and 10 mm."""
     low, steep = np.arctan(0.025), np.radians(70.0)
     step, y, z = 0.1e-3, [60e-3], [-1.5e-3]

@@ -10,12 +10,11 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset import loads  # private: the accuracy that a search ends at
 
 FIELDS: dict[str, Any] = {
-    "wheel": ws.Profile.s1002(),
-    "rail": ws.Profile.uic60(),
+    "wheel": wl.Profile.s1002(),
+    "rail": wl.Profile.uic60(),
     "nominal_radius": "460 mm",
     "flange_back_distance": "1360 mm",
     "gauge": "1435 mm",
@@ -26,16 +25,16 @@ FIELDS: dict[str, Any] = {
 GIVEN: dict[str, Any] = {"lateral_displacement": "3 mm", "vertical_load": "50 kN", "friction_coefficient": 0.3}
 
 
-def pair(**changed: Any) -> ws.Wheelset:
-    return ws.Wheelset(**{**FIELDS, **changed})
+def pair(**changed: Any) -> wl.Wheelset:
+    return wl.Wheelset(**{**FIELDS, **changed})
 
 
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"wheel": ws.Profile.uic60()}, "wheel is the profile of a rail"),
-        ({"rail": ws.Profile.s1002()}, "rail is the profile of a wheel"),
-        ({"left_wheel": ws.Profile.uic60()}, "left_wheel is the profile of a rail"),
+        ({"wheel": wl.Profile.uic60()}, "wheel is the profile of a rail"),
+        ({"rail": wl.Profile.s1002()}, "rail is the profile of a wheel"),
+        ({"left_wheel": wl.Profile.uic60()}, "left_wheel is the profile of a rail"),
         ({"gauge": "1380 mm"}, r"gauge: rails 1380 mm apart leave the flanges -\d+.* mm on either side"),
         ({"gauge": "1560 mm"}, r"gauge: .* must leave 0 to 40 mm"),
         ({"gauge": "1.435 mm"}, "gauge"),

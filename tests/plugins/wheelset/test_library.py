@@ -12,7 +12,6 @@ import pytest
 import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
-from wearlaw_models.rigs import wheelset as ws
 
 WIDTHS = {"uic60": 72.0, "rail_60e1": 72.0, "rail_60e2": 72.0, "rail_54e1": 70.0}
 """Widths of heads where the sides of 1 in 20 begin [mm] (EN 13674-1)."""
@@ -28,7 +27,7 @@ TABLE: dict[str, list[tuple[float, float]]] = {
 @pytest.mark.parametrize("name", WIDTHS)
 def test_heads_of_rails_are_as_wide_as_the_standard_says(name: str) -> None:
     # The width follows from the radii and ends of the arcs, so that a wrong digit of any shows.
-    curve = ws.Profile.named(name).curve
+    curve = wl.Profile.named(name).curve
     side = np.flatnonzero(np.abs(np.tan(curve.angle)) > 20.0 - 1e-6)
     inner = curve.y[side][curve.y[side] > 0.0].min(), -curve.y[side][curve.y[side] < 0.0].max()
     assert 2e3 * np.array(inner) == pytest.approx([WIDTHS[name]] * 2, abs=5e-3)  # of points 0.05 mm apart
@@ -36,19 +35,19 @@ def test_heads_of_rails_are_as_wide_as_the_standard_says(name: str) -> None:
 
 @pytest.mark.parametrize("name", TABLE)
 def test_heads_of_rails_have_the_radii_of_the_drawing(name: str) -> None:
-    curve, begin = ws.Profile.named(name).curve, 0.0
+    curve, begin = wl.Profile.named(name).curve, 0.0
     for end, radius in TABLE[name]:
         middle = 0.5e-3 * (begin + end)
         near = np.abs(curve.y - middle).argmin()
         assert curve.curvature[near] == pytest.approx(1e3 / radius, rel=1e-3)
         begin = end
     assert np.interp(0.0, curve.y, curve.z) == pytest.approx(0.0, abs=2e-9)  # between points of the arc
-    assert ws.Profile.named(name).apparent_cant.to("rad").magnitude == pytest.approx(0.0, abs=1e-6)
+    assert wl.Profile.named(name).apparent_cant.to("rad").magnitude == pytest.approx(0.0, abs=1e-6)
 
 
 def test_cones_have_their_conicity() -> None:
     for name, slope in (("cone20", 1.0 / 20.0), ("cone40", 1.0 / 40.0)):
-        curve = ws.Profile.named(name).curve
+        curve = wl.Profile.named(name).curve
         assert np.tan(curve.angle) == pytest.approx(np.full(curve.y.size, -slope), rel=1e-12)
         assert np.interp(0.0, curve.y, curve.z) == pytest.approx(0.0, abs=1e-15)
 
@@ -72,10 +71,10 @@ def test_names_are_listed_shown_and_suggested() -> None:
 )
 def test_inputs_that_look_like_others_are_doubted(changed: dict[str, Any], said: str, tmp_path: Path) -> None:
     if "rail" in changed:
-        y, z = (value.magnitude for value in ws.Profile.s1002().points)
+        y, z = (value.magnitude for value in wl.Profile.s1002().points)
         np.savetxt(tmp_path / "mine.csv", np.column_stack([y, z]), delimiter=",")
         with pytest.warns(wl.RangeWarning, match=said):
-            ws.read_profile(tmp_path / "mine.csv", kind="rail")
+            wl.read_profile(tmp_path / "mine.csv", kind="rail")
         return
     with pytest.warns(wl.RangeWarning, match=said):
         wheelset(**changed)
@@ -83,10 +82,10 @@ def test_inputs_that_look_like_others_are_doubted(changed: dict[str, Any], said:
 
 @pytest.mark.parametrize(("smoothing", "warns"), [("0 mm", True), ("0.02 mm", False)])
 def test_a_pressure_of_single_points_is_told_from_one_of_the_shape(smoothing: str, warns: bool) -> None:
-    y, z = (value.magnitude for value in ws.Profile.s1002().points)
+    y, z = (value.magnitude for value in wl.Profile.s1002().points)
     keep = np.unique(np.round(y / 0.25).astype(int), return_index=True)[1]
     noisy = z[keep] + np.random.default_rng(3).normal(scale=0.01, size=keep.size)
-    wheel = ws.Profile.from_points(y=Q(y[keep], "mm"), z=Q(noisy, "mm"), kind="wheel", smoothing=smoothing)
+    wheel = wl.Profile.from_points(y=Q(y[keep], "mm"), z=Q(noisy, "mm"), kind="wheel", smoothing=smoothing)
     pipeline = wheelset(wheel=wheel, pressure="hertz") | wl.contact_model("fastsim")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

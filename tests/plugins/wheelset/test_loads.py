@@ -13,17 +13,16 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import cone, on_round_heads, wheelset
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset import normal  # private: the normal problem, against its theory
 from wearlaw_models.rigs.wheelset.loads import BALANCED  # private: the accuracy that a search ends at
 
 FASTSIM = wl.contact_model("fastsim")
 Pressure = Literal["kpec", "hertz"]
-PAIRS: dict[Any, ws.Wheelset] = {name: wheelset(pressure=name, rolling_speed="20 m/s") for name in ("kpec", "hertz")}
+PAIRS: dict[Any, wl.Wheelset] = {name: wheelset(pressure=name, rolling_speed="20 m/s") for name in ("kpec", "hertz")}
 SIDE = np.array([-1.0, 1.0])[:, None]
 
 
-def predicted(pair: ws.Wheelset, **conditions: Any) -> wl.Prediction:
+def predicted(pair: wl.Wheelset, **conditions: Any) -> wl.Prediction:
     """Return the prediction of FASTSIM, without warnings of climbing."""
     given_: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
     predict: Any = pair | FASTSIM
@@ -227,7 +226,7 @@ def test_patches_share_the_load_by_their_penetration(pressure: Pressure, displac
     assert approach / cosine + gap == pytest.approx(np.full(gap.size, approach[0] / cosine[0]), rel=2.0 * BALANCED)
 
 
-def alone(pair: ws.Wheelset, problem: Any, force: Array) -> Array:
+def alone(pair: wl.Wheelset, problem: Any, force: Array) -> Array:
     """Return the approach of the patches of the right wheel, each under its force [m]."""
     found = problem.balance.found
     rows = np.flatnonzero(found.side == 1)[: force.size]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import cone, through
 from wearlaw import Q
-from wearlaw_models.rigs import wheelset as ws
 
 
 def test_s1002_has_the_dimensions_of_its_name() -> None:
@@ -15,7 +15,7 @@ def test_s1002_has_the_dimensions_of_its_name() -> None:
 
     The top, of radius 12 mm, lies between points 0.05 mm apart: it may be too low by 0.025²/24 mm.
     """
-    found = {name: value.m_as("mm") for name, value in ws.Profile.s1002().measures().items()}
+    found = {name: value.m_as("mm") for name, value in wl.Profile.s1002().measures().items()}
     assert (found["flange_height"], found["flange_thickness"]) == pytest.approx((28.0, 32.5), abs=2.7e-5)
     # On the printed arcs: of 13 mm at 10 mm above the datum, of 20 mm at 2 mm below the top.
     flank = -26.210665 - np.sqrt(13.0**2 - (16.446 - 10.0) ** 2)
@@ -25,8 +25,8 @@ def test_s1002_has_the_dimensions_of_its_name() -> None:
 
 
 def test_wheel_with_its_origin_elsewhere_has_the_same_measures() -> None:
-    there = ws.Profile.s1002().shifted(y="5 mm", z="-1 mm").measures("-65 mm")
-    for name, value in ws.Profile.s1002().measures().items():
+    there = wl.Profile.s1002().shifted(y="5 mm", z="-1 mm").measures("-65 mm")
+    for name, value in wl.Profile.s1002().measures().items():
         assert there[name].m_as("mm") == pytest.approx(value.m_as("mm"), abs=1e-9)
 
 
@@ -34,7 +34,7 @@ def test_wheel_without_a_flange_has_no_flange_measures_and_a_rail_none_at_all() 
     *flange, hollow = (value.magnitude for value in cone(0.05).measures().values())
     assert np.isnan(flange).all()
     assert hollow == 0.0
-    assert ws.Profile.uic60().measures() == {}
+    assert wl.Profile.uic60().measures() == {}
 
 
 def test_hollow_is_the_rise_of_the_radius_outwards() -> None:
@@ -44,8 +44,8 @@ def test_hollow_is_the_rise_of_the_radius_outwards() -> None:
     assert through(y, z, "wheel").measures()["hollow"].m_as("m") == pytest.approx(rise, abs=1e-8)
 
 
-@pytest.mark.parametrize("profile", [ws.Profile.s1002(), ws.Profile.uic60()])
-def test_depth_along_the_normal_is_that_removed(profile: ws.Profile) -> None:
+@pytest.mark.parametrize("profile", [wl.Profile.s1002(), wl.Profile.uic60()])
+def test_depth_along_the_normal_is_that_removed(profile: wl.Profile) -> None:
     s = profile.curve.s
     depth = 0.08 * np.exp(-0.5 * ((s + 20e-3) / 6e-3) ** 2)
     worn = profile.worn(Q(1e3 * s, "mm"), Q(depth, "mm"))

@@ -13,7 +13,6 @@ from scipy.spatial.transform import Rotation
 import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import R0, cone, on_round_heads, wheelset
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 
 STENCIL = {1: 4.0 / 5.0, 2: -1.0 / 5.0, 3: 4.0 / 105.0, 4: -1.0 / 280.0}
 """Weights of differences between values in steps ahead and back, for a derivative of eighth order."""
@@ -43,13 +42,13 @@ def derivative(of: Callable[[float], Array], step: float = 1e-4) -> Array:
 
 
 @functools.cache
-def stands(pair: ws.Wheelset, displacement: float, yaw: float) -> tuple[float, float]:
+def stands(pair: wl.Wheelset, displacement: float, yaw: float) -> tuple[float, float]:
     """Return the roll and the height of the middle at which both wheels touch, in SI."""
     found = pair.geometry(lateral_displacement=Q(displacement, "m"), yaw=Q(yaw, "rad")).dataset
     return 1e-3 * found["roll"].item(), 1e-3 * found["vertical_displacement"].item() - R0
 
 
-def moved(pair: ws.Wheelset, state: State) -> Callable[[float], tuple[Rotation, Array]]:
+def moved(pair: wl.Wheelset, state: State) -> Callable[[float], tuple[Rotation, Array]]:
     """Return the orientation and the place of the wheelset in space over time; at time zero they are in the track.
 
     The middle of the wheelset runs along a circle, and it rolls and moves vertically so that both wheels touch.
@@ -69,7 +68,7 @@ def moved(pair: ws.Wheelset, state: State) -> Callable[[float], tuple[Rotation, 
 
 
 def slips(
-    pair: ws.Wheelset, state: State, side: str, ahead: float = 0.0, across: float = 0.0
+    pair: wl.Wheelset, state: State, side: str, ahead: float = 0.0, across: float = 0.0
 ) -> tuple[float, float, float, float]:
     """Return ξ, η, φ and the velocity of the wheel into the rail over V.
 
@@ -98,7 +97,7 @@ def slips(
     )  # fmt: skip
 
 
-def creepages(pair: ws.Wheelset, state: State) -> wl.Problem:
+def creepages(pair: wl.Wheelset, state: State) -> wl.Problem:
     """Return the problem, with creepages of the axes side and patch, under a load too small to sink the wheels."""
     return pair.problem(
         lateral_displacement=Q(state.displacement, "m"), yaw=Q(state.yaw, "rad"), vertical_load="1e-5 N",
@@ -146,7 +145,7 @@ CURVES = [
     ids=lambda one: str(one) if isinstance(one, State) else "cones" if one is CONES else "s1002",
 )
 def test_creepages_are_the_velocities_of_material_points(
-    pair: ws.Wheelset, state: State, relative: float, moving: float
+    pair: wl.Wheelset, state: State, relative: float, moving: float
 ) -> None:
     # Rounding of places of some cm over a step of 0.1 ms is 1e-13 m/s; the eighth order leaves (Ω 0.1 ms)^8. The roll
     # is known to 2e-12, which is 2e-8 rad/s over the steps of time.
@@ -208,7 +207,7 @@ class Balanced(NamedTuple):
     axle: Array
 
 
-def balanced(pair: ws.Wheelset, displacement: float, yaw: float, **conditions: Any) -> Balanced:
+def balanced(pair: wl.Wheelset, displacement: float, yaw: float, **conditions: Any) -> Balanced:
     """Return all patches of a wheelset under load, at places found by its geometry, with the roll of rigid wheels."""
     where = {"lateral_displacement": Q(displacement, "m"), "yaw": Q(yaw, "rad")}
     where["roll"] = Q(pair.geometry(**where).dataset["roll"].item(), "mrad")

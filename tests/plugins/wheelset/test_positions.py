@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset.search import (  # private: one step of the contact, against another way to it
     Touching,
     searched,
@@ -33,7 +32,7 @@ OF_PATCH = (
 """Variables of a patch that are places or angles."""
 
 
-def geometry(pair: ws.Wheelset, displacement: Array, yaw: Any = 0.0) -> Any:
+def geometry(pair: wl.Wheelset, displacement: Array, yaw: Any = 0.0) -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.RangeWarning)
         return pair.geometry(lateral_displacement=Q(displacement, "m"), yaw=Q(yaw, "rad")).dataset
@@ -80,14 +79,14 @@ GRID = np.array([-8.0, -5.5, -2.0, 0.0, 1.3, 4.0, 6.0, 7.0]) * 1e-3
 
 
 def test_a_rail_turned_by_hand_is_one_with_cant() -> None:
-    turned = wheelset(rail=ws.Profile.uic60().turned(Q(-np.arctan(1.0 / 40.0), "rad")), rail_cant="0 rad")
+    turned = wheelset(rail=wl.Profile.uic60().turned(Q(-np.arctan(1.0 / 40.0), "rad")), rail_cant="0 rad")
     # The rail's own coordinates are turned, and nothing else.
     assert_same(geometry(turned, GRID, 10e-3), geometry(STANDARD, GRID, 10e-3), but=("rail_y", "rail_z"))
 
 
 def test_shifted_wheel_profiles_with_their_inner_faces_are_the_same_wheels() -> None:
     shifted = wheelset(
-        wheel=ws.Profile.s1002().shifted(y="3 mm", z="2 mm"), flange_back_position="-67 mm", nominal_radius="458 mm"
+        wheel=wl.Profile.s1002().shifted(y="3 mm", z="2 mm"), flange_back_position="-67 mm", nominal_radius="458 mm"
     )
     other = geometry(shifted, GRID, -15e-3)
     one = geometry(STANDARD, GRID, -15e-3)
@@ -99,7 +98,7 @@ def test_shifted_wheel_profiles_with_their_inner_faces_are_the_same_wheels() -> 
 
 
 def test_shifted_rail_profiles_change_nothing() -> None:
-    shifted = wheelset(rail=ws.Profile.uic60().shifted(y="5 mm", z="-3 mm"))
+    shifted = wheelset(rail=wl.Profile.uic60().shifted(y="5 mm", z="-3 mm"))
     other, one = (geometry(pair, GRID, 5e-3) for pair in (shifted, STANDARD))
     assert_same(other, one, but=("rail_y", "rail_z"))
 
@@ -178,16 +177,16 @@ def test_compiled_loops_find_what_numpy_finds(rolled: bool) -> None:
 # ------------------------------------------------------------------------------------------------------ no contact
 
 
-def part(profile: ws.Profile, low: float, high: float) -> ws.Profile:
+def part(profile: wl.Profile, low: float, high: float) -> wl.Profile:
     """Return the part of a profile between two values of y [m], through its points."""
     y, z = (one.to("mm").magnitude for one in profile.points)
     kept = (y > 1e3 * low) & (y < 1e3 * high)
-    return ws.Profile.from_points(y=Q(y[kept][::4], "mm"), z=Q(z[kept][::4], "mm"), kind=profile.kind)
+    return wl.Profile.from_points(y=Q(y[kept][::4], "mm"), z=Q(z[kept][::4], "mm"), kind=profile.kind)
 
 
 def test_a_wheel_on_the_end_of_its_profile_is_an_error() -> None:
     # Its tread ends 5 mm outside of the taping line; the left wheel needs more of it from y = 5 mm on.
-    narrow = wheelset(wheel=part(ws.Profile.s1002(), -69e-3, 7e-3))
+    narrow = wheelset(wheel=part(wl.Profile.s1002(), -69e-3, 7e-3))
     narrow.geometry(lateral_displacement="1 mm")
     with pytest.raises(wl.ConditionsError, match=r"at 5 mm the left wheel does not touch its rail within the profiles"):
         narrow.geometry(lateral_displacement="5 mm")
@@ -195,10 +194,10 @@ def test_a_wheel_on_the_end_of_its_profile_is_an_error() -> None:
 
 def test_a_wheel_on_the_end_of_its_rail_is_an_error() -> None:
     # The left wheel runs outwards on its rail, from 0.2 mm outside of the middle of the head to 4.3 mm at y = 3 mm.
-    rail = part(ws.Profile.uic60(), -10e-3, 30e-3)
+    rail = part(wl.Profile.uic60(), -10e-3, 30e-3)
     with pytest.raises(wl.InputError, match="gauge_depth: 14 mm is below the gauge side of the rail"):
         wheelset(rail=rail)
-    narrow = wheelset(rail=part(ws.Profile.uic60(), -40e-3, 3.5e-3))
+    narrow = wheelset(rail=part(wl.Profile.uic60(), -40e-3, 3.5e-3))
     narrow.geometry(lateral_displacement="1 mm")
     with pytest.raises(wl.ConditionsError, match=r"lateral_displacement: at 3 mm the left wheel"):
         narrow.geometry(lateral_displacement="3 mm")

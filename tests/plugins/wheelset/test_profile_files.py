@@ -15,10 +15,9 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset.files import LARGEST  # private: the largest file that is read
 
-WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()
+WHEEL, RAIL = wl.Profile.s1002(), wl.Profile.uic60()
 ENDINGS = {"wheel": (".prw", ".csv", ".txt"), "rail": (".prr", ".csv", ".txt")}
 
 LEANS = "the head of the rail leans outwards"
@@ -61,7 +60,7 @@ def saved(folder: Path, name: str, text: str | bytes) -> Path:
     return path
 
 
-def table(spacing: float = 1.0, profile: ws.Profile = WHEEL) -> Array:
+def table(spacing: float = 1.0, profile: wl.Profile = WHEEL) -> Array:
     """Return points of a profile in mm, one row each."""
     curve = profile.curve
     s = np.linspace(curve.s[0], curve.s[-1], round((curve.s[-1] - curve.s[0]) / spacing / 1e-3))
@@ -69,7 +68,7 @@ def table(spacing: float = 1.0, profile: ws.Profile = WHEEL) -> Array:
     return 1e3 * np.stack([y, z], axis=1)
 
 
-def values(profile: ws.Profile) -> Array:
+def values(profile: wl.Profile) -> Array:
     return np.stack([value.magnitude for value in profile.points], axis=1)
 
 
@@ -78,16 +77,16 @@ def values(profile: ws.Profile) -> Array:
 
 def test_the_wheel_of_the_benchmark_is_mirrored_as_its_file_says(tmp_path: Path) -> None:
     text = simpack(S1002, "mirror.y = 1;mirror.z = 0;inversion = 1")
-    found = values(ws.read_profile(saved(tmp_path, "S1002.PRW", text)))
+    found = values(wl.read_profile(saved(tmp_path, "S1002.PRW", text)))
     assert found == pytest.approx(S1002 * [-1.0, 1.0], abs=1e-12)
     with pytest.raises(wl.DataError, match=r"S1002\.PRW': the wheel is mirrored: .* has line 2\d "):
-        ws.read_profile(saved(tmp_path, "S1002.PRW", text.replace("mirror.y = 1", "mirror.y = 0")))
-    found = values(ws.read_profile(tmp_path / "S1002.PRW", mirror_y=True))
+        wl.read_profile(saved(tmp_path, "S1002.PRW", text.replace("mirror.y = 1", "mirror.y = 0")))
+    found = values(wl.read_profile(tmp_path / "S1002.PRW", mirror_y=True))
     assert found == pytest.approx(S1002 * [-1.0, 1.0], abs=1e-12)
 
 
 def test_the_rail_of_the_benchmark_shows_that_it_is_canted(tmp_path: Path) -> None:
-    rail = ws.read_profile(saved(tmp_path, "UIC60.prr", simpack(UIC60, kind=0)), smoothing="0 mm")
+    rail = wl.read_profile(saved(tmp_path, "UIC60.prr", simpack(UIC60, kind=0)), smoothing="0 mm")
     assert rail.kind == "rail"
     # Points up to 4 mm apart: a spline through them is off by 5/384 h⁴/R³, 1.5e-3 mm, on 40 mm.
     assert rail.apparent_cant.to("rad").magnitude == pytest.approx(1.0 / 40.0, abs=2e-4)
@@ -121,7 +120,7 @@ def test_a_header_changes_the_points_in_the_order_of_its_numbers(tmp_path: Path,
     text = simpack(points, changes)
     text = text.replace("    units.len.f    = +1.000000000000000e+03\n", "", "units.len.f" in changes)
     text = text.replace("    units.ang.f    = +1.000000000000000e+00\n", "", "units.ang.f" in changes)
-    found = values(ws.read_profile(saved(tmp_path, "a.prw", text)))
+    found = values(wl.read_profile(saved(tmp_path, "a.prw", text)))
     # Eight digits are printed of at most 70 mm, doubled by the unit: 0.5e-6 mm and its double.
     assert found == pytest.approx(change(points), abs=1.1e-6)
 
@@ -129,7 +128,7 @@ def test_a_header_changes_the_points_in_the_order_of_its_numbers(tmp_path: Path,
 def test_mirrors_come_after_shifts_and_turns(tmp_path: Path) -> None:
     points = table()
     text = simpack(points * [-1.0, -1.0], "mirror.z = 1;mirror.y = 1;shift.y = 2.0;shift.z = 1.0;rotate = 0.01")
-    found = values(ws.read_profile(saved(tmp_path, "a.prw", text)))
+    found = values(wl.read_profile(saved(tmp_path, "a.prw", text)))
     expected = turned(points * [-1.0, -1.0] + np.array([2.0, 1.0]), 0.01) * [-1.0, -1.0]
     assert found == pytest.approx(expected, abs=1.1e-6)
 
@@ -139,30 +138,30 @@ def test_weights_are_read_and_a_weight_of_zero_leaves_a_point_out(tmp_path: Path
     weights = np.where(np.arange(len(points)) % 2, 2.0, 1.0)
     weights[5] = 0.0
     text = simpack(np.column_stack([points, weights]))
-    profile = ws.read_profile(saved(tmp_path, "a.prw", text), smoothing="0.01 mm")
+    profile = wl.read_profile(saved(tmp_path, "a.prw", text), smoothing="0.01 mm")
     assert profile.weights == tuple(np.delete(weights, 5))
     assert values(profile) == pytest.approx(np.delete(points, 5, axis=0), abs=1e-6)
     some = simpack(points).splitlines()
     some[21] += "\t3.0"
-    found = ws.read_profile(saved(tmp_path, "a.prw", "\n".join(some))).weights
+    found = wl.read_profile(saved(tmp_path, "a.prw", "\n".join(some))).weights
     assert found == (1.0, 1.0, 1.0, 3.0, *[1.0] * (len(points) - 4))
-    assert ws.read_profile(saved(tmp_path, "a.prw", simpack(points))).weights is None
+    assert wl.read_profile(saved(tmp_path, "a.prw", simpack(points))).weights is None
 
 
 def test_a_file_without_units_takes_those_of_the_argument(tmp_path: Path) -> None:
     text = simpack(table() / 25.4).replace("    units.len.f    = +1.000000000000000e+03\n", "")
-    found = values(ws.read_profile(saved(tmp_path, "a.prw", text), units="inch"))
+    found = values(wl.read_profile(saved(tmp_path, "a.prw", text), units="inch"))
     assert found == pytest.approx(table(), abs=1.3e-5)
     with pytest.raises(wl.DataError, match=r"a\.prw': units: "):
-        ws.read_profile(tmp_path / "a.prw", units="kg")
+        wl.read_profile(tmp_path / "a.prw", units="kg")
 
 
 def test_an_unknown_key_and_smoothing_of_the_file_are_said(tmp_path: Path) -> None:
     with pytest.warns(wl.WearlawWarning, match=r"line 13 .* the key 'miror\.y' is not known"):
-        ws.read_profile(saved(tmp_path, "a.prw", simpack(table(), "miror.y = 1")))
+        wl.read_profile(saved(tmp_path, "a.prw", simpack(table(), "miror.y = 1")))
     text = simpack(table()).replace("approx.smooth  = +0.0", "approx.smooth  = +2.5")
     with pytest.warns(wl.WearlawWarning, match=r"approx\.smooth = 2\.5, .* give smoothing as a length"):
-        ws.read_profile(saved(tmp_path, "a.prw", text))
+        wl.read_profile(saved(tmp_path, "a.prw", text))
 
 
 # MiniProf ------------------------------------------------------------------------------------------------------------
@@ -189,13 +188,13 @@ def test_a_wheel_of_miniprof_has_its_taping_line_behind_its_flange(tmp_path: Pat
     points = table()
     count, measured = len(points), points + BACK
     text = NEW.format(columns="X,Y", count=count, more="WheelDiameterTaperline=70.0000\nSd=32.5") + rows(measured, " ")
-    assert values(ws.read_profile(saved(tmp_path, "a.whl", text))) == pytest.approx(points, abs=1e-5)
+    assert values(wl.read_profile(saved(tmp_path, "a.whl", text))) == pytest.approx(points, abs=1e-5)
     text = text.replace("WheelDiameterTaperline=70.0000\n", "")
     with pytest.raises(wl.DataError, match=r'a\.whl\': the wheel must have its origin at .* shift_y="-70 mm"'):
-        ws.read_profile(saved(tmp_path, "a.whl", text))
-    assert values(ws.read_profile(tmp_path / "a.whl", shift_y="-70 mm")) == pytest.approx(points, abs=1e-5)
+        wl.read_profile(saved(tmp_path, "a.whl", text))
+    assert values(wl.read_profile(tmp_path / "a.whl", shift_y="-70 mm")) == pytest.approx(points, abs=1e-5)
     old = OLD + rows(np.column_stack([measured, np.zeros(count)]), " ")
-    assert values(ws.read_profile(saved(tmp_path, "old.WHL", old), shift_y="-70 mm")) == pytest.approx(points, abs=1e-5)
+    assert values(wl.read_profile(saved(tmp_path, "old.WHL", old), shift_y="-70 mm")) == pytest.approx(points, abs=1e-5)
 
 
 @pytest.mark.filterwarnings(f"ignore:{LEANS}")
@@ -203,9 +202,9 @@ def test_a_rail_of_miniprof_has_its_gauge_side_at_positive_x(tmp_path: Path) -> 
     points = table(profile=RAIL.turned("-1 deg"))
     measured = np.column_stack([points[:, 1] * 0.0, -points[:, 1], -points[:, 0]])
     text = NEW.format(columns="A, Y ,X", count=len(points), more="Rail=R").replace("Xoffset=0.0", "XOffset=3.0")
-    found = values(ws.read_profile(saved(tmp_path, "a.ban", text + rows(measured - np.array([0.0, 0.0, 3.0]), "  "))))
+    found = values(wl.read_profile(saved(tmp_path, "a.ban", text + rows(measured - np.array([0.0, 0.0, 3.0]), "  "))))
     assert found == pytest.approx(points, abs=1e-6)
-    profile = ws.read_profile(tmp_path / "a.ban", mirror_y=True)
+    profile = wl.read_profile(tmp_path / "a.ban", mirror_y=True)
     assert values(profile) == pytest.approx((points * [-1.0, 1.0])[::-1], abs=1e-6)
 
 
@@ -214,16 +213,16 @@ def test_height_of_a_miniprof_wheel_counts_from_its_taping_line(tmp_path: Path) 
     measured = points + BACK + np.array([0.0, 0.4])
     more = "WheelDiameterTaperline=70.0000\nDiameterTaperline=918.3000"
     path = saved(tmp_path, "a.whl", NEW.format(columns="X,Y", count=len(points), more=more) + rows(measured, " "))
-    profile = ws.read_profile(path)
+    profile = wl.read_profile(path)
     assert values(profile) == pytest.approx(points, abs=1e-5)
     assert profile.diameter == Q(918.3, "mm")
-    assert values(ws.read_profile(path, shift_z="0.4 mm")) == pytest.approx(points + np.array([0.0, 0.4]), abs=1e-5)
-    again = ws.Profile.model_validate_json(profile.model_dump_json())
+    assert values(wl.read_profile(path, shift_z="0.4 mm")) == pytest.approx(points + np.array([0.0, 0.4]), abs=1e-5)
+    again = wl.Profile.model_validate_json(profile.model_dump_json())
     assert (again, again.diameter) == (profile, profile.diameter)
     other = profile.model_copy(update={"diameter": Q(917.3, "mm")})
     assert other != profile
     with pytest.raises(wl.ConfigurationError, match="diameter: a rail has none"):
-        ws.Profile(kind="rail", formula="uic60", diameter="900 mm")
+        wl.Profile(kind="rail", formula="uic60", diameter="900 mm")
 
 
 def test_points_of_miniprof_may_be_commented_out_and_named_otherwise(tmp_path: Path) -> None:
@@ -232,7 +231,7 @@ def test_points_of_miniprof_may_be_commented_out_and_named_otherwise(tmp_path: P
     lines[5] = '" ' + lines[5] + " % too close"
     lines[7] += " % end of an arc"
     text = NEW.format(columns="X,Y", count=len(points), more="WheelDiameterTaperline=70") + "\n".join(lines)
-    found = values(ws.read_profile(saved(tmp_path, "a.dat", text), kind="wheel"))
+    found = values(wl.read_profile(saved(tmp_path, "a.dat", text), kind="wheel"))
     assert found == pytest.approx(np.delete(points, 5, axis=0), abs=1e-5)
 
 
@@ -257,7 +256,7 @@ def test_two_columns_are_read_as_programs_write_them(
 ) -> None:
     points = table()
     text = (head + rows(points * unit, mark).replace(".", decimal)).encode(encoding)
-    found = ws.read_profile(saved(tmp_path, "a.csv", text), kind="wheel", decimal=decimal, sep=mark.strip(" ") or " ")
+    found = wl.read_profile(saved(tmp_path, "a.csv", text), kind="wheel", decimal=decimal, sep=mark.strip(" ") or " ")
     assert values(found) == pytest.approx(points, abs=1e-5)
 
 
@@ -302,22 +301,22 @@ MEASURED = NEW.format(columns="X,Y", count=len(table()), more="WheelDiameterTape
 def test_a_file_that_is_no_profile_says_where_and_why(tmp_path: Path, name: str, text: Any, message: str) -> None:
     path = saved(tmp_path, name, text)
     with pytest.raises(wl.DataError, match=message) as caught:
-        ws.read_profile(path)
+        wl.read_profile(path)
     assert str(caught.value).startswith(f"profile '{path}': ")
 
 
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     with pytest.raises(wl.DataError, match="there is no such file in '"):
-        ws.read_profile(tmp_path / "a.prw")
+        wl.read_profile(tmp_path / "a.prw")
     with pytest.raises(wl.DataError, match="Is a directory"):
-        ws.read_profile(tmp_path)
+        wl.read_profile(tmp_path)
 
 
 # Writing -------------------------------------------------------------------------------------------------------------
 
 
 @st.composite
-def profiles(draw: st.DrawFn) -> ws.Profile:
+def profiles(draw: st.DrawFn) -> wl.Profile:
     """Draw profiles by formula, moved, and profiles from uneven points of them."""
     profile = draw(st.sampled_from([WHEEL, RAIL]))
     small = st.floats(-3.0, 3.0)
@@ -328,7 +327,7 @@ def profiles(draw: st.DrawFn) -> ws.Profile:
     steps = np.cumsum(draw(st.lists(st.floats(0.2, 2.0), min_size=20, max_size=60)))
     y, z, *_ = curve.at(curve.s[0] + steps / steps[-1] * (curve.s[-1] - curve.s[0]))
     way = draw(st.sampled_from([1, -1]))
-    return ws.Profile.from_points(y=Q(1e3 * y[::way], "mm"), z=Q(1e3 * z[::way], "mm"), kind=profile.kind)
+    return wl.Profile.from_points(y=Q(1e3 * y[::way], "mm"), z=Q(1e3 * z[::way], "mm"), kind=profile.kind)
 
 
 @pytest.mark.filterwarnings(f"ignore:{LEANS}")
@@ -336,23 +335,23 @@ def profiles(draw: st.DrawFn) -> ws.Profile:
 @given(profile=profiles(), number=st.integers(0, 2))
 def test_a_written_profile_is_read_again(tmp_path_factory: pytest.TempPathFactory, profile: Any, number: int) -> None:
     path = tmp_path_factory.mktemp("written") / f"a{ENDINGS[profile.kind][number]}"
-    ws.write_profile(path, profile)
+    wl.write_profile(path, profile)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warnings.filterwarnings("ignore", LEANS)
-        again = ws.read_profile(path, kind=profile.kind)
+        again = wl.read_profile(path, kind=profile.kind)
     # Nine decimals of a mm, and rounding of 70 mm in the conversions between mm and m.
     assert values(again) == pytest.approx(values(profile), rel=0.0, abs=0.5e-9 + 4.0 * np.spacing(70.0))
-    assert ws.read_profile(path, kind=profile.kind) == again
+    assert wl.read_profile(path, kind=profile.kind) == again
 
 
 def test_a_smoothed_profile_is_written_smooth(tmp_path: Path) -> None:
     y, z = table(0.25).T
     noise = np.random.default_rng(5).normal(0.0, 0.01, z.size)
-    profile = ws.Profile.from_points(y=Q(y, "mm"), z=Q(z + noise, "mm"), kind="wheel", smoothing="0.01 mm")
-    ws.write_profile(tmp_path / "a.prw", profile)
-    again = ws.read_profile(tmp_path / "a.prw").curve
-    assert values(ws.read_profile(tmp_path / "a.prw")) == pytest.approx(
+    profile = wl.Profile.from_points(y=Q(y, "mm"), z=Q(z + noise, "mm"), kind="wheel", smoothing="0.01 mm")
+    wl.write_profile(tmp_path / "a.prw", profile)
+    again = wl.read_profile(tmp_path / "a.prw").curve
+    assert values(wl.read_profile(tmp_path / "a.prw")) == pytest.approx(
         1e3 * np.stack([profile.curve.y, profile.curve.z], axis=1), abs=1e-9
     )
     # Rounded by 0.5e-12 m, at steps of 0.05 mm, the second difference is off by 2e-12/2.5e-9 = 8e-4/m, and the cubic
@@ -366,7 +365,7 @@ def test_a_smoothed_profile_is_written_smooth(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["a.prr", "a.whl", "a.xls"])
 def test_a_wrong_ending_is_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(wl.InputError, match=r"\.prw, \.csv, \.txt"):
-        ws.write_profile(tmp_path / name, WHEEL)
+        wl.write_profile(tmp_path / name, WHEEL)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -380,10 +379,10 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
     with monkeypatch.context() as patched:
         patched.setattr(os, "replace", full)
         with pytest.raises(wl.OutputError, match=r"cannot write '.*a\.prw': No space left on device"):
-            ws.write_profile(path, WHEEL)
+            wl.write_profile(path, WHEEL)
     assert [one.name for one in tmp_path.iterdir()] == ["a.prw"]
     assert path.read_text() == "before"
     with pytest.raises(wl.OutputError, match="cannot write"):
-        ws.write_profile(tmp_path / "none" / "a.prw", WHEEL)
-    ws.write_profile(path, WHEEL)
-    assert ws.read_profile(path).kind == "wheel"
+        wl.write_profile(tmp_path / "none" / "a.prw", WHEEL)
+    wl.write_profile(path, WHEEL)
+    assert wl.read_profile(path).kind == "wheel"

@@ -16,7 +16,6 @@ import scipy
 import wearlaw as wl
 from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset.curve import (  # private: one step of the contact, against another way to it
     SPACING,
     Curve,
@@ -25,7 +24,7 @@ from wearlaw_models.rigs.wheelset.curve import (  # private: one step of the con
 from wearlaw_models.rigs.wheelset.formulas import FORMULAS  # private: all pieces that norms state
 
 MM = 1e-3
-WHEEL, RAIL = ws.Profile.s1002(), ws.Profile.uic60()
+WHEEL, RAIL = wl.Profile.s1002(), wl.Profile.uic60()
 PRINTED_STEPS = (-35.0 * MM, -26.0 * MM)
 """Where the printed formulas of S1002 leave steps of 1.2e-4 and 3.7e-5 mm, from their rounded coefficients."""
 
@@ -90,7 +89,7 @@ def test_the_length_of_uic60_is_that_of_its_arcs() -> None:
         (RAIL, 36.5, np.inf),
     ],
 )  # fmt: skip
-def test_the_curvature_of_arcs_is_theirs_up_to_the_joints(profile: ws.Profile, y: float, radius: float) -> None:
+def test_the_curvature_of_arcs_is_theirs_up_to_the_joints(profile: wl.Profile, y: float, radius: float) -> None:
     curve = profile.curve
     s = float(np.interp(y * MM, curve.y, curve.s))
     edges = np.array([curve.s[0], *curve.joints, curve.s[-1]])
@@ -100,7 +99,7 @@ def test_the_curvature_of_arcs_is_theirs_up_to_the_joints(profile: ws.Profile, y
 
 
 @pytest.mark.parametrize("profile", [WHEEL, RAIL])
-def test_a_curve_is_that_of_its_formula(profile: ws.Profile) -> None:
+def test_a_curve_is_that_of_its_formula(profile: wl.Profile) -> None:
     assert profile.formula is not None
     pieces = FORMULAS[profile.formula][1]()
     curve, ends = profile.curve, np.append(0.0, np.cumsum([piece.length for piece in pieces]))
@@ -124,7 +123,7 @@ def test_a_curve_is_that_of_its_formula(profile: ws.Profile) -> None:
 
 
 @pytest.mark.parametrize("profile", [WHEEL, RAIL])
-def test_angle_and_curvature_are_those_of_differences(profile: ws.Profile) -> None:
+def test_angle_and_curvature_are_those_of_differences(profile: wl.Profile) -> None:
     """Angle and curvature are derivatives by arc length, from central differences of the table."""
     curve = profile.curve
     step = curve.s[1] - curve.s[0]
@@ -141,7 +140,7 @@ def test_angle_and_curvature_are_those_of_differences(profile: ws.Profile) -> No
 
 
 @pytest.mark.parametrize("profile", [WHEEL, RAIL])
-def test_the_tangent_is_continuous_everywhere(profile: ws.Profile) -> None:
+def test_the_tangent_is_continuous_everywhere(profile: wl.Profile) -> None:
     """One-sided differences over 1e-9 m of positions of 0.1 m have a rounding of 3e-8."""
     curve, near = profile.curve, 1e-9
     places = np.concatenate([curve.s[1:-1], curve.joints])
@@ -167,18 +166,18 @@ def test_arc_lengths_have_any_shape_and_end_with_the_profile() -> None:
 # Points --------------------------------------------------------------------------------------------------------------
 
 
-def sampled(profile: ws.Profile, spacing: float, **options: Any) -> ws.Profile:
+def sampled(profile: wl.Profile, spacing: float, **options: Any) -> wl.Profile:
     """Return a profile through points of another one, at a spacing in mm."""
     curve = profile.curve
     y, z, *_ = curve.at(np.linspace(curve.s[0], curve.s[-1], round((curve.s[-1] - curve.s[0]) / spacing / MM)))
-    return ws.Profile.from_points(y=Q(y, "m"), z=Q(z, "m"), kind=profile.kind, **options)
+    return wl.Profile.from_points(y=Q(y, "m"), z=Q(z, "m"), kind=profile.kind, **options)
 
 
-def circle(radius: float, kind: Any, width: float = 80.0, count: int = 400) -> ws.Profile:
+def circle(radius: float, kind: Any, width: float = 80.0, count: int = 400) -> wl.Profile:
     """Return an arc of a circle with its top or bottom at the origin; a negative radius is a hollow."""
     angle = np.linspace(-1.0, 1.0, count) * np.arcsin(0.5 * width / abs(radius))
     up = 1.0 if kind == "rail" else -1.0
-    return ws.Profile.from_points(
+    return wl.Profile.from_points(
         y=Q(abs(radius) * np.sin(angle), "mm"), z=Q(up * radius * (1.0 - np.cos(angle)), "mm"), kind=kind
     )
 
@@ -209,8 +208,8 @@ def test_a_spline_through_points_follows_the_formula_with_fourth_order() -> None
 def test_points_may_come_from_either_end() -> None:
     y, z = WHEEL.points
     y, z, weights = y[::9], z[::9], np.linspace(1.0, 5.0, y[::9].size)
-    one = ws.Profile.from_points(y=y, z=z, kind="wheel", weights=weights, smoothing="0.01 mm")
-    other = ws.Profile.from_points(y=y[::-1], z=z[::-1], kind="wheel", weights=weights[::-1], smoothing="0.01 mm")
+    one = wl.Profile.from_points(y=y, z=z, kind="wheel", weights=weights, smoothing="0.01 mm")
+    other = wl.Profile.from_points(y=y[::-1], z=z[::-1], kind="wheel", weights=weights[::-1], smoothing="0.01 mm")
     assert np.array_equal(one.curve.z, other.curve.z)
     assert [value.magnitude.tolist() for value in other.points] == [value.magnitude.tolist() for value in one.points]
 
@@ -230,7 +229,7 @@ def noisy(sigma: float, spacing: float = 0.25, seed: int = 7) -> tuple[Array, Ar
 @pytest.mark.parametrize("sigma", [0.001, 0.01, 0.05])
 def test_smoothing_is_the_rms_distance_of_the_points(sigma: float) -> None:
     y, z = noisy(sigma)
-    profile = ws.Profile.from_points(y=Q(y, "m"), z=Q(z, "m"), kind="wheel", smoothing=Q(sigma, "mm"))
+    profile = wl.Profile.from_points(y=Q(y, "m"), z=Q(z, "m"), kind="wheel", smoothing=Q(sigma, "mm"))
     apart = float(np.sqrt((distance(profile.curve, y, z) ** 2).mean()))
     # Points are at most as far from the curve as from their own values on it, and the smoothest curve uses it all up.
     assert 0.9 * sigma * MM < apart <= sigma * MM * (1.0 + 1e-6)
@@ -361,7 +360,7 @@ def test_wear_of_one_side_looks_like_a_small_cant_and_a_wheel_has_none() -> None
     assert 0.0 < abs(side.apparent_cant.to("rad").magnitude) < 1.0 / 100.0
     assert np.isnan(WHEEL.apparent_cant.magnitude)
     crown = np.abs(curve.y) < 25.0 * MM
-    top = ws.Profile.from_points(y=Q(curve.y[crown], "m"), z=Q(curve.z[crown], "m"), kind="rail")
+    top = wl.Profile.from_points(y=Q(curve.y[crown], "m"), z=Q(curve.z[crown], "m"), kind="rail")
     assert np.isnan(top.apparent_cant.magnitude)
 
 
@@ -416,15 +415,15 @@ def looped() -> tuple[Array, Array]:
 )
 def test_points_that_are_no_profile_are_refused_with_their_place(y: Array, z: Array, message: str) -> None:
     with pytest.raises(wl.ConfigurationError, match=message):
-        ws.Profile.from_points(y=Q(y, "mm"), z=Q(z, "mm"), kind="wheel")
+        wl.Profile.from_points(y=Q(y, "mm"), z=Q(z, "mm"), kind="wheel")
 
 
 def test_a_rail_upside_down_is_refused_and_hollows_are_not() -> None:
     y, z = RAIL.points
     with pytest.raises(wl.InputError, match="the rail is upside down: z is positive down, but its side has point"):
-        ws.Profile.from_points(y=y, z=Q(-z.magnitude, "mm"), kind="rail")
+        wl.Profile.from_points(y=y, z=Q(-z.magnitude, "mm"), kind="rail")
     with pytest.raises(wl.InputError, match=r"the rail lies on its side: .* are y and z swapped"):
-        ws.Profile.from_points(y=z, z=y, kind="rail")
+        wl.Profile.from_points(y=z, z=y, kind="rail")
     assert circle(-500.0, "rail").curve.curvature.max() < 0.0
 
 
@@ -448,7 +447,7 @@ def test_a_rail_upside_down_is_refused_and_hollows_are_not() -> None:
 )
 def test_fields_that_make_no_profile_are_refused(fields: dict[str, Any], message: str) -> None:
     with pytest.raises(wl.ConfigurationError, match=message):
-        ws.Profile(**{"kind": "wheel", **fields})
+        wl.Profile(**{"kind": "wheel", **fields})
 
 
 # Records -------------------------------------------------------------------------------------------------------------
@@ -458,18 +457,18 @@ PROFILES = [
     RAIL,
     RAIL.turned(Q(-1.0 / 40.0, "rad")).shifted(y="1 mm"),
     RAIL.mirrored(),
-    ws.Profile.from_points(y=Q(Y, "mm"), z=Q(Z, "mm"), kind="wheel"),
-    ws.Profile.from_points(
+    wl.Profile.from_points(y=Q(Y, "mm"), z=Q(Z, "mm"), kind="wheel"),
+    wl.Profile.from_points(
         y=Q(Y, "mm"), z=Q(Z, "mm"), kind="wheel", smoothing="10 um", weights=np.linspace(1, 2, COUNT)
     ),
 ]
 
 
 @pytest.mark.parametrize("profile", PROFILES, ids=repr)
-def test_a_profile_comes_back_from_json_pickle_and_copies(profile: ws.Profile) -> None:
+def test_a_profile_comes_back_from_json_pickle_and_copies(profile: wl.Profile) -> None:
     for again in (
-        ws.Profile.model_validate_json(profile.model_dump_json()),
-        ws.Profile.model_validate(json.loads(profile.model_dump_json())),
+        wl.Profile.model_validate_json(profile.model_dump_json()),
+        wl.Profile.model_validate(json.loads(profile.model_dump_json())),
         pickle.loads(pickle.dumps(profile)),
         copy.deepcopy(profile),
         profile.model_copy(),
@@ -497,20 +496,20 @@ def test_a_profile_is_short_where_it_can_be() -> None:
 class Vehicle(wl.Configuration):
     """A record with profiles."""
 
-    wheel: ws.Profile
-    rail: ws.Profile = ws.Profile.uic60()
+    wheel: wl.Profile
+    rail: wl.Profile = wl.Profile.uic60()
 
 
 def test_a_field_takes_a_name_a_path_or_a_table(tmp_path: Path) -> None:
     path = tmp_path / "worn.prw"
-    ws.write_profile(path, PROFILES[4])
+    wl.write_profile(path, PROFILES[4])
     for given, expected in (
         ("s1002", WHEEL),
         (WHEEL, WHEEL),
         ({"formula": "s1002"}, WHEEL),
-        (str(path), ws.read_profile(path)),
-        (path, ws.read_profile(path)),
-        ({"file": str(path), "smoothing": "0.01 mm"}, ws.read_profile(path, smoothing="0.01 mm")),
+        (str(path), wl.read_profile(path)),
+        (path, wl.read_profile(path)),
+        ({"file": str(path), "smoothing": "0.01 mm"}, wl.read_profile(path, smoothing="0.01 mm")),
     ):
         vehicle = Vehicle.model_validate({"wheel": given})
         assert vehicle.wheel == expected

@@ -13,7 +13,6 @@ import wearlaw as wl
 from tests.plugins.full_theory import rows
 from tests.plugins.wheelset.wheelsets import R0, Body, least_gap, standing, wheelset
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset.loads import BALANCED  # private: the accuracy that a search ends at
 
 FASTSIM = wl.contact_model("fastsim")
@@ -21,14 +20,14 @@ STEEL = wl.Material(youngs_modulus=Q(2.56 * 82.0, "GPa"), poisson_ratio=0.28, de
 """The steel of CONTACT's examples, with G = 82 GPa."""
 
 
-def posed(pair: ws.Wheelset, **conditions: Any) -> Any:
+def posed(pair: wl.Wheelset, **conditions: Any) -> Any:
     """Return the balanced problem, without warnings of climbing."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.RangeWarning)
         return (pair | FASTSIM).posed(conditions)
 
 
-def tilt(pair: ws.Wheelset, conditions: dict[str, Any], problem: Any) -> float:
+def tilt(pair: wl.Wheelset, conditions: dict[str, Any], problem: Any) -> float:
     """Return gap plus penetration of the right wheel less that of the left one [m].
 
     The gaps are those of the surfaces in space, without the plugin's search.

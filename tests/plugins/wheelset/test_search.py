@@ -26,7 +26,6 @@ from tests.plugins.wheelset.wheelsets import (
     wheelset,
 )
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset.search_loops import (  # private: the accuracy that a search ends at
     ROLL_ACCURACY,
     ROUNDING,
@@ -47,7 +46,7 @@ def si(data: xarray.Dataset, name: str) -> Array:
     return np.asarray(data[name].values * unit)
 
 
-def first(pair: ws.Wheelset, displacement: Any, yaw: Any = 0.0) -> xarray.Dataset:
+def first(pair: wl.Wheelset, displacement: Any, yaw: Any = 0.0) -> xarray.Dataset:
     """Return the first patches at displacements [m] and a yaw [rad], without warnings of climbing."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.RangeWarning)
@@ -102,7 +101,7 @@ def test_cones_have_the_conicity_of_the_closed_form(conicity: float, head: float
     assert found == pytest.approx(expected, rel=roll**2 + 1e-8)
 
 
-def hollow_on_round(conicity: float, tread: float, head: float) -> ws.Wheelset:
+def hollow_on_round(conicity: float, tread: float, head: float) -> wl.Wheelset:
     """Return a wheelset that touches the rails at its taping lines in the middle of the track."""
     base = middle_of_head(head) - head * np.sin(np.arctan(conicity))
     return on_round_heads(hollow(conicity, tread), head, base)

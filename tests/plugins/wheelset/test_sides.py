@@ -12,15 +12,14 @@ import wearlaw as wl
 from tests.plugins.wheelset.test_positions import assert_same, geometry
 from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
-from wearlaw_models.rigs import wheelset as ws
 from wearlaw_models.rigs.wheelset.loads import Pressure  # private: the accuracy that a search ends at
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning")
 
-NEW = ws.Profile.s1002()
+NEW = wl.Profile.s1002()
 S = np.linspace(-40.0, 40.0, 401)
 WORN = NEW.worn(Q(S, "mm"), Q(0.3 * np.exp(-0.5 * ((S + 5.0) / 15.0) ** 2), "mm"))
-RAIL = ws.Profile.uic60()
+RAIL = wl.Profile.uic60()
 GROUND = RAIL.worn(Q(S[50:-50], "mm"), Q(0.2 * np.exp(-0.5 * (S[50:-50] / 8.0) ** 2), "mm"))
 PLACES = np.array([-5.6, -3.0, -1.0, 0.4, 2.0, 4.0, 5.6]) * 1e-3
 CONDITIONS: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}

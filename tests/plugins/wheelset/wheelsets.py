@@ -10,17 +10,16 @@ from scipy.spatial.transform import Rotation
 
 import wearlaw as wl
 from wearlaw import Array, Q
-from wearlaw_models.rigs import wheelset as ws
 
 R0 = 0.46
 """Nominal radius [m]."""
 
 
-def wheelset(**changed: Any) -> ws.Wheelset:
+def wheelset(**changed: Any) -> wl.Wheelset:
     """Return the wheelset of the Manchester benchmark A-2.2, S1002 on 60E1 at 1:40, with some fields changed."""
     fields: dict[str, Any] = {
-        "wheel": ws.Profile.s1002(),
-        "rail": ws.Profile.uic60(),
+        "wheel": wl.Profile.s1002(),
+        "rail": wl.Profile.uic60(),
         "nominal_radius": Q(1e3 * R0, "mm"),
         "flange_back_distance": Q(1360, "mm"),
         "gauge": Q(1435, "mm"),
@@ -29,35 +28,35 @@ def wheelset(**changed: Any) -> ws.Wheelset:
         "material": wl.steel(),
         "rolling_speed": Q(2, "m/s"),
     }
-    return ws.Wheelset(**fields | changed)
+    return wl.Wheelset(**fields | changed)
 
 
-def through(y: Array, z: Array, kind: Any) -> ws.Profile:
+def through(y: Array, z: Array, kind: Any) -> wl.Profile:
     """Return the profile through points [m]."""
-    return ws.Profile.from_points(y=Q(1e3 * y, "mm"), z=Q(1e3 * z, "mm"), kind=kind)
+    return wl.Profile.from_points(y=Q(1e3 * y, "mm"), z=Q(1e3 * z, "mm"), kind=kind)
 
 
-def cone(conicity: float) -> ws.Profile:
+def cone(conicity: float) -> wl.Profile:
     """Return a wheel with a straight tread, 120 mm wide."""
     y = np.linspace(-60e-3, 60e-3, 61)
     return through(y, -conicity * y, "wheel")
 
 
-def hollow(conicity: float, radius: float) -> ws.Profile:
+def hollow(conicity: float, radius: float) -> wl.Profile:
     """Return a wheel whose tread is a concave arc of a radius [m], with a conicity at the taping line."""
     angle = np.arctan(conicity)
     turn = np.linspace(-60e-3, 60e-3, 2401) / radius - angle
     return through(radius * (np.sin(turn) + np.sin(angle)), radius * (np.cos(angle) - np.cos(turn)), "wheel")
 
 
-def round_head(radius: float) -> ws.Profile:
+def round_head(radius: float) -> wl.Profile:
     """Return a rail whose head is a circular arc, 90 mm wide or down to 60 deg on both sides."""
     most = np.arcsin(min(45e-3 / radius, np.sin(np.pi / 3.0)))
     turn = np.linspace(-most, most, 1601)
     return through(radius * np.sin(turn), radius * (1.0 - np.cos(turn)), "rail")
 
 
-def on_round_heads(wheel: ws.Profile, radius: float, base: float = 0.75, **changed: Any) -> ws.Wheelset:
+def on_round_heads(wheel: wl.Profile, radius: float, base: float = 0.75, **changed: Any) -> wl.Wheelset:
     """Return wheels on rails with round heads, whose gauge is measured 1 mm below their tops.
 
     The base is the distance of the taping lines from the middle [m].
@@ -77,7 +76,7 @@ class Body:
     The right side is 1 and the left one -1. Positions are in the axes of the track.
     """
 
-    def __init__(self, pair: ws.Wheelset, side: int) -> None:
+    def __init__(self, pair: wl.Wheelset, side: int) -> None:
         self.side = side
         self.curve = pair.wheel.curve
         self.base = 0.75

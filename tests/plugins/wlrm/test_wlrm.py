@@ -110,7 +110,7 @@ def test_lateral_creepage_alone_neither_drives_nor_brakes(traction: Literal["dri
 
 
 def test_a_wheel_that_pulls_drives() -> None:
-    wheelset = wl.rig("wheelset", **wl.rigs()["wheelset"].example_fields)
+    wheelset = wl.rig("wheelset", **wl.installed("rig")["wheelset"].example_fields)
     middle: dict[str, Any] = {"lateral_displacement": "0 mm", "vertical_load": "160 kN", "friction_coefficient": 0.3}
     counted = {}
     for traction in ("driving", "braking"):

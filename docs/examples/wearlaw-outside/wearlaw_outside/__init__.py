@@ -8,7 +8,7 @@ from wearlaw_outside.material import MADE_UP_STEEL
 from wearlaw_outside.rig import Weighted
 from wearlaw_outside.stage import Wet
 
-wearlaw_interface = 3
+wearlaw_interface = 4
 
 
 @wl.hookimpl
