@@ -65,7 +65,8 @@ def extremes(array: Array) -> tuple[float, float]:
 def same(one: object, other: object) -> bool:
     """Return whether two values are the same, with arrays in records compared by entry; NaN is the same as NaN."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        return np.array_equal(np.asarray(one), np.asarray(other), equal_nan=True)
+        one, other = np.asarray(one), np.asarray(other)
+        return np.array_equal(one, other, equal_nan=one.dtype.kind == other.dtype.kind == "f")
     if type(one) is not type(other):
         return False
     if is_dataclass(one):

@@ -76,7 +76,11 @@ def values_of(problem: Any) -> dict[str, Any]:
     found = {field.name: getattr(problem, field.name) for field in dataclasses.fields(problem)}
     if problem.strips is not None:
         found |= {name: getattr(problem.strips, name.removesuffix(" of strips")) for name in OF_STRIPS}
-    values = {name: value for name, value in found.items() if hasattr(value, "dtype") or isinstance(value, int | float)}
+    values = {
+        name: value
+        for name, value in found.items()
+        if (hasattr(value, "dtype") and value.dtype.kind != "O") or isinstance(value, int | float)
+    }
     exists: Any = values.pop("exists", None)
     if exists is None:
         return values

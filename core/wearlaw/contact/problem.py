@@ -635,14 +635,14 @@ class Problem:
         return self if self.exists is None else self.flatten()
 
     def unflatten(self, values: Array) -> Array:
-        """Return values of the flattened problem in the shape of the batch, with NaN for missing patches.
+        """Return values of the flattened problem in the shape of the batch, with NaN or "" for missing patches.
 
         Axes after the axis of the flattened problem stay.
         """
         shape = self.batch_shape + values.shape[1:]
         if self.exists is None:
             return values.reshape(shape)
-        found = np.full(shape, np.nan)
+        found = np.full(shape, np.nan if values.dtype.kind == "f" else "", values.dtype)
         found[self.exists] = values
         return found
 

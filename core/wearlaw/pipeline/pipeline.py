@@ -329,8 +329,9 @@ def _masked(problem: Problem) -> Problem:
     if exists.dtype != np.bool_ or exists.shape != problem.batch_shape:
         raise ValueError(f"`exists` must be an array of bool of the shape of the batch, {problem.batch_shape}")
     of_strips = exists[..., None]
-    masked = problem.mapped(
-        lambda array: np.where(exists, array, np.nan), lambda array: np.where(of_strips, array, np.nan)
+    masked = problem.mapped(  # texts of a rig, such as why there is no patch, stay
+        lambda array: np.where(exists, array, np.nan) if array.dtype.kind == "f" else array,
+        lambda array: np.where(of_strips, array, np.nan),
     )
     return masked.replaced(exists=exists, unloaded=problem.unloaded)
 

@@ -27,6 +27,7 @@ from wearlaw.pipeline.selection import Index, Label, Selection
 from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import ERROR, default_variables, outcome_units
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si
+from wearlaw.units.registry import quantity
 
 if TYPE_CHECKING:
     import pandas
@@ -162,7 +163,7 @@ class Prediction:
 
         ``prediction["rcf_damage"]`` is an outcome by its name in results, ``prediction["wear_rate_rail"]`` that of a
         law for one body, ``prediction["rcf_damage_error"]`` the estimate of its numerical error, and
-        ``prediction["guiding_force"]`` a result of the rig.
+        ``prediction["guiding_force"]`` a result of the rig; one that is a text has texts for magnitudes.
         ``prediction[0]``, ``prediction[1:3]`` and ``prediction[0, [1, 2]]`` choose positions along the axes, as `isel`
         does.
         """
@@ -175,7 +176,8 @@ class Prediction:
         if name.endswith(ERROR) and name.removesuffix(ERROR) in named:
             return self._error(named[name.removesuffix(ERROR)])
         if name in self.problem.results:
-            return self._si(getattr(self.problem, name), self.problem.results[name])
+            value, unit = np.asarray(getattr(self.problem, name)), self.problem.results[name]
+            return self._si(value, unit) if value.dtype.kind == "f" else quantity(value, unit)
         if not name.startswith("_") and hasattr(type(self), name):
             value = getattr(self, name)
             if isinstance(value, pint.Quantity):

@@ -56,7 +56,10 @@ MASS = "mass_per_distance"
 OUTSIDE_RANGE = "outside_range"
 """The variable that marks points outside the range of a law."""
 
-MORE = ("patch_area", OUTSIDE_RANGE)
+TEXTS = frozenset({"status"})
+"""Variables that are texts, not numbers."""
+
+MORE = ("patch_area", OUTSIDE_RANGE, *TEXTS)
 """Further variables of predictions and sweeps."""
 
 OF_OTHERS: Mapping[Geometry, frozenset[str]] = {

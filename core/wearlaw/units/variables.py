@@ -139,6 +139,7 @@ VARIABLES: Mapping[str, Variable] = {
     ),
     "wheel_load": Variable("kN", "wheel load Q", "Vertical force of a wheel on its rail", "Q"),
     "derailment_quotient": Variable("", "derailment quotient Y/Q", "Guiding force over wheel load", "Y/Q", "any"),
+    "status": Variable("", "status", 'Why a position of a wheelset has no result, or "balanced"', "", "any"),
     "lateral_displacement": Variable(
         "mm", "lateral displacement", "Lateral displacement of the wheelset in the track", "", "any"
     ),

@@ -14,6 +14,7 @@ from pydantic import TypeAdapter
 
 from wearlaw.arrays import Array
 from wearlaw.errors import OutputError, shown
+from wearlaw.pipeline.variables import TEXTS
 from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_apps.sweeps.folder import CHECKED, Folder, write_dataset
 from wearlaw_apps.sweeps.points import ITEM, Block, Points, Varying
@@ -66,7 +67,8 @@ class Store(Target):
         for name in job.units:
             if name not in there:
                 shape, chunks = points.shape + job.own_shape(name), points.block_shape + job.own_shape(name)
-                _add_array(group, name, shape, chunks, (*points.dims, *job.labels(name)), job.attributes(name))
+                dims, text = (*points.dims, *job.labels(name)), name in TEXTS
+                _add_array(group, name, shape, chunks, dims, job.attributes(name), text)
         if not self.resumed or RECORDS not in group:
             group.create_array(RECORDS, shape=(len(points.blocks()),), chunks=(1,), dtype=str, compressors=CHECKED)
         small = dataset(points, {}, job, attributes(INCOMPLETE, self._folder.provenance))
@@ -135,15 +137,16 @@ def _add_array(
     chunks: tuple[int, ...],
     dims: tuple[str, ...],
     attrs: Mapping[str, str],
+    text: bool = False,
 ) -> Any:
-    """Return a new array of a group, which xarray reads as one of these dimensions."""
+    """Return a new array of a group, of numbers or texts, which xarray reads as one of these dimensions."""
     return group.create_array(
         name,
         shape=shape,
         chunks=chunks,
-        dtype="float64",
+        dtype=str if text else "float64",
         compressors=CHECKED,
-        fill_value=np.nan,
+        fill_value="" if text else np.nan,
         dimension_names=dims,
         attributes={**attrs},
     )

@@ -55,15 +55,26 @@ BALANCED = 1e-7
 """Greatest imbalance, as a share of the load, and of the torque of full slip. Creep forces are off by 1e-3 and more,
 and those of FASTSIM jump by up to 1e-3 where a strip begins to stick once more."""
 
-ROUGH = 2e-3
-"""Imbalance that stays where creep forces jump."""
+FIRST = 2e-3
+"""Imbalance that may stay before there are creep forces."""
+
+ROUGH = 1e-3
+"""Greatest imbalance of a result; the forces of FASTSIM jump by less, as a strip begins to stick once more."""
+
+BALANCE = "balanced"
+"""Status of a position whose loads balance."""
+
+LACKING = (
+    "the vertical load of the left wheel is off by {:.2g} of the load",
+    "the vertical load of the right wheel is off by {:.2g} of the load",
+    "the torque on the axle is off by {:.2g} of that of full slip",
+    "the level of the axle is off by {:.2g} of the load",
+    "the lateral force is off by {:.2g} of the load of a wheel",
+)
+"""Status of other positions, by the column of `Balance.left`."""
 
 STALLED = 1e-4
 """Imbalance from which on each unknown is sought within bounds, after Newton's method."""
-
-FOLD = 2e-2
-"""Imbalance of the torque that stays where two penetrations carry a load, and the creep forces jump from one to the
-other as the speed of rotation changes."""
 
 SLIGHT = 1e-9
 """Change of the roll that leaves all but the heights of the wheels as it is [rad]."""
@@ -299,10 +310,9 @@ class Balance:
     """y + z tan δ of the first place of each wheel, by which a roll changes its gap [m], (positions, 2)."""
     roll_rate: Array
     """Rate of the roll, ρ' [rad/s]."""
-    balanced: NDArray[np.bool_]
-    """Whether the loads of each position balance."""
-    imbalance: Array
-    """Greatest share of the load of a wheel, or of the torque of full slip, that is left over at each position [-]."""
+    left: Array
+    """Share that is left over [-], (positions, 5): of the loads of both wheels, of the torque of full slip, of the load
+    that would level the axle, and of the load of a wheel as a lateral force."""
     share: Array
     """Share of the penetration by which the gap must rise between patches of each position [-]."""
     scale: Array
@@ -340,8 +350,8 @@ class Balance:
         balance = cls(
             section, elastic, task, pressure, strips, roll.copy(), wheels, none, wheels, touching, roll.copy(),
             np.full(count, np.inf), roll.copy(), np.full(2 * count, 1.5), pairs, pairs.copy(), none.copy(),
-            np.ones(count, dtype=np.bool_), none.copy(), np.full(count, SEPARATE), np.ones(2 * count), pairs.copy(),
-            pairs.copy(), np.zeros((count, 4, 4)),
+            np.zeros((count, 5)), np.full(count, SEPARATE), np.ones(2 * count), pairs.copy(), pairs.copy(),
+            np.zeros((count, 4, 4)),
         )  # fmt: skip
         balance.whole, sunk = balance._guessed()
         if task.free:
@@ -352,19 +362,38 @@ class Balance:
         first = balance.found.part(balance.found.number == 0)
         radius = placed(section, first.position, first.arc).radius.reshape(-1, 2).mean(axis=-1)
         balance.rotation = task.speed / radius if task.rotation is None else task.rotation.copy()
-        left = balance.balanced.copy()
+        left = np.ones(count, dtype=np.bool_)
         if task.free:  # the roll needs only rough penetrations, since it is found again with the creep forces
             balance._newton(None, left, False, once=True)
-            left, before = balance.imbalance > ROUGH, balance.sampled.copy()
+            left, before = balance.imbalance > FIRST, balance.sampled.copy()
             balance._level(SMALL)
             left |= balance.sampled != before
         balance._newton(None, left, False)
-        left = balance.imbalance > ROUGH
+        left = balance.imbalance > FIRST
         if left.any():
             balance._bracketed(None, left)
         if task.free:
             balance._level(np.inf)
         return balance
+
+    @property
+    def imbalance(self) -> Array:
+        """Greatest share that is left over at each position [-]."""
+        return np.asarray(self.left.max(axis=-1))
+
+    @property
+    def status(self) -> NDArray[np.object_]:
+        """What does not balance at each position, and by how much, as texts; `BALANCE` where nothing lacks."""
+        status = np.full(self.roll.shape, BALANCE, dtype=object)
+        for point in np.flatnonzero(~self.balanced):
+            most = int(self.left[point].argmax())
+            status[point] = LACKING[most].format(self.left[point, most])
+        return status
+
+    @property
+    def balanced(self) -> NDArray[np.bool_]:
+        """Whether the loads of each position balance; if no wheel bears a load, there is nothing to balance."""
+        return (self.imbalance <= ROUGH) | ~self.task.bears.any(axis=-1)
 
     def _level(self, slight: float) -> None:
         """Roll the wheelset, in place, until both wheels carry it at one height; `slight` as in `_turn`."""
@@ -515,17 +544,15 @@ class Balance:
         forces : callable
             Returns the creep forces of a problem with one entry for each patch.
         bounds : bool
-            Whether to search within bounds where Newton's method fails, which takes a hundred times as long. Otherwise
-            these positions are marked as unbalanced.
+            Whether to search within bounds where Newton's method fails, which takes a hundred times as long.
         """
         copies: dict[str, Any] = {name: one.copy() for name, one in vars(self).items() if isinstance(one, np.ndarray)}
-        every = np.ones(self.balanced.shape, dtype=np.bool_)
-        copies |= {"scale": np.ones(self.scale.shape), "balanced": every}
+        copies["scale"] = np.ones(self.scale.shape)
         touching = Touching(*(array.copy() for array in self.touching))
         found = replace(self, touching=touching, shapes=dict(self.shapes), starts=dict(self.starts), **copies)
         found.found = self.found.part(np.arange(self.found.point.size))
         rolls = self.task.free
-        found._newton(forces, every, rolls, known=True)
+        found._newton(forces, np.ones(self.roll.shape, dtype=np.bool_), rolls, known=True)
         left = found.imbalance > STALLED
         if rolls and left.any():  # one of two humps of a patch takes over from the other; let them share the load
             found._restart(self, left, 0.0)
@@ -537,8 +564,6 @@ class Balance:
                 found._rolled(forces, left)
             else:
                 found._bracketed(forces, left)
-        if not bounds:
-            found.balanced = found.imbalance <= ROUGH
         return found
 
     def _restart(self, begun: Balance, left: NDArray[np.bool_], share: float) -> None:
@@ -574,10 +599,11 @@ class Balance:
                 state.miss[:, 3] = 0.0
             self._note(state, open_)
             worst, tilt = np.abs(state.miss[:, :3]).max(axis=-1), np.abs(state.miss[:, 3])
-            open_ &= (worst > (ROUGH if forces is None else BALANCED)) | (tilt * self._depths() > LEVEL)
-            better = self.imbalance < 0.5 * least
-            least, halved = np.where(better, self.imbalance, least), np.where(better, iteration, halved)
-            slow = (iteration >= NEWTON_STEPS - 1) | (self.imbalance < STALLED)
+            open_ &= (worst > (FIRST if forces is None else BALANCED)) | (tilt * self._depths() > LEVEL)
+            imbalance = self.imbalance
+            better = imbalance < 0.5 * least
+            least, halved = np.where(better, imbalance, least), np.where(better, iteration, halved)
+            slow = (iteration >= NEWTON_STEPS - 1) | (imbalance < STALLED)
             open_ &= ~slow | (iteration - halved < PATIENCE)
             rows = np.flatnonzero(open_)
             if not rows.size:
@@ -614,9 +640,8 @@ class Balance:
 
     def _note(self, state: _State, chosen: NDArray[np.bool_]) -> None:
         """Keep what some positions leave over; a difference of level counts with the load that it would carry."""
-        left = np.abs(state.miss)
-        left[:, 3] *= 1.5
-        self.imbalance = np.where(chosen, left.max(axis=-1), self.imbalance)
+        left = np.abs(np.hstack([np.expm1(state.miss[:, :2]), state.miss[:, 2:] * (1.0, 1.5)]))
+        self.left[chosen, :4] = left[chosen]
         self.vertical[chosen], self.lateral[chosen] = (
             one.reshape(-1, 2)[chosen] for one in (state.load, state.lateral)
         )
@@ -626,13 +651,13 @@ class Balance:
         going = open_.copy()
         rolls = _Root.begun(self.roll, np.nan, WIDEST_ROLL)
         for _ in range(STEPS):
-            self.scale[going.repeat(2)], self.balanced[going] = 1.0, True
+            self.scale[going.repeat(2)] = 1.0
             self._newton(forces, going, False)
             left = going & (self.imbalance > ROUGH)
             if left.any():
                 self._bracketed(forces, left)
             lower = self._lower()
-            self.imbalance = np.where(going, np.maximum(self.imbalance, 1.5 * np.abs(lower)), self.imbalance)
+            self.left[going, 3] = 1.5 * np.abs(lower)[going]
             jump = (rolls.high - rolls.low) * self._levers() < JUMP * np.abs(lower)
             going &= (np.abs(lower) * self._depths() > LEVEL) & ~jump
             if not going.any():
@@ -656,10 +681,7 @@ class Balance:
         return np.asarray(np.maximum(np.abs(self.lever.sum(axis=-1)), LEAST_LEVER) / self._depths())
 
     def _bracketed(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> None:
-        """Balance some positions in place, the torque within bounds, and at each speed of rotation the loads.
-
-        Positions that stay unbalanced are marked.
-        """
+        """Balance some positions in place, the torque within bounds, and at each speed of rotation the loads."""
         start, going = self.penetration.copy(), open_.copy()
         self.penetration = np.where(open_.repeat(2), self.whole, start)
         turns = _Root.begun(self.rotation, np.nan, MOST_TURN * self.rotation)
@@ -676,8 +698,6 @@ class Balance:
         state = self._state(forces, open_)
         state.miss[:, 3] = 0.0
         self._note(state, open_)
-        lacking = np.abs(state.miss[:, :3]) > (ROUGH, ROUGH, FOLD)
-        self.balanced = np.where(open_, ~lacking.any(axis=-1), self.balanced)
 
     def _carried(self, forces: Callable[[wl.Problem], wl.CreepForces] | None, open_: NDArray[np.bool_]) -> _State:
         """Balance the vertical loads of some positions at their speed of rotation, in place."""

@@ -18,7 +18,7 @@ from wearlaw_models.rigs.wheelset.conicity import equivalent_conicity
 from wearlaw_models.rigs.wheelset.doubts import warn
 from wearlaw_models.rigs.wheelset.geometry import Geometry, geometry, patches, profiles
 from wearlaw_models.rigs.wheelset.guidance import guided
-from wearlaw_models.rigs.wheelset.loads import Balance, Elastic, Friction, Pressure, Task
+from wearlaw_models.rigs.wheelset.loads import BALANCE, Balance, Elastic, Friction, Pressure, Task
 from wearlaw_models.rigs.wheelset.pictures import Profiles, contact_figure, wear_figure
 from wearlaw_models.rigs.wheelset.profile import Profile, faults, unlikely
 from wearlaw_models.rigs.wheelset.search import Section, Touching, both_sides, searched, section
@@ -82,6 +82,7 @@ RESULTS: Mapping[str, str] = {
     "guiding_force": "kN",
     "wheel_load": "kN",
     "derailment_quotient": "",
+    "status": "",
 }
 """Units of the results for a wheelset and its wheels."""
 
@@ -102,10 +103,6 @@ JUST_TOUCHING = 1e-3
 
 HIGH_PRESSURE = 3.5e9
 """Maximum pressure that only the noise of points gives [Pa]: new flanges have up to about 3."""
-
-IMBALANCE = 1e-3
-"""Share of the load that may be left over without a warning; the forces of FASTSIM jump by less than that, as a strip
-begins to stick once more."""
 
 GRID_ERROR = 0.03
 """Estimated error of the maximum pressure of half-spaces from which it is warned of."""
@@ -145,8 +142,10 @@ class WheelsetProblem(wl.Problem):
         Vertical approach of wheel and rail from first touching, at each patch [m].
     imbalance : ndarray
         What the balance leaves over, the greatest of these shares [-]: of the vertical load of a wheel, of the torque
-        of full slip, of the load that the rails would move from wheel to wheel to sink equally, and of the axle load as
-        a lateral force.
+        of full slip, of the load that the rails would move from wheel to wheel to sink equally, and of the mean load of
+        a wheel as a lateral force. It is at most 1e-3.
+    status : ndarray of object
+        "balanced", or the reason why a position has no result [-]. The patches of such a position do not exist.
     lateral_displacement : ndarray
         Lateral displacement of the wheelset in the track, positive to the right [m].
     guiding_force : ndarray
@@ -164,12 +163,13 @@ class WheelsetProblem(wl.Problem):
     guiding_force: Array
     wheel_load: Array
     derailment_quotient: Array
+    status: NDArray[np.object_]
     balance: Balance
     shape: tuple[int, ...]
 
     @property
     def results(self) -> Mapping[str, str]:
-        """Units of displacement and forces."""
+        """Units of displacement and forces, and the status."""
         return RESULTS
 
     @property
@@ -182,7 +182,7 @@ class WheelsetProblem(wl.Problem):
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
         mapped = super(WheelsetProblem, self).mapped(function, of_strips)  # a class with slots has no plain super()
-        names = ("roll", "penetration", "imbalance", *self.results)
+        names = ("roll", "penetration", "imbalance", *RESULTS)
         return mapped.replaced(**{name: function(getattr(self, name)) for name in names})
 
 
@@ -458,34 +458,24 @@ class Wheelset(wl.Rig):
         balance = self._balance(task, flat.get("roll"))
         if task.torque.any():
             balance.check_torque()
-        return self._whole(balance, shape, flat.get("rolled_distance"))
+        status = np.full(balance.roll.shape, BALANCE, dtype=object)  # as soon as there are creep forces
+        return self._whole(balance, status, shape, flat.get("rolled_distance"))
 
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, WheelsetProblem)
         distance = problem.rolled_distance
         if problem.balance.task.lateral_force is None:
-            balance, climbs = problem.balance.solved(forces), np.zeros(problem.balance.roll.shape, dtype=np.bool_)
+            balance = problem.balance.solved(forces)
+            status = balance.status
             self._warn_of_climbing(balance)
         else:
-            balance, climbs = self._guided(problem.balance, forces)
-        if not balance.balanced.all():
-            self._warn_of_jams(balance)
+            balance, status = self._guided(problem.balance, forces)
+        self._warn_of_missing(balance, status)
         self._warn_of_humps(balance)
         self._warn_of_grids(balance)
-        balance.balanced &= ~climbs
-        left = np.where(balance.balanced, balance.imbalance, 0.0)
-        if (left > IMBALANCE).any():
-            point = int(left.argmax())
-            advice = "see imbalance of the problem" if self.pressure == "half_space" else 'take pressure="half_space"'
-            warnings.warn(
-                f"the loads of {np.count_nonzero(left > IMBALANCE)} of {left.size} positions do not balance: at a"
-                f" lateral displacement of {1e3 * balance.task.displacement[point]:.4g} mm, {left[point]:.2g} of the"
-                f" load is left over, as where a patch joins another one; {advice}",
-                wl.RangeWarning,
-                stacklevel=4,
-            )
-        found = self._whole(balance, problem.shape, None if distance is None else distance[..., 0, 0].reshape(-1))
+        distance = None if distance is None else distance[..., 0, 0].reshape(-1)
+        found = self._whole(balance, status, problem.shape, distance)
         self._warn_of_points(found)
         return found
 
@@ -520,8 +510,8 @@ class Wheelset(wl.Rig):
 
     def _guided(
         self, balance: Balance, forces: Callable[[wl.Problem], wl.CreepForces]
-    ) -> tuple[Balance, NDArray[np.bool_]]:
-        """Return the loads of wheelsets where the rails bear their lateral forces, and whether a wheel climbs."""
+    ) -> tuple[Balance, NDArray[np.object_]]:
+        """Return the loads of wheelsets where the rails bear their lateral forces, and the status of each."""
         task = balance.task
         assert task.lateral_force is not None
         roll = None if task.free else balance.roll
@@ -538,31 +528,30 @@ class Wheelset(wl.Rig):
         place, climbs, greatest = guided(task, solved, stands)
         every = np.arange(place.size)
         balance = solved(task.part(every, place), every)
-        left = np.abs(balance.lateral.sum(axis=-1) - task.lateral_force) / task.load.sum(axis=-1)
-        balance.imbalance = np.maximum(balance.imbalance, left)
-        if climbs.any():
-            point = int(np.argmax(climbs))
+        left = np.abs(balance.lateral.sum(axis=-1) - task.lateral_force)
+        balance.left[:, 4] = left / task.load.mean(axis=-1)
+        status = balance.status
+        for point in np.flatnonzero(climbs):
             side = DIMS["side"][int(place[point] > 0.0)]
-            warnings.warn(
-                f"lateral_force: {np.count_nonzero(climbs)} of {climbs.size} positions have no result, the first with"
-                f" {1e-3 * task.lateral_force[point]:.4g} kN: the greatest force found is"
-                f" {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm; beyond it the {side} wheel climbs"
-                " its rail or leaves it",
-                wl.RangeWarning,
-                stacklevel=5,
+            status[point] = (
+                f"the greatest lateral force found is {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm;"
+                f" beyond it the {side} wheel climbs its rail or leaves it"
             )
-        return balance, climbs
+        return balance, status
 
-    def _whole(self, balance: Balance, shape: tuple[int, ...], distance: Array | None) -> wl.Problem:
+    def _whole(
+        self, balance: Balance, status: NDArray[np.object_], shape: tuple[int, ...], distance: Array | None
+    ) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
         found = balance.found
         flat, patch = balance.posed()
         size = balance.roll.size
         exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
         place = found.point, found.side, found.number
-        bears = balance.task.bears
-        exists[place] = patch.touch & balance.balanced[found.point] & bears[found.point, found.side]
-        lifted = None if bears.all() else np.repeat(~bears[..., None], PATCHES, axis=-1).reshape(*shape, 2, PATCHES)
+        bears, balanced = balance.task.bears, status == BALANCE
+        exists[place] = patch.touch & balanced[found.point] & bears[found.point, found.side]
+        lifted = balanced[:, None] & ~bears
+        unloaded = np.repeat(lifted[..., None], PATCHES, axis=-1).reshape(*shape, 2, PATCHES) if lifted.any() else None
 
         def wide(array: Array) -> Array:
             full = np.full(exists.shape, np.nan)
@@ -587,7 +576,7 @@ class Wheelset(wl.Rig):
             fields["rolled_distance"] = np.broadcast_to(distance[:, None, None], exists.shape).reshape(
                 *shape, 2, PATCHES
             )
-        fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES), "unloaded": lifted}
+        fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES), "unloaded": unloaded}
         fields |= {
             "roll": wide(balance.roll[found.point]),
             "penetration": wide(balance.penetration[found.wheel] - found.gap),
@@ -596,6 +585,7 @@ class Wheelset(wl.Rig):
             "guiding_force": wide(balance.lateral[found.point, found.side]),
             "wheel_load": wide(balance.vertical[found.point, found.side]),
             "derailment_quotient": wide((balance.lateral / balance.vertical)[found.point, found.side]),
+            "status": np.broadcast_to(status[:, None, None], exists.shape).reshape(*shape, 2, PATCHES),
         }
         return WheelsetProblem(**fields, balance=balance, shape=shape)
 
@@ -667,18 +657,23 @@ class Wheelset(wl.Rig):
                 stacklevel=5,
             )
 
-    @staticmethod
-    def _warn_of_jams(balance: Balance) -> None:
-        """Warn of positions without a balance of loads."""
-        point = int(np.argmin(balance.balanced))
-        displacement = float(balance.task.displacement[point])
-        warnings.warn(
-            f"{np.count_nonzero(~balance.balanced)} of {balance.balanced.size} positions have no result, the first at a"
-            f" lateral displacement of {1e3 * displacement:.4g} mm: no normal forces were found that carry the vertical"
-            " load together with the creep forces, as where friction holds a flange",
-            wl.RangeWarning,
-            stacklevel=5,
-        )
+    def _warn_of_missing(self, balance: Balance, status: NDArray[np.object_]) -> None:
+        """Warn of positions that have no result, and say why the first one has none."""
+        missing = np.flatnonzero(status != BALANCE)
+        if missing.size:
+            task, first = balance.task, missing[0]
+            if task.lateral_force is None:
+                where = f"at a lateral displacement of {1e3 * task.displacement[first]:.4g} mm"
+            else:
+                where = f"with a lateral force of {1e-3 * task.lateral_force[first]:.4g} kN"
+            gradual = self.pressure == "half_space" or "climbs" in status[first]
+            advice = "" if gradual else ', or take pressure="half_space"'
+            warnings.warn(
+                f"{missing.size} of {status.size} positions have no result, the first {where}: {status[first]}; see"
+                f" status of the problem{advice}",
+                wl.RangeWarning,
+                stacklevel=5,
+            )
 
     @property
     def _flange_play(self) -> float | None:

@@ -58,8 +58,8 @@ ACCURATE = {"xatol": 1e-9}
 BESIDE = 1e3
 """A place beside any rail [m]."""
 
-STRAIGHT = 1e-6
-"""Difference in the angle of a flank that is straight but for rounding [rad]."""
+STRAIGHT = np.radians(0.5)
+"""Difference in the angle of a flank that is straight, given by points [rad]; arcs beside it make splines overshoot."""
 
 PROBE = 1e-6
 """First step along a wheel by which a contact point is followed [m]."""
