@@ -17,6 +17,8 @@ WAVES = 1001
 """Middles of the wave among which the turning points are looked for."""
 ROUNDING = 1e-12
 """Share of the largest value that is zero but for rounding."""
+NOTHING = 1e-9
+"""A rolling radius difference that is zero but for the accuracy of contact points [m]."""
 
 
 def equivalent_conicity(
@@ -30,7 +32,8 @@ def equivalent_conicity(
 
     Half a wave runs from y_min to y_max = y_min + 2ŷ. Both are turning points, so ∫Δr dy between them is zero. With
     y'² = 2/(e r0) ∫Δr dy from y to y_max, the wavelength is λ = 2 ∫dy/y'. The substitution y = (y_min + y_max)/2 +
-    ŷ sin θ removes the singularities at both ends. The conicity depends neither on e nor on r0, which cancel.
+    ŷ sin θ removes the singularities at both ends. The conicity depends neither on e nor on r0, which cancel. It is
+    zero where Δr is zero all along the wave.
 
     Parameters
     ----------
@@ -45,13 +48,14 @@ def equivalent_conicity(
     Raises
     ------
     InputError
-        If the wave does not fit into the table, or Δr does not steer the wheelset back.
+        If the wave does not fit into the table, Δr is nowhere zero, or it does not steer the wheelset back.
 
     Notes
     -----
     Source: Klingel's equation integrated, as in Annex B of EN 15302; J. Klingel, Organ für die Fortschritte des
     Eisenbahnwesens 20 (1883) 113-123. If more than one wave has this amplitude, as with a Δr that has several zeros, it
-    is the one nearest to y = 0.
+    is the one nearest to y = 0. Wheels of unequal radii move about the displacement at which Δr vanishes: count y from
+    there.
     """
     y, difference = np.asarray(lateral_displacement), np.asarray(rolling_radius_difference)
     if 2.0 * amplitude > (y[-1] - y[0]) * (1.0 + ROUNDING):
@@ -59,6 +63,9 @@ def equivalent_conicity(
             f"amplitude: a wave of {1e3 * amplitude:.6g} mm is {2e3 * amplitude:.6g} mm wide, but the displacements"
             f" reach from {1e3 * y[0]:.6g} to {1e3 * y[-1]:.6g} mm; give a smaller amplitude or a wider table"
         )
+    near = np.abs(y) <= amplitude * (1.0 + ROUNDING)
+    if near.any() and np.abs(difference[near]).max() <= NOTHING:
+        return 0.0
     if not (difference.min() < 0.0 < difference.max()):
         raise wl.InputError(
             f"rolling_radius_difference: must change its sign, but lies between {1e3 * difference.min():.4g} and"

@@ -14,10 +14,10 @@ from pydantic import BeforeValidator, Field, model_validator
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_models.rigs.wheelset.conicity import equivalent_conicity
+from wearlaw_models.rigs.wheelset.conicity import NOTHING, equivalent_conicity
 from wearlaw_models.rigs.wheelset.doubts import warn
 from wearlaw_models.rigs.wheelset.geometry import Geometry, geometry, patches, profiles
-from wearlaw_models.rigs.wheelset.guidance import guided
+from wearlaw_models.rigs.wheelset.guidance import FARTHEST, guided
 from wearlaw_models.rigs.wheelset.loads import BALANCE, Balance, Elastic, Friction, Pressure, Task
 from wearlaw_models.rigs.wheelset.pictures import Profiles, contact_figure, wear_figure
 from wearlaw_models.rigs.wheelset.profile import Profile, faults, unlikely
@@ -418,15 +418,53 @@ class Wheelset(wl.Rig):
         profiles, first = self.profiles_in_track(), next(iter(found.values()))
         return contact_figure(profiles, name, first), wear_figure(profiles, name, found)
 
-    def equivalent_conicity(self, *, amplitude: wl.QuantityLike) -> wl.Quantity:
-        """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel."""
+    def equivalent_conicity(self, *, amplitude: wl.QuantityLike, roll: bool = True) -> wl.Quantity:
+        """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel.
+
+        The wheelset moves about the displacement at which its rolling radii are equal: the middle of the track, unless
+        its wheels or rails differ.
+
+        Parameters
+        ----------
+        amplitude : Quantity or str
+            Amplitude of the lateral displacement [m].
+        roll : bool
+            Whether the axle rolls until both wheels touch. EN 15302 leaves the roll out of its reference radii.
+
+        Raises
+        ------
+        ConditionsError
+            If a wheel does not touch its rail.
+        InputError
+            If the rolling radii are nowhere equal, or do not steer the wheelset back.
+        """
         most = _one(wl.Unit("mm"), amplitude, "amplitude")
-        displacement = np.linspace(-most - MARGIN, most + MARGIN, CONICITY_POINTS)
-        rolls, found = searched(self._section, displacement, np.zeros_like(displacement))
+        middle, reach = 0.0, most + MARGIN
+        if abs(self._radius_difference(np.zeros(1), roll)[0]) > NOTHING:
+            every = np.linspace(-FARTHEST, FARTHEST, CONICITY_POINTS)
+            every = every[self.on_rails(every)]
+            y, difference = every, self._radius_difference(every, roll)
+            steers = np.flatnonzero((difference[:-1] <= 0.0) & (difference[1:] > 0.0))
+            if not steers.size:
+                raise wl.InputError(
+                    "amplitude: the rolling radii of the wheels are nowhere equal, so the wheelset runs to one side;"
+                    f" they differ by {1e3 * np.abs(difference).min():.4g} mm at least"
+                )
+            share = difference[steers] / (difference[steers] - difference[steers + 1])
+            zeros = y[steers] + share * np.diff(y)[steers]
+            middle = float(min(zeros, key=abs))
+            reach = min(2.0 * most, middle - every[0], every[-1] - middle)
+        displacement = np.linspace(middle - reach, middle + reach, CONICITY_POINTS)
+        difference = self._radius_difference(displacement, roll)
+        return wl.Q(equivalent_conicity(displacement - middle, difference, most), "")
+
+    def _radius_difference(self, displacement: Array, roll: bool) -> Array:
+        """Return the rolling radius of the right wheel minus that of the left one, without yaw [m]."""
+        none = np.zeros_like(displacement)
+        rolls, found = searched(self._section, displacement, none, None if roll else none)
         self._check_contact(displacement, found)
-        position = both_sides(displacement, rolls, np.zeros_like(displacement))
-        radius = patches(self._section, position, found)["rolling_radius"][..., 0]
-        return wl.Q(equivalent_conicity(displacement, radius[:, 1] - radius[:, 0], most), "")
+        radius = patches(self._section, both_sides(displacement, rolls, none), found)["rolling_radius"][..., 0]
+        return np.asarray(radius[:, 1] - radius[:, 0])
 
     def problem(self, **conditions: Unpack[WheelsetConditions]) -> wl.Problem:
         """Return the contact problem that the conditions pose; arrays broadcast against each other.
