@@ -32,8 +32,8 @@ STEPS = np.tile([0.1, 0.3, 0.03], 30)
 """Weights of the slip beside the traction, over the stiffness of an element. With one that stays, Newton's method runs
 in circles in some contacts."""
 
-DAMPED = range(10, 25)
-"""Those of thirty steps in which friction that falls follows the slip half the way, where Newton's method did not."""
+DAMPED, CLOSE = 10, 1e-3
+"""Steps after which friction that falls follows the slip half the way, until less than this is left to correct."""
 
 NEAR, EARLY, LATE = 0.1, 0.1, 1e-4
 """Share of the residual that GMRES leaves: `LATE` if less than `NEAR` is left to correct, or else `EARLY`."""
@@ -143,13 +143,13 @@ class Patch:
             If there is no solution after all steps, or a step has none.
         """
         w = self.rigid_slip(0.5 * self.grid.step, *creepages)
-        blocks, settled, slips = Blocks(self.grid), False, np.zeros(self.inside.shape, dtype=np.bool_)
+        blocks, settled, left, slips = Blocks(self.grid), False, np.inf, np.zeros(self.inside.shape, dtype=np.bool_)
         bound, slope = self.pressure, np.zeros(self.inside.shape)
         for number, rho in enumerate(STEPS / self.grid.stiffness):
             if friction.falls:
                 before = bound
                 bound, slope = (self.pressure * one for one in friction.at(self.slipped(q, slips, creepages)))
-                if number % 30 in DAMPED:
+                if number >= DAMPED and left > CLOSE:
                     bound, slope = 0.5 * (before + bound), 0.0 * slope
             s = w - self.inside * self.grid.taken_up(q)
             u = q + rho * s
