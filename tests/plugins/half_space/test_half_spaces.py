@@ -27,7 +27,7 @@ def words(page: str) -> str:
     " spin, a/b from 1/10 to 10: the"
     " [tables of errors](theory-elliptic.md#how-far-the-models-are-from-the-half-space-theory) at {drawn} points"
     " drawn at random and others that a search found",
-    source="`half_space` on 20 and 40 cells, extrapolated",
+    source="`half_space` on 30 and 60 cells, extrapolated",
     held_to="every digit of the tables",
     drawn=440,
 )
@@ -85,7 +85,7 @@ def test_the_file_of_the_reference_is_what_its_script_writes() -> None:
     column = columns()
     inputs = np.stack([column[name] for name in INPUTS], axis=1)
     assert inputs[: sum(DRAWS)] == pytest.approx(np.array(list(points())), rel=1e-5)  # six digits are written
-    # Fifteen points of all kinds on the coarse grid, where each takes a tenth of a second, and two on the next one.
+    # Fifteen points of all kinds on the coarse grid, and two on the next one.
     for at, cells in [*((at, CELLS[0]) for at in range(3, len(inputs), 37)), (150, CELLS[1]), (301, CELLS[1])]:
         expected = [column[f"{name}{cells}"][at] for name in FORCES]
         assert solved(inputs[at].tolist(), cells) == pytest.approx(expected, abs=1e-5)  # five decimals are written
