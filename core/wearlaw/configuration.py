@@ -25,9 +25,10 @@ from wearlaw.errors import (
     shown,
 )
 from wearlaw.units.quantities import Unit, plain_number, text_of
+from wearlaw.units.usual import OneWarning
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from inspect import Signature
 
     from pydantic import GetJsonSchemaHandler, ValidationInfo
@@ -106,10 +107,12 @@ class Configuration(BaseModel):
                     raise ModelError(_unknown_type(cls, error)) from None
 
         def __init__(self, /, **fields: Any) -> None:
-            try:
-                super().__init__(**fields)
-            except ValidationError as error:
-                raise configuration_error(type(self).subject(), type(self), error) from None
+            with OneWarning() as unusual:
+                try:
+                    super().__init__(**fields)
+                except ValidationError as error:
+                    raise configuration_error(type(self).subject(), type(self), error) from None
+                unusual |= unusual_fields(self)
 
         @classmethod
         def model_validate(cls, obj: Any, **options: Any) -> Self:
@@ -148,7 +151,12 @@ class Configuration(BaseModel):
         """
         aliases = {name: field.alias or name for name, field in type(self).model_fields.items()}
         fields = {alias: getattr(self, name) for name, alias in aliases.items()} | (self.model_extra or {})
-        return type(self)(**fields | {aliases.get(name, name): value for name, value in (update or {}).items()})
+        with OneWarning() as unusual:
+            copy = type(self)(**fields | {aliases.get(name, name): value for name, value in (update or {}).items()})
+            for subject in unusual_fields(self):  # their warning came with this record
+                if subject.rpartition(": ")[2] not in (update or {}):
+                    unusual.pop(subject, None)
+        return copy
 
     def __str__(self) -> str:
         return repr(self)
@@ -192,6 +200,32 @@ def _is_number(annotation: Any) -> bool:
     if get_origin(annotation) is Annotated:
         return _is_number(inner[0])
     return len(inner) == 2 and inner[1] is NoneType and _is_number(inner[0])
+
+
+def unusual_fields(record: Configuration) -> dict[str, str]:
+    """Return the fields of a record whose values are unusual, each with what a warning says of it."""
+    found = {}
+    for name, unit in _usual_fields(type(record)).items():
+        value = getattr(record, name)
+        if isinstance(value, pint.Quantity | float) and (text := unit.unusual(name, value)):
+            found[f"{record.subject()}: {name}"] = text
+    return found
+
+
+@cache
+def _usual_fields(cls: type[BaseModel]) -> dict[str, Unit]:
+    """Return the units of the fields that state what is usual."""
+    units = {name: _unit((*one.metadata, one.annotation)) for name, one in cls.model_fields.items()}
+    return {name: unit for name, unit in units.items() if unit is not None and unit.usual is not None}
+
+
+def _unit(annotations: Iterable[Any]) -> Unit | None:
+    """Return the first unit among annotations and what they are made of."""
+    for one in annotations:
+        found = one if isinstance(one, Unit) else _unit((*getattr(one, "__metadata__", ()), *get_args(one)))
+        if found is not None:
+            return found
+    return None
 
 
 _BUILDING = RLock()

@@ -162,6 +162,10 @@ class PlasticityWarning(RangeWarning):
     """A contact is loaded beyond first yield or the shakedown limit, which elastic contact models do not know."""
 
 
+class UnusualWarning(WearlawWarning):
+    """A value is outside what people usually have, as after a slip of unit."""
+
+
 class FitWarning(WearlawWarning):
     """A fit is less certain than its numbers suggest."""
 
@@ -191,8 +195,8 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f"; did you mean {shown(spelt[sought if sought in spelt else near[0]])}?" if near else "."
 
 
-INSIDE = ("wearlaw", "numpy", "contextlib")
-"""What stands between the lines of a user and a warning: wearlaw with its plugins, and decorators."""
+INSIDE = ("wearlaw", "numpy", "contextlib", "pydantic")
+"""What stands between the lines of a user and a warning: wearlaw with its plugins, decorators and validators."""
 
 
 def warn(message: str | Warning, category: type[Warning] | None = None) -> None:

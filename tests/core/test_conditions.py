@@ -171,13 +171,13 @@ def test_another_name_of_a_condition_is_told_the_right_one(name: str, right: str
         (DISCS | wl.contact_model("exact"))(**given)
 
 
-def test_a_friction_coefficient_above_one_gets_a_word() -> None:
+def test_a_friction_coefficient_in_percent_gets_a_word() -> None:
     predict = DISCS | wl.contact_model("exact")
     conditions: dict[str, Any] = {"max_pressure": "300 MPa", "creepage": "0.01 %"}
-    with pytest.warns(wl.RangeWarning, match="friction_coefficient: reaches 40") as caught:
+    with pytest.warns(wl.UnusualWarning, match="friction_coefficient: reaches 40") as caught:
         predict(**conditions, friction_coefficient=[0.4, 40.0])
     assert caught[0].filename == __file__
-    predict(**conditions, friction_coefficient=1.0)  # a warning would be an error here
+    predict(**conditions, friction_coefficient=2.0)  # a warning would be an error here
 
 
 @conformance(TwoSpeeds(), expected_failures={})

@@ -113,6 +113,7 @@ def test_patches_of_a_line_may_be_missing_too(model: str) -> None:
         assert np.isnan(one.profile.pressure.values[1]).all()
 
 
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # 8000 kN on a patch
 def test_what_warns_looks_at_patches_that_exist() -> None:
     with pytest.warns(wl.RangeWarning, match=r"the maximum pressure of 5228 MPa .* is beyond the shakedown limit"):
         PREDICT(**{**GIVEN, "load": "8000 kN"})
@@ -310,12 +311,16 @@ def test_creepages_and_the_contact_angle_of_each_patch() -> None:
     np.testing.assert_array_equal(level, np.where(EXISTS, 0.0, np.nan))
 
 
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # 8000 kN on a patch
 def test_warnings_and_limits_on_strips_look_at_patches_that_exist() -> None:
     with pytest.warns(wl.RangeWarning) as on_strips:
         found = CUT(**{**GIVEN, "load": "8000 kN"})
     with pytest.warns(wl.RangeWarning) as on_ellipses:
         PREDICT(**{**GIVEN, "load": "8000 kN"})
-    said, expected = ([str(one.message) for one in these] for these in (on_strips, on_ellipses))
+    said, expected = (
+        [str(one.message) for one in these if issubclass(one.category, wl.RangeWarning)]
+        for these in (on_strips, on_ellipses)
+    )
     assert len(said) == len(expected) == 3
     assert "is beyond the shakedown limit" in said[0]
     assert "7 of 7 patches lie outside" in said[1]

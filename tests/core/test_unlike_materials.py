@@ -20,6 +20,8 @@ from wearlaw import Q, hertz
 from wearlaw.contact.material import dundurs_beta  # private: Dundurs' constant, which only a warning shows
 from wearlaw.pipeline.composition import COUPLING  # private: the constant of a formula
 
+pytestmark = pytest.mark.filterwarnings("ignore:.*Material. youngs_modulus:wearlaw.UnusualWarning")  # whatever E
+
 STEEL = wl.steel()
 POLYMER = wl.Material(youngs_modulus="3 GPa", poisson_ratio=0.4, density="1200 kg/m^3")
 IRON = wl.Material(youngs_modulus="190 GPa", poisson_ratio=0.27, density="7100 kg/m^3", shear_yield_stress="200 MPa")

@@ -184,7 +184,7 @@ class FallingFriction(Configuration):
     O. Polach, Wear 258 (2005) 992-1000, eq. (9).
     """
 
-    static_coefficient: Annotated[float, Field(gt=0.0, strict=True)]
+    static_coefficient: Annotated[float, Field(gt=0.0, strict=True), Unit("", usual=(0.0, 2.0))]
     """Friction coefficient at rest, μ0 [-]."""
     limit_ratio: Annotated[float, Field(gt=0.0, le=1.0, strict=True)]
     """Friction coefficient at infinite creep speed over μ0, A [-]."""

@@ -10,7 +10,7 @@ from pydantic import Field
 from pydantic_core import core_schema
 
 from wearlaw.configuration import Configuration, known_name
-from wearlaw.units.quantities import Density, QuantityLike, Stress, scalar_si
+from wearlaw.units.quantities import Density, Quantity, QuantityLike, Unit, scalar_si
 
 ALIKE = 0.1
 """Relative difference in E and in ρ up to which two materials are alike. Grades of steel differ by less; bronze, cast
@@ -31,13 +31,13 @@ class Material(Configuration):
     _look_up: ClassVar[Callable[..., Any]]
     """Returns the installed material with a name and the given fields; set by the loader of plugins, which knows it."""
 
-    youngs_modulus: Stress
+    youngs_modulus: Annotated[Quantity, Unit("GPa", usual=(1.0, 1200.0))]
     """Young's modulus, E [Pa]."""
     poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5, strict=True)]
     """Poisson's ratio, ν [-]."""
     density: Density
     """Mass density, ρ [kg/m³]."""
-    shear_yield_stress: Stress | None = None
+    shear_yield_stress: Annotated[Quantity, Unit("GPa", usual=(1e-3, 10.0))] | None = None
     """Yield stress in shear, k [Pa]; None if not known, and then no contact counts as yielding."""
 
     if TYPE_CHECKING:  # checkers do not know that a text is accepted for a quantity

@@ -84,6 +84,11 @@ class Body:
         stress = self.material.shear_yield_stress
         return None if stress is None else (scalar_si(stress, "Pa"), self.material.poisson_ratio)
 
+    @cached_property
+    def youngs_modulus(self) -> float:
+        """Young's modulus of the material, E [Pa]."""
+        return scalar_si(self.material.youngs_modulus, "Pa")
+
     def mapped(self, function: Callable[[Array], Array]) -> Body:
         """Return the body with a function applied to those of its values that are arrays."""
         if not isinstance(self.rolling_radius, np.ndarray) and self.profile_position is None:

@@ -15,7 +15,7 @@ import numpy as np
 import pint
 from pydantic import model_validator
 
-from wearlaw.arrays import Array, extremes, read_only, steadily, steady
+from wearlaw.arrays import Array, read_only, steadily, steady
 from wearlaw.configuration import LINE, Configuration
 from wearlaw.contact.conditions import Condition, FrictionLaw, broadcast, declared, friction_at, is_friction_law
 from wearlaw.contact.problem import Body, CreepForces, Problem
@@ -23,10 +23,8 @@ from wearlaw.errors import (
     CompositionError,
     ConditionsError,
     ModelError,
-    RangeWarning,
     did_you_mean,
     shown,
-    warn,
 )
 from wearlaw.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.late import method
@@ -51,6 +49,7 @@ from wearlaw.pipeline.composition import (
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.registry import with_magnitude
+from wearlaw.units.usual import OneWarning
 
 if TYPE_CHECKING:
     from wearlaw.late import Pipelines
@@ -164,14 +163,15 @@ class Rig(Model):
         known = _own_conditions(cls)
         arrays: dict[str, Array] = {}
         laws: dict[str, FrictionLaw] = {}
-        for name, value in conditions.items():
-            condition = known.get(name)
-            if value is None or condition is None or condition.check is None:
-                continue
-            if condition.law and is_friction_law(value):
-                laws[name] = value
-            else:
-                arrays[name] = condition.check(value, name)
+        with OneWarning():
+            for name, value in conditions.items():
+                condition = known.get(name)
+                if value is None or condition is None or condition.check is None:
+                    continue
+                if condition.law and is_friction_law(value):
+                    laws[name] = value
+                else:
+                    arrays[name] = condition.check(value, name)
         cls._check_names(known, conditions)
         for name, si in otherwise.items():
             arrays.setdefault(name, np.float64(si))  # type: ignore[arg-type]
@@ -435,7 +435,8 @@ class Pipeline(Configuration, Generic[P]):
         if positional:
             first = next(iter(self.rig.conditions()), "creepage")
             raise ConditionsError(f"{shown(positional[0])}: is given without a name; write {first}=..., for example")
-        return self._predicted(self.posed(conditions), RangeWatch(*self.laws), conditions)
+        with OneWarning():
+            return self._predicted(self.posed(conditions), RangeWatch(*self.laws), conditions)
 
     def posed(self, conditions: Mapping[str, Any], of_one_patch: str = "") -> Problem:
         """Return the rig's problem for these conditions, with loads that balance the forces.
@@ -490,17 +491,8 @@ class Pipeline(Configuration, Generic[P]):
     def warn_of_problem(self, problem: Problem) -> None:
         """Warn of parameters fitted for another shape of patch or other materials if only the problem shows them.
 
-        If the rig declares its geometry or its bodies, composing the pipeline gave the warning. A friction coefficient
-        above 1 gets a word too.
+        If the rig declares its geometry or its bodies, composing the pipeline gave the warning.
         """
-        friction = problem.friction_coefficient
-        if problem.exists is not None:
-            friction = friction[problem.exists]
-        if friction.size and (most := extremes(friction)[1]) > 1.0:
-            warn(
-                f"friction_coefficient: reaches {most:.4g}; values above 1 are rare, is it in percent?",
-                RangeWarning,
-            )
         rig, declared = self.rig, self.rig.patch_geometry is not None
         if declared and rig.bodies:
             return

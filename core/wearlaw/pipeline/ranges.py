@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +14,8 @@ from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, RangeWarning, warn
 from wearlaw.models.law import Law
 from wearlaw.numerics.totals import Totals
-from wearlaw.units.quantities import from_si
+from wearlaw.units.quantities import from_si, scalar_si
+from wearlaw.units.usual import remark
 from wearlaw.units.variables import UNITS
 
 SLIDING = "sliding_ratio"
@@ -52,6 +53,8 @@ class RangeWatch:
         The operating point furthest beyond first yield.
     counted : str
         Word for the points in the warnings: each patch is one if a rig makes several.
+    ratios : dict of str to float
+        The greatest values that are unusual, by the name of the ratio.
     on_block : callable, optional
         Called after each block with the number of its operating points.
     """
@@ -62,6 +65,7 @@ class RangeWatch:
         self.laws = laws
         self.on_block = on_block
         self.seen: dict[str, Seen] = {}
+        self.ratios: dict[str, float] = {}
         self.points = 0
         self.overload: Overload | None = None
 
@@ -74,6 +78,7 @@ class RangeWatch:
         if totals.sliding is not None:
             self._see_values(None, SLIDING, totals.sliding, SLIDING_RANGE)
         self.overload = overload_of(part, totals.tangential_force(), self.overload)
+        self.see_ratios(unusual_ratios(part, self.laws))
         if self.on_block is not None:
             self.on_block(part.size)
 
@@ -90,8 +95,14 @@ class RangeWatch:
             min(known.lowest, more.lowest), max(known.highest, more.highest), known.outside + more.outside
         )
 
+    def see_ratios(self, ratios: Mapping[str, float]) -> None:
+        """Record the unusual ratios of a block."""
+        for name, ratio in ratios.items():
+            self.ratios[name] = max(ratio, self.ratios.get(name, ratio))
+
     def warn(self) -> None:
-        """Warn of points beyond first yield or out of range."""
+        """Warn of points beyond first yield, out of range or unusual."""
+        remark({RATIOS[name].subject: RATIOS[name].text.format(ratio) for name, ratio in self.ratios.items()})
         if self.overload is not None:
             self.overload.warn()
         if not self.seen:
@@ -126,6 +137,88 @@ class RangeWatch:
         """Return how many points lie outside, as the beginning of a clause."""
         outside = self.seen[key].outside
         return f"{outside} of {self.points} {self.counted} {'lies' if outside == 1 else 'lie'}"
+
+
+class Ratio(NamedTuple):
+    """A ratio that no unit shows.
+
+    Attributes
+    ----------
+    most : float
+        Its greatest usual value.
+    subject, text : str
+        What a warning names, and what it says of it.
+    """
+
+    most: float
+    subject: str
+    text: str
+
+
+RATIOS: Mapping[str, Ratio] = {
+    "friction": Ratio(2.0, "friction_coefficient", "reaches {:.4g}, usually at most 2; is it in percent?"),
+    "traction": Ratio(2.0, "traction_coefficient", "reaches {:.4g}, usually at most 2; is it in percent?"),
+    "length": Ratio(
+        0.3,
+        "a",
+        "half the patch's length reaches {:.2g} of a body's rolling radius, usually at most 0.3; theories of contact"
+        " take the patch to be small. Check the load, the radii and Young's moduli",
+    ),
+    "width": Ratio(
+        20.0,
+        "b",
+        "half the patch's width on the rail reaches {:.3g} mm, usually at most 20 mm; check the load, the lateral radii"
+        " and Young's moduli",
+    ),
+    "strain": Ratio(
+        0.1,
+        "max_pressure",
+        "reaches {:.2g} of a body's Young's modulus, usually at most 0.1; check the load, the radii and Young's moduli",
+    ),
+    "hardness": Ratio(
+        1.0,
+        "hardness",
+        "the maximum pressure reaches {:.3g} times the hardness of a law, usually at most 1; check the load and the"
+        " hardness",
+    ),
+}
+"""Ratios that only the contact shows. They are generous: a corner of a rail with a radius of 13 mm is usual."""
+
+
+def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, float]:
+    """Return the `RATIOS` of a problem that are unusual."""
+    if problem.exists is not None:
+        problem = problem.existing()
+    pressure, a = extremes(problem.max_pressure)[1], extremes(problem.a)[1]
+    found = {"friction": extremes(problem.friction_coefficient)[1]}
+    if problem.traction_coefficient is not None:
+        found["traction"] = extremes(problem.traction_coefficient)[1]
+    softest, smallest, relative = np.inf, np.inf, 0.0
+    for body in problem.bodies.values():
+        softest = min(softest, body.youngs_modulus)
+        if isinstance(body.rolling_radius, np.ndarray):
+            relative = max(relative, extremes(problem.a / body.rolling_radius)[1])
+        else:
+            smallest = min(smallest, body.rolling_radius)
+    found["length"], found["strain"] = max(relative, a / smallest), pressure / softest
+    if "rail" in problem.bodies and problem.geometry != "line":
+        found["width"] = 1e3 * extremes(problem.b)[1]
+    for law in laws:
+        hardness = hardness_of(law, problem)
+        found["hardness"] = max(found.get("hardness", 0.0), pressure / hardness)
+    return {name: ratio for name, ratio in found.items() if ratio > RATIOS[name].most}
+
+
+def hardness_of(law: Law, problem: Problem) -> float:
+    """Return the field `hardness` of a law, or else of the material that wears [Pa]; infinite for other laws."""
+    if "hardness" not in type(law).model_fields:
+        return np.inf
+    known: float | None = law.numbers.get("hardness")
+    if known is None and problem.bodies:
+        body = problem.bodies.get(law.body or "", next(iter(problem.bodies.values())))
+        stated = getattr(body.material, "hardness", None)
+        known = None if stated is None else scalar_si(stated, "Pa")
+    return np.inf if known is None else known
 
 
 def overload_of(problem: Problem, tangential_force: Array, worst: Overload | None = None) -> Overload | None:

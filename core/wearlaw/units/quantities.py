@@ -21,6 +21,7 @@ from wearlaw.arrays import extremes
 from wearlaw.errors import UnitError, shown
 from wearlaw.units.registry import divided, quantity, si_factor, symbol, unit_in_si
 from wearlaw.units.registry import from_si as from_si
+from wearlaw.units.usual import in_words, likely_slip, remark
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -128,6 +129,19 @@ class Unit:
         Whether infinity is allowed, as for the diameter of a flat body.
     negative : bool
         Whether a value that need not be positive may be negative.
+    usual : tuple of float, optional
+        The least and the greatest value that people usually have, in `unit`. A value outside gets an `UnusualWarning`
+        with the slip of unit that is likely. Choose the ends so generously that ordinary values never do. Small values
+        of an array are usual beside greater ones, as those of a load where a wheel lifts.
+
+    Raises
+    ------
+    UnitError
+        If the least usual value is not below the greatest.
+
+    Notes
+    -----
+    ``Annotated[float, Unit("", usual=(1e-8, 0.1))]`` is a field of a plain number, for which it states what is usual.
     """
 
     unit: str
@@ -135,6 +149,22 @@ class Unit:
     limit: float = np.inf
     infinite: bool = False
     negative: bool = True
+    usual: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        """Check the range of usual values."""
+        if self.usual is None:
+            return
+        try:
+            low, high = map(float, self.usual)
+            ordered = low < high
+        except (TypeError, ValueError):
+            ordered = False
+        if not ordered:
+            raise UnitError(
+                f"usual: must be the least and the greatest usual value in {self.unit or 'plain numbers'}, such as"
+                f" (0.1, 10), got {shown(self.usual)}"
+            )
 
     def si(self, value: object, name: str) -> NDArray[np.float64]:
         """Return `value` as SI floats, or raise a `UnitError` that names the argument.
@@ -153,11 +183,38 @@ class Unit:
             the input if the numbers do not change.
         """
         try:
-            return self._checked(value)[1]
+            quantity, in_si, ends = self._checked(value)
         except UnitError as error:
             raise UnitError(f"{name}: {error}; {self._fix(name, value)}") from None
+        if self.usual is not None and ends is not None and (text := self._unusual(name, quantity, *ends)):
+            remark({name: text})
+        return in_si
 
-    def _checked(self, value: object) -> tuple[Quantity, NDArray[np.float64]]:
+    def unusual(self, name: str, value: Quantity | float) -> str:
+        """Return what is unusual about a value of a field of this name that is checked already, or ""."""
+        if self.usual is None:
+            return ""
+        quantity = value if isinstance(value, pint.Quantity) else Q(value, self.unit)
+        si = scalar_si(quantity, self.unit)
+        return self._unusual(name, quantity, si, si)
+
+    def _unusual(self, name: str, quantity: Quantity, low: float, high: float) -> str:
+        """Return what is unusual about values with these extremes [SI], or ""."""
+        least, most = self._usual_in_si
+        if most < high < np.inf:
+            worst, how = high, "reaches"
+        elif -np.inf < low < least and (least <= 0.0 or high < least):  # a load is small where a wheel lifts
+            worst, how = low, "goes down to"
+        else:
+            return ""
+        assert self.usual is not None
+        unit = str(quantity.units)
+        number, usual = worst / unit_in_si(unit), f"{self.usual[0]:.5g} to {in_words(self.usual[1], self.unit)}"
+        slip = likely_slip(name, number, unit, self.unit, self._usual_in_si)
+        return f"{'is' if low == high else how} {in_words(number, unit)}, usually {usual}{slip}"
+
+    def _checked(self, value: object) -> tuple[Quantity, NDArray[np.float64], tuple[float, float] | None]:
+        """Return a value as a quantity and in SI, with its extremes unless it is empty."""
         quantity = self._as_quantity(value)
         magnitude = real_array(quantity.magnitude)
         try:
@@ -171,25 +228,30 @@ class Unit:
             in_si = np.float64(float(magnitude) * factor)
         else:
             in_si = _scaled(magnitude, factor)
-        if self._allows(in_si):
-            return quantity, in_si
+        ends = extremes(in_si) if in_si.size else None
+        if ends is not None and self._allows(*ends):
+            return quantity, in_si, ends
         for wrong, rule in self._rules(in_si):
             if wrong.any():
                 first, where = _first(magnitude, wrong)
                 raise UnitError(f"{rule}, got {Q(first, str(quantity.units))!r}{where}")
-        return quantity, in_si
+        return quantity, in_si, ends
 
-    def _allows(self, in_si: NDArray[np.float64]) -> bool:
-        """Return whether the extremes show that no rule is broken; False for an array that is empty or has NaN."""
-        if not in_si.size:
-            return False
-        (low, high), limit = extremes(in_si), self._limit_in_si
+    def _allows(self, low: float, high: float) -> bool:
+        """Return whether the extremes show that no rule is broken; False for an array with NaN."""
+        limit = self._limit_in_si
         above = low > 0.0 if self.positive else low >= (-limit if self.negative else 0.0)
         return above and high <= limit and (self.infinite or (low > -np.inf and high < np.inf))
 
     @cached_property
     def _limit_in_si(self) -> float:
         return self.limit * unit_in_si(self.unit) if self.limit < np.inf else np.inf
+
+    @cached_property
+    def _usual_in_si(self) -> tuple[float, float]:
+        assert self.usual is not None
+        factor = unit_in_si(self.unit)
+        return self.usual[0] * factor, self.usual[1] * factor
 
     def _rules(self, in_si: NDArray[np.float64]) -> Iterator[tuple[NDArray[np.bool_], str]]:
         """Yield for each rule where it is broken, and its text."""
@@ -224,6 +286,8 @@ class Unit:
         return f"give {name} in {unit} or another unit of that dimension, such as {example}"
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        if source is float:
+            return handler(source)
         return core_schema.no_info_plain_validator_function(
             self._scalar,
             serialization=core_schema.plain_serializer_function_ser_schema(text_of, when_used="json"),
@@ -232,12 +296,17 @@ class Unit:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, object]:
+        inner: Any = schema
+        while "schema" in inner:  # that of a default, for example
+            inner = inner["schema"]
+        if inner["type"] == "float":
+            return handler(schema)
         example = f"1.0 {self.unit or 'dimensionless'}"
         return {"type": "string", "description": "a number with its unit", "examples": [example]}
 
     def _scalar(self, value: object) -> Quantity:
         try:
-            quantity, in_si = self._checked(value)
+            quantity, in_si, _ = self._checked(value)
         except UnitError as error:
             raise UnitError(f"{error}; {self._fix('it', value)}") from None
         if in_si.ndim != 0:
@@ -354,11 +423,11 @@ def in_unit(value: NDArray[np.float64], unit: str) -> NDArray[np.float64]:
 
 Length = Annotated[Quantity, Unit("mm")]
 """A field of a model that takes a length, as a quantity or its text."""
-Speed = Annotated[Quantity, Unit("m/s")]
+Speed = Annotated[Quantity, Unit("m/s", usual=(1e-4, 200.0))]
 """A field of a model that takes a speed, as a quantity or its text."""
 Stress = Annotated[Quantity, Unit("GPa")]
 """A field of a model that takes a stress, as a quantity or its text."""
-Density = Annotated[Quantity, Unit("kg/m^3")]
+Density = Annotated[Quantity, Unit("kg/m^3", usual=(500.0, 25000.0))]
 """A field of a model that takes a density, as a quantity or its text."""
 WEAR_RATE = "ug/m/mm^2"
 """The unit for showing wear rates: mass lost per metre rolled and contact area."""

@@ -18,6 +18,7 @@ from wearlaw.errors import (
     InputError,
     PlasticityWarning,
     RangeWarning,
+    UnusualWarning,
     did_you_mean,
     shown,
 )
@@ -25,6 +26,7 @@ from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import WEAR_RATE, coefficient, in_unit
+from wearlaw.units.usual import OneWarning
 from wearlaw.units.variables import name_of
 from wearlaw_apps.fits.agreement import Agreement, agreement
 from wearlaw_apps.fits.fit import fit as refit
@@ -330,6 +332,9 @@ def compare_named(
         raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
     if not there.all():
         notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out", FitWarning)
+    for one in given:
+        for column, text in tests.unusual(_pipeline(one).rig).items():
+            notes.add(f"{column}: {text}", UnusualWarning)
     task = _Task(tests[there], outcome, unit, measured[there], friction_coefficient, notes)
     compared = [task.compared(*one) for one in named]
     how = ""
@@ -451,7 +456,7 @@ class _Task:
             friction = self.friction if np.ndim(self.friction) == 0 else coefficient(self.friction, FRICTION)[held]
             try:
                 # The fit to all tests has warned already; test after test at the edge of the range would repeat it.
-                with caught_warnings(FitWarning, RangeWarning, PlasticityWarning, CalibrationWarning):
+                with caught_warnings(FitWarning, RangeWarning, PlasticityWarning, CalibrationWarning, UnusualWarning):
                     again = refit(tests=self.tests[~there], bootstrap=0, **fit.settings)
                     predicted[held] = self._predicted(name, again, self.tests[held], friction, Notes())
             except FitError as error:
@@ -512,8 +517,10 @@ class _Task:
             notes.add(f"{name}: takes the traction that was measured in the tests")
         with notes.of(name):
             pipeline = pipeline.without_law() | law  # warns if the parameters were fitted for another contact
-        with notes.of("tests"):
+        with notes.of("tests"), OneWarning() as unusual:
             prediction = pipeline.predict(pipeline.posed(conditions, of_one_patch="compare"))
+            for condition in (*conditions, TRACTION):  # columns are seen by their medians
+                unusual.pop(condition, None)
         return np.asarray(prediction[law.outcome.name].to_base_units().magnitude)
 
     def _with_aic(self, found: Compared, fit: Fit) -> Compared:

@@ -19,8 +19,9 @@ from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.composition import warn_of_parameters
 from wearlaw.pipeline.pipeline import Pipeline, Rig
-from wearlaw.pipeline.ranges import overload_of
+from wearlaw.pipeline.ranges import RATIOS, overload_of
 from wearlaw.units.quantities import Quantity, QuantityLike, coefficient, in_unit
+from wearlaw.units.usual import OneWarning, remark
 from wearlaw.units.variables import UNITS, name_of
 from wearlaw_apps.fits.free_parameters import FreeParameters, give_bounds
 from wearlaw_apps.fits.intervals import (
@@ -123,6 +124,8 @@ def fit(
     -----
     CalibrationWarning
         If parameters that are not free were fitted for another contact or other materials.
+    UnusualWarning
+        If the median of a column, or the fitted friction coefficient, is unusual.
     FitWarning
         If the law does not fit the tests (see `LackOfFit`), the fit ends at a bound, or the bootstrap is unreliable.
 
@@ -151,7 +154,9 @@ def fit(
         "seed": seed,
         "confidence": confidence,
     }
-    with steadily():
+    if isinstance(predict, Pipeline):
+        remark(tests.unusual(predict.rig))
+    with steadily(), OneWarning() as unusual:
         task = _Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
         best = task.solve(starts, seed)
         replicates = None
@@ -159,6 +164,15 @@ def fit(
             groups = np.repeat(np.arange(len(task.observations)), [one.measured.size for one in task.observations])
             replicates = replicate(task.model, best, task.free.bounds, groups, bootstrap, seed, on_progress)
         found = _result(task, best, replicates, confidence, settings)
+        unusual.clear()  # the search visits parameters that nobody asked for, and columns are seen by their medians
+        if (
+            FRICTION in found.parameters
+            and (friction := found.parameters[FRICTION].magnitude) > RATIOS["friction"].most
+        ):
+            unusual[FRICTION] = (
+                f"the fit gives {friction:.4g}, usually at most {RATIOS['friction'].most:g}; are tractions in percent,"
+                " loads in the wrong unit, or columns swapped?"
+            )
     problem = found.observations[0].problem
     overload = overload_of(problem, integrate_forces(found.predict.staged_model, problem).tangential)
     if overload:

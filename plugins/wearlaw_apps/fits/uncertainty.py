@@ -19,6 +19,7 @@ from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si
+from wearlaw.units.usual import OneWarning
 from wearlaw.units.variables import UNITS, name_of
 from wearlaw_apps.fits.distributions import Distribution, PublishedRange
 from wearlaw_apps.fits.named_numbers import Place, check_loads_stay, of_part, outcomes_at, part_at
@@ -170,7 +171,10 @@ class Sampler:
         }
         with steadily():
             try:
-                problem = self.predict.posed({**self.given, **known, **conditions})
+                with OneWarning() as unusual:
+                    problem = self.predict.posed({**self.given, **known, **conditions})
+                    if not warns:
+                        unusual.clear()
             except InputError as error:
                 raise InputError(f"{error}{OTHERS}") from None
             flat = problem.broadcast_to(shape).flatten()

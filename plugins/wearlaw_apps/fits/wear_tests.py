@@ -16,7 +16,7 @@ import pint
 
 from wearlaw.arrays import Array
 from wearlaw.errors import ConditionsError, DataError, InputError, UnitError, did_you_mean, shown
-from wearlaw.units.quantities import Q, Quantity, QuantityLike, from_si, parse, real_array
+from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, Unit, from_si, parse, real_array
 from wearlaw.units.registry import si_factor, symbol
 from wearlaw.units.variables import VARIABLES
 
@@ -44,6 +44,17 @@ COLUMNS = {
     )
 }
 """All columns of tests of discs."""
+
+USUAL: Mapping[str, Unit] = {
+    "creepage": Unit("%", usual=(0.03, 60.0)),
+    "normal_force": Unit("kN", usual=(0.01, 300.0)),
+    "normal_force_per_width": Unit("kN/m", usual=(1.0, 30000.0)),
+    "max_pressure": Unit("MPa", usual=(5.0, 10000.0)),
+    "friction_coefficient": Unit("%", usual=(0.01, 200.0)),
+    "traction_coefficient": Unit("%", usual=(0.01, 200.0)),
+    "wear_rate": Unit(WEAR_RATE, usual=(1e-4, 1e4)),
+}
+"""Usual medians of columns, by magnitude."""
 
 NEEDED = ("creepage", *LOADS, "friction_coefficient")
 """Columns that need a value for every test."""
@@ -89,6 +100,8 @@ class WearTests:
         whose name no plugin knows is here too, until `measuring` says that it is an outcome.
     outcomes : dict of str to Quantity or ndarray, (tests,)
         Measured outcomes of laws other than `wear_rate`, as given; NaN for a missing measurement.
+    units : dict of str to str
+        The units in which `columns` were given.
     """
 
     columns: Mapping[str, Array]
@@ -96,6 +109,7 @@ class WearTests:
     source: str = ""
     other_conditions: Mapping[str, Values] = field(default_factory=dict)
     outcomes: Mapping[str, Values] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def from_arrays(
@@ -188,7 +202,8 @@ class WearTests:
             raise DataError(f"{subject} are wrong in:", wrong)
         columns = _with_traction(columns)
         measured = {name: others.pop(name) for name in list(others) if name in outcomes}
-        return cls(columns, tuple(map(str, labels)), source, others, measured)
+        units = {name: _unit(given[name]) for name in columns if name in given}
+        return cls(columns, tuple(map(str, labels)), source, others, measured, units)
 
     @property
     def creepage(self) -> Quantity:
@@ -235,6 +250,23 @@ class WearTests:
             return _in_si(name, unit, self.outcomes[name])
         except UnitError as error:
             raise DataError(f"{name}: {error}") from None
+
+    def unusual(self, rig: Rig) -> dict[str, str]:
+        """Return the columns with an unusual median, each with what a warning says of it."""
+        conditions = rig.conditions()
+        units = {name: one.unit for name, one in conditions.items() if one.unit is not None}
+        columns: dict[str, Quantity] = {
+            name: from_si(values, self.units.get(name, COLUMNS[name].unit)) for name, values in self.columns.items()
+        }
+        columns |= {name: one for name, one in self.other_conditions.items() if isinstance(one, pint.Quantity)}
+        found: dict[str, str] = {}
+        for name, values in columns.items():
+            sizes = np.abs(values.magnitude[~np.isnan(values.magnitude)])
+            unit = USUAL.get(name, units.get(name))
+            if sizes.size and unit is not None:
+                text = unit.unusual(name, Q(float(np.median(sizes)), str(values.units)))
+                found |= {f"column {name}": f"its median {text}"} if text else {}
+        return found
 
     def digests(self, name: str, unit: str) -> tuple[str, ...]:
         """Return a digest of each test: of its conditions and one measurement as in `measured`."""

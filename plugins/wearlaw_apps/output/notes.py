@@ -10,6 +10,7 @@ from threading import RLock, get_ident
 from typing import TextIO
 
 from wearlaw.errors import WearlawWarning, warn, with_problems
+from wearlaw.units.usual import OneWarning, apart
 
 _CATCHING = RLock()
 
@@ -23,7 +24,7 @@ def caught_warnings(*kinds: type[Warning]) -> Iterator[list[Warning]]:
     """
     kept, thread = kinds or (WearlawWarning,), get_ident()
     found: list[Warning] = []
-    with _CATCHING, warnings.catch_warnings():
+    with _CATCHING, warnings.catch_warnings(), apart():
         for kind in kept:
             warnings.simplefilter("always", kind)
         show = warnings.showwarning
@@ -70,7 +71,7 @@ class Notes:
     @contextmanager
     def of(self, subject: str) -> Iterator[None]:
         """Turn wearlaw's warnings inside the context into notes about a subject."""
-        with caught_warnings() as caught:
+        with caught_warnings() as caught, OneWarning():
             yield
         for warning in caught:
             self.add(f"{subject}: {warning}", type(warning))

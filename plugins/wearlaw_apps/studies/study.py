@@ -17,7 +17,7 @@ import xarray
 
 from wearlaw import loader
 from wearlaw.arrays import steady
-from wearlaw.configuration import known_name
+from wearlaw.configuration import known_name, unusual_fields
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import (
@@ -118,6 +118,9 @@ def run(
         raise InputError(f"case: must be a wearlaw.Case, as from wl.load_case; got {shown(case)}")
     notes, of_profiles = Notes(), Notes()
     evaluator = _Evaluator(on_block, workers, store, resume)
+    for part in parts(case):
+        for subject, text in unusual_fields(part).items():
+            notes.add(f"{subject}: {text}")
     pairs = pairs_of(case, notes)
     profiles = {name: _profile(name, grid, case, pairs, of_profiles) for name, grid in case.profiles.items()}
     _check_figures(case, pairs, profiles)

@@ -23,6 +23,7 @@ from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, Seen
 from wearlaw.pipeline.solution import Solution
 from wearlaw.units.registry import magnitude
+from wearlaw.units.usual import OneWarning, remark
 from wearlaw_apps.output.labels import long_name
 from wearlaw_apps.output.notes import caught_warnings
 from wearlaw_apps.sweeps.located import posed
@@ -106,12 +107,18 @@ class BlockRecord:
         of points outside.
     remarks : tuple of str
         Warnings of the rig, such as that a wheel climbs its rail.
+    unusual : mapping of str to str
+        Unusual conditions, each with what a warning says of it.
+    ratios : mapping of str to float
+        Unusual ratios, as in `RangeWatch`.
     """
 
     points: int
     overload: Overload | None
     ranges: Mapping[str, tuple[float, float, int]]
     remarks: tuple[str, ...] = ()
+    unusual: Mapping[str, str] = field(default_factory=dict)
+    ratios: Mapping[str, float] = field(default_factory=dict)
 
 
 @steady
@@ -121,15 +128,17 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
     `on_block` is called with the number of points just done, several times for a long block.
     """
     kernels.accelerate(job.accelerate)
-    with caught_warnings() as caught:
+    with caught_warnings() as caught, OneWarning() as seen:
         problem = posed(part, job.posed)
+        unusual = dict(seen)
+        seen.clear()
     remarks = dict.fromkeys(map(str, caught))
     if job.dims or problem.dims:
         _check_axes(job, problem, part)
         on_block = on_block and _in_points(on_block, part.size, problem.size)
     watch = RangeWatch(*job.pipeline.laws, on_block=on_block)
     outputs = job.outputs(job.pipeline.watched(problem, watch), part)
-    return outputs, BlockRecord(watch.points, watch.overload, watch.seen, tuple(remarks))
+    return outputs, BlockRecord(watch.points, watch.overload, watch.seen, tuple(remarks), unusual, watch.ratios)
 
 
 def _check_axes(job: Job, problem: Problem, part: Points) -> None:
@@ -167,10 +176,13 @@ def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
         for name, seen in one.ranges.items():
             watch.see_outside(name, Seen(*seen))
     watch.overload = max((one.overload for one in every if one.overload), default=None)
-    with caught_warnings() as found:
+    with caught_warnings() as found, OneWarning():
+        for one in every:
+            remark(one.unusual)
+            watch.see_ratios(one.ratios)
         watch.warn()
-    remark = next((text for one in every for text in one.remarks), None)
-    return found if remark is None else [*found, RangeWarning(remark)]
+    first = next((text for one in every for text in one.remarks), None)
+    return found if first is None else [*found, RangeWarning(first)]
 
 
 def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Prediction:

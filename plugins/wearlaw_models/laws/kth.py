@@ -11,7 +11,7 @@ from pydantic import Field, field_validator, model_validator
 import wearlaw as wl
 from wearlaw import Array
 
-Coefficient = Annotated[float, Field(gt=0.0, strict=True)]
+Coefficient = Annotated[float, Field(gt=0.0, strict=True), wl.Unit("", usual=(1e-10, 0.1))]
 
 
 class Coefficients(wl.Configuration):
@@ -78,7 +78,9 @@ class KTH(wl.WearLaw):
 
     coefficient: Literal["low", "mid", "high"] | Coefficients = "mid"
     """The published values of k are ranges. Choose their low end, middle or high end, or give your own values."""
-    hardness: wl.Stress = Field(default="2.625 GPa", validate_default=True)
+    hardness: Annotated[wl.Quantity, wl.Unit("GPa", usual=(0.05, 100.0))] = Field(
+        default="2.625 GPa", validate_default=True
+    )
     """Hardness, H [Pa]. Not printed in the paper; 2.1 GPa is 0.8 H in the wear map."""
     threshold_over_hardness: Annotated[float, Field(gt=0.0, strict=True)] = THRESHOLD_OVER_HARDNESS
     """Pressure at which seizure begins, over the hardness [-]; 0.8 in the wear map."""

@@ -20,11 +20,11 @@ SpeedOf: TypeAlias = Literal["mean", "disc_1"]
 class TwinDiscConditions(TypedDict, total=False):
     """The conditions of a twin-disc test; exactly one of the first three gives the load. Arrays broadcast."""
 
-    normal_force: Annotated[wl.QuantityLike, wl.Unit("kN")]
+    normal_force: Annotated[wl.QuantityLike, wl.Unit("kN", usual=(0.01, 300.0))]
     """Normal force on the whole width, N [N]."""
-    normal_force_per_width: Annotated[wl.QuantityLike, wl.Unit("kN/m")]
+    normal_force_per_width: Annotated[wl.QuantityLike, wl.Unit("kN/m", usual=(1.0, 30000.0))]
     """Normal force per unit width, P [N/m]."""
-    max_pressure: Annotated[wl.QuantityLike, wl.Unit("MPa")]
+    max_pressure: Annotated[wl.QuantityLike, wl.Unit("MPa", usual=(5.0, 10000.0))]
     """Hertz's maximum pressure, p0 [Pa]."""
     creepage: Required[wl.Creepage]
     """Creepage, ξ [-], positive if disc 1 is the faster one, of magnitude at most 1."""
@@ -39,7 +39,7 @@ class TwinDiscConditions(TypedDict, total=False):
 class Disc(wl.Configuration):
     """A disc of a twin-disc rig."""
 
-    diameter: Annotated[wl.Quantity, wl.Unit("mm", infinite=True)]
+    diameter: Annotated[wl.Quantity, wl.Unit("mm", infinite=True, usual=(2.0, 3000.0))]
     """Diameter, D [m]; infinite for a flat body."""
     material: wl.MaterialField
     """Material of the disc; a file may also give the name of an installed material."""
@@ -80,7 +80,7 @@ class TwinDisc(wl.Rig):
     """The wheel disc."""
     disc_2: Disc
     """The rail disc."""
-    track_width: wl.Length
+    track_width: Annotated[wl.Quantity, wl.Unit("mm", usual=(0.1, 500.0))]
     """Width of the running track across the rolling direction [m]."""
     rolling_speed: wl.Speed
     """Surface speed that the rig keeps at every creepage, V [m/s] unless `speed_of` is "disc_1"."""

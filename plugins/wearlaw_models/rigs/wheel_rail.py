@@ -28,15 +28,15 @@ class WheelRailConditions(TypedDict, total=False):
     positive lateral creepage at the leading edge. The contact angle is positive where the surface falls towards y.
     """
 
-    normal_force: Annotated[wl.QuantityLike, wl.Unit("kN", positive=False, negative=False)]
+    normal_force: Annotated[wl.QuantityLike, wl.Unit("kN", positive=False, negative=False, usual=(0.1, 300.0))]
     """Normal force, N [N]; zero where the wheel is lifted, and all results with it."""
-    max_pressure: Annotated[wl.QuantityLike, wl.Unit("MPa", positive=False, negative=False)]
+    max_pressure: Annotated[wl.QuantityLike, wl.Unit("MPa", positive=False, negative=False, usual=(5.0, 10000.0))]
     """Hertz's maximum pressure, p0 [Pa]; zero as for the normal force."""
     longitudinal_creepage: Required[wl.Creepage]
     """Longitudinal creepage, ξ [-], of magnitude at most 1; positive if the wheel is braked."""
     lateral_creepage: wl.Creepage
     """Lateral creepage, η [-], of magnitude at most 1; zero if not given."""
-    spin: Annotated[wl.QuantityLike, wl.Unit("1/m", positive=False)]
+    spin: Annotated[wl.QuantityLike, wl.Unit("1/m", positive=False, usual=(-100.0, 100.0))]
     """Spin, φ [1/m]; that of the contact angle, sin δ / r, if not given."""
     contact_angle: Annotated[wl.QuantityLike, wl.Unit("deg", positive=False)]
     """Contact angle, δ [rad], between -90 and 90 deg; that of the rig if not given."""
@@ -95,7 +95,7 @@ class WheelRail(wl.Rig):
         "rolling_speed": "30 m/s",
     }
 
-    wheel_radius: wl.Length
+    wheel_radius: Annotated[wl.Quantity, wl.Unit("mm", usual=(10.0, 700.0))]
     """Rolling radius of the wheel at the contact point, from the axle, r [m]."""
     rail_head_radius: Radius
     """Lateral radius of the rail head at the contact point [m]."""

@@ -14,8 +14,8 @@ from pydantic import Field, field_validator
 import wearlaw as wl
 from wearlaw import Array
 
-Conductivity = Annotated[wl.Quantity, wl.Unit("W/m/K")]
-SpecificHeat = Annotated[wl.Quantity, wl.Unit("J/kg/K")]
+Conductivity = Annotated[wl.Quantity, wl.Unit("W/m/K", usual=(0.05, 3000.0))]
+SpecificHeat = Annotated[wl.Quantity, wl.Unit("J/kg/K", usual=(50.0, 10000.0))]
 Rise = Annotated[wl.Quantity, wl.Unit("K")]
 
 EPS = float(np.finfo(np.float64).eps)

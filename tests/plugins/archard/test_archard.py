@@ -44,6 +44,7 @@ def rail(**fields: Any) -> Any:
     hardness=st.floats(1e8, 1e10),
     density=st.floats(1e3, 2e4),
 )
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # whatever k
 def test_the_rate_is_the_volume_of_the_definition_times_the_density(
     pressure: float, slip: float, coefficient: float, hardness: float, density: float
 ) -> None:

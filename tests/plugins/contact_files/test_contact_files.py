@@ -265,6 +265,7 @@ def test_the_order_of_points_and_several_blocks_do_not_matter(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("law", ["usfd", "kth"])
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # Carter's patch is wide
 def test_wear_is_the_law_on_the_elements(law: str, case: str) -> None:
     contact = wl.read_contact(FILES[case], wheel_radius="460 mm")
     found = wl.Prediction.of(contact, wl.wear_law(law))

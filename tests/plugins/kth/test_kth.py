@@ -155,6 +155,7 @@ def test_the_border_in_pressure_follows_the_hardness(hardness: float, share: flo
         )
 
 
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # 3 GPa is beyond H
 def test_slip_speeds_and_pressures_in_the_fields_without_an_end_are_warned_of() -> None:
     fast = wl.TwinDisc.suros(rolling_speed="200 m/s") | wl.contact_model("global") | kth()
     conditions: dict[str, Any] = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46}

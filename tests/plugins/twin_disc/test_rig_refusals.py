@@ -70,6 +70,7 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], type[Exception], list[str]]] = [
 
 
 @pytest.mark.parametrize(("conditions", "error", "said"), WRONG_CONDITIONS, ids=lambda value: str(value)[:40])
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # loads that overflow
 def test_wrong_conditions_are_refused_with_name_value_and_fix(
     conditions: dict[str, Any], error: type[Exception], said: list[str]
 ) -> None:

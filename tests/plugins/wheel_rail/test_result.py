@@ -275,6 +275,7 @@ def test_parameters_of_an_ellipse_do_not_warn_there_but_on_a_line() -> None:
         wl.TwinDisc.suros() | FASTSIM | law
 
 
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # 400 kN
 def test_the_elastic_limit_and_the_range_of_the_law_are_watched() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

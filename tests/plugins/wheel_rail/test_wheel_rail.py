@@ -127,6 +127,7 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("changes", "message"), WRONG_CONDITIONS)
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # loads that overflow
 def test_wrong_conditions_are_named(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(wl.InputError, match=re.escape(message)):
         rig().problem(**{**CONDITIONS, **changes})

@@ -14,20 +14,25 @@ from wearlaw_models.laws.archard.coefficients import FORMS as FORMS
 from wearlaw_models.laws.archard.coefficients import wear_coefficient as wear_coefficient
 
 PASCAL = wl.Unit("GPa")
+Hardness = Annotated[wl.Quantity, wl.Unit("GPa", usual=(0.05, 100.0))]
 
 
 class SteelWithHardness(wl.Material):
     """A steel with its hardness; the defaults of all other fields are those of `wearlaw.steel`."""
 
-    youngs_modulus: wl.Stress = Field(default="206.47742 GPa", validate_default=True)
+    youngs_modulus: Annotated[wl.Quantity, wl.Unit("GPa", usual=(1.0, 1200.0))] = Field(
+        default="206.47742 GPa", validate_default=True
+    )
     """Young's modulus, E [Pa]."""
     poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5, strict=True)] = 0.28
     """Poisson's ratio, ν [-]."""
     density: wl.Density = Field(default="7850 kg/m^3", validate_default=True)
     """Mass density, ρ [kg/m³]."""
-    shear_yield_stress: wl.Stress | None = Field(default="541.3 MPa", validate_default=True)
+    shear_yield_stress: Annotated[wl.Quantity, wl.Unit("GPa", usual=(1e-3, 10.0))] | None = Field(
+        default="541.3 MPa", validate_default=True
+    )
     """Yield stress in shear, k [Pa]; None if not known, and then no contact counts as yielding."""
-    hardness: wl.Stress
+    hardness: Hardness
     """Hardness, H [Pa]. A Brinell or Vickers number is in kgf/mm²."""
     source: str | None = None
     """Where the hardness and the yield stress are from."""
@@ -96,9 +101,9 @@ class Archard(wl.WearLaw):
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("pressure", "slip")
     follows_pressure_times_slip: ClassVar[bool] = True
 
-    coefficient: Annotated[float, Field(gt=0.0, strict=True, examples=["1e-4"])]
+    coefficient: Annotated[float, Field(gt=0.0, strict=True, examples=["1e-4"]), wl.Unit("", usual=(1e-10, 0.1))]
     """Wear coefficient of V = k N s / H, k [-]."""
-    hardness: wl.Stress | None = Field(default=None, examples=["2.6 GPa"])
+    hardness: Hardness | None = Field(default=None, examples=["2.6 GPa"])
     """Hardness of the body that wears, H [Pa]; None for that of its material."""
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:

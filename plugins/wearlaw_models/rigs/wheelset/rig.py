@@ -34,8 +34,8 @@ HUGE = 1e12
 """Greatest value of a condition in its unit, whatever it is: products of several are floats."""
 
 DISPLACEMENT, ANGLE = (wl.Unit(unit, positive=False, limit=HUGE) for unit in ("mm", "mrad"))
-YAW = wl.Unit("mrad", positive=False, limit=200.0)  # a locomotive in the tightest curve has a tenth of it
-LOAD = wl.Unit("kN", positive=False, negative=False, limit=HUGE)
+YAW = wl.Unit("mrad", positive=False, limit=200.0, usual=(-40.0, 40.0))  # in the tightest curve, 20
+LOAD = wl.Unit("kN", positive=False, negative=False, limit=HUGE, usual=(0.1, 300.0))
 
 
 class WheelsetConditions(TypedDict, total=False):
@@ -43,7 +43,7 @@ class WheelsetConditions(TypedDict, total=False):
 
     lateral_displacement: Annotated[wl.QuantityLike, DISPLACEMENT]
     """Lateral displacement of the wheelset in the track, positive to the right [m]."""
-    lateral_force: Annotated[wl.QuantityLike, wl.Unit("kN", positive=False, limit=HUGE)]
+    lateral_force: Annotated[wl.QuantityLike, wl.Unit("kN", positive=False, limit=HUGE, usual=(-300.0, 300.0))]
     """Lateral force on the wheelset, positive to the right [N], in place of a displacement. The wheelset stands where
     the rails bear it, at the nearest stable place to the middle of the track."""
     vertical_load: Annotated[wl.QuantityLike, LOAD]
@@ -94,9 +94,6 @@ FLANGE_SLOPE = np.radians(50.0)
 
 MOST_PLAY = 40e-3
 """Greatest distance between flange and rail in the middle of the track [m]: a worn flange in a widened curve has 30."""
-
-LARGEST_RADIUS = 0.7
-"""Radius of a wheel beyond which it is taken for a diameter [m]: locomotives have up to 0.63."""
 
 JUST_TOUCHING = 1e-3
 """Share of the load of the other wheel with which a lifted one is taken to touch its rail."""
@@ -235,7 +232,7 @@ class Wheelset(wl.Rig):
     """Profile of the left wheel if it differs; `wheel` is then that of the right one. The flange is at y < 0."""
     left_rail: Profile | None = None
     """Profile of the left rail if it differs; `rail` is then that of the right one. The gauge side is at y < 0."""
-    nominal_radius: wl.Length
+    nominal_radius: Annotated[wl.Quantity, wl.Unit("mm", usual=(10.0, 700.0))]
     """Radius of the wheels at the origin of their profile, the taping line [m]."""
     flange_back_distance: wl.Length
     """Distance between the inner faces of the wheels [m]."""
@@ -296,12 +293,6 @@ class Wheelset(wl.Rig):
         for name, profile in self._profiles.items():
             if profile.kind != (kind := name.removeprefix("left_")):
                 raise ValueError(f"{name} is the profile of a {profile.kind}; give that of a {kind}")
-        if wl.scalar_si(self.nominal_radius, "m") > LARGEST_RADIUS:
-            warnings.warn(
-                f"nominal_radius: {self.nominal_radius!r} is more than wheels in service have; is it the diameter?",
-                wl.RangeWarning,
-                stacklevel=4,
-            )
         cant, radius, back = (
             wl.scalar_si(value, unit)
             for value, unit in ((self.rail_cant, "rad"), (self.nominal_radius, "m"), (self.flange_back_position, "m"))
