@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -78,7 +79,8 @@ class RangeWatch:
         if totals.sliding is not None:
             self._see_values(None, SLIDING, totals.sliding, SLIDING_RANGE)
         self.overload = overload_of(part, totals.tangential_force(), self.overload)
-        self.see_ratios(unusual_ratios(part, self.laws))
+        if ratios := unusual_ratios(part, self.laws):
+            self.see_ratios(ratios)
         if self.on_block is not None:
             self.on_block(part.size)
 
@@ -102,7 +104,8 @@ class RangeWatch:
 
     def warn(self) -> None:
         """Warn of points beyond first yield, out of range or unusual."""
-        remark({RATIOS[name].subject: RATIOS[name].text.format(ratio) for name, ratio in self.ratios.items()})
+        if self.ratios:
+            remark({RATIOS[name].subject: RATIOS[name].text.format(ratio) for name, ratio in self.ratios.items()})
         if self.overload is not None:
             self.overload.warn()
         if not self.seen:
@@ -185,34 +188,44 @@ RATIOS: Mapping[str, Ratio] = {
 """Ratios that only the contact shows. They are generous: a corner of a rail with a radius of 13 mm is usual."""
 
 
+MOST = {name: ratio.most for name, ratio in RATIOS.items()}
+"""The greatest usual values."""
+
+
 def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, float]:
     """Return the `RATIOS` of a problem that are unusual."""
     if problem.exists is not None:
         problem = problem.existing()
+    found: dict[str, float] = {}
     pressure, a = extremes(problem.max_pressure)[1], extremes(problem.a)[1]
-    found = {"friction": extremes(problem.friction_coefficient)[1]}
-    if problem.traction_coefficient is not None:
-        found["traction"] = extremes(problem.traction_coefficient)[1]
-    softest, smallest, relative = np.inf, np.inf, 0.0
+    if (friction := extremes(problem.friction_coefficient)[1]) > MOST["friction"]:
+        found["friction"] = friction
+    measured = problem.traction_coefficient
+    if measured is not None and (traction := extremes(measured)[1]) > MOST["traction"]:
+        found["traction"] = traction
     for body in problem.bodies.values():
-        softest = min(softest, body.youngs_modulus)
-        if isinstance(body.rolling_radius, np.ndarray):
-            relative = max(relative, extremes(problem.a / body.rolling_radius)[1])
-        else:
-            smallest = min(smallest, body.rolling_radius)
-    found["length"], found["strain"] = max(relative, a / smallest), pressure / softest
-    if "rail" in problem.bodies and problem.geometry != "line":
-        found["width"] = 1e3 * extremes(problem.b)[1]
+        if pressure > MOST["strain"] * body.youngs_modulus:
+            found["strain"] = max(pressure / body.youngs_modulus, found.get("strain", 0.0))
+        radius = body.rolling_radius
+        relative = extremes(problem.a / radius)[1] if isinstance(radius, np.ndarray) else a / radius
+        if relative > MOST["length"]:
+            found["length"] = max(relative, found.get("length", 0.0))
+    if problem.geometry != "line" and "rail" in problem.bodies and (b := 1e3 * extremes(problem.b)[1]) > MOST["width"]:
+        found["width"] = b
     for law in laws:
-        hardness = hardness_of(law, problem)
-        found["hardness"] = max(found.get("hardness", 0.0), pressure / hardness)
-    return {name: ratio for name, ratio in found.items() if ratio > RATIOS[name].most}
+        if has_hardness(type(law)) and pressure > MOST["hardness"] * (hardness := hardness_of(law, problem)):
+            found["hardness"] = max(pressure / hardness, found.get("hardness", 0.0))
+    return found
+
+
+@cache
+def has_hardness(law: type[Law]) -> bool:
+    """Return whether laws of a class have a field `hardness`."""
+    return "hardness" in law.model_fields
 
 
 def hardness_of(law: Law, problem: Problem) -> float:
-    """Return the field `hardness` of a law, or else of the material that wears [Pa]; infinite for other laws."""
-    if "hardness" not in type(law).model_fields:
-        return np.inf
+    """Return the field `hardness` of a law, or else of the material that wears [Pa]; infinite if neither has one."""
     known: float | None = law.numbers.get("hardness")
     if known is None and problem.bodies:
         body = problem.bodies.get(law.body or "", next(iter(problem.bodies.values())))
