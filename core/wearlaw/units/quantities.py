@@ -186,8 +186,10 @@ class Unit:
             quantity, in_si, ends = self._checked(value)
         except UnitError as error:
             raise UnitError(f"{name}: {error}; {self._fix(name, value)}") from None
-        if self.usual is not None and ends is not None and (text := self._unusual(name, quantity, *ends)):
-            remark({name: text})
+        if self.usual is not None and ends is not None:
+            (low, high), (least, most) = ends, self._usual_in_si
+            if not (least <= low and high <= most) and (text := self._unusual(name, quantity, low, high)):
+                remark({name: text})
         return in_si
 
     def unusual(self, name: str, value: Quantity | float) -> str:

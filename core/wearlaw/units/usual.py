@@ -52,9 +52,10 @@ class OneWarning:
 
     def __enter__(self) -> dict[str, str]:
         """Return the remarks, which the caller may change."""
-        self._seen: dict[str, str] = {}
-        self._outside: Token[dict[str, str] | None] = _SEEN.set(self._seen)
-        return self._seen
+        seen: dict[str, str] = {}
+        self._seen = seen
+        self._outside: Token[dict[str, str] | None] = _SEEN.set(seen)
+        return seen
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         _SEEN.reset(self._outside)
