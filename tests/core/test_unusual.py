@@ -124,11 +124,12 @@ def test_a_range_of_usual_values_must_rise_where_it_is_written(usual: Any, wrong
     [
         (Q([60.0, 80.0], "N"), "load: goes down to 60 N, usually 0.1 to 300 kN; did you mean 60 kN?"),
         (Q([0.01, 60.0], "kN"), None),  # a wheel lifts
+        (Q(0.0, "kN"), None),
         (Q([60.0, 4000.0], "kN"), "load: reaches 4000 kN, usually 0.1 to 300 kN; did you mean 4000 N?"),
     ],
 )
 def test_small_values_of_an_array_are_usual_beside_greater_ones(values: Any, sentence: str | None) -> None:
-    found = said(lambda: wl.Unit("kN", usual=(0.1, 300)).si(values, "load"))
+    found = said(lambda: wl.Unit("kN", positive=False, usual=(0.1, 300)).si(values, "load"))
     assert found == ([] if sentence is None else [sentence])
 
 

@@ -197,6 +197,8 @@ def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, floa
     if problem.exists is not None:
         problem = problem.existing()
     found: dict[str, float] = {}
+    if not problem.size:
+        return found
     pressure, a = extremes(problem.max_pressure)[1], extremes(problem.a)[1]
     if (friction := extremes(problem.friction_coefficient)[1]) > MOST["friction"]:
         found["friction"] = friction

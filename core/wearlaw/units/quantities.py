@@ -132,7 +132,7 @@ class Unit:
     usual : tuple of float, optional
         The least and the greatest value that people usually have, in `unit`. A value outside gets an `UnusualWarning`
         with the slip of unit that is likely. Choose the ends so generously that ordinary values never do. Small values
-        of an array are usual beside greater ones, as those of a load where a wheel lifts.
+        of an array are usual beside greater ones, and so is zero where it is allowed, as of a load where a wheel lifts.
 
     Raises
     ------
@@ -205,7 +205,7 @@ class Unit:
         least, most = self._usual_in_si
         if most < high < np.inf:
             worst, how = high, "reaches"
-        elif -np.inf < low < least and (least <= 0.0 or high < least):  # a load is small where a wheel lifts
+        elif -np.inf < low < least and (least <= 0.0 or (high < least and high != 0.0)):  # a wheel may lift
             worst, how = low, "goes down to"
         else:
             return ""
