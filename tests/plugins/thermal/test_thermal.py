@@ -375,6 +375,7 @@ def test_strips_of_an_ellipse_have_the_temperature_of_the_ellipse() -> None:
     assert same[0] == pytest.approx(same[1], rel=1e-5)
 
 
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # a made-up body
 def test_bodies_share_the_heat_by_their_effusivities() -> None:
     contact = wl.contact_model("exact").solve(line())
     rise = thermal().mean_rise(contact)
@@ -460,6 +461,7 @@ def test_energy_grows_with_friction_so_that_there_is_one_solution(name: str, fri
         assert (more >= less * (1.0 - rounding)).all()
 
 
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # a made-up body
 def test_no_heat_leaves_the_friction_to_the_bit() -> None:
     stage = thermal()
     for name, still in (("exact", line(0.0)), ("fastsim", fast(ellipse())), ("polach", fast(ellipse()))):
