@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from wearlaw_apps.sweeps.inverse import creepage_for
     from wearlaw_apps.sweeps.several import Pipelines as Pipelines
     from wearlaw_apps.sweeps.sweep import sweep
+    from wearlaw_apps.sweeps.wear_profiles import wear_profiles
     from wearlaw_apps.tables import read_table
     from wearlaw_models.laws.archard.coefficients import wear_coefficient
     from wearlaw_models.rigs.twin_disc import Disc, TwinDisc
@@ -70,6 +71,7 @@ __all__ = [
     "uniform",
     "wear_coefficient",
     "wear_out",
+    "wear_profiles",
     "write_profile",
 ]
 
@@ -90,6 +92,7 @@ PUBLIC = {
     "wearlaw_apps.studies.study": ("Study", "run"),
     "wearlaw_apps.sweeps.inverse": ("creepage_for",),
     "wearlaw_apps.sweeps.sweep": ("sweep",),
+    "wearlaw_apps.sweeps.wear_profiles": ("wear_profiles",),
     "wearlaw_apps.tables": ("read_table",),
     "wearlaw_models.laws.archard.coefficients": ("wear_coefficient",),
     "wearlaw_models.rigs.twin_disc": ("Disc", "TwinDisc"),

@@ -6,17 +6,16 @@ import dataclasses
 import math
 import os
 import pickle
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray
 
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import CompositionError, ConditionsError, InputError, ResumeWarning, shown
+from wearlaw.errors import CompositionError, ConditionsError, InputError, ResumeWarning, shown, warn
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.composition import check_traction, warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline
@@ -32,13 +31,11 @@ from wearlaw_apps.sweeps.provenance import parts
 from wearlaw_apps.sweeps.results import Memory, Target
 from wearlaw_apps.sweeps.room import writing_to
 from wearlaw_apps.sweeps.tables import operating_points
-from wearlaw_apps.sweeps.wear_profile import SHARE, WEAR_PROFILE, ProfileJob, Sum
+from wearlaw_apps.sweeps.wear_profile import WEAR_PROFILE, ProfileJob, Sum
 from wearlaw_apps.sweeps.workers import here, in_processes, on_cluster
 
 if TYPE_CHECKING:
     import pandas
-
-    from wearlaw.units.quantities import QuantityLike
 
 MOST = 2**24
 """Most numbers of a sweep whose outputs are not named; a larger sweep keeps the outcomes of laws alone."""
@@ -57,9 +54,6 @@ def sweep(
     sep: str | None = None,
     decimal: str = ".",
     outputs: Sequence[str] | None = None,
-    share: str | None = None,
-    body: str = "wheel",
-    at: QuantityLike | None = None,
     workers: int = 1,
     client: Any = None,
     store: str | os.PathLike[str] | None = None,
@@ -88,16 +82,7 @@ def sweep(
         Names of outcomes and properties of a prediction to keep, such as "wear_rate", "rcf_damage" or
         "tangential_force". If laws of one outcome differ by body, the name of the body follows, as in "wear_rate_rail".
         Default: the variables of `Prediction.to_dataset`, as long as they are no more than 2²⁴ numbers (128 MiB), and
-        in a larger sweep the outcomes of all laws alone; `attrs["notes"]` then says so. ["wear_profile"] gives the
-        depth and the sliding distance of `Prediction.wear_profile` with `body` and `at`, and may stand beside others.
-    share : str, optional
-        For "wear_profile": the column of the table with the share of each row, which add up to one. The results are
-        then the weighted sums over all rows, with the mass, at constant memory for a file of any length. A store keeps
-        the sum of each block.
-    body : str
-        For "wear_profile": the body that wears.
-    at : Quantity or str, optional
-        For "wear_profile": positions along the profile of the body.
+        in a larger sweep the outcomes of all laws alone; `attrs["notes"]` then says so.
     workers : int
         Number of processes on this machine; they are kept for later sweeps.
     client : distributed.Client, optional
@@ -132,33 +117,63 @@ def sweep(
     SweepError
         If workers die again and again.
     """
+    if outputs is not None and WEAR_PROFILE in outputs:
+        raise InputError("outputs: wear across a profile is wl.wear_profiles(predict, table, at=..., outputs=[...])")
+    return computed(
+        lambda first, points: checked_job(predict, first, points, outputs),
+        *(predict, table, conditions),
+        reading=Reading(columns, keep, sep, decimal),
+        running=Running(workers, client, store, resume, progress),
+    )
+
+
+class Reading(NamedTuple):
+    """How a table is read: the arguments of `sweep` of these names, and whether all its rows are summed."""
+
+    columns: Mapping[str, str] | None
+    keep: Mapping[str, str] | None
+    sep: str | None
+    decimal: str
+    summed: bool = False
+
+
+class Running(NamedTuple):
+    """Where and how a sweep runs: the arguments of `sweep` of these names."""
+
+    workers: int
+    client: Any
+    store: str | os.PathLike[str] | None
+    resume: bool
+    progress: bool
+
+
+def computed(
+    job_of: Callable[[Problem, Points], tuple[Job, list[str]]],
+    predict: Pipeline[...],
+    table: pandas.DataFrame | xarray.Dataset | str | os.PathLike[str] | None,
+    conditions: Mapping[str, Any],
+    reading: Reading,
+    running: Running,
+) -> xarray.Dataset:
+    """Return the results of a job at all operating points.
+
+    `job_of` returns the job and remarks on it, after checks with the problem of the first points.
+    """
+    workers, client, store, resume, progress = running
     expect_pipeline(predict)
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {shown(workers)}")
-    as_csv = {"sep": sep, "decimal": decimal}
-    others = None if outputs is None else names_in(outputs, "outputs")
-    profile = others is not None and WEAR_PROFILE in others
-    if others is not None and profile:
-        others.remove(WEAR_PROFILE)
-    if share is not None:
-        if table is None or not profile or others:
-            raise InputError('share: belongs to a table and outputs=["wear_profile"] alone, whose sum has the mass too')
-        keep = {**(keep or {}), SHARE: share}
-    summed = share is not None
+    as_csv = {"sep": reading.sep, "decimal": reading.decimal}
     with (
         writing_to(store),
-        operating_points(predict, table, conditions, columns, keep, as_csv, store, summed) as points,
+        operating_points(
+            predict, table, conditions, reading.columns, reading.keep, as_csv, store, reading.summed
+        ) as points,
     ):
         not_given = {name: None for name, value in conditions.items() if value is None}
         first = _checked_conditions(predict, points, not_given)
         check_importable(predict, workers, client)
-        if profile and not others:
-            job: Job = ProfileJob.of(predict, first, body, at, summed)
-            notes: list[str] = []
-        else:
-            job, notes = _checked_job(predict, first, points, others)
-            if profile:
-                job = ProfileJob.of(predict, first, body, at, summed, job.units)
+        job, notes = job_of(first, points)
         points = dataclasses.replace(points, weight=job.weight(first))
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
@@ -166,11 +181,11 @@ def sweep(
         target = target_of(job, points, folder, resume)
         blocks = len(points.blocks())
         if folder is not None and target.resumed and len(target.done) < blocks:
-            warnings.warn(kept(len(target.done), blocks, folder), ResumeWarning, stacklevel=2)
+            warn(kept(len(target.done), blocks, folder), ResumeWarning)
         with closing(target), Bar(points.size, progress) as bar:
             of_results = run(target, bar, workers, client)
             for warning in of_results:
-                warnings.warn(warning, stacklevel=2)
+                warn(warning)
             return target.finish([*notes, *map(str, of_results)])
 
 
@@ -190,7 +205,7 @@ def kept(count: int, of: int, where: Path) -> str:
     return f"{count} of {of} blocks are kept in {shown(where)}; the others are missing or damaged, and are computed"
 
 
-def _checked_job(
+def checked_job(
     pipeline: Pipeline[...], first: Problem, points: Points, outputs: Sequence[str] | None
 ) -> tuple[Job, list[str]]:
     """Return the job of a sweep, after checks of its outputs, and remarks on them.

@@ -14,7 +14,7 @@ from pydantic import TypeAdapter
 
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, DataError, InputError, shown
+from wearlaw.errors import ConditionsError, DataError, shown
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.units.quantities import Q, QuantityLike, coefficient
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from wearlaw_apps.sweeps.folder import Parts
 
 WEAR_PROFILE = "wear_profile"
-"""Name of this output of a sweep."""
+"""Name of the output that `sweep` refuses: `wear_profiles` gives it."""
 
 SHARE = "share"
 """Name that the column with the shares gets."""
@@ -75,7 +75,7 @@ class ProfileJob(Job):
         pipeline: Pipeline[...],
         first: Problem,
         body: str,
-        at: QuantityLike | None,
+        at: QuantityLike,
         summed: bool,
         others: Mapping[str, str] = {},
     ) -> ProfileJob:
@@ -86,8 +86,6 @@ class ProfileJob(Job):
         InputError
             If the body or the positions are wrong.
         """
-        if at is None:
-            raise InputError('at: "wear_profile" needs positions, such as at=Q(np.arange(-60, 60, 0.25), "mm")')
         unsolved(first[:1], pipeline.staged_model, pipeline.laws).wear_profile(body, at=at)
         turns = bool(np.isfinite(pipeline.rig.bodies[body].rolling_radius).any())
         units = {name: unit for name, unit in UNITS[0 if turns else 1].items() if summed or name != "mass"}

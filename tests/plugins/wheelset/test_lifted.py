@@ -57,9 +57,9 @@ def test_sums_and_lives_leave_lifted_wheels_out(r: wl.Prediction) -> None:
     given: dict[str, Any] = {"friction_coefficient": 0.3}
     table = TABLE.assign(share=0.25)
     mass = np.nansum(r.mass_lost("1 km", "wheel").m_as("mg"), axis=-1).mean(axis=0)
-    total = wl.sweep(pipeline(), table, share="share", outputs=["wear_profile"], at=AT, **given)
+    total = wl.wear_profiles(pipeline(), table, share="share", at=AT, **given)
     assert total["mass"].values == pytest.approx(mass, rel=1e-12)
-    rows = wl.sweep(pipeline(), TABLE, outputs=["wear_profile"], at=AT, **given)
+    rows = wl.wear_profiles(pipeline(), TABLE, at=AT, **given)
     assert not rows["depth"].values[3].any()
     life = wl.wear_out(pipeline(), table.iloc[::-1], over="10 km", **given)
     lost = life.table[["mass_left [kg]", "mass_right [kg]"]].iloc[-1].to_numpy()
