@@ -24,6 +24,8 @@ from tests.strategies import EPS, FULL_SLIP, LINE_MODELS, MODELS, log_uniform, s
 from wearlaw import Q
 from wearlaw_kit import line_problems
 
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # they hold at any values
+
 GRAZING = 5e-8
 """Relative error of an integral of Hertz's pressure next to full slip, at most."""
 

@@ -27,6 +27,8 @@ from tests.plugins.tassini2010.paper import (
 from tests.roots import brentq
 from wearlaw import Q
 
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # regimes reach beyond the hardness
+
 RIG = wl.TwinDisc.suros()
 
 # --- BRR -------------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
@@ -172,9 +173,18 @@ OfBlock: TypeAlias = Callable[[Problem, slice], ResultT]
 OnBlock: TypeAlias = Callable[[Problem, ResultT], None]
 """A function called with a block of operating points and its results."""
 
-# An array of 31 MiB that is freed makes the C library of Linux keep as much memory of later arrays for the next ones.
-# Otherwise it would return the memory to the system and request it again, which takes as long as the arithmetic.
-np.empty(31 * 2**20, dtype=np.uint8)
+LARGE = 1000
+"""Operating points from which on `keep_memory` pays."""
+
+
+@cache
+def keep_memory() -> None:
+    """Make the C library of Linux keep the memory of freed arrays of up to 31 MiB for the next ones.
+
+    Freeing an array of that size does it. Otherwise the library would return the memory to the system and request it
+    again, which takes as long as the arithmetic.
+    """
+    np.empty(31 * 2**20, dtype=np.uint8)
 
 
 def each(function: Callable[..., Any], first: Any, *others: Any) -> Any:
@@ -201,6 +211,8 @@ def by_block(
     points = problem.size
     if points == 0:
         raise ConditionsError("problem: holds no operating points; give at least one")
+    if points >= LARGE:
+        keep_memory()
     if points <= block:
         only = function(problem, slice(0, points))
         if on_block is not None:

@@ -76,7 +76,7 @@ def test_inputs_that_look_like_others_are_doubted(changed: dict[str, Any], said:
         with pytest.warns(wl.RangeWarning, match=said):
             wl.read_profile(tmp_path / "mine.csv", kind="rail")
         return
-    with pytest.warns(wl.RangeWarning, match=said):
+    with pytest.warns(wl.UnusualWarning, match=said):
         wheelset(**changed)
 
 

@@ -14,6 +14,8 @@ import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import R0, cone, on_round_heads, wheelset
 from wearlaw import Array, Q
 
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # loads so small that nothing gives way
+
 STENCIL = {1: 4.0 / 5.0, 2: -1.0 / 5.0, 3: 4.0 / 105.0, 4: -1.0 / 280.0}
 """Weights of differences between values in steps ahead and back, for a derivative of eighth order."""
 
