@@ -42,9 +42,9 @@ def conicity(rig: wl.Wheelset) -> float:
 def test_a_rail_that_leans_already_is_warned_of(field: str) -> None:
     worn = measured(RAIL.worn(*GAUGE_WEAR), "rail")
     lean = worn.apparent_cant.m_as("deg")
-    with pytest.warns(wl.RangeWarning, match=rf"^{field}: rail_cant is 1\.43 deg, .* leans by {lean:.3g} deg inwards"):
+    with pytest.warns(wl.UnusualWarning, match=rf"^{field}: rail_cant is 1\.43 deg, .* leans by {lean:.3g} deg in"):
         pair(**{field: worn})
-    with pytest.warns(wl.RangeWarning, match=r"leans by 1\.43 deg outwards, as a mirrored one"):
+    with pytest.warns(wl.UnusualWarning, match=r"leans by 1\.43 deg outwards, as a mirrored one"):
         pair(**{field: CANTED.mirrored()})
     pair(**{field: worn}, rail_cant="0 rad")
 
@@ -61,10 +61,10 @@ def test_a_mirrored_rail_is_told_when_it_is_made(tmp_path: Path) -> None:
     y, z = sampled(CANTED.mirrored())
     path = tmp_path / "a.csv"
     path.write_text("".join(f"{1e3 * one:.5f},{1e3 * other:.5f}\n" for one, other in zip(y, z, strict=True)))
-    with pytest.warns(wl.RangeWarning, match=r"leans outwards by 1\.43 deg: .* mirror_y=True") as caught:
+    with pytest.warns(wl.UnusualWarning, match=r"leans outwards by 1\.43 deg: .* mirror_y=True") as caught:
         wl.read_profile(path, kind="rail")
     assert [Path(warning.filename).name for warning in caught] == ["test_doubts.py"]
-    with pytest.warns(wl.RangeWarning, match="leans outwards") as caught:
+    with pytest.warns(wl.UnusualWarning, match="leans outwards") as caught:
         pair(rail={"file": str(path), "kind": "rail"}, rail_cant="0 rad")
     assert len(caught) == 1
     assert wl.read_profile(path, kind="rail", mirror_y=True).apparent_cant.m_as("rad") == pytest.approx(0.025, abs=1e-4)
@@ -103,7 +103,7 @@ def test_a_single_point_that_stands_out_is_passed_over(
     y[spot] += 1e-3 * off[0]
     z[spot] += 1e-3 * off[1]
     place = rf"^point {spot} \(y = {1e3 * y[spot]:.6g} mm, z = {1e3 * z[spot]:.6g} mm\) alone stands out"
-    with pytest.warns(wl.RangeWarning, match=place):
+    with pytest.warns(wl.UnusualWarning, match=place):
         found = through(y, z, profile.kind)
     assert np.array_equal(found.curve.z, clean.curve.z)
     name = profile.kind
@@ -118,7 +118,7 @@ def test_several_points_and_the_line_of_a_file_are_named(tmp_path: Path) -> None
     path = tmp_path / "wheel.csv"
     lines = [f"{1e3 * across:.9f},{1e3 * down:.9f}" for across, down in zip(y, z, strict=True)]
     path.write_text("\n".join(["y,z", *lines]))
-    with pytest.warns(wl.RangeWarning, match="alone stands out") as caught:
+    with pytest.warns(wl.UnusualWarning, match="alone stands out") as caught:
         found = wl.read_profile(path, kind="wheel")
     assert [str(warning.message).split(" (")[0] for warning in caught] == ["line 112", "line 118"]
     assert found.curve.z == pytest.approx(clean.curve.z, abs=1e-9)
@@ -132,7 +132,7 @@ def test_what_a_dent_cuts_off_is_told_with_its_width() -> None:
     edge = y[(y < 0.0) & (z < 5e-3)][0]
     curve = RAIL.curve
     side = curve.y[curve.angle > -np.radians(80.0)][0]
-    with pytest.warns(wl.RangeWarning, match=r"^rail: beside point \d+ \(.*steeper than 86 deg.* mm of its") as caught:
+    with pytest.warns(wl.UnusualWarning, match=r"^rail: beside point \d+ \(.*steeper than 86 deg.* mm of") as caught:
         pair(rail=rail, rail_cant="0 rad")
     lost = float(str(caught[0].message).split("lies beyond, ")[1].split(" mm")[0])
     # Pieces of 2 mm count up to 80 deg: the last one may be off by its width, 2 cos 80 deg = 0.35 mm, and the edge lies
@@ -169,9 +169,9 @@ def test_noise_on_the_sides_of_a_rail_is_no_dent(cant: str, seed: int) -> None:
 def test_an_origin_that_the_back_of_the_flange_contradicts_is_told(shift: float) -> None:
     wheel = WHEEL.shifted(y=Q(shift, "mm"))
     text = rf"flange_back_position is -70 mm, but .* back of its flange at y = {shift - 70.0:g} mm"
-    with pytest.warns(wl.RangeWarning, match=rf"^left_wheel: {text}"):
+    with pytest.warns(wl.UnusualWarning, match=rf"^left_wheel: {text}"):
         pair(left_wheel=wheel)
-    with pytest.warns(wl.RangeWarning, match=f"^{text}"):
+    with pytest.warns(wl.UnusualWarning, match=f"^{text}"):
         wheel.measures()
     wheel.measures(Q(shift - 70.0, "mm"))
     pair(wheel=WHEEL.shifted(y="0.9 mm"))
@@ -183,7 +183,7 @@ def test_a_wheel_without_the_top_of_its_flange_has_no_height() -> None:
     y, z = sampled(WHEEL)
     kept = y > -50e-3
     wheel = through(y[kept], z[kept], "wheel")
-    with pytest.warns(wl.RangeWarning, match=rf"ends at y = -4\d\.\d+ mm .* {1e3 * z[kept][0]:.4g} mm above the tread"):
+    with pytest.warns(wl.UnusualWarning, match=rf"ends at y = -4\d\.\d+ mm .* {1e3 * z[kept][0]:.4g} mm above"):
         found = wheel.measures()
     assert np.isnan([found["flange_height"].magnitude, found["flange_gradient"].magnitude]).all()
     assert found["flange_thickness"].m_as("mm") == pytest.approx(32.5, abs=1e-3)
@@ -197,7 +197,7 @@ def test_a_wheel_without_the_top_of_its_flange_has_no_height() -> None:
 def test_smoothing_that_moves_a_measure_is_told(profile: wl.Profile, name: str) -> None:
     y, z = sampled(profile)
     for smoothing in ("0.5 mm", "1 mm"):
-        with pytest.warns(wl.RangeWarning, match=r"^smoothing moves the .* mm to ") as caught:
+        with pytest.warns(wl.UnusualWarning, match=r"^smoothing moves the .* mm to ") as caught:
             smoothed = through(y, z, profile.kind).model_copy(update={"smoothing": smoothing})
         assert name in str(caught[0].message)
         if profile.kind == "wheel":
@@ -224,18 +224,18 @@ def test_smoothing_of_noise_is_not_doubted(profile: wl.Profile, spacing: float, 
 def test_a_radius_that_is_not_that_of_the_file_is_told() -> None:
     wheel = WHEEL.model_copy(update={"diameter": Q(918.3, "mm")})
     text = r"wheel: nominal_radius 460.2 mm gives a radius of 460.2 mm .* a diameter of 918.3 mm there, .* 459.15 mm"
-    with pytest.warns(wl.RangeWarning, match=text):
+    with pytest.warns(wl.UnusualWarning, match=text):
         pair(wheel=wheel, nominal_radius="460.2 mm")
     pair(wheel=wheel, nominal_radius="459.15 mm")
     left = WHEEL.model_copy(update={"diameter": Q(910.0, "mm")})
-    with pytest.warns(wl.RangeWarning, match=r"^left_wheel: .* a radius of 455 mm"):
+    with pytest.warns(wl.UnusualWarning, match=r"^left_wheel: .* a radius of 455 mm"):
         pair(wheel=wheel, left_wheel=left, nominal_radius="459.15 mm")
     pair(wheel=wheel, left_wheel=left.shifted(z="-4.15 mm"), nominal_radius="459.15 mm")
 
 
 def test_a_wheel_far_from_its_taping_line_is_told_and_the_gauge_is_not_blamed() -> None:
     y, z = sampled(WHEEL)
-    with pytest.warns(wl.RangeWarning, match='the wheel has z = 500 mm at y = 0, .* shift_z="-500 mm"'):
+    with pytest.warns(wl.UnusualWarning, match='the wheel has z = 500 mm at y = 0, .* shift_z="-500 mm"'):
         high = through(y, z + 0.5, "wheel")
     with pytest.raises(wl.ConfigurationError, match=r"Wheelset: wheel: the wheel has z = 500 mm at y = 0"):
         pair(wheel=high)

@@ -73,7 +73,7 @@ def test_inputs_that_look_like_others_are_doubted(changed: dict[str, Any], said:
     if "rail" in changed:
         y, z = (value.magnitude for value in wl.Profile.s1002().points)
         np.savetxt(tmp_path / "mine.csv", np.column_stack([y, z]), delimiter=",")
-        with pytest.warns(wl.RangeWarning, match=said):
+        with pytest.warns(wl.UnusualWarning, match=said):
             wl.read_profile(tmp_path / "mine.csv", kind="rail")
         return
     with pytest.warns(wl.UnusualWarning, match=said):

@@ -61,7 +61,7 @@ def warn(text: str) -> None:
     frame, level = sys._getframe(), 1
     while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith(("wearlaw", "pydantic")):
         frame, level = frame.f_back, level + 1
-    warnings.warn(text, wl.RangeWarning, stacklevel=level)
+    warnings.warn(text, wl.UnusualWarning, stacklevel=level)
 
 
 def of_shape(kind: Kind, curve: Curve, lean: float) -> Iterator[str]:
