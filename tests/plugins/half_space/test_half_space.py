@@ -140,6 +140,52 @@ def test_a_wide_strip_is_carters(creepage: float) -> None:
     assert found[0] == pytest.approx(carter(np.array(creepage)), abs=0.0015)
 
 
+def line(creepage: float = 0.001) -> wl.Problem:
+    """Return the cylinder of CONTACT's examples as a line contact, at 45 m/s."""
+    return wl.Problem.line(
+        normal_force="622216 N",
+        track_width="200 mm",
+        relative_radius="460 mm",
+        shear_modulus="82 GPa",
+        poisson_ratio=0.28,
+        friction_coefficient=0.3,
+        creepage=wl.Q(creepage, ""),
+        rolling_speed="45 m/s",
+    )
+
+
+@pytest.mark.parametrize("creepage", [-0.0003, 0.001, 0.002, 0.004])
+def test_a_line_is_carters(creepage: float) -> None:
+    problem = line(creepage)
+    coarse, fine = (wl.contact_model("half_space", cells=cells).solve(problem) for cells in (40, 80))
+    due = wl.contact_model("exact").solve(problem)
+    found, limit = 2.0 * fine.tangential_force - coarse.tangential_force, 0.3 * due.normal_force
+    # The second order of the finer grid, the square of its element over the half length, is left.
+    assert found / limit == pytest.approx(due.tangential_force / limit, abs=(2.0 / 80) ** 2)
+    assert fine.cell_wear_index == pytest.approx(fine.wear_index, rel=1e-9)
+
+
+@pytest.mark.validates(
+    "elliptic-contact",
+    "T/(μN) of `half_space` on a line where friction falls with the slip, μ of rest",
+    source="CONTACT (Vollebregt), its example `veldep_fric` in steady rolling, 80 elements along the patch",
+    held_to="{within:g}",
+    within=0.003,
+)
+def test_friction_that_falls_on_a_line_is_contacts(within: float) -> None:
+    # 0.18 + 0.12 exp(-ln 2 s/(100 mm/s)) on elements of 0.1 mm, of which 80 are in the patch: T is 0.594 μN.
+    falling = {"limit_ratio": 0.6, "decay": wl.Q(np.log(2.0) / 0.1, "s/m")}
+    problem = line()
+    coarse, found, none = (
+        float(wl.contact_model("half_space", cells=cells, **options).solve(problem).tangential_force / (0.3 * 622216.0))
+        for cells, options in ((40, falling), (80, falling), (80, {}))
+    )
+    # On such elements both programs have an error of first order, which the grid of half as many tells.
+    assert abs(found - coarse) == pytest.approx(within, abs=0.0005)
+    assert found == pytest.approx(0.594, abs=within)
+    assert none > 0.62
+
+
 @pytest.mark.validates(
     "elliptic-contact",
     "The tractions of `half_space` on a cylinder in partial slip",

@@ -14,6 +14,9 @@ from wearlaw_models.contact_models.half_space.cerruti import influence as influe
 from wearlaw_models.contact_models.half_space.grid import Grid
 from wearlaw_models.contact_models.half_space.rolling import Friction, Patch
 
+WIDE = 1e4
+"""Width of a strip that stands for a line, over half its length; the force is off by a share of (2/WIDE)²/2."""
+
 
 class HalfSpace(wl.ContactModel):
     """Kalker's theory of rolling contact without his simplifications, for a given pressure.
@@ -26,7 +29,7 @@ class HalfSpace(wl.ContactModel):
     from the element before, is lower by several percent.
 
     The pressure is Hertz's, or that of the strips of the problem, times a factor close to one with which it carries
-    the normal force on the elements.
+    the normal force on the elements. A line is one wide strip.
 
     Notes
     -----
@@ -73,6 +76,11 @@ class HalfSpace(wl.ContactModel):
         return exempt
 
     @property
+    def accuracy(self) -> float:
+        """That of a strip of an ellipse."""
+        return self.elliptic_accuracy
+
+    @property
     def elliptic_accuracy(self) -> float:
         """0.9/cells, as a share of full slip; the root mean square is a third of that."""
         return 0.9 / self.cells
@@ -96,6 +104,39 @@ class HalfSpace(wl.ContactModel):
         assert strips is not None
         middles = (2.0 * np.arange(self.cells) + 1.0) / self.cells - 1.0
         return self._solve(problem, strips, middles * strips.half_length.max(axis=-1, keepdims=True))
+
+    def solve_line(self, problem: wl.Problem) -> wl.Contact:
+        """Return the contact on elements of one strip, so wide that its middle is a line contact."""
+        flat = problem.flatten()
+        width, of_strips = WIDE * flat.a, ("friction_coefficient", "rolling_speed", "density", "poisson_ratio")
+        one = wl.Strips(
+            y=np.zeros((flat.size, 1)),
+            width=width[:, None],
+            half_length=flat.a[:, None],
+            max_pressure=flat.max_pressure[:, None],
+        )
+        wide = wl.Problem.of_strips(
+            one,
+            shear_modulus=flat.shear_modulus,
+            a=flat.a,
+            b=0.5 * width,
+            longitudinal_creepage=flat.longitudinal_creepage,
+            lateral_creepage=flat.lateral_creepage,
+            spin=flat.spin,
+            **{name: getattr(flat, name) for name in of_strips},
+        )
+        found = self.solve_strips(wide)
+        fields = wl.LineFields(
+            pressure=found.pressure[..., 0],
+            traction=found.traction_x[..., 0],
+            slip=found.slip_x[..., 0],
+            traction_bound=found.traction_bound[..., 0],
+        )
+        length = found.area[..., 0] / width[:, None]
+        contact = wl.Contact.from_line(
+            flat, fields, x=found.x[..., 0], length=length, force_per_width=found.force_x / width
+        )
+        return contact.unflattened(problem)
 
     def _solve(self, problem: wl.Problem, strips: wl.Strips, columns: Array) -> wl.Contact:
         """Return the contact on elements in the columns at x of (points, cells) and the rows of the strips."""
