@@ -95,11 +95,6 @@ def case_of(path: Path) -> Case:
             f"'{path}', line {table.lines[-1]}: ends after {len(table.values)} rows of numbers, but the head of version"
             f" {version} has {grid_row + 3}; the file is cut short there"
         )
-    if table.values.shape[1] < len(ELEMENTS):
-        raise wl.DataError(
-            f"'{path}': has {table.values.shape[1]} columns, but CONTACT writes at least {len(ELEMENTS)}; is it one of"
-            " its files?"
-        )
     position = _position(table, version)
     return Case(
         path=path,
@@ -113,6 +108,11 @@ def case_of(path: Path) -> Case:
 
 def _version(table: Table) -> int:
     """Return the version of the format, the last number of the first row."""
+    if table.values.shape[1] < len(ELEMENTS):
+        raise wl.DataError(
+            f"'{table.path}': has {table.values.shape[1]} columns, but CONTACT writes at least {len(ELEMENTS)}; is it"
+            " one of its files?"
+        )
     column = table.values.shape[1] - 1
     version = table.values[0, column]
     if version != int(version) or not 0 <= version < 10000:

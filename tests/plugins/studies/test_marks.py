@@ -84,6 +84,7 @@ def test_all_points_of_other_materials_are_outside() -> None:
     assert r.outside_range.magnitude.tolist() == [1, 1]
 
 
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")
 def test_a_law_without_a_record_has_no_outside() -> None:
     law = wl.wear_law("kth", pressure_threshold="1 GPa")
     r = (RIG | wl.contact_model("global") | law)(max_pressure="5 GPa", creepage="90 %", friction_coefficient=0.4)
