@@ -97,13 +97,13 @@ def _middle(energy: Any, amplitude: float, y: Array) -> float:
     middles = np.linspace(low, max(low, high), WAVES)
     values = excess(middles)
     values[np.abs(values) <= ROUNDING * np.ptp(energy(y))] = 0.0
-    found = middles[values == 0.0].tolist()
+    roots = middles[values == 0.0].tolist()
     # From the left, a turning point is stable where the integral rises through zero.
     for first in np.flatnonzero((values[:-1] < 0.0) & (values[1:] > 0.0)):
-        found.append(scipy.optimize.brentq(excess, middles[first], middles[first + 1], xtol=1e-15))
-    if not found:
+        roots.append(scipy.optimize.brentq(excess, middles[first], middles[first + 1], xtol=1e-15))
+    if not roots:
         raise wl.InputError(
             f"amplitude: no wave of {1e3 * amplitude:.6g} mm fits between {1e3 * y[0]:.6g} and {1e3 * y[-1]:.6g} mm,"
             " because the rolling radius difference is larger on one side; give a wider table or a smaller amplitude"
         )
-    return float(min(found, key=abs))
+    return float(min(roots, key=abs))

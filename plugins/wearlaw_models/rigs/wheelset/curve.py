@@ -106,9 +106,9 @@ class Curve:
         curvature = self.curvature[cell] + t * (self.curvature[cell + 1] - self.curvature[cell])
         broken = ~np.isnan(self._joint[cell])
         if broken.any():
-            found = np.stack([y, z, angle, curvature])
-            found[:, broken] = self._around_joint(cell[broken], t[broken])
-            y, z, angle, curvature = found
+            rows = np.stack([y, z, angle, curvature])
+            rows[:, broken] = self._around_joint(cell[broken], t[broken])
+            y, z, angle, curvature = rows
         return y, z, angle, curvature
 
     def moved(self, move: Callable[[Array, Array], tuple[Array, Array]], side: float, turn: float) -> Curve:

@@ -82,22 +82,22 @@ def points_of(
     ending, lines = path.suffix.lower(), text.splitlines()
     by_ending: Kind | None = KINDS.get(ending)
     if ending in SIMPACK or any(re.match(r"\s*spline\.begin", line) for line in lines):
-        found = _simpack(lines, units)
+        points = _simpack(lines, units)
     elif ending in MINIPROF or (lines and _is_miniprof(lines)):
-        found = _miniprof(lines, by_ending or kind, units)
+        points = _miniprof(lines, by_ending or kind, units)
     elif ending in COLUMNS:
-        found = _columns(text, units, sep, decimal)
+        points = _columns(text, units, sep, decimal)
     else:
         raise FileError(f"the ending {wl.shown(ending)} is not known; give a file that ends in {', '.join(ENDINGS)}")
-    sure = kind or by_ending or found.kind
+    sure = kind or by_ending or points.kind
     if sure is None:
-        given = 'give kind="rail", in a case {file = "rail.csv", kind = "rail"}'
-        raise FileError(f"it does not say whether it is a wheel or a rail; {given}")
-    told = {"the argument kind": kind, "its ending": by_ending, "its header": found.kind}
+        hint = 'give kind="rail", in a case {file = "rail.csv", kind = "rail"}'
+        raise FileError(f"it does not say whether it is a wheel or a rail; {hint}")
+    told = {"the argument kind": kind, "its ending": by_ending, "its header": points.kind}
     if not {*told.values()} <= {sure, None}:
-        says = ", ".join(f"{source} says {one}" for source, one in told.items() if one)
+        says = ", ".join(f"{source} says {value}" for source, value in told.items() if value)
         raise FileError(f"it is not clear whether it is a wheel or a rail: {says}")
-    return found, sure
+    return points, sure
 
 
 def _text_of(path: Path) -> str:
@@ -188,8 +188,8 @@ def _simpack(lines: Sequence[str], units: str) -> Points:
             )
     if not told:
         raise FileError(f"it ends in the section '{place[-1]}'; is it whole?" if place else "it has no spline.begin")
-    found, rows = table.columns()
-    return _changed(found, rows, values, kind, units)
+    columns, rows = table.columns()
+    return _changed(columns, rows, values, kind, units)
 
 
 def _nest(place: list[str], section: str, edge: str, line: int) -> None:
@@ -202,7 +202,7 @@ def _nest(place: list[str], section: str, edge: str, line: int) -> None:
     place[:] = [*outer, section] if edge == "begin" else outer
 
 
-def _changed(found: Array, rows: NDArray[np.intp], values: dict[str, float], kind: Kind | None, units: str) -> Points:
+def _changed(columns: Array, rows: NDArray[np.intp], values: dict[str, float], kind: Kind | None, units: str) -> Points:
     """Return the points after the changes of a Simpack header, in the order of the numbers that the files print."""
     if values.get("approx.smooth", 0.0):
         warnings.warn(
@@ -211,8 +211,8 @@ def _changed(found: Array, rows: NDArray[np.intp], values: dict[str, float], kin
             wl.WearlawWarning,
             stacklevel=5,
         )
-    y, z = found[0], found[1]
-    weights = found[2] if found.shape[0] > 2 else np.ones(y.size)
+    y, z = columns[0], columns[1]
+    weights = columns[2] if columns.shape[0] > 2 else np.ones(y.size)
     keep = _spaced(y, z, values.get("point.dist.min", 0.0))
     y, z = y + values.get("shift.y", 0.0), z + values.get("shift.z", 0.0)
     turn = values.get("rotate", 0.0) / _positive(values, "units.ang.f", 1.0)
@@ -280,13 +280,13 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
         if equals:
             header[key.lower()] = value
         if key == "ColumnDef":
-            columns = [one.strip() for one in value.split(",")]
+            columns = [name.strip() for name in value.split(",")]
             if not {"X", "Y"} <= set(columns):
                 raise FileError(f"line {number}: ColumnDef must name the columns X and Y, got '{value[:40]}'")
     if not ended:
         raise FileError("it has no empty line between its header and its points; name two columns alone .txt")
-    found, rows = table.columns()
-    x, y = found[columns.index("X")], found[columns.index("Y")]
+    values, rows = table.columns()
+    x, y = values[columns.index("X")], values[columns.index("Y")]
     offset = {}
     for key in ("xoffset", "yoffset", TAPING.lower(), DIAMETER.lower()):
         text = header.get(key, "")
@@ -316,7 +316,9 @@ def _columns(text: str, units: str, sep: str | None, decimal: str) -> Points:
         columns = [named["y"], named["z"]] if {"y", "z"} <= named.keys() else list(named.values())[:2]
         if len(columns) < 2:
             raise FileError(f"line {table.header}: a profile has two columns, y and z, found {len(columns)}")
-        y, z = (_factor(units if one.unit is None else one.unit) * table.numbers(one.name) for one in columns)
+        y, z = (
+            _factor(units if column.unit is None else column.unit) * table.numbers(column.name) for column in columns
+        )
         for column, values in zip(columns, (y, z), strict=True):
             for row in np.flatnonzero(np.isnan(values))[:1]:
                 raise FileError(f"{table.where(int(row), column.name)}: is missing")
@@ -357,7 +359,7 @@ def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
 
 
 def _rows(y: Array, z: Array, mark: str) -> list[str]:
-    return [f"{one:.9f}{mark}{other:.9f}" for one, other in zip(y.tolist(), z.tolist(), strict=True)]
+    return [f"{across:.9f}{mark}{down:.9f}" for across, down in zip(y.tolist(), z.tolist(), strict=True)]
 
 
 def _as_simpack(kind: str, y: Array, z: Array) -> list[str]:

@@ -52,13 +52,13 @@ OF_WHEELSET = {
 def patches(section: Section, position: Position, touching: Touching) -> dict[str, Array]:
     """Return `VARIABLES` of contact patches in SI, (positions, sides, patches); NaN where there is none."""
     wide = position.widened()
-    arc = np.where(np.isnan(touching.arc), [[one.wheel_y.start] for one in section.sides], touching.arc)
+    arc = np.where(np.isnan(touching.arc), [[pair.wheel_y.start] for pair in section.sides], touching.arc)
     place = placed(section, wide, arc)
     side = np.array([-1.0, 1.0])[:, None]
     across = place.y + wide.displacement
     wheel_y, wheel_z, _, wheel_curvature = section.at("wheel", arc, wide.side)
     rail_y, rail_z, _, rail_curvature = section.at("rail", place.rail_arc, wide.side)
-    found = {
+    values = {
         "y": side * across,
         "z": section.at("rail_z", across, wide.side)[0],
         "x": np.broadcast_to(place.x, arc.shape),
@@ -76,7 +76,7 @@ def patches(section: Section, position: Position, touching: Touching) -> dict[st
         "gap": touching.gap,
     }
     none = np.where(np.isnan(touching.arc), np.nan, 0.0)
-    return {name: array + none for name, array in found.items()}
+    return {name: array + none for name, array in values.items()}
 
 
 @dataclass(frozen=True)
@@ -113,21 +113,21 @@ def geometry(
     """Return the geometry at all combinations of the axes, quantities by name with the last one running fastest."""
     import xarray
 
-    found = patches(section, position, touching)
+    patch_values = patches(section, position, touching)
     values_of = {name: np.asarray(axis.magnitude, dtype=np.float64) for name, axis in axes.items()}
     shape = tuple(array.size for array in values_of.values() if array.ndim)
     named = [name for name, array in values_of.items() if array.ndim]
     far = ~(touching.gap <= within)
     data: dict[str, Any] = {}
     for name, (unit, words) in VARIABLES.items():
-        values = np.where(far, np.nan, found[name])
+        values = np.where(far, np.nan, patch_values[name])
         dims = [*named, "side", "patch"]
         data[name] = (
             dims,
             wl.Q(values, _si(unit)).to(unit).magnitude.reshape(*shape, *values.shape[1:]),
             _attrs(unit, words),
         )
-    first = found["rolling_radius"][..., 0]
+    first = patch_values["rolling_radius"][..., 0]
     wheelset = {
         "roll": roll,
         "vertical_displacement": touching.least.mean(axis=-1) + nominal_radius,

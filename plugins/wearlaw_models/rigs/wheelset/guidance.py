@@ -83,7 +83,7 @@ def guided(
         argument; if the third one is true, below the steepest points of their flanges.
     """
     assert task.lateral_force is not None
-    given, count = task.lateral_force, task.lateral_force.size
+    force, count = task.lateral_force, task.lateral_force.size
     left_over = BORNE * task.load.sum(axis=-1)
 
     def borne(rows: NDArray[np.intp], displacement: Array) -> Array:
@@ -94,28 +94,28 @@ def guided(
     # From here on, distances and forces are positive to the side to which the wheelset moves from the middle.
     every = np.arange(count)
     middle = borne(every, np.zeros(count))
-    side = np.where(given < middle, -1.0, 1.0)
+    side = np.where(force < middle, -1.0, 1.0)
 
     def excess(rows: NDArray[np.intp], distance: Array) -> Array:
-        return np.asarray(side[rows] * (borne(rows, side[rows] * distance) - given[rows]))
+        return np.asarray(side[rows] * (borne(rows, side[rows] * distance) - force[rows]))
 
     end = _last(lambda distance, rows, below: stands(side[rows] * distance, rows, below), count)
     low, high, held = np.zeros(count), np.full(count, np.nan), np.full(count, np.nan)
-    first = side * (middle - given)
+    first = side * (middle - force)
     at_low, at_high, most, place = first.copy(), np.full(count, np.nan), first.copy(), np.zeros(count)
 
     def look(rows: NDArray[np.intp], distance: Array) -> None:
         """Note the excess at distances beyond those before."""
         if not rows.size:
             return
-        found = excess(rows, distance)
-        over, none = found >= 0.0, np.isnan(found)
-        high[rows[over]], at_high[rows[over]] = distance[over], found[over]
+        excesses = excess(rows, distance)
+        over, none = excesses >= 0.0, np.isnan(excesses)
+        high[rows[over]], at_high[rows[over]] = distance[over], excesses[over]
         held[rows] = np.where(none & np.isnan(held[rows]), distance, held[rows])
         under = rows[~over & ~none]
-        low[under], at_low[under] = distance[~over & ~none], found[~over & ~none]
-        place[rows] = np.where(found > most[rows], distance, place[rows])
-        most[rows] = np.fmax(most[rows], found)
+        low[under], at_low[under] = distance[~over & ~none], excesses[~over & ~none]
+        place[rows] = np.where(excesses > most[rows], distance, place[rows])
+        most[rows] = np.fmax(most[rows], excesses)
 
     rows = every
     for number in range(1, round(FARTHEST / STEP) + 1):
@@ -130,7 +130,7 @@ def guided(
     high[jams], at_high[jams], low[jams], at_low[jams] = held[jams], np.inf, 0.0, first[jams]
     climbs = np.isnan(high)
     distance = _root(excess, low, at_low, high, at_high, left_over)
-    return Guided(side * np.where(climbs, place, distance), climbs, side * most + given)
+    return Guided(side * np.where(climbs, place, distance), climbs, side * most + force)
 
 
 def _last(stands: Callable[[Array, NDArray[np.intp], bool], NDArray[np.bool_]], count: int) -> Array:
@@ -160,15 +160,15 @@ def _root(
     Where no loads balance on some part of the way, as between two humps of a patch, the root is sought below it, and
     then above it. If it is in neither, the result is the last place below.
     """
-    found = low.copy()
+    distance = low.copy()
     rows = np.flatnonzero(np.isfinite(at_low) & np.isfinite(high) & (np.abs(at_low) > left_over))
     for unknown in (np.inf, -np.inf):
         x, missed = _bracketed(
             excess, rows, low[rows], at_low[rows], high[rows], at_high[rows], left_over[rows], unknown
         )
-        found[rows] = np.where(~missed | (unknown > 0.0), x, found[rows])
+        distance[rows] = np.where(~missed | (unknown > 0.0), x, distance[rows])
         rows = rows[missed]
-    return found
+    return distance
 
 
 def _bracketed(

@@ -95,7 +95,7 @@ class Creepages(NamedTuple):
 
     def at(self, speed: Array) -> list[Array]:
         """Return the creepages at speeds of rotation [rad/s]."""
-        return [one + speed * other for one, other in zip(self.still, self.turning, strict=True)]
+        return [creepage + speed * rate for creepage, rate in zip(self.still, self.turning, strict=True)]
 
 
 def creepages(

@@ -128,16 +128,16 @@ def _contact_points(axes: Any, geometry: xarray.Dataset, profiles: Profiles, sha
     axes.plot(1e3 * profiles.wheel_y, wheel_z, color="black")
     axes.plot(1e3 * profiles.rail_y, 1e3 * profiles.rail_z, color="black")
     along = next((name for name in WAYS if name in geometry.dims), None)
-    right = geometry.sel(side="right").expand_dims(() if along else "one")
-    rows = right.isel({along or "one": slice(None, None, -(-right.sizes[along or "one"] // LINES))})
+    right = geometry.sel(side="right").expand_dims(() if along else "row")
+    rows = right.isel({along or "row": slice(None, None, -(-right.sizes[along or "row"] // LINES))})
     if along is not None:
         shades.set_clim(float(right[along].min()), float(right[along].max()))
         bar = axes.figure.colorbar(shades, ax=axes, pad=0.01, shrink=0.9)
         bar.set_label(_label(right[along]))
-    for number in range(rows.sizes[along or "one"]):
-        one = rows.isel({along or "one": number})
-        colour = tuple(shades.to_rgba(one[along].values)) if along else "C0"
-        ends = np.stack([one.wheel_y + 1e3 * profiles.wheel_offset, one.y]), np.stack([one.wheel_z - APART, one.z])
+    for number in range(rows.sizes[along or "row"]):
+        row = rows.isel({along or "row": number})
+        colour = tuple(shades.to_rgba(row[along].values)) if along else "C0"
+        ends = np.stack([row.wheel_y + 1e3 * profiles.wheel_offset, row.y]), np.stack([row.wheel_z - APART, row.z])
         axes.plot(*(end.reshape(2, -1) for end in ends), color=colour, lw=0.8)
     axes.text(1e3 * profiles.wheel_y[-1], wheel_z[-1] - 1.0, "wheel", ha="right", va="bottom")
     axes.text(1e3 * profiles.rail_y.mean(), 5.0, "rail", ha="center", va="top")
@@ -146,17 +146,17 @@ def _contact_points(axes: Any, geometry: xarray.Dataset, profiles: Profiles, sha
     axes.set_title(f"right wheel and rail, drawn {APART:.0f} mm apart; lines join points that touch")
 
 
-def contact_figure(profiles: Profiles, name: str, found: wl.Prediction) -> wl.FigureData:
+def contact_figure(profiles: Profiles, name: str, prediction: wl.Prediction) -> wl.FigureData:
     """Return both wheels above their rails, with lines between places that touch."""
     panels = []
     for index, side in enumerate(("left", "right")):
         sign = (-1.0, 1.0)[index]
-        here = found.sel(side=side)
+        here = prediction.sel(side=side)
         wheel, rail = (np.asarray(here.problem.body(body).profile_position) for body in ("wheel", "rail"))
         ends = []
-        for one, other in zip(np.ravel(wheel), np.ravel(rail), strict=True):
-            if np.isfinite(one):
-                ends.append((*profiles.at("wheel", one), *profiles.at("rail", other)))
+        for on_wheel, on_rail in zip(np.ravel(wheel), np.ravel(rail), strict=True):
+            if np.isfinite(on_wheel):
+                ends.append((*profiles.at("wheel", on_wheel), *profiles.at("rail", on_rail)))
         lines = (
             np.array([[a, c, np.nan] for a, _, c, _ in ends]).ravel(),
             np.array([[b - 1e-3 * APART, d, np.nan] for _, b, _, d in ends]).ravel(),
@@ -183,13 +183,13 @@ def contact_figure(profiles: Profiles, name: str, found: wl.Prediction) -> wl.Fi
     )
 
 
-def wear_figure(profiles: Profiles, name: str, found: Mapping[str, wl.Prediction]) -> wl.FigureData:
+def wear_figure(profiles: Profiles, name: str, predictions: Mapping[str, wl.Prediction]) -> wl.FigureData:
     """Return the depth that both wheels and rails lose along their profiles."""
     panels = []
     for body in ("wheel", "rail"):
         for side in ("left", "right"):
             curves, unit = [], ""
-            for number, (label, prediction) in enumerate(found.items()):
+            for number, (label, prediction) in enumerate(predictions.items()):
                 at = _positions(profiles, body)
                 worn = prediction.sel(side=side).wear_profile(body, at=wl.Q(at, "mm"))["depth"]
                 unit = worn.attrs["units"]

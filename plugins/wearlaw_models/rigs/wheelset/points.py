@@ -156,29 +156,29 @@ def crossed_steps(y: Array, z: Array) -> tuple[int, int] | None:
     for least, most in zip(low, high, strict=True):
         near &= (least[:, None] <= most) & (least <= most[:, None])
     for first, second in BLOCK * np.argwhere(np.triu(near)):
-        one = first + np.arange(min(BLOCK, count - first))[:, None]
+        step = first + np.arange(min(BLOCK, count - first))[:, None]
         other = second + np.arange(min(BLOCK, count - second))[None, :]
-        crosses = (other > one + 1) & _cross(y, z, one, other)
+        crosses = (other > step + 1) & _cross(y, z, step, other)
         if crosses.any():
             row, column = np.argwhere(crosses)[0]
-            return int(one[row, 0]), int(other[0, column])
+            return int(step[row, 0]), int(other[0, column])
     return None
 
 
-def _cross(y: Array, z: Array, one: NDArray[np.intp], other: NDArray[np.intp]) -> NDArray[np.bool_]:
+def _cross(y: Array, z: Array, first: NDArray[np.intp], second: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Return whether steps cross or touch each other."""
 
     def side(step: NDArray[np.intp], point: NDArray[np.intp]) -> Array:
         """Return on which side of a step a point lies."""
         return np.sign((y[step + 1] - y[step]) * (z[point] - z[step]) - (z[step + 1] - z[step]) * (y[point] - y[step]))
 
-    crosses: NDArray[np.bool_] = (side(one, other) * side(one, other + 1) <= 0.0) & (
-        side(other, one) * side(other, one + 1) <= 0.0
+    crosses: NDArray[np.bool_] = (side(first, second) * side(first, second + 1) <= 0.0) & (
+        side(second, first) * side(second, first + 1) <= 0.0
     )
     # Steps on one line fulfil both conditions wherever they are, so the boxes around them must meet too.
     for value in (y, z):
-        least = np.minimum(value[one], value[one + 1]), np.minimum(value[other], value[other + 1])
-        most = np.maximum(value[one], value[one + 1]), np.maximum(value[other], value[other + 1])
+        least = np.minimum(value[first], value[first + 1]), np.minimum(value[second], value[second + 1])
+        most = np.maximum(value[first], value[first + 1]), np.maximum(value[second], value[second + 1])
         crosses = crosses & (least[0] <= most[1]) & (least[1] <= most[0])
     return crosses
 

@@ -201,44 +201,44 @@ class Profile(wl.Configuration):
             If the points are no profile: fewer than 10, not finite, doubled, out of order, with gaps or loops, in the
             wrong unit, mirrored or upside down.
         """
-        given = None if weights is None else tuple(float(weight) for weight in weights)
-        return cls(kind=kind, y=y, z=z, smoothing=smoothing, weights=given)
+        numbers = None if weights is None else tuple(float(weight) for weight in weights)
+        return cls(kind=kind, y=y, z=z, smoothing=smoothing, weights=numbers)
 
     @model_validator(mode="wrap")
     @classmethod
-    def _checked(cls, given: Any, handler: ModelWrapValidatorHandler[Profile]) -> Profile:
+    def _checked(cls, value: Any, handler: ModelWrapValidatorHandler[Profile]) -> Profile:
         """Take the name of a formula or the path of a file for a table, and check the points."""
-        if isinstance(given, Profile):
-            return handler(given)
-        fields = cls._of_text(given)
+        if isinstance(value, Profile):
+            return handler(value)
+        fields = cls._of_text(value)
         if isinstance(fields, _Fields):  # pydantic passes fields to __init__, which comes here once more
             return handler({**fields, KNOWN: fields})
-        known = fields.get(KNOWN) if isinstance(fields, Mapping) else None
-        if not isinstance(known, _Fields):
+        record = fields.get(KNOWN) if isinstance(fields, Mapping) else None
+        if not isinstance(record, _Fields):
             profile = handler(fields)
         else:
-            profile = handler(known)
-            profile._lines, profile._worn, profile._told = known.lines, known.worn, known.told
+            profile = handler(record)
+            profile._lines, profile._worn, profile._told = record.lines, record.worn, record.told
         if not profile._told:
             profile._check()
             profile._told = True
         return profile
 
     @classmethod
-    def _of_text(cls, given: Any) -> Any:
+    def _of_text(cls, value: Any) -> Any:
         """Return the fields of the name of a formula or of the path of a file, and add the kind of a formula."""
-        if isinstance(given, str | os.PathLike):
-            given = _named(os.fspath(given))
-        elif isinstance(given, Mapping) and "file" in given:
-            return _File(**given).fields()
-        if isinstance(given, Mapping) and (name := given.get("formula")) is not None:
+        if isinstance(value, str | os.PathLike):
+            value = _named(os.fspath(value))
+        elif isinstance(value, Mapping) and "file" in value:
+            return _File(**value).fields()
+        if isinstance(value, Mapping) and (name := value.get("formula")) is not None:
             if name not in FORMULAS:
                 near = did_you_mean(name, FORMULAS)
                 raise ValueError(
                     f"formula: no profile is called {wl.shown(name)}{near} There are {', '.join(FORMULAS)}"
                 )
-            return {"kind": FORMULAS[name].kind, **given}
-        return given
+            return {"kind": FORMULAS[name].kind, **value}
+        return value
 
     def _check(self) -> None:
         """Raise an error if the fields make no profile, and warn of a shape that profiles hardly have."""
@@ -255,14 +255,14 @@ class Profile(wl.Configuration):
             check_points(_si(self.y), _si(self.z), self._name)
             if self.weights is not None and len(self.weights) != self.y.size:
                 raise ValueError(f"weights: must be one for each of {self.y.size} points, got {len(self.weights)}")
-        check_orientation(self.kind, *self._moved(*self._given), self._name)
+        check_orientation(self.kind, *self._moved(*self._unmoved), self._name)
         if self.formula is None and not self._worn:
             self._warn()
 
     def _warn(self) -> None:
         """Warn of what is unlikely about a profile of points."""
         curve, spots = self._curve_and_spots
-        y, z = self._moved(*self._given)
+        y, z = self._moved(*self._unmoved)
         texts = [f"{point(spot, y, z, self._name)} alone stands out and is passed over" for spot in spots]
         lean = wl.scalar_si(self.apparent_cant, "rad")
         texts += doubts.of_shape(self.kind, curve, lean)
@@ -278,7 +278,7 @@ class Profile(wl.Configuration):
         return f"point {index}" if self._lines is None else f"line {self._lines[index]}"
 
     @property
-    def _given(self) -> tuple[Array, Array]:
+    def _unmoved(self) -> tuple[Array, Array]:
         """The points as given, or those of the formula's curve [m], before the mirror, turn and shifts."""
         if self.formula is not None:
             curve = _by_formula(self.formula)
@@ -313,11 +313,11 @@ class Profile(wl.Configuration):
             return self._in_place(_by_formula(self.formula)), ()
         if self._worn:
             return self._through(slice(None)), ()
-        return without_spots(*self._moved(*self._given), self._through)
+        return without_spots(*self._moved(*self._unmoved), self._through)
 
     def _through(self, keep: slice | NDArray[np.bool_]) -> Curve:
         """Return the curve of the points to keep."""
-        y, z = (value[keep] for value in self._given)
+        y, z = (value[keep] for value in self._unmoved)
         weights = None if self.weights is None else np.array(self.weights)[keep]
         way = slice(None, None, -1 if y[-1] < y[0] else 1)
         smoothing = wl.scalar_si(self.smoothing, "m")
@@ -337,7 +337,7 @@ class Profile(wl.Configuration):
 
         They begin at the end with the smaller y.
         """
-        y, z = self._moved(*self._given)
+        y, z = self._moved(*self._unmoved)
         way = slice(None, None, -1 if y[-1] < y[0] else 1)
         return wl.Q(1e3 * y[way], "mm"), wl.Q(1e3 * z[way], "mm")
 
@@ -496,7 +496,7 @@ class Profile(wl.Configuration):
             doubts.warn(text)
         names = ("flange_height", "flange_thickness", "flange_gradient", "hollow")
         values = (height, thickness, gradient, hollow(z))
-        return {name: wl.Q(1e3 * one, "mm") for name, one in zip(names, values, strict=True)}
+        return {name: wl.Q(1e3 * length, "mm") for name, length in zip(names, values, strict=True)}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the profile as it lies, with z down, and return matplotlib's axes."""
@@ -528,10 +528,10 @@ class Profile(wl.Configuration):
     def _changed(self) -> list[str]:
         """The fields that are not at their defaults, without the kind of a formula."""
         texts = ("turn", "shift_y", "shift_z", "smoothing")
-        found = [name for name in ("formula", "y", "z", "weights", "diameter") if getattr(self, name) is not None]
-        found += ["mirror"] if self.mirror else []
-        found += [name for name in texts if getattr(self, name).magnitude]
-        return found if self.formula else ["kind", *found]
+        names = [name for name in ("formula", "y", "z", "weights", "diameter") if getattr(self, name) is not None]
+        names += ["mirror"] if self.mirror else []
+        names += [name for name in texts if getattr(self, name).magnitude]
+        return names if self.formula else ["kind", *names]
 
     @classmethod
     def __get_pydantic_json_schema__(
@@ -611,13 +611,13 @@ class _File(wl.Configuration):
 
     def fields(self) -> dict[str, Any]:
         """Return the fields of the profile in the file."""
-        found = read_profile(wl.beside(self.file), **{name: value for name, value in self if name != "file"})
-        return found._fields(told=True)
+        profile = read_profile(wl.beside(self.file), **{name: value for name, value in self if name != "file"})
+        return profile._fields(told=True)
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
+def did_you_mean(word: str, words: Iterable[str]) -> str:
     """Return "; did you mean 'x'?" for the nearest known word, or a full stop if no word is near."""
-    near = get_close_matches(word.lower(), list(known), n=1)
+    near = get_close_matches(word.lower(), list(words), n=1)
     return f"; did you mean '{near[0]}'?" if near else "."
 
 
@@ -661,22 +661,22 @@ def read_profile(
         If the file cannot be read, or does not hold a profile. The message names the file and the line.
     """
     try:
-        found, told = points_of(Path(path), kind, units, sep, decimal)
+        points, told = points_of(Path(path), kind, units, sep, decimal)
         length = wl.Unit("mm", positive=False)
-        y = (-1.0 if mirror_y else 1.0) * found.y + float(length.si(shift_y, "shift_y"))
-        z = (-1.0 if mirror_z else 1.0) * found.z
-        if found.taped and y.min() <= 0.0 <= y.max():
-            check_points(y, z, lambda index: f"line {found.lines[index]}")
+        y = (-1.0 if mirror_y else 1.0) * points.y + float(length.si(shift_y, "shift_y"))
+        z = (-1.0 if mirror_z else 1.0) * points.z
+        if points.taped and y.min() <= 0.0 <= y.max():
+            check_points(y, z, lambda index: f"line {points.lines[index]}")
             way = slice(None, None, -1 if y[-1] < y[0] else 1)
             width = float(length.si(smoothing, "smoothing"))
             z = z - float(through_points(y[way], z[way], width, None, CONVEX[told]).at(0.0)[1])
         z = z + float(length.si(shift_z, "shift_z"))
         fields = _Fields(kind=told, y=wl.Q(1e3 * y, "mm"), z=wl.Q(1e3 * z, "mm"), smoothing=smoothing)
-        if found.weights is not None:
-            fields["weights"] = tuple(found.weights.tolist())
-        if found.diameter is not None:
-            fields["diameter"] = wl.Q(1e3 * found.diameter, "mm")
-        fields.lines = found.lines
+        if points.weights is not None:
+            fields["weights"] = tuple(points.weights.tolist())
+        if points.diameter is not None:
+            fields["diameter"] = wl.Q(1e3 * points.diameter, "mm")
+        fields.lines = points.lines
         return Profile.model_validate(fields)
     except wl.ConfigurationError as error:
         raise wl.DataError(f"profile {wl.shown(path)}: {'; '.join(map(str, error.problems))}") from None
@@ -723,7 +723,7 @@ def faults(profile: Profile, cant: float) -> Iterator[str]:
 
 
 def _of_ends(profile: Profile, cant: float) -> Iterator[str]:
-    y, z = profile._moved(*profile._given)
+    y, z = profile._moved(*profile._unmoved)
 
     def near(across: float, down: float) -> str:
         return point(int(np.hypot(y - across, z - down).argmin()), y, z, profile._name)

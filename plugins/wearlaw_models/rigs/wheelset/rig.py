@@ -308,8 +308,8 @@ class Wheelset(wl.Rig):
                 f" {1e3 * MOST_PLAY:g} mm"
             )
         straight = np.zeros(1)
-        roll, found = searched(self._section, straight, straight)
-        angle = patches(self._section, both_sides(straight, roll, straight), found)["contact_angle"][0, :, 0]
+        roll, touching = searched(self._section, straight, straight)
+        angle = patches(self._section, both_sides(straight, roll, straight), touching)["contact_angle"][0, :, 0]
         if not np.abs(angle).max() <= wl.scalar_si(self.flange_angle, "rad"):  # NaN without contact
             raise self._misfit(
                 f"gauge: in the middle of the track the wheels stand on their flanges or beside the rails; wheels"
@@ -320,7 +320,7 @@ class Wheelset(wl.Rig):
     def _misfit(self, text: str) -> ValueError:
         """Return the error for wheels that do not fit the rails, by the faults of profiles if there are any."""
         cant = wl.scalar_si(self.rail_cant, "rad")
-        told = [f"{name}: {one}" for name, profile in self._profiles.items() for one in faults(profile, cant)]
+        told = [f"{name}: {fault}" for name, profile in self._profiles.items() for fault in faults(profile, cant)]
         return ValueError("; ".join(told) or text)
 
     @property
@@ -332,7 +332,9 @@ class Wheelset(wl.Rig):
     @property
     def _rough(self) -> list[str]:
         """The fields of profiles that run through all of their points."""
-        return [name for name, one in self._profiles.items() if not one.formula and not one.smoothing.magnitude]
+        return [
+            name for name, profile in self._profiles.items() if not profile.formula and not profile.smoothing.magnitude
+        ]
 
     @property
     def bodies(self) -> Mapping[str, wl.Body]:
@@ -370,7 +372,7 @@ class Wheelset(wl.Rig):
         UnitError
             If an argument lacks its unit, is out of bounds or has too many values.
         """
-        given = {"lateral_displacement": lateral_displacement, "yaw": yaw}
+        quantities = {"lateral_displacement": lateral_displacement, "yaw": yaw}
         arrays = {
             "lateral_displacement": DISPLACEMENT.si(lateral_displacement, "lateral_displacement"),
             "yaw": YAW.si(yaw, "yaw"),
@@ -378,19 +380,19 @@ class Wheelset(wl.Rig):
         for name, array in arrays.items():
             if array.ndim > 1:
                 raise wl.InputError(f"{name}: must have at most one axis, got an array of shape {array.shape}")
-        axes = {name: wl.parse(value) for name, value in given.items()}
+        axes = {name: wl.parse(value) for name, value in quantities.items()}
         displacement, turned = (array.ravel() for array in np.meshgrid(*arrays.values(), indexing="ij"))
-        fixed = None if roll is None else np.full(displacement.shape, _one(ANGLE, roll, "roll"))
-        most = _one(wl.Unit("mm", positive=False, negative=False), within, "within")
-        rolls, found = searched(self._section, displacement, turned, fixed)
-        self._check_contact(displacement, found)
+        fixed = None if roll is None else np.full(displacement.shape, _scalar(ANGLE, roll, "roll"))
+        most = _scalar(wl.Unit("mm", positive=False, negative=False), within, "within")
+        rolls, touching = searched(self._section, displacement, turned, fixed)
+        self._check_contact(displacement, touching)
         position = both_sides(displacement, rolls, turned)
-        return geometry(self._section, axes, rolls, found, position, most, wl.scalar_si(self.nominal_radius, "m"))
+        return geometry(self._section, axes, rolls, touching, position, most, wl.scalar_si(self.nominal_radius, "m"))
 
     def on_rails(self, displacement: Array) -> NDArray[np.bool_]:
         """Return whether both wheels touch their rails at lateral displacements [m], without yaw."""
-        _, found = searched(self._section, displacement, np.zeros_like(displacement))
-        return ~np.asarray(np.isnan(found.arc[..., 0]).any(axis=-1))
+        _, touching = searched(self._section, displacement, np.zeros_like(displacement))
+        return ~np.asarray(np.isnan(touching.arc[..., 0]).any(axis=-1))
 
     def profiles_in_track(self) -> Profiles:
         """Return the right wheel and its rail in the middle of the track, as SI arrays."""
@@ -429,7 +431,7 @@ class Wheelset(wl.Rig):
         InputError
             If the rolling radii are nowhere equal, or do not steer the wheelset back.
         """
-        most = _one(wl.Unit("mm"), amplitude, "amplitude")
+        most = _scalar(wl.Unit("mm"), amplitude, "amplitude")
         middle, reach = 0.0, most + MARGIN
         if abs(self._radius_difference(np.zeros(1), roll)[0]) > NOTHING:
             every = np.linspace(-FARTHEST, FARTHEST, CONICITY_POINTS)
@@ -452,9 +454,9 @@ class Wheelset(wl.Rig):
     def _radius_difference(self, displacement: Array, roll: bool) -> Array:
         """Return the rolling radius of the right wheel minus that of the left one, without yaw [m]."""
         none = np.zeros_like(displacement)
-        rolls, found = searched(self._section, displacement, none, None if roll else none)
-        self._check_contact(displacement, found)
-        radius = patches(self._section, both_sides(displacement, rolls, none), found)["rolling_radius"][..., 0]
+        rolls, touching = searched(self._section, displacement, none, None if roll else none)
+        self._check_contact(displacement, touching)
+        radius = patches(self._section, both_sides(displacement, rolls, none), touching)["rolling_radius"][..., 0]
         return np.asarray(radius[:, 1] - radius[:, 0])
 
     def problem(self, **conditions: Unpack[WheelsetConditions]) -> wl.Problem:
@@ -504,38 +506,40 @@ class Wheelset(wl.Rig):
         self._warn_of_humps(balance)
         self._warn_of_grids(balance)
         distance = None if distance is None else distance[..., 0, 0].reshape(-1)
-        found = self._whole(balance, status, problem.shape, distance)
-        self._warn_of_points(found)
-        return found
+        whole = self._whole(balance, status, problem.shape, distance)
+        self._warn_of_points(whole)
+        return whole
 
-    def _task(self, given: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
+    def _task(self, conditions: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
         """Return what is asked at positions; with a lateral force, they are in the middle of the track at first."""
-        speed = np.full(given["yaw"].shape, wl.scalar_si(self.rolling_speed, "m/s"))
-        none, one = np.zeros(speed.shape), given.get("vertical_load")
-        loads = np.stack([given[f"vertical_load_{side}"] if one is None else one for side in DIMS["side"]], axis=-1)
+        speed = np.full(conditions["yaw"].shape, wl.scalar_si(self.rolling_speed, "m/s"))
+        none, load = np.zeros(speed.shape), conditions.get("vertical_load")
+        loads = np.stack(
+            [conditions[f"vertical_load_{side}"] if load is None else load for side in DIMS["side"]], axis=-1
+        )
         bears = loads > 0.0
         touching = JUST_TOUCHING * np.maximum(loads.max(axis=-1, keepdims=True), 1.0)
         return Task(
-            given.get("lateral_displacement", none), given["yaw"], speed, given["lateral_velocity"],
-            given["yaw_velocity"], given["yaw_velocity"] + speed / given["curve_radius"],
+            conditions.get("lateral_displacement", none), conditions["yaw"], speed, conditions["lateral_velocity"],
+            conditions["yaw_velocity"], conditions["yaw_velocity"] + speed / conditions["curve_radius"],
             np.where(bears, loads, touching), bears, friction, wl.scalar_si(self.flange_angle, "rad"),
-            given.get("axle_torque", none), given.get("angular_speed"), "roll" not in given,
-            given.get("lateral_force"),
+            conditions.get("axle_torque", none), conditions.get("angular_speed"), "roll" not in conditions,
+            conditions.get("lateral_force"),
         )  # fmt: skip
 
     def _rigid(self, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
         """Return the rolls of rigid wheelsets and where they touch; equal positions are searched once."""
         places = np.stack([displacement, yaw] if roll is None else [displacement, yaw, roll])
         single, which = np.unique(places, axis=1, return_inverse=True)
-        rolls, found = searched(self._section, single[0], single[1], None if roll is None else single[2])
+        rolls, touching = searched(self._section, single[0], single[1], None if roll is None else single[2])
         which = which.reshape(-1)
-        return rolls[which], Touching(*(array[which] for array in found))
+        return rolls[which], Touching(*(array[which] for array in touching))
 
     def _balance(self, task: Task, roll: Array | None) -> Balance:
         """Return the loads of a task without creep forces."""
-        rolls, found = self._rigid(task.displacement, task.yaw, roll)
-        self._check_contact(task.displacement, found)
-        return Balance.begun(self._section, self._elastic, task, rolls, found, self.pressure, self.strips)
+        rolls, touching = self._rigid(task.displacement, task.yaw, roll)
+        self._check_contact(task.displacement, touching)
+        return Balance.begun(self._section, self._elastic, task, rolls, touching, self.pressure, self.strips)
 
     def _guided(
         self, balance: Balance, forces: Callable[[wl.Problem], wl.CreepForces]
@@ -548,11 +552,11 @@ class Wheelset(wl.Rig):
         def solved(part: Task, rows: NDArray[np.intp]) -> Balance:
             return self._balance(part, None if roll is None else roll[rows]).solved(forces, bounds=False)
 
-        steepest = np.array([one.steepest for one in self._section.sides])
+        steepest = np.array([pair.steepest for pair in self._section.sides])
 
         def stands(displacement: Array, rows: NDArray[np.intp], below: bool) -> NDArray[np.bool_]:
-            _, found = self._rigid(displacement, task.yaw[rows], None if roll is None else roll[rows])
-            return np.asarray((found.arc[..., 0] >= (steepest if below else -np.inf)).all(axis=-1))
+            _, touching = self._rigid(displacement, task.yaw[rows], None if roll is None else roll[rows])
+            return np.asarray((touching.arc[..., 0] >= (steepest if below else -np.inf)).all(axis=-1))
 
         place, climbs, greatest = guided(task, solved, stands)
         every = np.arange(place.size)
@@ -572,13 +576,13 @@ class Wheelset(wl.Rig):
         self, balance: Balance, status: NDArray[np.object_], shape: tuple[int, ...], distance: Array | None
     ) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
-        found = balance.found
+        candidates = balance.found
         flat, patch = balance.posed()
         size = balance.roll.size
         exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
-        place = found.point, found.side, found.number
+        place = candidates.point, candidates.side, candidates.number
         bears, balanced = balance.task.bears, status == BALANCE
-        exists[place] = patch.touch & balanced[found.point] & bears[found.point, found.side]
+        exists[place] = patch.touch & balanced[candidates.point] & bears[candidates.point, candidates.side]
         lifted = balanced[:, None] & ~bears
         unloaded = np.repeat(lifted[..., None], PATCHES, axis=-1).reshape(*shape, 2, PATCHES) if lifted.any() else None
 
@@ -607,20 +611,20 @@ class Wheelset(wl.Rig):
             )
         fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES), "unloaded": unloaded}
         fields |= {
-            "roll": wide(balance.roll[found.point]),
-            "penetration": wide(balance.penetration[found.wheel] - found.gap),
-            "imbalance": wide(balance.imbalance[found.point]),
-            "lateral_displacement": wide(balance.task.displacement[found.point]),
-            "guiding_force": wide(balance.lateral[found.point, found.side]),
-            "wheel_load": wide(balance.vertical[found.point, found.side]),
-            "derailment_quotient": wide((balance.lateral / balance.vertical)[found.point, found.side]),
+            "roll": wide(balance.roll[candidates.point]),
+            "penetration": wide(balance.penetration[candidates.wheel] - candidates.gap),
+            "imbalance": wide(balance.imbalance[candidates.point]),
+            "lateral_displacement": wide(balance.task.displacement[candidates.point]),
+            "guiding_force": wide(balance.lateral[candidates.point, candidates.side]),
+            "wheel_load": wide(balance.vertical[candidates.point, candidates.side]),
+            "derailment_quotient": wide((balance.lateral / balance.vertical)[candidates.point, candidates.side]),
             "status": np.broadcast_to(status[:, None, None], exists.shape).reshape(*shape, 2, PATCHES),
         }
         return WheelsetProblem(**fields, balance=balance, shape=shape)
 
-    def _check_contact(self, displacement: Array, found: Touching) -> None:
+    def _check_contact(self, displacement: Array, touching: Touching) -> None:
         """Raise an error where a wheel does not stand on its rail."""
-        lost = np.isnan(found.arc[..., 0])
+        lost = np.isnan(touching.arc[..., 0])
         if lost.any():
             point, side = (int(index[0]) for index in np.nonzero(lost))
             raise wl.ConditionsError(
@@ -631,10 +635,10 @@ class Wheelset(wl.Rig):
 
     def _warn_of_climbing(self, balance: Balance) -> None:
         """Warn of a wheel that stands on the top of its flange."""
-        found = balance.found
+        candidates = balance.found
         over = _climbing(balance)
         if over.any():
-            point, side = (int(index[over][0]) for index in (found.point, found.side))
+            point, side = (int(index[over][0]) for index in (candidates.point, candidates.side))
             displacement = 1e3 * balance.task.displacement[point]
             warnings.warn(
                 f"at a lateral displacement of {displacement:.4g} mm the {DIMS['side'][side]} wheel climbs its rail: it"
@@ -738,7 +742,9 @@ class Wheelset(wl.Rig):
     @cached_property
     def _elastic(self) -> Elastic:
         pair = [body.material for body in self.bodies.values()]
-        (e1, n1), (e2, n2) = ((wl.scalar_si(one.youngs_modulus, "Pa"), one.poisson_ratio) for one in pair)
+        (e1, n1), (e2, n2) = (
+            (wl.scalar_si(material.youngs_modulus, "Pa"), material.poisson_ratio) for material in pair
+        )
         return Elastic(
             wl.hertz.effective_modulus(e1, n1, e2, n2),
             wl.hertz.mean_shear_modulus(0.5 * e1 / (1.0 + n1), 0.5 * e2 / (1.0 + n2)),
@@ -749,13 +755,13 @@ class Wheelset(wl.Rig):
 
 def _climbing(balance: Balance) -> NDArray[np.bool_]:
     """Return which places are the first of a wheel and on its flange beyond the steepest place."""
-    steepest = np.array([one.steepest for one in balance.section.sides])
-    found = balance.found
-    over = (found.number == 0) & (found.arc < steepest[found.side])
-    return np.asarray(over & balance.task.bears[found.point, found.side])
+    steepest = np.array([pair.steepest for pair in balance.section.sides])
+    candidates = balance.found
+    over = (candidates.number == 0) & (candidates.arc < steepest[candidates.side])
+    return np.asarray(over & balance.task.bears[candidates.point, candidates.side])
 
 
-def _one(unit: wl.Unit, value: wl.QuantityLike, name: str) -> float:
+def _scalar(unit: wl.Unit, value: wl.QuantityLike, name: str) -> float:
     """Return an argument with one value in SI, or raise an error that names it."""
     array = unit.si(value, name)
     if array.ndim:

@@ -40,16 +40,16 @@ def section(study: wl.Study) -> wl.Section:
     for name in study.case.profiles:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wl.WearlawWarning)  # the profiles of the study have said them
-            found = {
+            predictions = {
                 pair.label: pair.pipeline(**study.conditions(profile=name))
                 for pair in study.pairs
                 if pair.pipeline.scale == "cells"
             }
-        if not found:
+        if not predictions:
             continue
-        first = next(iter(found.values()))
+        first = next(iter(predictions.values()))
         tables[f"patches_{name}"] = _table(first)
-        figures += rig.profile_figures(found, name)
+        figures += rig.profile_figures(predictions, name)
     return wl.Section(
         title="The wheelset on its rails",
         text="Patch 1 of a wheel is the one that touches first. y runs to the right and z down. Forces act from the"
@@ -65,15 +65,15 @@ def section(study: wl.Study) -> wl.Section:
 def _geometry(rig: Wheelset) -> wl.FigureData:
     """Return rolling radius difference and contact angle of rigid wheels."""
     there = DISPLACEMENTS[rig.on_rails(1e-3 * DISPLACEMENTS)]
-    found = rig.geometry(lateral_displacement=wl.Q(there, "mm")).dataset
-    across = found["lateral_displacement"].values
+    dataset = rig.geometry(lateral_displacement=wl.Q(there, "mm")).dataset
+    across = dataset["lateral_displacement"].values
     x = wl.PlotAxis("lateral displacement [mm]")
-    radius = wl.Curve("right minus left", across, found["rolling_radius_difference"].values, points=True, hollow=True)
+    radius = wl.Curve("right minus left", across, dataset["rolling_radius_difference"].values, points=True, hollow=True)
     angles = [
-        wl.Curve(f"right wheel, patch {patch}", across, found["contact_angle"].sel(side="right", patch=patch).values,
+        wl.Curve(f"right wheel, patch {patch}", across, dataset["contact_angle"].sel(side="right", patch=patch).values,
                  colour=number, points=True, hollow=True)
-        for number, patch in enumerate(found["patch"].values)
-        if found["contact_angle"].sel(side="right", patch=patch).notnull().any()
+        for number, patch in enumerate(dataset["patch"].values)
+        if dataset["contact_angle"].sel(side="right", patch=patch).notnull().any()
     ]  # fmt: skip
     conicity = rig.equivalent_conicity(amplitude=wl.Q(3.0, "mm"))
     return wl.FigureData(
@@ -88,18 +88,18 @@ def _geometry(rig: Wheelset) -> wl.FigureData:
     )
 
 
-def _table(found: wl.Prediction) -> pd.DataFrame:
+def _table(prediction: wl.Prediction) -> pd.DataFrame:
     """Return the existing patches in rows."""
-    exists = found.problem.exists
+    exists = prediction.problem.exists
     assert exists is not None
     place = np.nonzero(exists)
-    sides, patches = (found.problem.dims[name] for name in ("side", "patch"))
+    sides, patches = (prediction.problem.dims[name] for name in ("side", "patch"))
     rows: dict[str, object] = {
         "side": [sides[index] for index in place[-2]],
         "patch": [patches[index] for index in place[-1]],
     }
-    radius = np.asarray(found.problem.body("wheel").rolling_radius)
+    radius = np.asarray(prediction.problem.body("wheel").rolling_radius)
     rows["rolling radius [mm]"] = 1e3 * radius[place]
     for name, unit in COLUMNS.items():
-        rows[f"{name.replace('_', ' ')} [{unit}]"] = found[name].to(unit).magnitude[place]
+        rows[f"{name.replace('_', ' ')} [{unit}]"] = prediction[name].to(unit).magnitude[place]
     return pd.DataFrame(rows)
