@@ -87,12 +87,12 @@ def _unmet(name: str, versions: str) -> str:
     except InvalidSpecifier:
         return f"{shown(versions)} is not a version range; write one such as '>=1.2,<2'"
     try:
-        found = version(name)
+        installed = version(name)
     except PackageNotFoundError:
         return f"is not installed; install it with: pip install '{name}{versions}'"
-    return (
-        "" if allowed.contains(found, prereleases=True) else f"version {found} is installed, but {versions} is needed"
-    )
+    if allowed.contains(installed, prereleases=True):
+        return ""
+    return f"version {installed} is installed, but {versions} is needed"
 
 
 def _section(name: str) -> str:
@@ -175,27 +175,27 @@ class Case(Configuration):
 
     @field_validator("sweeps", "profiles", "uncertainty", "figures")
     @classmethod
-    def _have_names_of_files(cls, given: dict[str, Any]) -> dict[str, Any]:
+    def _have_names_of_files(cls, tables: dict[str, Any]) -> dict[str, Any]:
         """Check the names, which are part of the names of files."""
         fault = "must be made of letters, digits and underscores"
-        wrong = [name for name in given if not name.isidentifier()]
+        wrong = [name for name in tables if not name.isidentifier()]
         if wrong:
             raise ConfigurationError(cls.subject(), [Fault((), f"the name {shown(name)} {fault}") for name in wrong])
-        return given
+        return tables
 
     @field_validator("sweeps", "profiles", "uncertainty")
     @classmethod
-    def _fit_the_rig(cls, given: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
+    def _fit_the_rig(cls, tables: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
         """Let the rig check conditions when the case is read, not when it runs; a wrong rig checks none."""
         rig, wrong = info.data.get("rig"), []
-        for name, point in given.items():
+        for name, point in tables.items():
             if info.field_name == "profiles" and point.axes():
                 wrong.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
             if rig is not None:
                 wrong += [Fault((name, *fault.path), fault.message) for fault in point.faults(rig)]
         if wrong:
             raise ConfigurationError(cls.subject(), wrong)
-        return given if rig is None else {name: point.ordered(rig) for name, point in given.items()}
+        return tables if rig is None else {name: point.ordered(rig) for name, point in tables.items()}
 
     @cached_property
     def units(self) -> dict[str, str]:
@@ -278,17 +278,17 @@ def case_text(name_or_path: str) -> str:
     UnknownModelError
         If several plugins ship a case of that name.
     """
-    found = loader.discovered()
-    known = found["case"].items()
-    if name_or_path in found["case"].providers:
-        text: str = found.find("case", name_or_path)
+    plugins = loader.discovered()
+    cases = plugins["case"].items()
+    if name_or_path in plugins["case"].providers:
+        text: str = plugins.find("case", name_or_path)
         return text
     try:
         return read_text(name_or_path, LARGEST)
     except FileNotFoundError:
-        hint = did_you_mean(name_or_path, known)
+        hint = did_you_mean(name_or_path, cases)
         raise CaseError(
-            f"there is no case file {shown(Path(name_or_path))}{hint} Shipped cases: {', '.join(known)}"
+            f"there is no case file {shown(Path(name_or_path))}{hint} Shipped cases: {', '.join(cases)}"
         ) from None
     except InputError as error:
         raise CaseError(f"cannot read the case file {shown(Path(name_or_path))}: {error}") from None
@@ -298,11 +298,11 @@ def case_schema() -> dict[str, Any]:
     """Return the JSON Schema of a case file, with the options of all installed models."""
     schema = Case.model_json_schema(by_alias=True)
     definitions = schema["$defs"]
-    properties, found = schema["properties"], loader.discovered()
+    properties, plugins = schema["properties"], loader.discovered()
     for field in ("contact_models", "stages", "laws", "wear_laws"):
-        shelf = found[field.replace("_", " ").removesuffix("s")]
+        shelf = plugins[field.replace("_", " ").removesuffix("s")]
         properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
-    sets = found["parameter set"]
+    sets = plugins["parameter set"]
     for laws in ("laws", "wear_laws"):
         file = {"type": "string", "pattern": r"\.toml$"}
         properties[laws]["items"]["anyOf"] += [
@@ -314,22 +314,22 @@ def case_schema() -> dict[str, Any]:
         *({**table, "required": ["model"]} for table in _tables(sets, definitions)),
     ]
     schema["anyOf"] = [{"required": [name], "properties": {name: {"minItems": 1}}} for name in ("wear_laws", "laws")]
-    outcomes = [law.outcome.name for law in found["law"].items().values()]
+    outcomes = [law.outcome.name for law in plugins["law"].items().values()]
     for window, field in (("FigureSpec", "y"), ("FigureSpec", "map"), ("Window", "y")):
         _add_outcomes(definitions[window]["properties"][field], outcomes)
-    properties["sections"]["items"] = {"enum": list(found["section"].items())}
-    rigs = found["rig"].items()
-    bare = [name for name, rig in rigs.items() if not any(one.is_required() for one in rig.model_fields.values())]
+    properties["sections"]["items"] = {"enum": list(plugins["section"].items())}
+    rigs = plugins["rig"].items()
+    bare = [name for name, rig in rigs.items() if not any(option.is_required() for option in rig.model_fields.values())]
     properties["rig"] = {"anyOf": [{"enum": bare}]}
     axis, schema["allOf"] = definitions["FigureSpec"]["properties"]["x"], []
     for name, rig in rigs.items():
-        with _left_out(found["rig"], name):
-            tables, known = list(_rig_tables(name, rig, definitions)), rig.conditions()
-            if known:
+        with _left_out(plugins["rig"], name):
+            tables, conditions = list(_rig_tables(name, rig, definitions)), rig.conditions()
+            if conditions:
                 this = {"properties": {"rig": {"anyOf": _named(name, rig)}}}
                 schema["allOf"].append({"if": this, "then": {"properties": _conditions(rig, definitions)}})
             properties["rig"]["anyOf"] += tables
-            axis["enum"] = list(dict.fromkeys([*axis["enum"], *known]))
+            axis["enum"] = list(dict.fromkeys([*axis["enum"], *conditions]))
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
@@ -382,28 +382,28 @@ def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
 
 def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
     """Return the schemas of the tables of a case that hold a rig's conditions."""
-    found, known = {}, rig.conditions()
-    needed = [name for name, condition in known.items() if condition.required]
-    given = [{"required": needed}, *({"oneOf": [{"required": [name]} for name in names]} for names in rig.choices)]
+    schemas, conditions = {}, rig.conditions()
+    needed = [name for name, condition in conditions.items() if condition.required]
+    rules = [{"required": needed}, *({"oneOf": [{"required": [name]} for name in names]} for names in rig.choices)]
     kinds: dict[str, Any] = {"sweeps": Condition, "profiles": Condition, "uncertainty": UncertainCondition}
     for field, annotation in kinds.items():
-        one = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
-        definitions.update(one.pop("$defs", {}))
-        properties = {name: {**one, "description": condition.meaning} for name, condition in known.items()}
+        schema = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
+        definitions.update(schema.pop("$defs", {}))
+        properties = {name: {**schema, "description": condition.meaning} for name, condition in conditions.items()}
         if field == "uncertainty":
             properties["laws"] = definitions["UncertainPoint"]["properties"]["laws"]
-        table = {"properties": properties, "allOf": given, "additionalProperties": False}
-        found[field] = {"additionalProperties": table}
-    return found
+        table = {"properties": properties, "allOf": rules, "additionalProperties": False}
+        schemas[field] = {"additionalProperties": table}
+    return schemas
 
 
 def _tables(shelf: Shelf, definitions: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the schema of each model's table."""
-    found = []
+    schemas = []
     for name, item in shelf.items().items():
         with _left_out(shelf, name):
-            found.append(_model_schema(name, item if isinstance(item, type) else type(item), definitions))
-    return found
+            schemas.append(_model_schema(name, item if isinstance(item, type) else type(item), definitions))
+    return schemas
 
 
 def _model_schema(name: str, model: type[Model], definitions: dict[str, Any], key: str = "model") -> dict[str, Any]:

@@ -132,21 +132,21 @@ def uncertainty(
     total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
     notes = Notes()
     with results_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as bar:
-        found = uncertainty_of(loaded, samples, seed, bar)
+        result = uncertainty_of(loaded, samples, seed, bar)
         bar.stage("writing results")
         with notes.of("figures"):
-            record = {"samples": found.samples, "seed": seed, "provenance": provenance(loaded), "notes": found.notes}
+            record = {"samples": result.samples, "seed": seed, "provenance": provenance(loaded), "notes": result.notes}
             tables = {
-                "wear_rates": found.wear_rates,
-                **({"sobol_indices": found.indices} if len(found.indices) else {}),
+                "wear_rates": result.wear_rates,
+                **({"sobol_indices": result.indices} if len(result.indices) else {}),
             }
             names = write_files(
-                fresh, UNCERTAINTY, record, tables, found.figures, figure_formats, latex, written(loaded)
+                fresh, UNCERTAINTY, record, tables, result.figures, figure_formats, latex, written(loaded)
             )
-    if found.samples != samples:
-        click.echo(f"Samples: {samples} rounded up to {found.samples}, a power of two, as Sobol sequences need it")
-    print_notes(grouped([*found.notes, *notes.texts]))
-    print_table(found.wear_rates.set_index(["point", "pair"]))
-    if len(found.indices):
-        print_table(found.indices.set_index(["point", "pair"]).round(3))
+    if result.samples != samples:
+        click.echo(f"Samples: {samples} rounded up to {result.samples}, a power of two, as Sobol sequences need it")
+    print_notes(grouped([*result.notes, *notes.texts]))
+    print_table(result.wear_rates.set_index(["point", "pair"]))
+    if len(result.indices):
+        print_table(result.indices.set_index(["point", "pair"]).round(3))
     print_results(folder, names)

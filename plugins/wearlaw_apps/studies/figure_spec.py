@@ -121,5 +121,5 @@ class FigureSpec(Window):
         """Return the panels, each with the fields that it inherits."""
         inherited = ("y", "patches", "body", "x_range", "y_range", "x_scale", "y_scale")
         common = {name: getattr(self, name) for name in inherited}
-        own = [{name: value for name, value in panel if value is not None} for panel in self.panels] or [{}]
-        return tuple(Window(**{**common, **window}) for window in own)
+        panels = [{name: value for name, value in panel if value is not None} for panel in self.panels] or [{}]
+        return tuple(Window(**{**common, **window}) for window in panels)

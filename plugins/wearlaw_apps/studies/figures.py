@@ -74,17 +74,17 @@ def figures_of(results: Results) -> tuple[FigureData, ...]:
     every = tuple(_figure(results, name, spec) for name, spec in asked.items())
     if main is None:
         return every
-    first = next((one for one in every if _same(one, main)), main)  # with the title of the case
-    return (first, *(one for one in every if one is not first))
+    first = next((figure for figure in every if _same(figure, main)), main)  # with the title of the case
+    return (first, *(figure for figure in every if figure is not first))
 
 
-def _same(one: FigureData, other: FigureData) -> bool:
+def _same(figure: FigureData, other: FigureData) -> bool:
     """Return whether two figures show the same, whatever their names, titles and captions."""
 
     def shown(panel: Panel) -> Any:
         return panel.x, panel.y, panel.map and panel.map.label, [(curve.label, curve.y.size) for curve in panel.curves]
 
-    return list(map(shown, one.panels)) == list(map(shown, other.panels))
+    return list(map(shown, figure.panels)) == list(map(shown, other.panels))
 
 
 def wrong_figures(results: Results) -> Iterator[Fault]:
@@ -179,8 +179,8 @@ def _plane(sweep: xarray.Dataset, creepage: str | None) -> tuple[str, str] | Non
 
 def fit_for_log(*values: Array) -> bool:
     """Return whether values that nobody chose a scale for are better seen on a logarithmic one."""
-    found = np.concatenate([np.ravel(one) for one in values]) if values else np.zeros(0)
-    seen = found[np.isfinite(found) & (found != 0.0)]
+    numbers = np.concatenate([np.ravel(array) for array in values]) if values else np.zeros(0)
+    seen = numbers[np.isfinite(numbers) & (numbers != 0.0)]
     return bool(seen.size and seen.min() > 0.0 and seen.max() > DECADES * seen.min())
 
 
@@ -208,7 +208,7 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
     kind, of_kind, grids = (
         ("sweep", results.sweeps, case.sweeps) if spec.sweep else ("profile", results.profiles, case.profiles)
     )
-    _choose(kind, [asked], [one for one, dataset in of_kind.items() if dataset])
+    _choose(kind, [asked], [key for key, dataset in of_kind.items() if dataset])
     data, grid = of_kind[asked], grids[asked]
     units, free, more = case.result_units | grid.written_units(), {spec.x, *spec.shown}, ""
     if spec.map:
@@ -241,10 +241,10 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
     )
 
 
-def _choose(path: str, asked: Collection[Any], known: Collection[Any], fault: str = "cannot be shown") -> None:
-    """Raise an error unless all names are known; it says which names are."""
-    names = [str(name) for name in known]
-    wrong = [str(name) for name in asked if name not in known]
+def _choose(path: str, asked: Collection[Any], choices: Collection[Any], fault: str = "cannot be shown") -> None:
+    """Raise an error unless all names are among the choices; it lists them."""
+    names = [str(name) for name in choices]
+    wrong = [str(name) for name in asked if name not in choices]
     if wrong:
         there = f"{did_you_mean(wrong[0], names)} There are: {', '.join(names) or 'none'}"
         raise ConfigurationError("figure", [Fault((path,), f"{shown(wrong[0])} {fault}{there}")])
@@ -297,8 +297,8 @@ class _Series:
     @property
     def outside(self) -> NDArray[np.bool_] | None:
         """Where a pair is outside the range of its law."""
-        found = self.data.get("outside_range")
-        return None if found is None or "pair" in found.dims else found.values > 0.0
+        outside = self.data.get("outside_range")
+        return None if outside is None or "pair" in outside.dims else outside.values > 0.0
 
     def ends(self) -> dict[str, Any]:
         """Return the ends of the band of an outcome, if it has one."""
@@ -310,31 +310,31 @@ class _Series:
     def beyond(self) -> dict[str, xarray.DataArray]:
         """Return where the contact is beyond each limit."""
         limits = beyond_limits(self.data).items()
-        return {name: one.any("contact_model") if "contact_model" in one.dims else one for name, one in limits}
+        return {name: mask.any("contact_model") if "contact_model" in mask.dims else mask for name, mask in limits}
 
 
 def _series(results: Results, data: xarray.Dataset, spec: FigureSpec, variable: str, x: str = "") -> list[_Series]:
     """Return what data hold of a variable: for each pair that predicts it, or for each contact model."""
     dims = {dim for name in (variable, x) if name in data for dim in data[name].dims}
-    models, laws = (list(one) for one in (results.case.contact_models_by_label, results.case.laws_by_label))
+    models, laws = (list(labels) for labels in (results.case.contact_models_by_label, results.case.laws_by_label))
     _choose("pairs", spec.pairs or (), data.pair.values.tolist())
     _choose("contact_models", spec.contact_models or (), data.contact_model.values.tolist())
     chosen = spec.contact_models or data.contact_model.values.tolist()
     if "pair" in dims:
-        found, outcome = [], variable if variable in (*results.case.outcomes, MASS) else WEAR
+        series, outcome = [], variable if variable in (*results.case.outcomes, MASS) else WEAR
         for pair in map(results.pair, predicting(results, outcome, spec.pairs or data.pair.values.tolist())):
             if pair.contact_model in chosen:
                 style = laws.index(pair.law), models.index(pair.contact_model)
                 here = data.sel(pair=pair.label, contact_model=pair.contact_model)
-                found.append(_Series(variable, pair.label, here, style))
-        if not found:
+                series.append(_Series(variable, pair.label, here, style))
+        if not series:
             raise ConfigurationError("figure", [Fault(("pairs",), f"none of the pairs predicts {variable}")])
-        return found
+        return series
     if "contact_model" in dims and variable not in COMMON:
         places = {model: models.index(model) for model in chosen}
         return [_Series(variable, model, data.sel(contact_model=model), (at, at)) for model, at in places.items()]
-    one = data.sel(contact_model=chosen[0]) if variable in COMMON and "contact_model" in dims else data
-    return [_Series(variable, "", one, (0, 0))]
+    common = data.sel(contact_model=chosen[0]) if variable in COMMON and "contact_model" in dims else data
+    return [_Series(variable, "", common, (0, 0))]
 
 
 # Panels of curves
@@ -360,23 +360,23 @@ def _panel(results: Results, data: xarray.Dataset, spec: FigureSpec, window: Win
     curves: list[Curve] = []
     spans: Spans = []
     for patch in patches_of(data, window.patches):
-        found = []
+        of_patch = []
         for number, name in enumerate(names):
-            for one in _series(results, data.sel(patch), spec, name, x):
-                colour, dash = one.style
+            for series in _series(results, data.sel(patch), spec, name, x):
+                colour, dash = series.style
                 if "pair" not in data[name].dims:
                     along_patch = bool(spec.profile) and name in OF_PROFILE
                     colour = OF_PROFILE.index(name) if along_patch else number if len(names) > 1 else colour
-                curve = _curve(results, one, spec, window, x, units)
+                curve = _curve(results, series, spec, window, x, units)
                 if not curve.x.size:  # a law for the other body
                     continue
-                found.append(replace(curve, colour=colour, dash=dash))
-                spans += _beyond(one, curve, spec, window)
+                of_patch.append(replace(curve, colour=colour, dash=dash))
+                spans += _beyond(series, curve, spec, window)
         if patch:
             number = possible_patches(data).index(patch)
-            found = [replace(curve, label=labelled_by(patch, curve.label), colour=number, dash=dash)
-                     for dash, curve in enumerate(found)]  # fmt: skip
-        curves += found
+            of_patch = [replace(curve, label=labelled_by(patch, curve.label), colour=number, dash=dash)
+                        for dash, curve in enumerate(of_patch)]  # fmt: skip
+        curves += of_patch
     curves += [_measured(results, x, y, units) for y in window.shown if spec.measured]
     # A logarithmic axis hides values that are not positive, as at zero creepage.
     log = window.x_scale == "log" and any((curve.x > 0.0).any() for curve in curves)
@@ -390,37 +390,39 @@ def _panel(results: Results, data: xarray.Dataset, spec: FigureSpec, window: Win
 def _check_names(data: xarray.Dataset, spec: FigureSpec, window: Window, head: str) -> None:
     """Raise an error unless the variables of a panel are those of the results."""
     endings = ("_low", "_high", "_error", "_position")
-    known = [str(name) for name in data.data_vars if name not in NOT_SHOWN and not str(name).endswith(endings)]
+    variables = [str(name) for name in data.data_vars if name not in NOT_SHOWN and not str(name).endswith(endings)]
     if head:
-        known = [name.removeprefix(head) for name in known if name.startswith(head)]
-    _choose("y", window.shown, known)
+        variables = [name.removeprefix(head) for name in variables if name.startswith(head)]
+    _choose("y", window.shown, variables)
     if spec.sweep:
-        _choose("x", [spec.x], [*axes_of(data), *(name for name in known if "pair" not in data[name].dims)])
+        _choose("x", [spec.x], [*axes_of(data), *(name for name in variables if "pair" not in data[name].dims)])
     elif spec.x != ("y" if head else "x"):
         _choose("x", [spec.x], ["y" if head else "x"])
 
 
-def _curve(results: Results, one: _Series, spec: FigureSpec, window: Window, x: str, units: Mapping[str, str]) -> Curve:
+def _curve(
+    results: Results, series: _Series, spec: FigureSpec, window: Window, x: str, units: Mapping[str, str]
+) -> Curve:
     """Return the curve of a series, as magnitudes over the sweep of a single patch."""
-    data, several = one.data, len(window.shown) > 1
+    data, several = series.data, len(window.shown) > 1
     if spec.profile:
-        there = data[one.variable].notnull().values
-        at, values = data[x].values[there], data[one.variable].values[there]
-        outside = one.outside
+        there = data[series.variable].notnull().values
+        at, values = data[x].values[there], data[series.variable].values[there]
+        outside = series.outside
         if outside is not None:
             other = "y" in data and results.is_for_other_body(
-                one.of, window.body or next(iter(results.case.rig.bodies))
+                series.of, window.body or next(iter(results.case.rig.bodies))
             )
             outside = np.full(values.shape, bool(outside) or other)
-        named = one.of if "y" in data else one.label(several or outside is None)
+        named = series.of if "y" in data else series.label(several or outside is None)
         curve = Curve(named, at, values, outside=outside)
-        return _to_the_edges(curve) if "y" in data or one.variable in ALONG[0] else curve
-    signed = bool(data.attrs.get("patch_axes")) or one.outside is not None
+        return _to_the_edges(curve) if "y" in data or series.variable in ALONG[0] else curve
+    signed = bool(data.attrs.get("patch_axes")) or series.outside is not None
     at = data[x].values if data.attrs.get("patch_axes") else np.abs(data[x].values)
     at = _converted(at, results.case.result_units[x], units[x])
-    values = data[one.variable].values if signed else np.abs(data[one.variable].values)
-    bands = one.ends()
-    return Curve(one.label(several), at, np.broadcast_to(values, at.shape), outside=one.outside, **bands)
+    values = data[series.variable].values if signed else np.abs(data[series.variable].values)
+    bands = series.ends()
+    return Curve(series.label(several), at, np.broadcast_to(values, at.shape), outside=series.outside, **bands)
 
 
 def _to_the_edges(curve: Curve) -> Curve:
@@ -433,9 +435,9 @@ def _to_the_edges(curve: Curve) -> Curve:
     return replace(curve, x=x, y=np.pad(curve.y, 1), outside=outside)
 
 
-def _beyond(one: _Series, curve: Curve, spec: FigureSpec, window: Window) -> Spans:
+def _beyond(series: _Series, curve: Curve, spec: FigureSpec, window: Window) -> Spans:
     """Return where the contact is beyond shakedown, as spans of x."""
-    beyond = one.beyond().get(SHAKEDOWN)
+    beyond = series.beyond().get(SHAKEDOWN)
     if beyond is None or not curve.x.size:
         return []
     there = np.broadcast_to(beyond.values, curve.x.shape) & np.isfinite(curve.x)
@@ -451,8 +453,8 @@ def _beyond(one: _Series, curve: Curve, spec: FigureSpec, window: Window) -> Spa
 
 def _converted(values: Array, unit: str, wanted: str) -> Array:
     """Return values of a unit in the unit in which a figure shows them."""
-    found: Array = values if unit == wanted else Q(values, unit).to(wanted).magnitude
-    return found
+    converted: Array = values if unit == wanted else Q(values, unit).to(wanted).magnitude
+    return converted
 
 
 def _measured(results: Results, x: str, y: str, units: Mapping[str, str]) -> Curve:
@@ -463,12 +465,12 @@ def _measured(results: Results, x: str, y: str, units: Mapping[str, str]) -> Cur
     values = measured_points(measured.data, results.case.rig)
     along_x, up = _converted(abs(values[x]), UNITS[x], units[x]), abs(values[y])
     there = np.isfinite(along_x) & np.isfinite(up)
-    found = Curve(measured.label, along_x[there], up[there], BLACK, points=True)
+    curve = Curve(measured.label, along_x[there], up[there], BLACK, points=True)
     uncertainty = measured.data.wear_rate_uncertainty if y == "wear_rate" else None
     if uncertainty is None:
-        return found
+        return curve
     spread = uncertainty.to(UNITS[y]).magnitude[there]
-    return replace(found, low=found.y - spread, high=found.y + spread)
+    return replace(curve, low=curve.y - spread, high=curve.y + spread)
 
 
 # Maps
@@ -483,14 +485,14 @@ def _maps(
     for path, axis in (("x", x), ("y", y)):
         _choose(path, [axis], axes_of(sweep), "is not an axis of the sweep")
     plane = sweep.isel({axis: sweep.sizes[axis] // 2 for axis in axes_of(sweep) if axis not in (x, y)})
-    found = [
-        (patch, one)
+    all_series = [
+        (patch, series)
         for patch in patches_of(plane, spec.patches)
-        for one in _series(results, plane.sel(patch), spec, variable)
+        for series in _series(results, plane.sel(patch), spec, variable)
     ]
-    signed, own = bool(patch_axes(sweep)), "pair" in plane[variable].dims
-    values = [one.data[variable].transpose(y, x).values for _, one in found]
-    values = values if signed or own else [np.abs(one) for one in values]
+    signed, of_pairs = bool(patch_axes(sweep)), "pair" in plane[variable].dims
+    values = [series.data[variable].transpose(y, x).values for _, series in all_series]
+    values = values if signed or of_pairs else [np.abs(array) for array in values]
     outcome = results.case.outcomes.get(variable)
     scale: Scale = "log" if not (outcome and outcome.signed) and fit_for_log(*values) else "linear"
     axes, places = [], []
@@ -501,15 +503,15 @@ def _maps(
                              _ends(path, name, units, spec)))  # fmt: skip
         places.append(at)
     panels = []
-    for (patch, one), drawn in zip(found[:MOST_MAPS], values, strict=False):
-        regions = {LIMITS[limit]: region.transpose(y, x).values for limit, region in one.beyond().items()}
-        if own:
-            regions[OUTSIDE] = one.data.outside_range.transpose(y, x).values > 0.0
+    for (patch, series), drawn in zip(all_series[:MOST_MAPS], values, strict=False):
+        regions = {LIMITS[limit]: region.transpose(y, x).values for limit, region in series.beyond().items()}
+        if of_pairs:
+            regions[OUTSIDE] = series.data.outside_range.transpose(y, x).values > 0.0
         whole = (f"all {words}" for words, region in regions.items() if region.all())  # no border shows them
-        title = ", ".join(filter(None, (one.of, in_words(patch), *whole)))
+        title = ", ".join(filter(None, (series.of, in_words(patch), *whole)))
         shown_here = Map(label(variable, units=units), places[0], places[1], drawn, scale, regions)
         panels.append(Panel(axes[0], axes[1], (), title, map=shown_here))
-    return panels, len(found) - len(panels)
+    return panels, len(all_series) - len(panels)
 
 
 # Axes
@@ -517,15 +519,15 @@ def _maps(
 
 def _ends(path: str, variable: str, units: Mapping[str, str], window: Window) -> tuple[float, float] | None:
     """Return the ends that a case gives an axis, if any."""
-    given: Range | None = getattr(window, f"{path}_range")
-    if given is None:
+    ends: Range | None = getattr(window, f"{path}_range")
+    if ends is None:
         return None
     unit = units[variable]
     try:
         low, high = (
             end if isinstance(end, float) and not unit
             else float(from_si(Unit(unit, positive=False).si(end, variable), unit).magnitude)
-            for end in given
+            for end in ends
         )  # fmt: skip
     except UnitError as error:
         raise ConfigurationError("figure", [Fault((f"{path}_range",), str(error))]) from None

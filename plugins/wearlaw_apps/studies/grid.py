@@ -105,8 +105,8 @@ class Conditions(Configuration, extra="allow"):
 
     def ordered(self, rig: Rig) -> Self:
         """Return the conditions in the order in which the rig names them."""
-        known = [*rig.conditions(), *self.given]
-        return type(self)(**dict(sorted(self, key=lambda item: known.index(item[0]) if item[0] in known else -1)))
+        order = [*rig.conditions(), *self.given]
+        return type(self)(**dict(sorted(self, key=lambda item: order.index(item[0]) if item[0] in order else -1)))
 
 
 class Grid(Conditions):
@@ -124,7 +124,7 @@ class Grid(Conditions):
     def _axes(self) -> dict[str, Varying]:
         """The conditions that are axes, each in the unit of its first value."""
         read = ((name, _values(value)) for name, value in self.given.items())
-        return {name: Varying(name, *found) for name, found in read if found is not None}
+        return {name: Varying(name, *axis) for name, axis in read if axis is not None}
 
     @cached_property
     def _known(self) -> dict[str, Varying | Known | None]:
@@ -148,29 +148,32 @@ class Grid(Conditions):
 
     def faults(self, rig: Rig) -> list[Fault]:
         """Return what a rig finds wrong at the ends of the axes, one fault for each condition."""
-        found: dict[tuple[str, ...], Fault] = {}
+        faults: dict[tuple[str, ...], Fault] = {}
         for end in (np.min, np.max):
             ends = {name: axis.given(float(end(axis.values))) for name, axis in self._axes.items()}
             for fault in wrong_conditions(rig, {**self.given, **ends}):
-                found.setdefault(fault.path, fault)
-        return list(found.values())
+                faults.setdefault(fault.path, fault)
+        return list(faults.values())
 
     def units(self) -> dict[str, str]:
         """Return the units of the conditions in results: the usual unit of a known variable, else as written."""
-        return {name: shown_unit(name, None if one is None else one.unit) for name, one in self._known.items()}
+        return {
+            name: shown_unit(name, None if condition is None else condition.unit)
+            for name, condition in self._known.items()
+        }
 
     def written_units(self) -> dict[str, str]:
         """Return the unit in which the grid gives each condition; plain numbers and names have none here."""
-        return {name: one.unit for name, one in self._known.items() if one and one.unit}
+        return {name: condition.unit for name, condition in self._known.items() if condition and condition.unit}
 
     def spacing(self, name: str) -> Literal["log", "linear"]:
         """Return how the values of an axis are spaced; a list is logarithmic if its ratios differ less than its steps.
 
         Two values, or values of both signs, are linear.
         """
-        given = self.given[name]
-        if isinstance(given, Axis):
-            return given.spacing
+        condition = self.given[name]
+        if isinstance(condition, Axis):
+            return condition.spacing
         values = np.unique(np.abs(self._axes[name].values))
         if values.size < 3 or values[0] == 0.0 or np.ptp(np.sign(self._axes[name].values)) > 0.0:
             return "linear"
@@ -200,11 +203,11 @@ class Grid(Conditions):
 
     def level(self, name: str, units: Mapping[str, str]) -> float | str:
         """Return the value of a condition in the given unit, or its text; for an axis, its middle value."""
-        known = self._known[name]
-        if known is None:
+        condition = self._known[name]
+        if condition is None:
             return self.given[name]  # type: ignore[no-any-return]
-        middle = np.ravel(known.values)[known.values.size // 2]
-        return float(_converted(name, middle, known.unit or "", units[name])[0])
+        middle = np.ravel(condition.values)[condition.values.size // 2]
+        return float(_converted(name, middle, condition.unit or "", units[name])[0])
 
     def problem(self, rig: Rig) -> Any:
         """Return the contact problem of the first operating point."""
@@ -212,20 +215,20 @@ class Grid(Conditions):
         return _quietly(rig, {**self.given, **first})
 
 
-def wrong_conditions(rig: Rig, given: Mapping[str, Any]) -> Iterator[Fault]:
+def wrong_conditions(rig: Rig, point: Mapping[str, Any]) -> Iterator[Fault]:
     """Yield the unknown and missing conditions of an operating point, or else the first one that the rig refuses."""
-    known = rig.conditions()
-    unknown = [name for name in given if known and name not in known]
-    missing = [name for name, condition in known.items() if condition.required and name not in given]
-    yield from (Fault((name,), unknown_condition(name, known, type(rig))) for name in unknown)
+    conditions = rig.conditions()
+    unknown = [name for name in point if conditions and name not in conditions]
+    missing = [name for name, condition in conditions.items() if condition.required and name not in point]
+    yield from (Fault((name,), unknown_condition(name, conditions, type(rig))) for name in unknown)
     yield from (Fault((name,), "is missing") for name in missing)
     if unknown or missing:
         return
     try:
-        _quietly(rig, given)
+        _quietly(rig, point)
     except WearlawError as error:
         text = str(error)
-        about = next((name for name in given if text.startswith(f"{name}: ")), None)
+        about = next((name for name in point if text.startswith(f"{name}: ")), None)
         yield Fault((about,), text.removeprefix(f"{about}: ")) if about else Fault((), text)
 
 

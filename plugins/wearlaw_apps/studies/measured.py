@@ -82,13 +82,14 @@ def check_rig(tests: WearTests, rig: Rig) -> None:
     InputError
         If the rig does not take their conditions, or does not make line contacts.
     """
-    given, known = _conditions(tests), rig.conditions()
-    other = [name for name in given if known and name not in known]
+    conditions, accepted = _conditions(tests), rig.conditions()
+    other = [name for name in conditions if accepted and name not in accepted]
     if other:
         raise InputError(
-            f"the tests give {', '.join(given)}, but rig '{rig.name}' takes {', '.join(known)}; leave [measured] out"
+            f"the tests give {', '.join(conditions)}, but rig '{rig.name}' takes {', '.join(accepted)};"
+            " leave [measured] out"
         )
-    if rig.checked_problem(given).geometry != "line":
+    if rig.checked_problem(conditions).geometry != "line":
         raise InputError(f"the tests are of line contacts, but rig '{rig.name}' makes others; leave [measured] out")
 
 
@@ -96,8 +97,8 @@ def _conditions(tests: WearTests) -> dict[str, Any]:
     """Return the conditions of tests as a rig takes them."""
     load = next(name for name in LOADS if name in tests.columns)
     friction = tests.columns.get("friction_coefficient", np.ones(len(tests)))  # no variable here depends on it
-    given = from_si(tests.columns[load], COLUMNS[load].unit)
-    return {load: given, "creepage": tests.creepage, "friction_coefficient": friction}
+    loads = from_si(tests.columns[load], COLUMNS[load].unit)
+    return {load: loads, "creepage": tests.creepage, "friction_coefficient": friction}
 
 
 def measured_points(tests: WearTests, rig: Rig) -> dict[str, Array]:

@@ -73,8 +73,8 @@ class Results:
 
     def pair(self, label: str) -> Pair:
         """Return the pair with a label."""
-        (found,) = (pair for pair in self.pairs if pair.label == label)
-        return found
+        (pair,) = (pair for pair in self.pairs if pair.label == label)
+        return pair
 
     def is_for_other_body(self, label: str, body: str) -> bool:
         """Return whether the parameters of a pair's wear law were fitted to another body than this one."""
@@ -124,7 +124,9 @@ def patches_of(sweep: xarray.Dataset, asked: Mapping[str, Collection[Any]] | Non
     axes = patch_axes(sweep)
     if not axes:
         return [{}]
-    of_contact = next(one for one in sweep.data_vars.values() if {"contact_model", *axes} <= set(one.dims))
+    of_contact = next(
+        variable for variable in sweep.data_vars.values() if {"contact_model", *axes} <= set(variable.dims)
+    )
     there = of_contact.notnull().any([dim for dim in of_contact.dims if dim not in axes])
     return [
         patch
@@ -137,7 +139,7 @@ def possible_patches(sweep: xarray.Dataset) -> list[Patch]:
     """Return the labels of each patch that the rig can make, whether it exists or not."""
     axes = patch_axes(sweep)
     labels = itertools.product(*(sweep[axis].values.tolist() for axis in axes))
-    return [dict(zip(axes, one, strict=True)) for one in labels]
+    return [dict(zip(axes, patch, strict=True)) for patch in labels]
 
 
 def labelled_by(patch: Patch, label: str) -> str:
@@ -186,8 +188,10 @@ def together(sweep: xarray.Dataset, outcome: str) -> xarray.Dataset:
     """
     axes = patch_axes(sweep)
     value = sweep[outcome].sum(axes, min_count=1) if outcome == MASS else sweep[outcome].max(axes)
-    found = {outcome: value, "outside_range": sweep.outside_range.max(axes)}
+    variables = {outcome: value, "outside_range": sweep.outside_range.max(axes)}
     if all(name in sweep for name in ("max_pressure", *LIMITS)):
-        found["max_pressure"] = largest = sweep.max_pressure.max(axes)
-        found |= {limit: largest * (sweep[limit] / sweep.max_pressure).min(axes) for limit in LIMITS}
-    return sweep.drop_dims(axes).assign({name: one.assign_attrs(sweep[name].attrs) for name, one in found.items()})
+        variables["max_pressure"] = largest = sweep.max_pressure.max(axes)
+        variables |= {limit: largest * (sweep[limit] / sweep.max_pressure).min(axes) for limit in LIMITS}
+    return sweep.drop_dims(axes).assign(
+        {name: variable.assign_attrs(sweep[name].attrs) for name, variable in variables.items()}
+    )

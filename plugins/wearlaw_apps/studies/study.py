@@ -85,7 +85,8 @@ class Study(Results):
         return figures_of(self)
 
     def __repr__(self) -> str:
-        pairs, profiles = [pair.label for pair in self.pairs], [name for name, one in self.profiles.items() if one]
+        pairs = [pair.label for pair in self.pairs]
+        profiles = [name for name, profile in self.profiles.items() if profile]
         rows = {"pairs": pairs, "sweeps": self.sweeps, "profiles": profiles, "sections": self.case.sections}
         parts = [f"  {row}: {', '.join(those)}" for row, those in rows.items() if those]
         return "\n".join([f"Study of {shown(self.case.title)}, with {len(self.notes)} notes", *parts])
@@ -153,9 +154,9 @@ def _check_figures(case: Case, pairs: list[Pair], profiles: dict[str, xarray.Dat
 
 def _section(name: str, study: Study, notes: Notes) -> Section:
     """Return the section that a plugin makes from a study."""
-    found = loader.discovered()
-    make = found.find("section", name)
-    subject = f"section '{name}' of {found['section'].origin(name)}"
+    plugins = loader.discovered()
+    make = plugins.find("section", name)
+    subject = f"section '{name}' of {plugins['section'].origin(name)}"
     try:
         with notes.of(f"section '{name}'"):
             section = make(study)
@@ -190,26 +191,26 @@ def provenance(case: Case) -> dict[str, Any]:
 
 def used(case: Case) -> dict[str, dict[str, str]]:
     """Return the models and other named items of a case, by kind and name, with distribution and version."""
-    found = loader.discovered()
+    plugins = loader.discovered()
     named: dict[type, Shelf] = {
-        WearLaw: found["parameter set"],
-        Material: found["material"],
-        Case: found["case"],
+        WearLaw: plugins["parameter set"],
+        Material: plugins["material"],
+        Case: plugins["case"],
     }
-    origins: dict[str, dict[str, str]] = {kind: {} for kind in found.shelves}
+    origins: dict[str, dict[str, str]] = {kind: {} for kind in plugins.shelves}
     for part in parts(case):
         if isinstance(part, Model):
-            origins[part.kind][part.name] = found[part.kind].distribution(part.name, type(part))
+            origins[part.kind][part.name] = plugins[part.kind].distribution(part.name, type(part))
         name = known_name(part)
         if name is not None:
             (shelf,) = (shelf for kind, shelf in named.items() if isinstance(part, kind))
             origins[shelf.kind][name] = shelf.distribution(name)
         if isinstance(part, Material) and type(part) is not Material:
-            types, cls = found["material type"], type(part)
+            types, cls = plugins["material type"], type(part)
             origins[types.kind][cls.__name__] = types.distribution(cls.__name__, cls)
     if case.measured is not None and case.measured.shipped:
-        origins["test set"] = {case.measured.tests: found["test set"].distribution(case.measured.tests)}
-    origins["section"] = {name: found["section"].distribution(name) for name in case.sections}
+        origins["test set"] = {case.measured.tests: plugins["test set"].distribution(case.measured.tests)}
+    origins["section"] = {name: plugins["section"].distribution(name) for name in case.sections}
     return {kind: dict(sorted(names.items())) for kind, names in origins.items()}
 
 
@@ -253,26 +254,27 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
     levels = {v: grid.level(v, case.units) for v in grid.given}
     fixed = {v: level for v, level in levels.items() if isinstance(level, float)}
-    given = fixed if first.dims else points.varying  # a condition for all patches is not the variable of one of them
+    # A condition for all patches is not the variable of one of them.
+    conditions = fixed if first.dims else points.varying
     of_pairs: dict[str, xarray.Dataset] = {}
     contacts: dict[str, xarray.Dataset] = {}
     of_points = xarray.Dataset(
-        coords={axis: (axis, one.values, {"units": units[axis]}) for axis, one in points.varying.items()}
+        coords={axis: (axis, varying.values, {"units": units[axis]}) for axis, varying in points.varying.items()}
         | {axis: list(labels) for axis, labels in first.dims.items()}
     )
     for number, pair in enumerate(usable):
-        known = pair.contact_model in contacts
+        evaluated = pair.contact_model in contacts
         of_pair = _of_pair(pair, first)
-        of_contact, of_every = ([], []) if known else _of_contact(pair, first, case, given)
+        of_contact, of_every = ([], []) if evaluated else _of_contact(pair, first, case, conditions)
         of_point = [v for v in of_every if v not in of_points]
         with notes.of(f"sweep '{name}'"):
             warn_of_unlike_materials(pair.pipeline.contact_model, first)
             outputs = [*of_pair, *of_contact, *of_point]
-            found = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first)
-        band = _band(f"{name}-{number}", pair, points, first, found, evaluator)
-        of_pairs[pair.label] = found[of_pair].assign(band)
-        contacts.setdefault(pair.contact_model, found[of_contact])
-        of_points = of_points.assign(found[of_point].data_vars)
+            data = evaluator(f"{name}-{number}", pair.pipeline, points, outputs, first)
+        band = _band(f"{name}-{number}", pair, points, first, data, evaluator)
+        of_pairs[pair.label] = data[of_pair].assign(band)
+        contacts.setdefault(pair.contact_model, data[of_contact])
+        of_points = of_points.assign(data[of_point].data_vars)
     dataset = _side_by_side(of_pairs, contacts).assign(of_points.variables)
     dataset = dataset.assign(
         {v: (points.dims, np.full(points.shape, level), {"units": units[v]})
@@ -292,8 +294,8 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
 def _side_by_side(of_pairs: Mapping[str, xarray.Dataset], contacts: Mapping[str, xarray.Dataset]) -> xarray.Dataset:
     """Return the variables of pairs and of contact models in one dataset; what one of them lacks is NaN."""
     along = (("pair", of_pairs), ("contact_model", contacts))
-    found = [xarray.concat([*every.values()], xarray.Variable(dim, [*every]), join="outer") for dim, every in along]
-    return xarray.merge(found, join="outer", compat="no_conflicts")
+    datasets = [xarray.concat([*every.values()], xarray.Variable(dim, [*every]), join="outer") for dim, every in along]
+    return xarray.merge(datasets, join="outer", compat="no_conflicts")
 
 
 def _of_pair(pair: Pair, problem: Problem) -> list[str]:
@@ -306,17 +308,17 @@ def _of_pair(pair: Pair, problem: Problem) -> list[str]:
     return [pair.outcome.name, *error, "outside_range", *mass]
 
 
-def _of_contact(pair: Pair, problem: Problem, case: Case, given: Collection[str]) -> tuple[list[str], list[str]]:
+def _of_contact(pair: Pair, problem: Problem, case: Case, conditions: Collection[str]) -> tuple[list[str], list[str]]:
     """Return the variables of a contact model but those given, and those of the points, which do not depend on it.
 
     If the rig balances its loads, all depend on it.
     """
     with caught_warnings():  # the sweep repeats them
         prediction = pair.pipeline.without_law().predict(problem)
-    of_contact = [v for v in offered(prediction, OF_CONTACT) if v not in given]
+    of_contact = [v for v in offered(prediction, OF_CONTACT) if v not in conditions]
     # A rig may use the name of a variable for something else.
     same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
-    of_point = [v for v in same if v not in given]
+    of_point = [v for v in same if v not in conditions]
     return (of_contact, of_point) if type(case.rig).balanced is Rig.balanced else (of_contact + of_point, [])
 
 
@@ -334,13 +336,13 @@ def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[P
 
 
 def _band(
-    key: str, pair: Pair, points: Points, first: Problem, found: xarray.Dataset, evaluator: _Evaluator
+    key: str, pair: Pair, points: Points, first: Problem, data: xarray.Dataset, evaluator: _Evaluator
 ) -> dict[str, xarray.DataArray]:
     """Return the ends of the outcome over the published range of the law's parameters; wear rates have them anyway."""
     outcome, ends = pair.outcome.name, _band_ends(pair.pipeline)
     names = (f"{outcome}_low", f"{outcome}_high")
     if not ends:
-        return dict.fromkeys(names, found[outcome]) if outcome == WEAR else {}
+        return dict.fromkeys(names, data[outcome]) if outcome == WEAR else {}
     with caught_warnings():  # the middle of the band gave them already
         return {
             name: evaluator(f"{key}-{name}", end, points, [outcome], first)[outcome]
@@ -393,18 +395,18 @@ def _by_patch(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Datas
     each = []
     for labels in itertools.product(*axes.values()):
         patch = dict(zip(axes, labels, strict=True))
-        place = tuple(known.index(label) for known, label in zip(axes.values(), labels, strict=True))
+        place = tuple(axis.index(label) for axis, label in zip(axes.values(), labels, strict=True))
         if exists is None or exists[place]:
-            of_law, one = _seen(prediction.sel(**patch), rig)
-            if not one:
-                return [], one
-            (position,) = map(str, one.dims)
-            one = one.reset_index(position).rename_dims({position: "node"}).reset_coords(position)
-            numbered = one.assign_coords(node=range(one.sizes["node"]))
+            of_law, profile = _seen(prediction.sel(**patch), rig)
+            if not profile:
+                return [], profile
+            (position,) = map(str, profile.dims)
+            profile = profile.reset_index(position).rename_dims({position: "node"}).reset_coords(position)
+            numbered = profile.assign_coords(node=range(profile.sizes["node"]))
             each.append(numbered.expand_dims({axis: [label] for axis, label in patch.items()}))
-    found = xarray.merge(each, join="outer", compat="no_conflicts")
-    found = found.reindex({axis: np.array(labels) for axis, labels in axes.items()})
-    return of_law, found.assign_attrs({PATCH_AXES: " ".join(axes)})
+    merged = xarray.merge(each, join="outer", compat="no_conflicts")
+    merged = merged.reindex({axis: np.array(labels) for axis, labels in axes.items()})
+    return of_law, merged.assign_attrs({PATCH_AXES: " ".join(axes)})
 
 
 def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
@@ -422,7 +424,7 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
         return [*local, *of_law], prediction.profile.assign(whole | of_law)
     bodies = [body for body in rig.bodies if law.body in (None, body)]
     across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS).reset_coords() for body in bodies}
-    named = {f"{body}_{name}": values for body, one in across.items() for name, values in one.data_vars.items()}
+    named = {f"{body}_{name}": values for body, profile in across.items() for name, values in profile.data_vars.items()}
     if not named:
         return [], xarray.Dataset()
     shown = [name for name in named if not name.endswith(("_sliding_distance", "_profile_position"))]

@@ -36,9 +36,9 @@ class Spread(Configuration):
 
     @model_validator(mode="after")
     def _one(self) -> Spread:
-        given = [name for name, value in self if value is not None]
-        if len(given) != 1:
-            raise ValueError(f"give one of uniform, normal and lognormal; got {' and '.join(given) or 'none of them'}")
+        names = [name for name, value in self if value is not None]
+        if len(names) != 1:
+            raise ValueError(f"give one of uniform, normal and lognormal; got {' and '.join(names) or 'none of them'}")
         self.distribution()  # raises if it is impossible
         return self
 
@@ -82,10 +82,10 @@ class UncertainPoint(Conditions):
         """Return what is wrong with the conditions, tried at the first number of each distribution."""
         conditions = self.conditions()
         middle = {name: value.first for name, value in conditions.items() if isinstance(value, Distribution)}
-        found = list(wrong_conditions(rig, {**conditions, **middle}))
-        if not found and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
-            found = [Fault((), f"{several}; leave it out")]
-        return found
+        faults = list(wrong_conditions(rig, {**conditions, **middle}))
+        if not faults and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
+            faults = [Fault((), f"{several}; leave it out")]
+        return faults
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as arguments of `uncertainty`."""
@@ -99,18 +99,20 @@ class UncertainPoint(Conditions):
 
     def parameters(self, law: str) -> dict[str, Distribution | PublishedRange]:
         """Return the distributed parameters of a law."""
-        given = self.laws.get(law, {}).items()
-        return {name: value.distribution() if isinstance(value, Spread) else published_range() for name, value in given}
+        parameters = self.laws.get(law, {}).items()
+        return {
+            name: value.distribution() if isinstance(value, Spread) else published_range() for name, value in parameters
+        }
 
-    def wrong_laws(self, known: Mapping[str, Law]) -> Iterator[Fault]:
+    def wrong_laws(self, laws: Mapping[str, Law]) -> Iterator[Fault]:
         """Yield the unknown laws, and the unknown or impossible parameters of the others."""
         for law in self.laws:
-            if law not in known:
-                hint = did_you_mean(law, known)
-                yield Fault(("laws", law), f"the case has no such law{hint} There are: {', '.join(known)}")
+            if law not in laws:
+                hint = did_you_mean(law, laws)
+                yield Fault(("laws", law), f"the case has no such law{hint} There are: {', '.join(laws)}")
                 continue
-            for name, given in self.parameters(law).items():
+            for name, distribution in self.parameters(law).items():
                 try:
-                    parameter(name, given, known[law])
+                    parameter(name, distribution, laws[law])
                 except InputError as error:
                     yield Fault(("laws", law, name), str(error).removeprefix(f"{name}: "))

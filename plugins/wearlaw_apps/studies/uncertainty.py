@@ -73,8 +73,8 @@ def uncertainty_of(
             continue
         with notes.of(subject):
             law = point.parameters(pair.law)
-            one = uncertainty(pair.pipeline, law=law, samples=samples, seed=seed, **point.conditions())
-            each, used = [one.of(outcome) for outcome in one.outcomes], one.samples
+            result = uncertainty(pair.pipeline, law=law, samples=samples, seed=seed, **point.conditions())
+            each, used = [result.of(outcome) for outcome in result.outcomes], result.samples
             rates += [{"point": name, "pair": pair.label, **_interval(single)} for single in each]
         for single in each:
             (outcome,) = single.outcomes
@@ -99,8 +99,8 @@ def uncertainty_of(
     return CaseUncertainty(figures, medians, shares, used, tuple(notes.texts))
 
 
-def _interval(one: Uncertainty) -> dict[str, str | float]:
-    low, high = one.interval(CONFIDENCE)
-    ends = {"median": one.median, f"{50 - 50 * CONFIDENCE:g} %": low, f"{50 + 50 * CONFIDENCE:g} %": high}
-    values = {name: float(value.to(one.unit or "dimensionless").magnitude) for name, value in ends.items()}
-    return {"outcome": one.outcomes[0], "unit": one.unit or "-", **values}
+def _interval(result: Uncertainty) -> dict[str, str | float]:
+    low, high = result.interval(CONFIDENCE)
+    ends = {"median": result.median, f"{50 - 50 * CONFIDENCE:g} %": low, f"{50 + 50 * CONFIDENCE:g} %": high}
+    values = {name: float(value.to(result.unit or "dimensionless").magnitude) for name, value in ends.items()}
+    return {"outcome": result.outcomes[0], "unit": result.unit or "-", **values}

@@ -89,8 +89,9 @@ def write(
         (folder / name).write_text(text, encoding="utf-8")
     names = [REPORT, RESULTS, *([CSV] if csv else []), *case_files]
     (folder / TABLES).mkdir()
-    for name, one in _by_name("table", ((one.name, one) for one in tables(study))).items():
-        names += save_table(one.frame, folder, f"{TABLES}/{name}", latex, one.footnotes)
+    named_tables = ((named.name, named) for named in tables(study))
+    for name, named in _by_name("table", named_tables).items():
+        names += save_table(named.frame, folder, f"{TABLES}/{name}", latex, named.footnotes)
     (folder / FIGURES).mkdir()
     every = (*study.figures, *(figure for section in study.sections for figure in section.figures))
     for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():
@@ -103,13 +104,13 @@ def write(
 
 def _by_name(kind: str, named: Iterable[tuple[str, T]]) -> dict[str, T]:
     """Return things by the names of their files, which must differ and be identifiers."""
-    found: dict[str, T] = {}
+    things: dict[str, T] = {}
     for name, thing in named:
-        if name in found or not name.isidentifier():
-            fault = "another has its name" if name in found else "letters, digits and underscores make a name"
+        if name in things or not name.isidentifier():
+            fault = "another has its name" if name in things else "letters, digits and underscores make a name"
             raise OutputError(f"output: the {kind} {shown(name)} cannot be written: {fault}")
-        found[name] = thing
-    return found
+        things[name] = thing
+    return things
 
 
 def table(study: Study) -> pd.DataFrame:
@@ -120,8 +121,8 @@ def table(study: Study) -> pd.DataFrame:
     """
     rows = pd.concat([_rows(name, sweep) for name, sweep in study.sweeps.items()], ignore_index=True)
     units = study.case.result_units
-    known = (*OF_POINT, *study.case.units, *OF_PATCH)
-    of_point = [name for name in known if name in rows and name not in OF_CONTACT]
+    variables = (*OF_POINT, *study.case.units, *OF_PATCH)
+    of_point = [name for name in variables if name in rows and name not in OF_CONTACT]
     of_pairs = [str(v) for sweep in study.sweeps.values() for v in sweep.data_vars if "pair" in sweep[v].dims]
     of_contact = [name for name in OF_CONTACT if name in rows]
     laws = ("wear_law", "law") if study.case.laws else ("wear_law",)

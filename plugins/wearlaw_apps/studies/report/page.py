@@ -70,7 +70,7 @@ def _template() -> Template:
 def counted(claims: Sequence[CheckedClaim]) -> str:
     """Return how many claims there are of each verdict, such as "3 claims (holds: 2, does not hold: 1)"."""
     verdicts = Counter(claim.verdict for claim in claims)
-    each = ", ".join(f"{one}: {verdicts[one]}" for one in VERDICTS if one in verdicts)
+    each = ", ".join(f"{verdict}: {verdicts[verdict]}" for verdict in VERDICTS if verdict in verdicts)
     return f"{len(claims)} claims ({each})"
 
 

@@ -70,7 +70,7 @@ class NamedTable:
 
 def tables(study: Study) -> list[NamedTable]:
     """Return all tables of a study."""
-    sections = (one for section in study.sections for one in of_section(section))
+    sections = (table for section in study.sections for table in of_section(section))
     return [main_table(study), *summaries(study), *profiles(study), parameters(study), models(study), *sections]
 
 
@@ -92,16 +92,16 @@ def main_table(study: Study) -> NamedTable:
         of_pair, law = sweep.sel(pair=pair.label), pair.pipeline.laws[0]
         values = of_pair[outcome]
         row: dict[str, Any] = {"pair": pair.label}
-        known, point = bool(values.notnull().any()), {}
+        predicted, point = bool(values.notnull().any()), {}
         for word, find in (("least ", values.argmin), ("most ", values.argmax))[0 if axes else 1 :]:
-            found: Any = find(...) if known else {}
+            indices: Any = find(...) if predicted else {}
             word = word if axes else ""
-            row[f"{word}{what}"] = values.isel(found).item() if known else None
-            point = {axis: of_pair[axis].isel({axis: found[axis]}) for axis in axes} if known else {}
+            row[f"{word}{what}"] = values.isel(indices).item() if predicted else None
+            point = {axis: of_pair[axis].isel({axis: indices[axis]}) for axis in axes} if predicted else {}
             if axes:
                 row[f"{word}at"] = ", ".join(_place(study, name, value) for value in point.values())
         if outcome == WEAR:
-            row["that is"] = _as_mass_and_depth(study, name, pair, point) if known else ""
+            row["that is"] = _as_mass_and_depth(study, name, pair, point) if predicted else ""
         row["outside the range"] = _count(of_pair.outside_range.values > 0.0) if law.valid_range else "not known"
         beyond = limits[SHAKEDOWN].sel(contact_model=pair.contact_model).values if limits else None
         row[LIMITS[SHAKEDOWN]] = "not known" if beyond is None else _count(beyond)
@@ -122,20 +122,20 @@ def _as_mass_and_depth(study: Study, name: str, pair: Pair, point: Mapping[str, 
     at = {axis: Q(value.item(), value.attrs["units"]) for axis, value in point.items()}
     pipeline, law = pair.pipeline, pair.pipeline.laws[0]
     with caught_warnings():  # the study has them
-        found = pipeline.predict(pipeline.posed({**study.case.sweeps[name].given, **at}))
-        parts = [f"{_compact(Q(float(found.mass_per_distance.m_as('g/km')), 'g'))}/km"]
+        prediction = pipeline.predict(pipeline.posed({**study.case.sweeps[name].given, **at}))
+        parts = [f"{_compact(Q(float(prediction.mass_per_distance.m_as('g/km')), 'g'))}/km"]
         body = law.body or next(iter(study.case.rig.bodies), None)
         if body is not None:
             with suppress(InputError):  # a rail does not turn
-                depth = Q(float(found.depth_per_distance(body).m_as("mm/km")), "m")
+                depth = Q(float(prediction.depth_per_distance(body).m_as("mm/km")), "m")
                 parts.append(f"{body} {_compact(depth)} in 1000 km")
     return "; ".join(parts)
 
 
 def _compact(quantity: Any) -> str:
     """Return a quantity in the unit in which it has few digits, such as "1.2 mm" for 0.0012 m."""
-    found = quantity.to_compact()
-    return f"{found.magnitude:.4g} {symbol(found.units, '~P')}"
+    compact = quantity.to_compact()
+    return f"{compact.magnitude:.4g} {symbol(compact.units, '~P')}"
 
 
 def _borders(law: Law) -> str:
@@ -148,8 +148,8 @@ def _borders(law: Law) -> str:
     for name, values in borders.items():
         unit = UNITS.get(name, "")
         numbers = ", ".join(f"{from_si(value, unit).magnitude:.4g}" if unit else f"{value:.4g}" for value in values)
-        known = VARIABLES.get(name)
-        shown.append(f"{(known and known.symbol) or name_of(name)} {numbers} {readable(unit)}".rstrip())
+        variable = VARIABLES.get(name)
+        shown.append(f"{(variable and variable.symbol) or name_of(name)} {numbers} {readable(unit)}".rstrip())
     return "; ".join(shown) or "none"
 
 
@@ -170,7 +170,7 @@ def summaries(study: Study) -> list[NamedTable]:
             summary(sweep, creepage, outcome, predicting(study, outcome, sweep.pair.values.tolist())),
         )
         for name, sweep in study.sweeps.items()
-        for outcome in (*(one.name for one in outcomes_of(study, sweep)), *((MASS,) if MASS in sweep else ()))
+        for outcome in (*(outcome.name for outcome in outcomes_of(study, sweep)), *((MASS,) if MASS in sweep else ()))
     ]
 
 
@@ -211,11 +211,11 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
     line = together(line, MASS) if outcome == MASS else line
     for pair, patch in itertools.product(pairs, patches_of(line)):
         here = line.sel(patch)
-        one, label = here.sel(pair=pair), labelled_by(patch, pair)
-        marks = _marks(one.outside_range.values > 0.0, beyond_limits(here), one.pair_contact_model.item())
-        values = {label: one[outcome]}
-        if low in one and (one[high] > one[low]).any():
-            values |= {f"{label}, low end": one[low], f"{label}, high end": one[high]}
+        of_pair, label = here.sel(pair=pair), labelled_by(patch, pair)
+        marks = _marks(of_pair.outside_range.values > 0.0, beyond_limits(here), of_pair.pair_contact_model.item())
+        values = {label: of_pair[outcome]}
+        if low in of_pair and (of_pair[high] > of_pair[low]).any():
+            values |= {f"{label}, low end": of_pair[low], f"{label}, high end": of_pair[high]}
         rows |= {label: list(map(Marked, each.values, marks)) for label, each in values.items()}
     heads = [np.format_float_positional(at, precision=4, fractional=False, trim="-") for at in line[axis].values]
     frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
@@ -226,7 +226,7 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
 
 def profiles(study: Study) -> list[NamedTable]:
     """Return a short table for each profile across the patch: the greatest depth on each body, by pair and patch."""
-    found = []
+    profile_tables = []
     for name, profile in study.profiles.items():
         if "y" not in profile:
             continue
@@ -239,8 +239,8 @@ def profiles(study: Study) -> list[NamedTable]:
             columns[f"{body}: greatest depth [{unit}]"], columns[f"{body}: at y [mm]"] = zip(*deepest, strict=True)
         per = ", ".join(f"{body} {depth.attrs['long_name']}" for body, depth in depths.items())
         frame = pd.DataFrame({head: np.array(values, dtype=object) for head, values in columns.items()})
-        found.append(_marked(f"profile_{name}", f"Profile '{name}': wear across the patch, {per}", frame))
-    return found
+        profile_tables.append(_marked(f"profile_{name}", f"Profile '{name}': wear across the patch, {per}", frame))
+    return profile_tables
 
 
 def _deepest(study: Study, profile: xarray.Dataset, pair: str, body: str) -> tuple[Marked, float]:
@@ -266,7 +266,7 @@ def parameters(study: Study) -> NamedTable:
 def models(study: Study) -> NamedTable:
     """Return the distribution and the literature source of each model."""
     origins = used(study.case)
-    rows = [(label, one.kind, origins[one.kind][one.name], one.source) for label, one in _models(study)]
+    rows = [(label, model.kind, origins[model.kind][model.name], model.source) for label, model in _models(study)]
     columns = ["model", "kind", "provided by", "source"]
     return NamedTable("models", "Models", pd.DataFrame(rows, columns=columns))
 
@@ -274,7 +274,9 @@ def models(study: Study) -> NamedTable:
 def _models(study: Study) -> list[tuple[str, Model]]:
     """Return the contact models of all pairs, the stages around them and the laws, with their labels."""
     used_here = [pair.pipeline.contact_model for pair in study.pairs]
-    contact_models = {label: one for label, one in labelled(study.case.contact_models).items() if one in used_here}
+    contact_models = {
+        label: model for label, model in labelled(study.case.contact_models).items() if model in used_here
+    }
     laws = {pair.law: pair.pipeline.laws[0] for pair in study.pairs}
     return [*contact_models.items(), *labelled(study.case.stages).items(), *laws.items()]
 
