@@ -337,9 +337,11 @@ class Problem:
         ConditionsError
             If sizes or coefficients are so extreme that floats overflow or lose their precision.
         """
-        there = self.existing()
-        if not there.size:
-            return self
+        there = self
+        if self.exists is not None:
+            there = self.flatten()
+            if not there.size:
+                return self
         if self.geometry == "line":
             sizes = {"half width": there.a}
         else:

@@ -480,7 +480,8 @@ class Pipeline(Configuration, Generic[P]):
         return self._predicted(problem, RangeWatch(*self.laws, on_block=on_block))
 
     def _predicted(self, problem: Problem, watch: RangeWatch, given: Mapping[str, Any] | None = None) -> Prediction:
-        if problem.resolved is not None and not problem.resolved.any():
+        resolved = None if problem.exists is None else problem.resolved
+        if resolved is not None and not resolved.any():
             raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
         self.warn_of_problem(problem)
         found = self.watched(problem, watch, given)

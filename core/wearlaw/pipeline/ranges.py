@@ -194,11 +194,11 @@ MOST = {name: ratio.most for name, ratio in RATIOS.items()}
 
 def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, float]:
     """Return the `RATIOS` of a problem that are unusual."""
-    if problem.exists is not None:
-        problem = problem.existing()
     found: dict[str, float] = {}
-    if not problem.size:
-        return found
+    if problem.exists is not None:
+        problem = problem.flatten()
+        if not problem.size:
+            return found
     pressure, a = extremes(problem.max_pressure)[1], extremes(problem.a)[1]
     if (friction := extremes(problem.friction_coefficient)[1]) > MOST["friction"]:
         found["friction"] = friction
