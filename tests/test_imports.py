@@ -155,3 +155,11 @@ def test_tests_use_public_names_or_say_on_the_line_why_not() -> None:
     known = modules()
     found = {path: [*private(path.read_text(encoding="utf-8"), known)] for path in TESTS}
     assert {str(path.relative_to(ROOT)): names for path, names in found.items() if names} == {}
+
+
+def test_pages_and_their_examples_import_no_module_of_a_plugin() -> None:
+    docs = ROOT / "docs"
+    pages = [ROOT / "README.md", *docs.glob("*.md"), *docs.glob("gallery/*.py"), *docs.glob("examples/*.py")]
+    wrong = re.compile(r"^\s*(?:>>> )?(?:import|from) wearlaw_(?:models|apps)\b", re.MULTILINE)
+    assert len(pages) > 20
+    assert [page.name for page in pages if wrong.search(page.read_text(encoding="utf-8"))] == []
