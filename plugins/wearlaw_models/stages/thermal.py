@@ -149,9 +149,9 @@ class Thermal(wl.Stage):
             return difference
 
         hot = _root(excess, self.hot_ratio * cold, cold)
-        found = problem.replaced(friction_coefficient=hot)
-        self._warn_if_slow(found, hot < cold)
-        return found
+        heated = problem.replaced(friction_coefficient=hot)
+        self._warn_if_slow(heated, hot < cold)
+        return heated
 
     def mean_rise(self, contact: wl.Contact) -> wl.Quantity:
         """Return the mean rise of the surface temperature over the patch, weighted by the pressure [K].

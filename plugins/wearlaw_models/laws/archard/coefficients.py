@@ -121,15 +121,19 @@ def wear_coefficient(
         result = _scalar(value, source.unit, "value") * target.factor / source.factor
     except wl.UnitError as error:
         raise wl.UnitError(f"{form}, {source.formula}: {error}") from None
-    given = {"hardness": hardness, "density": density, "friction_coefficient": friction_coefficient}
-    known = {name: _scalar(one, EXAMPLES[name][1], name) for name, one in given.items() if one is not None}
-    powers = {name: getattr(target, name) - getattr(source, name) for name in given}
-    missing = [EXAMPLES[name][0] for name, power in powers.items() if power and name not in known]
+    properties = {"hardness": hardness, "density": density, "friction_coefficient": friction_coefficient}
+    numbers = {
+        name: _scalar(quantity, EXAMPLES[name][1], name)
+        for name, quantity in properties.items()
+        if quantity is not None
+    }
+    powers = {name: getattr(target, name) - getattr(source, name) for name in properties}
+    missing = [EXAMPLES[name][0] for name, power in powers.items() if power and name not in numbers]
     if missing:
         raise wl.InputError(
             f"{to}, {target.formula}, from {form}, {source.formula}, needs values of your source: {', '.join(missing)}"
         )
-    result *= float(math.prod(known[name] ** power for name, power in powers.items() if power))
+    result *= float(math.prod(numbers[name] ** power for name, power in powers.items() if power))
     if not 0.0 < result < math.inf:
         raise wl.InputError(f"value: as {to}, {target.formula}, it is too small or too large; check the values")
     if not target.unit:
@@ -147,7 +151,7 @@ EXAMPLES = {
 
 def _form(form: str, argument: str) -> _Form:
     if form not in FORMS:
-        forms = "; ".join(f"{name}, {one.formula}" for name, one in FORMS.items())
+        forms = "; ".join(f"{name}, {entry.formula}" for name, entry in FORMS.items())
         raise wl.InputError(f"{argument}: no form {wl.shown(form)}; there are: {forms}")
     return FORMS[form]
 
