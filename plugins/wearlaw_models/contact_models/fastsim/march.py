@@ -134,10 +134,10 @@ def march(ellipses: Ellipses, count: int, strips: int) -> Cells:
     grow_y = 0.5 * creepage_y / flexibility_y * length
     turn, bound = -half_spin * half_length, 0.5 * centre * (s if ellipses.elliptic else s * s)
     over_x, over_y = 2.0 * flexibility_x / length, 2.0 * flexibility_y / length
-    found = Cells(*np.empty((len(Cells._fields), count, *length.shape)))
+    cells = Cells(*np.empty((len(Cells._fields), count, *length.shape)))
     x = y = np.zeros(length.shape)
     before = 0.0
-    for k, cell in enumerate(zip(*found, strict=True)):
+    for k, cell in enumerate(zip(*cells, strict=True)):
         to_x, to_bound, to_traction_x, to_traction_y, to_slip_x, to_slip_y = cell
         middle, end = (2 * k + 1 - count) / count, 4.0 * (k + 1) * (count - k - 1) / (count * count)
         end = math.sqrt(end) if ellipses.elliptic else end
@@ -152,7 +152,7 @@ def march(ellipses: Ellipses, count: int, strips: int) -> Cells:
         np.multiply(free_x - next_x, over_x, out=to_slip_x)
         np.multiply(free_y - next_y, over_y, out=to_slip_y)
         x, y, before = next_x, next_y, end
-    return Cells(*(array.swapaxes(0, 1) for array in found))
+    return Cells(*(array.swapaxes(0, 1) for array in cells))
 
 
 def drop_gains(cells: Cells) -> None:

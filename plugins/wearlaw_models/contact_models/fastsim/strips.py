@@ -67,10 +67,10 @@ def given_layout(problem: wl.Problem, elliptic: bool) -> Layout:
     The elliptic bound is μp. The parabolic bound is proportional to p² and carries the same load; on an ellipse under
     Hertz's pressure it is the paraboloid.
     """
-    given = problem.strips
-    assert given is not None
+    layout = problem.strips
+    assert layout is not None
     y, width, half_length, p0 = (
-        np.moveaxis(array, -1, 0) for array in (given.y, given.width, given.half_length, given.max_pressure)
+        np.moveaxis(array, -1, 0) for array in (layout.y, layout.width, layout.half_length, layout.max_pressure)
     )
     shape = p0
     if not elliptic:  # ∫ p² dx = 4/3 a p0²
@@ -98,12 +98,12 @@ def layout_at(ellipses: Ellipses, shares: Array) -> Layout:
 
 def solve(problem: wl.Problem, ellipses: Ellipses, layout: Layout, count: int) -> wl.Contact:
     """Return the contact on strips, with as many nodes on each as among `count` strips."""
-    found = strips(ellipses, layout, *nodes_along(count))
-    _clear(ellipses, found.traction_x, found.traction_y, found.slip_x, found.slip_y)
-    x, length, bound, q_x, q_y, s_x, s_y = (array.transpose(2, 0, 1) for array in found[:-1])
+    nodes = strips(ellipses, layout, *nodes_along(count))
+    _clear(ellipses, nodes.traction_x, nodes.traction_y, nodes.slip_x, nodes.slip_y)
+    x, length, bound, q_x, q_y, s_x, s_y = (array.transpose(2, 0, 1) for array in nodes[:-1])
     contact = wl.Contact.from_strips(
         problem.flatten(),
-        forces(layout, found),
+        forces(layout, nodes),
         x=x,
         y=layout.y.T,  # in the memory order of the nodes, strip by strip
         length=length,
@@ -117,8 +117,8 @@ def solve(problem: wl.Problem, ellipses: Ellipses, layout: Layout, count: int) -
 
 def creep_forces(problem: wl.Problem, ellipses: Ellipses, count: int) -> wl.CreepForces:
     """Return the forces of `solve`."""
-    found = forces_alone(ellipses, layout_of(problem, ellipses, count), *nodes_along(count))
-    totals = {name: getattr(found, name) for name in ("longitudinal", "lateral", "spin_moment")}
+    flat_forces = forces_alone(ellipses, layout_of(problem, ellipses, count), *nodes_along(count))
+    totals = {name: getattr(flat_forces, name) for name in ("longitudinal", "lateral", "spin_moment")}
     _clear(ellipses, *totals.values())
     return wl.CreepForces(**{name: problem.unflatten(total) for name, total in totals.items()})
 
@@ -142,10 +142,10 @@ def strips(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int
 
 def forces_alone(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_nodes: int) -> wl.CreepForces:
     """Return the forces and the moment on the nodes of `strips`; compiled loops leave out the fields."""
-    found = _strips(ellipses, layout, stick_nodes + slip_nodes)
-    if not found.compiled:
-        return forces(layout, stick_and_slip(found, stick_nodes, slip_nodes))
-    along, across, turning = sums(found, slip_nodes) * (layout.half_length * layout.greatest)
+    scaled = _strips(ellipses, layout, stick_nodes + slip_nodes)
+    if not scaled.compiled:
+        return forces(layout, stick_and_slip(scaled, stick_nodes, slip_nodes))
+    along, across, turning = sums(scaled, slip_nodes) * (layout.half_length * layout.greatest)
     return _of_strips(layout, along, across, layout.half_length * turning)
 
 

@@ -132,19 +132,19 @@ def stick_and_slip(strips: Strips, stick_nodes: int, slip_nodes: int) -> Nodes:
 def sums(strips: Strips, slip_nodes: int) -> Array:
     """Return ∫q_x, ∫q_y and ∫X q_y dX of strips, (3, ...), on the nodes of `stick_and_slip`, by compiled loops."""
     start, shape = _first_slip(strips), strips.rows.shape[1:]
-    found = np.empty((4, *shape))
-    found[:3] = loops.held(*strips.growth, start.u)
-    held, found[3] = found[:3].copy(), np.inf
+    integrals = np.empty((4, *shape))
+    integrals[:3] = loops.held(*strips.growth, start.u)
+    held, integrals[3] = integrals[:3].copy(), np.inf
     share, weight = _gauss(slip_nodes)
-    rows, flat = _flat(strips.rows), _flat(found)
+    rows, flat = _flat(strips.rows), _flat(integrals)
     march = _compiled_march(strips, start, np.zeros(shape), share)
     loops.sum_loop(strips.elliptic, rows, *march, weight, flat)
-    again = found[3] < 0.0
+    again = integrals[3] < 0.0
     if again.any():
         zone = Nodes(*_split(*_some(again, strips._replace(rows=_unscaled(strips.rows)), start), slip_nodes))
         x, y = zone.length * zone.traction_x, zone.length * zone.traction_y
-        found[:3, again] = held[:, again] + np.stack([x, y, zone.x * y]).sum(axis=1)
-    return found[:3]
+        integrals[:3, again] = held[:, again] + np.stack([x, y, zone.x * y]).sum(axis=1)
+    return integrals[:3]
 
 
 def _first_slip(strips: Strips) -> Point:

@@ -92,8 +92,8 @@ class StripTheory(wl.ContactModel):
         """Return the forces of an ellipse or of strips, without the fields that only wear needs."""
         layout = self._layout(problem)
         strips, greatest = self._strips(problem.flatten(), layout)
-        found = _forces(layout, greatest, fields.sums(strips, *self._nodes_along))
-        totals = {name: getattr(found, name) for name in ("longitudinal", "lateral", "spin_moment")}
+        forces = _forces(layout, greatest, fields.sums(strips, *self._nodes_along))
+        totals = {name: getattr(forces, name) for name in ("longitudinal", "lateral", "spin_moment")}
         return wl.CreepForces(**{name: problem.unflatten(total) for name, total in totals.items()})
 
     def _layout(self, problem: wl.Problem) -> wl.Strips:
@@ -101,9 +101,9 @@ class StripTheory(wl.ContactModel):
 
         Those of an ellipse are nodes of Gauss's quadrature with Chebyshev polynomials of the second kind.
         """
-        flat, given = problem.flatten(), problem.flatten().strips
-        if given is not None:
-            arrays = given.y, given.width, given.half_length, given.max_pressure
+        flat, strips = problem.flatten(), problem.flatten().strips
+        if strips is not None:
+            arrays = strips.y, strips.width, strips.half_length, strips.max_pressure
             y, width, half_length, max_pressure = (np.moveaxis(array, -1, 0) for array in arrays)
             return wl.Strips(y=y, width=width, half_length=half_length, max_pressure=max_pressure)
         step = np.pi / (self.strips + 1)
@@ -121,7 +121,9 @@ class StripTheory(wl.ContactModel):
         c = wl.kalker.coefficients(flat.a / flat.b, flat.poisson_ratio, self.interpolation)
         greatest, half_length = flat.friction_coefficient * layout.max_pressure, layout.half_length
         if flat.strips is None:
-            k_x, k_y = (greatest * (0.5 * np.pi**2 / (flat.shear_modulus * one)) for one in (c.c11, c.c22))
+            k_x, k_y = (
+                greatest * (0.5 * np.pi**2 / (flat.shear_modulus * coefficient)) for coefficient in (c.c11, c.c22)
+            )
         else:
             k_x, k_y = full_slips(flat, layout, greatest, c.c11, c.c22)
         strips = fields.Strips(

@@ -226,7 +226,7 @@ def _again(rows: Array, table: Array) -> Array:
     """
     along, across, turning, k_x, k_y, v, n_x, n_y = rows
     k, p = loops.shape(k_x, k_y, turning, n_x, n_y)
-    found = np.empty((3, len(table), v.size))
+    fields = np.empty((3, len(table), v.size))
     q, sticks, rate = np.stack([n_x, n_y]), np.zeros(v.shape, bool), np.zeros(v.shape)
     full = size = np.sqrt(loops.energy(k, p, v, 2.0 * v, 2.0 * np.arcsin(np.sqrt(v)), 0.0, 0.5 * np.pi))
     bound = np.sqrt(2.0 * v * (2.0 - 2.0 * v))
@@ -260,10 +260,10 @@ def _again(rows: Array, table: Array) -> Array:
         q, size = np.where(sticks, _direction(free), turned), np.where(sticks, np.minimum(np.hypot(*free), full), full)
         s = np.where(sticks, 0.0, np.maximum(slip, 0.0))
         # A node stands for half a step on each side, and these slip over more or less of it.
-        found[:2, at], found[2, at] = BELOW * bound * size / full * q, np.where(leaves, 1.5 - stuck, 1.0) * s
+        fields[:2, at], fields[2, at] = BELOW * bound * size / full * q, np.where(leaves, 1.5 - stuck, 1.0) * s
         if at:
-            found[2, at - 1] *= np.where(enters, 0.5 + 0.5 * slid, 1.0)
-    return found
+            fields[2, at - 1] *= np.where(enters, 0.5 + 0.5 * slid, 1.0)
+    return fields
 
 
 def _direction(vectors: Array) -> Array:

@@ -43,17 +43,17 @@ def full_slips(flat: wl.Problem, layout: wl.Strips, greatest: Array, c11: Array,
 
 def _curvatures(layout: wl.Strips, greatest: Array) -> Array:
     """Return a Σ g w/a² G_K and a Σ g w/a² G_E at the middle of each strip, (2, strips, points)."""
-    y, half_length, width = (np.ascontiguousarray(one) for one in (layout.y, layout.half_length, layout.width))
-    found = greatest / half_length * np.stack(_up_to(0.5 * width / half_length)) * 2.0
+    y, half_length, width = (np.ascontiguousarray(array) for array in (layout.y, layout.half_length, layout.width))
+    sums = greatest / half_length * np.stack(_up_to(0.5 * width / half_length)) * 2.0
     weight = greatest * width / half_length**2
     if wl.accelerated(y.shape[0] * y.size // PAIRS):
-        loops.others_loop(y, half_length, weight, _table(), found)
+        loops.others_loop(y, half_length, weight, _table(), sums)
     else:
-        own = np.arange(len(y))
-        for to, one in zip(found, loops.between(loops.place(y - y[:, None], half_length), _table()), strict=True):
-            one[own, own] = 0.0
-            to += (weight * one).sum(axis=1)
-    return np.asarray(half_length * found)
+        diagonal = np.arange(len(y))
+        for to, kernel in zip(sums, loops.between(loops.place(y - y[:, None], half_length), _table()), strict=True):
+            kernel[diagonal, diagonal] = 0.0
+            to += (weight * kernel).sum(axis=1)
+    return np.asarray(half_length * sums)
 
 
 def _of_ellipse(ratio: Array) -> tuple[Array, ...]:
@@ -61,7 +61,7 @@ def _of_ellipse(ratio: Array) -> tuple[Array, ...]:
     angle = 0.25 * np.pi / ACROSS * np.arange(2 * ACROSS + 1)
     ends, half_length = np.sin(angle[::2, None]), np.multiply.outer(np.cos(angle[1::2]), ratio)
     first, last = _up_to(ends[:-1] / half_length), _up_to(ends[1:] / half_length)
-    return tuple(2.0 * (other - one).sum(axis=0) for one, other in zip(first, last, strict=True))
+    return tuple(2.0 * (end - start).sum(axis=0) for start, end in zip(first, last, strict=True))
 
 
 def _up_to(eta: Array) -> tuple[Array, Array]:

@@ -42,8 +42,8 @@ def stuck(v: Number, n_x: Number, n_y: Number, spin: Number, cosine: float, sine
     bound = root(ahead * (2.0 - ahead))
     q_x, q_y = n_x * (bound - inner), n_y * (bound - inner) + spin * inner
     within: Any = np.minimum(BELOW * bound / (root(q_x * q_x + q_y * q_y) + TINY), 1.0)
-    found: Any = ahead - 1.0, bound, within * q_x, within * q_y
-    return found  # type: ignore[no-any-return]
+    fields: Any = ahead - 1.0, bound, within * q_x, within * q_y
+    return fields  # type: ignore[no-any-return]
 
 
 def energy(k: Number, p: Number, v: Number, behind: Number, angle: Number, sine: float, arc: float) -> Number:
@@ -95,8 +95,8 @@ def direction(x: Number, y: Number) -> tuple[Number, Number]:
 
 def place(distance: Number, half_length: Number) -> Number:
     """Return where the tables of `between` have a distance from a strip."""
-    found: Any = np.abs(distance) * (KNOTS / root(half_length * half_length + distance * distance))
-    return found  # type: ignore[no-any-return]
+    position: Any = np.abs(distance) * (KNOTS / root(half_length * half_length + distance * distance))
+    return position  # type: ignore[no-any-return]
 
 
 def between(place: Number, table: Array) -> tuple[Number, Number]:
@@ -220,11 +220,11 @@ def sum_loop(
 
 
 @wl.compiled_loop(f"void({', '.join([ROWS] * 4)}, {NODES})")
-def others_loop(y: Array, half_length: Array, weight: Array, table: Array, found: Array) -> None:
+def others_loop(y: Array, half_length: Array, weight: Array, table: Array, sums: Array) -> None:
     """Add to the sums of each strip those over the others, in two loops: a place is many at once, a look-up is not."""
     places = np.empty(y.shape[1])
     for at in range(y.shape[0]):
-        first, second = found[0, at], found[1, at]
+        first, second = sums[0, at], sums[1, at]
         for other in range(y.shape[0]):
             if other != at:
                 for i in range(y.shape[1]):
