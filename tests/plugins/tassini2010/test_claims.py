@@ -317,52 +317,48 @@ def of_density(density: float) -> dict[str, Any]:
     return {"material": wl.steel(density=wl.Q(density, "kg/m^3"))}
 
 
-LAWS, LOCAL = claims.law_claims, lambda bench, _: claims.local_claims(bench)
-
-
 @pytest.mark.parametrize(
-    ("group", "name", "changes", "expected"),
+    ("claim", "changes", "expected"),
     [
         # The least k of KTH in severe wear, 8.15e-4 at 7850 kg/m³, is beyond its range below 6400 kg/m³.
-        (LAWS, "all in mild wear", of_density(5300.0), "does not hold"),
-        (LAWS, "all in mild wear", of_density(5500.0), "holds in part"),
-        (LAWS, "all in mild wear", of_density(8090.0), "holds"),
-        (LAWS, "all in mild wear", of_density(8110.0), "holds in part"),
-        (LAWS, "above in severe wear", of_density(6300.0), "does not hold"),
+        (claims.all_in_mild_wear, of_density(5300.0), "does not hold"),
+        (claims.all_in_mild_wear, of_density(5500.0), "holds in part"),
+        (claims.all_in_mild_wear, of_density(8090.0), "holds"),
+        (claims.all_in_mild_wear, of_density(8110.0), "holds in part"),
+        (claims.above_in_severe_wear, of_density(6300.0), "does not hold"),
         # BRR at 700 N is 0.943 and 2.357 times USFD.
-        (LAWS, "BRR comes closer", of_density(6000.0), "does not hold"),
-        (LAWS, "BRR comes closer", of_density(15000.0), "does not hold"),
-        (LAWS, "KTH linear", {"rolling_speed": "20 m/s"}, "does not hold"),  # 0.2 m/s is 1 %
+        (claims.brr_comes_closer, of_density(6000.0), "does not hold"),
+        (claims.brr_comes_closer, of_density(15000.0), "does not hold"),
+        (claims.kth_linear, {"rolling_speed": "20 m/s"}, "does not hold"),  # 0.2 m/s is 1 %
         # USFD is level from 65 √2 = 92 N on, BRR from 100 N on; full slip begins at 119 N.
-        (LAWS, "BRR like USFD", {"load": 2.0 * LOAD}, "does not hold"),
+        (claims.brr_like_usfd, {"load": 2.0 * LOAD}, "does not hold"),
         # 0.2 m/s is 19.6 % if 1.02 m/s are the mean, and 21.7 % if they are of disc 1.
-        (LOCAL, "lower slip speed", {"rolling_speed": "1.02 m/s", "speed_of": "disc_1"}, "holds"),
-        (LOCAL, "lower slip speed", {"rolling_speed": "1.02 m/s", "speed_of": "mean"}, "does not hold"),
-        (LOCAL, "lower slip speed", {"rolling_speed": "1.3 m/s"}, "does not hold"),
-        (LOCAL, "upper slip speed", {"rolling_speed": "4 m/s"}, "does not hold"),
-        (LOCAL, "pressure threshold", {"diameter": "60 mm"}, "does not hold"),
+        (claims.lower_slip_speed, {"rolling_speed": "1.02 m/s", "speed_of": "disc_1"}, "holds"),
+        (claims.lower_slip_speed, {"rolling_speed": "1.02 m/s", "speed_of": "mean"}, "does not hold"),
+        (claims.lower_slip_speed, {"rolling_speed": "1.3 m/s"}, "does not hold"),
+        (claims.upper_slip_speed, {"rolling_speed": "4 m/s"}, "does not hold"),
+        (claims.pressure_threshold, {"diameter": "60 mm"}, "does not hold"),
         # FASTSIM slips by ξ + 1.5 ξ_sat at the trailing edge: 0.15 m/s at 20 % with 0.7 m/s.
-        (LOCAL, "KTH on both theories", {"rolling_speed": "0.7 m/s"}, "holds"),
-        (LOCAL, "KTH local like global", {"rolling_speed": "0.7 m/s"}, "holds"),
-        (LOCAL, "thresholds beyond tests", {"rolling_speed": "0.7 m/s"}, "holds"),
-        (LOCAL, "thresholds beyond tests", {"rolling_speed": "1.3 m/s"}, "does not hold"),
+        (claims.kth_on_both_theories, {"rolling_speed": "0.7 m/s"}, "holds"),
+        (claims.kth_local_like_global, {"rolling_speed": "0.7 m/s"}, "holds"),
+        (claims.thresholds_beyond_tests, {"rolling_speed": "0.7 m/s"}, "holds"),
+        (claims.thresholds_beyond_tests, {"rolling_speed": "1.3 m/s"}, "does not hold"),
     ],
 )
 def test_a_verdict_turns_where_the_formulas_say(
-    bench: Bench, group: Any, name: str, changes: dict[str, Any], expected: wl.Verdict
+    bench: Bench, claim: Callable[[Bench], wl.CheckedClaim], changes: dict[str, Any], expected: wl.Verdict
 ) -> None:
-    assert group(under(bench, **changes), TESTS)[name].verdict == expected
+    assert claim(under(bench, **changes)).verdict == expected
 
 
 def test_tests_on_the_model_do_not_part_from_it(bench: Bench) -> None:
     scatter = np.array([1.03, 1.03, 1.03, 0.95, 0.97, 1.0, 1.03, 1.05])
     tests = TESTS[0], 0.46 * bench.force("exact", TESTS[0]) * scatter
-    rows = claims.checked(bench, tests)
-    assert rows["force at low creepage"].verdict == "does not hold"
+    assert claims.force_at_low_creepage(bench, tests).verdict == "does not hold"
     on_model = TESTS[0], 0.46 * bench.force("exact", TESTS[0])
-    assert claims.law_claims(bench, on_model)["tests over creepage"].verdict == "does not hold"
+    assert claims.tests_over_creepage(bench, on_model).verdict == "does not hold"
     more = TESTS[0], 1.05 * TESTS[1]
-    assert claims.contact_claims(bench, more)["friction"].verdict == "does not hold"
+    assert claims.friction(bench, more).verdict == "does not hold"
 
 
 # The bench

@@ -84,6 +84,16 @@ class Bench:
         return np.asarray(contact.traction_coefficient.to("").magnitude) / self.friction_coefficient
 
     @cached_property
+    def usfd(self) -> Array:
+        """USFD on the patch means [µg/m/mm²]."""
+        return self.rate("global", wl.wear_law("usfd"))
+
+    @cached_property
+    def gaps(self) -> dict[str, Array]:
+        """USFD on the cells of each theory less USFD on the patch means [µg/m/mm²]."""
+        return {theory: self.rate(theory, wl.wear_law("usfd")) - self.usfd for theory in ("exact", "fastsim")}
+
+    @cached_property
     def wear_index(self) -> Array:
         """Tγ [N] at the creepages of the bench, with the traction of the exact theory."""
         contact = self.predict("global", wl.wear_law("usfd"), self.creepage)
@@ -110,7 +120,7 @@ class Bench:
         """
         creepage, traction = tests
         measured = traction * float(self.problem.normal_force) * creepage / 100.0
-        return np.interp(measured, self.wear_index, self.rate("global", wl.wear_law("usfd")))
+        return np.interp(measured, self.wear_index, self.usfd)
 
     @cached_property
     def slow(self) -> NDArray[np.bool_]:
@@ -142,6 +152,11 @@ class Bench:
         return float(100.0 * self.friction_coefficient * self.problem.half_width / self.problem.relative_radius)
 
     @cached_property
+    def partial_slip(self) -> NDArray[np.bool_]:
+        """Which creepages are below that of full slip."""
+        return self.creepage < self.full_slip
+
+    @cached_property
     def full_force(self) -> float:
         """The tangential force in full slip, μN [N]."""
         return float(self.friction_coefficient * self.problem.normal_force)
@@ -153,9 +168,20 @@ class Bench:
         return mild * 1e-6 * self.patch_area, severe * 1e-6 * self.patch_area
 
     @cached_property
+    def regimes(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
+        """Which creepages are in mild, severe and catastrophic wear of the global USFD law; borders are in both."""
+        begin, end = self.usfd_borders
+        return self.between(-np.inf, begin), self.between(begin, end), self.between(end, np.inf)
+
+    @cached_property
     def window(self) -> float:
         """The wear index [N] at the upper end of the paper's severe wear window: 350 N on the paper's patch."""
         return WINDOW * self.patch_area
+
+    @cached_property
+    def severe_window(self) -> NDArray[np.bool_]:
+        """Which creepages are in the paper's severe wear window."""
+        return self.between(self.usfd_borders[0], self.window)
 
     def between(self, lowest: float, highest: float) -> NDArray[np.bool_]:
         """Return which creepages have a wear index [N] within a closed range."""
