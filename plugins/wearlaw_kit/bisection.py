@@ -105,8 +105,8 @@ def find_kinks(function: Function, threshold: Array, intervals: int = 128) -> li
         values = np.stack([kept[0], between[0], kept[1], between[1], kept[2]])
     change = 2.0 / width * np.abs(values[0] - 2.0 * values[2] + values[4])
     slope = np.abs(values[4] - values[0]) / width
-    found = np.flatnonzero((change > threshold[index] * size) & (change > STEEP * slope) & (size > UNDERFLOW))
-    return [(int(index[i]), float(low[i]), float(low[i] + width), float(change[i] / size[i])) for i in found]
+    kinks = np.flatnonzero((change > threshold[index] * size) & (change > STEEP * slope) & (size > UNDERFLOW))
+    return [(int(index[i]), float(low[i]), float(low[i] + width), float(change[i] / size[i])) for i in kinks]
 
 
 def lost_digits(function: Callable[[float], Array], message: str, rounding: float = SAME) -> None:

@@ -74,12 +74,12 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
     wearlaw check twin_disc --option track_width="8 mm"
     wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
     """  # noqa: D301
-    source, given = _installed(name), values("--option", options)
-    model = _made(source, given) if isinstance(source, type) else source.model_copy(update=given)
+    source, settings = _installed(name), values("--option", options)
+    model = _made(source, settings) if isinstance(source, type) else source.model_copy(update=settings)
     reasons = fields("--expect-failure", expected, "CHECK=REASON")
-    found = list(checks(model))
-    validate_expected("--expect-failure", model, found, reasons)
-    outcomes = Counter(_outcome(one, reasons.get(one.name)) for one in found)
+    model_checks = list(checks(model))
+    validate_expected("--expect-failure", model, model_checks, reasons)
+    outcomes = Counter(_outcome(model_check, reasons.get(model_check.name)) for model_check in model_checks)
     if isinstance(model, ContactModel):
         for line in accuracies(model):
             click.echo(line)
@@ -93,9 +93,9 @@ def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> Non
 
 def _made(model: type[Model], options: Mapping[str, object]) -> Model:
     """Return the model with these fields; a rig takes others from its `example_fields`."""
-    own = model.example_fields if issubclass(model, Rig) else {}
+    example = model.example_fields if issubclass(model, Rig) else {}
     try:
-        return model(**{**own, **options})
+        return model(**{**example, **options})
     except ConfigurationError as error:
         missing = dict.fromkeys(problem.path[0] for problem in error.problems if problem.message == "is missing")
         if not missing:
@@ -128,13 +128,15 @@ def _installed(name: str) -> type[Model] | Law:
     """Return the class of the model with this name, or the law of a parameter set or of a file."""
     if is_law_file(name):
         return read_law(name)
-    found = loader.discovered()
+    installed = loader.discovered()
     kinds = ("wear law", "law", "contact model", "stage", "rig", "reader", "parameter set")
     for kind in kinds:
-        if name in found[kind].providers:
-            model: type[Model] | Law = found.find(kind, name)
+        if name in installed[kind].providers:
+            model: type[Model] | Law = installed.find(kind, name)
             return model
-    for kind, shelf in found.shelves.items():
+    for kind, shelf in installed.shelves.items():
         if name in shelf.providers:
             raise UnknownModelError(f"{shown(name)} is a {kind}, which has no checks; wearlaw show {name} explains it")
-    raise UnknownModelError(found.unknown("model", name, [one for kind in kinds for one in found[kind].items()]))
+    raise UnknownModelError(
+        installed.unknown("model", name, [model_name for kind in kinds for model_name in installed[kind].items()])
+    )

@@ -180,15 +180,15 @@ def other_strips_have_the_same_sums(model: ContactModel, shape: Shape) -> None:
     """On given strips, traction and energy sum to the same over y as on the model's own."""
     shares = (2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0
     problem = shape.draw(PATCHES)
-    contact, own = model.on_strips(problem, shares), model.solve(problem)
+    contact, solved = model.on_strips(problem, shares), model.solve(problem)
     if contact is None:  # its nodes are where they are
         return
     assert_close(contact.y, shares * problem.b[:, None, None], "the position of a strip")
     error = 2.0 * error_of_sums(model, problem) + 1.0 / STRIPS**2
-    assert_same_forces(problem, sums_of(contact), own.forces, "summed over the strips", error)
-    assert_same_forces(problem, contact.forces, own.forces, "on the strips", error)
+    assert_same_forces(problem, sums_of(contact), solved.forces, "summed over the strips", error)
+    assert_same_forces(problem, contact.forces, solved.forces, "on the strips", error)
     allowed = error * sliding_power(problem)
-    assert_close(contact.cell_wear_index, own.cell_wear_index, "the energy summed over the strips", 0.0, allowed)
+    assert_close(contact.cell_wear_index, solved.cell_wear_index, "the energy summed over the strips", 0.0, allowed)
 
 
 def mixed_batch(shape: Shape) -> Problem:
@@ -202,12 +202,12 @@ def batch_equals_loop(model: ContactModel, shape: Shape) -> None:
     batch = mixed_batch(shape)
     together = model.solve(batch)
     for index in np.ndindex(batch.batch_shape):
-        part, found, message = batch[index], together[index], f"at operating point {index} of a batch"
+        part, batched, message = batch[index], together[index], f"at operating point {index} of a batch"
         alone = model.solve(part)
         # A batch may hold zones without length, which change the order of a sum.
-        assert_same_forces(part, found.forces, alone.forces, message, SUM)
+        assert_same_forces(part, batched.forces, alone.forces, message, SUM)
         for name in ("patch_area", "mean_slip"):
-            assert_close(getattr(found, name), getattr(alone, name), f"the {name} {message}", SUM)
+            assert_close(getattr(batched, name), getattr(alone, name), f"the {name} {message}", SUM)
 
 
 @on_shapes(*SHAPES)
@@ -336,9 +336,9 @@ def bound_sums_to_friction(model: ContactModel, shape: Shape) -> None:
 
     def examine(problem: Problem) -> None:
         contact = model.solve(problem)
-        found = contact.integral(np.where(contact.area > 0.0, contact.traction_bound, 0.0))
+        total = contact.integral(np.where(contact.area > 0.0, contact.traction_bound, 0.0))
         message = "the sum of the traction bound"
-        assert_close(found, friction_limit(problem), message, error_of_sums(model, problem))
+        assert_close(total, friction_limit(problem), message, error_of_sums(model, problem))
 
     for_each(shape.draw(POINTS), examine)  # most of which stick somewhere; of the others few may
     for_each(shape.problems, examine)
@@ -366,9 +366,9 @@ def declared_accuracy_is_not_coarse(model: ContactModel, shape: Shape) -> None:
 
     A line of a hundred cells has that error, and an ellipse of ten strips. Mistakes of its size pass the checks.
     """
-    highest, found = 0.05 if shape is LINE else 0.1, error_of_sums(model, shape.problems)
-    assert found <= highest, (
-        f"the declared accuracy is {found:g}, more than {highest:g}: use more nodes, or give a reason in `exemptions`"
+    highest, error = 0.05 if shape is LINE else 0.1, error_of_sums(model, shape.problems)
+    assert error <= highest, (
+        f"the declared accuracy is {error:g}, more than {highest:g}: use more nodes, or give a reason in `exemptions`"
     )
 
 
@@ -384,6 +384,6 @@ def closed_forms_are_those_of_the_fields(model: LineContactModel) -> None:
     searched = type("Searched", (type(model),), {**searches, "__module__": __name__, "__doc__": ""})(**dict(model))
     problem = LINE.draw(POINTS)
     for name in ("usfd", "kth"):  # with ramps of q·s, and with jumps at a pressure and a slip speed
-        found, due = (integrate_laws(one, (loader.wear_law(name),), problem) for one in (model, searched))
-        errors = sum(totals.errors[0] for totals in (found, due) if totals.errors[0] is not None)
-        assert_close(found.values[0], due.values[0], f"the rate of {name} by closed forms", FORMS, errors)
+        computed, due = (integrate_laws(variant, (loader.wear_law(name),), problem) for variant in (model, searched))
+        errors = sum(totals.errors[0] for totals in (computed, due) if totals.errors[0] is not None)
+        assert_close(computed.values[0], due.values[0], f"the rate of {name} by closed forms", FORMS, errors)

@@ -104,7 +104,7 @@ def forces_are_mirrored_with_the_creepages(model: ContactModel, problem: Problem
 
 def _compare_turned(model: ContactModel, problem: Problem, signs: tuple[float, float, float], message: str) -> None:
     """Compare forces with those for creepages, and hence forces, of other signs."""
-    forces, other = (forces_alone(model, one) for one in (problem, creeping(problem, *signs)))
+    forces, other = (forces_alone(model, case) for case in (problem, creeping(problem, *signs)))
     due = CreepForces(
         longitudinal=signs[0] * forces.longitudinal,
         lateral=signs[1] * forces.lateral,
@@ -257,7 +257,7 @@ def initial_slope_is_that_of_the_half_space(model: ContactModel, problem: Proble
     """On a line the force at small creepage is (π/2) E* a ξ per width."""
     reduced = np.logspace(-9, -4, problem.size)  # relative to the creepage of full slip
     small = [at_reduced(problem, share * reduced, 0.0, 0.0) for share in (1.0, 0.5)]
-    whole, half = (model.solve(one).tangential_force / one.creepage for one in small)
+    whole, half = (model.solve(case).tangential_force / case.creepage for case in small)
     due = 0.5 * np.pi * problem.effective_modulus * problem.half_width * problem.track_width
     # T/ξ = T'(0) + c ξ + ..., so that half the creepage halves the remainder: it is twice the difference, except for
     # the next order, which is the share ξR/(μa) of it. With an error e of each T, the first quotient is off by e, and
@@ -300,11 +300,11 @@ def contacts_are_similar(model: ContactModel, shape: Shape) -> None:
     On an ellipse forces over μN and the moment over μN a depend on a/b, ν and Gξ/(μp0), Gη/(μp0), Gφa/(μp0) alone.
     """
     problem, other = shape.problems, shape.cut(_scaled(shape.wide))
-    known, ratio = forces_alone(model, problem), friction_limit(other) / friction_limit(problem)
+    forces, ratio = forces_alone(model, problem), friction_limit(other) / friction_limit(problem)
     due = CreepForces(
-        longitudinal=ratio * known.longitudinal,
-        lateral=ratio * known.lateral,
-        spin_moment=ratio * other.a / problem.a * known.spin_moment,
+        longitudinal=ratio * forces.longitudinal,
+        lateral=ratio * forces.lateral,
+        spin_moment=ratio * other.a / problem.a * forces.spin_moment,
     )
     assert_same_forces(other, forces_alone(model, other), due, "of a similar contact", SUM)
 

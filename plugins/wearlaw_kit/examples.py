@@ -57,14 +57,14 @@ def failing(where: str = "") -> Iterator[None]:
 
 
 def assert_close(
-    found: Array, expected: Array, message: str, relative: float | Array = SAME, absolute: float | Array = 0.0
+    actual: Array, expected: Array, message: str, relative: float | Array = SAME, absolute: float | Array = 0.0
 ) -> None:
     """Assert that two arrays agree, and name the worst entry if they do not."""
-    found, expected = np.broadcast_arrays(found, expected)
+    actual, expected = np.broadcast_arrays(actual, expected)
     allowed = np.broadcast_to(relative * np.abs(expected) + absolute, expected.shape)
-    wrong = ~(np.abs(found - expected) <= allowed)
+    wrong = ~(np.abs(actual - expected) <= allowed)
     if wrong.any():
-        worst = np.unravel_index(np.argmax(np.where(wrong, np.abs(found - expected), 0.0)), expected.shape)
+        worst = np.unravel_index(np.argmax(np.where(wrong, np.abs(actual - expected), 0.0)), expected.shape)
         raise AssertionError(
-            f"{message}: {found[worst]!r} instead of {expected[worst]!r} (allowed: {allowed[worst]:.1e})"
+            f"{message}: {actual[worst]!r} instead of {expected[worst]!r} (allowed: {allowed[worst]:.1e})"
         )

@@ -31,10 +31,10 @@ TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
 @rule(Model, always=True)
 def exemptions_are_claims(model: Model) -> None:
     """`exemptions` names claims of the kit, each with a reason, and none that must hold for any model of the kind."""
-    rules = [known for known in RULES if isinstance(model, known.kind)]
-    claims = [claim for known in rules for claim in known.claims]
+    rules = [kit_rule for kit_rule in RULES if isinstance(model, kit_rule.kind)]
+    claims = [claim for kit_rule in rules for claim in kit_rule.claims]
     for claim, reason in model.exemptions.items():
-        held = any(known.name == claim and not known.claims for known in rules)
+        held = any(kit_rule.name == claim and not kit_rule.claims for kit_rule in rules)
         assert not held, f"`exemptions` names {claim}, which must hold for any {model.kind}; correct the model instead"
         assert claim in claims, f"`exemptions`: no claim is called '{claim}'{did_you_mean(claim, claims)}"
         assert str(reason or "").strip(), f"the exemption from '{claim}' has no reason"
@@ -105,14 +105,14 @@ def checks(model: Model) -> Iterator[Check]:
             f' class {type(model).__name__}, with units as text such as "1 %":\n  example = {{{conditions}}}'
         )
     exempt = {*model.exemptions}
-    found = [
-        known
-        for known in RULES
-        if isinstance(model, known.kind) and not exempt & {*known.claims} and known.applies(model)
+    rules = [
+        kit_rule
+        for kit_rule in RULES
+        if isinstance(model, kit_rule.kind) and not exempt & {*kit_rule.claims} and kit_rule.applies(model)
     ]
 
-    for known in found:
-        yield Check(known.name, known.doc, functools.partial(known.check, model.model_copy()))
+    for kit_rule in rules:
+        yield Check(kit_rule.name, kit_rule.doc, functools.partial(kit_rule.check, model.model_copy()))
 
 
 def conformance(
@@ -139,8 +139,8 @@ def conformance(
     import pytest
 
     expected = dict(expected_failures or {})
-    found = list(checks(model))
-    validate_expected("expected_failures", model, found, expected)
+    model_checks = list(checks(model))
+    validate_expected("expected_failures", model, model_checks, expected)
 
     def parameter(check: Check) -> object:
         marks = [pytest.mark.xfail(strict=True, reason=expected[check.name])] if check.name in expected else []
@@ -150,18 +150,18 @@ def conformance(
         pytest.param(None, id=claim, marks=pytest.mark.skip(reason=f"not claimed: {reason}"))
         for claim, reason in model.exemptions.items()
     ]
-    return pytest.mark.parametrize("check", [*map(parameter, found), *exempt])
+    return pytest.mark.parametrize("check", [*map(parameter, model_checks), *exempt])
 
 
-def validate_expected(subject: str, model: Model, found: Iterable[Check], expected: Mapping[str, str]) -> None:
-    """Raise an `InputError` for an expected failure that is not one of the checks found, or has no reason.
+def validate_expected(subject: str, model: Model, model_checks: Iterable[Check], expected: Mapping[str, str]) -> None:
+    """Raise an `InputError` for an expected failure that is not one of the model's checks, or has no reason.
 
     Parameters
     ----------
     subject : str
         What the user wrote, to begin the message.
     """
-    names = [check.name for check in found]
+    names = [check.name for check in model_checks]
     for name, reason in expected.items():
         if name not in names:
             raise InputError(f"{subject}: no check of '{model.name}' is called '{name}'{did_you_mean(name, names)}")

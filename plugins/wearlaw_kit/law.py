@@ -65,8 +65,8 @@ def rate_has_the_right_shape(law: Law, contact: Contact) -> None:
     """There is a rate for each node, or one value for each patch, with no batch axis, one or two."""
     for shape in ((), (1,), (2, 1)):
         batch = contact[[0]].mapped(partial(_repeated, shape))
-        found, due = np.shape(law.rate(batch, law.numbers)), of_patch(law, shape, batch.pressure.shape)
-        assert found == due, f"rates of shape {found} in place of {due}"
+        actual, due = np.shape(law.rate(batch, law.numbers)), of_patch(law, shape, batch.pressure.shape)
+        assert actual == due, f"rates of shape {actual} in place of {due}"
 
 
 def _repeated(shape: tuple[int, ...], array: Array) -> Array:
@@ -159,10 +159,10 @@ def parameters_may_vary(law: Law) -> None:
         laws = _of_values(law, name, number)
         for axes in of_patch(law, (0,), (1, 2)):
             values = (law.numbers[name] * np.array(STEPS)).reshape(-1, *[1] * axes)
-            found = _borders(law, {**law.numbers, name: values})
-            for step, one in laws.items():
+            varying = _borders(law, {**law.numbers, name: values})
+            for step, fixed_law in laws.items():
                 message = f"the breakpoints and ramps with {name} for each point"
-                assert_close(_at(found, step), _at(_borders(one, one.numbers), 0), message)
+                assert_close(_at(varying, step), _at(_borders(fixed_law, fixed_law.numbers), 0), message)
         for_each_contact(law, partial(_compare_varying, law, name, laws))
 
 
@@ -173,9 +173,9 @@ def _compare_varying(law: Law, name: str, laws: Mapping[int, Law], contact: Cont
     rate = law.rate(contact, {**law.numbers, name: of_patch(law, values, contact.per_node(values))})
     due = of_patch(law, values.shape, contact.pressure.shape)
     assert np.shape(rate) == due, f"rates of shape {np.shape(rate)} when {name} varies"
-    for step, one in laws.items():
+    for step, fixed_law in laws.items():
         at = steps == step
-        assert_close(rate[at], one.rate(contact[at], one.numbers), f"the rate with {name} for each point")
+        assert_close(rate[at], fixed_law.rate(contact[at], fixed_law.numbers), f"the rate with {name} for each point")
 
 
 def _of_values(law: Law, name: str, number: Quantity | float) -> dict[int, Law]:
@@ -193,9 +193,9 @@ def _borders(law: Law, p: Numbers) -> list[Any]:
     return [value for name in sorted(breakpoints) for value in breakpoints[name]] + [n for ramp in ramps for n in ramp]
 
 
-def _at(found: list[Any], point: int) -> Array:
+def _at(values: list[Any], point: int) -> Array:
     """Return numbers at one operating point, of which each is a float or an array with one value for each."""
-    flat = [np.ravel(number) for number in found]
+    flat = [np.ravel(number) for number in values]
     return np.array([each[point if each.size > 1 else 0] for each in flat])
 
 
@@ -236,10 +236,10 @@ def listing_of_nodes_does_not_matter(law: Law, contact: Contact) -> None:
             listed["area"] = listed["area"] * sizes.reshape(-1, *[1] * (-1 - axis))
             if contact.on_strips and axis == -1:
                 listed["strip_width"] = contact.strip_width[..., order] * sizes
-            found = law.rate(contact.replaced(**listed), law.numbers)
+            relisted = law.rate(contact.replaced(**listed), law.numbers)
             due = rate if law.outcome.of == "patch" else np.take(rate, order, axis=axis)
             message = f"the rate with the nodes {order.tolist()} of shares {sizes.tolist()}"
-            assert_close(found, due, message, of_patch(law, SUMS, SAME))
+            assert_close(relisted, due, message, of_patch(law, SUMS, SAME))
 
 
 @on_contacts(Law, several=True, applies=at_each_node)
@@ -250,8 +250,8 @@ def each_node_wears_by_itself(law: Law, contact: Contact) -> None:
     for node in np.ndindex(rate.shape[contact.rolling_speed.ndim :]):
         at: Any = (..., *(slice(index, index + 1) for index in node))
         alike = {name: np.broadcast_to(getattr(contact, name)[at], rate.shape).copy() for name in names}
-        found = law.rate(contact.replaced(**alike), law.numbers)[at]
-        assert_close(found, rate[at], f"the rate at node {node} among others like it")
+        repeated = law.rate(contact.replaced(**alike), law.numbers)[at]
+        assert_close(repeated, rate[at], f"the rate at node {node} among others like it")
 
 
 @on_contacts(Law, several=True, applies=at_each_node)

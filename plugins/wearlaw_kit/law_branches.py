@@ -113,10 +113,10 @@ def ramps_sum_to_the_rate(law: Law) -> None:
         if near is not None:
             contact = aimed(contact, "wear_index_density", near * np.logspace(-1, 1, 512)[:, None])
         w = contact.wear_index_density
-        found = sum((slope * np.maximum(w - threshold, 0.0) for threshold, slope in ramps), np.zeros_like(w))
+        total = sum((slope * np.maximum(w - threshold, 0.0) for threshold, slope in ramps), np.zeros_like(w))
         # A ramp rounds q·s once more than the law, and the sum as much as its largest term.
         size = sum(abs(slope) * w for _, slope in ramps)
-        assert_close(found, law.rate(contact, law.numbers), "the sum of the `ramps`", absolute=SAME * size)
+        assert_close(total, law.rate(contact, law.numbers), "the sum of the `ramps`", absolute=SAME * size)
 
 
 @rule(Law)

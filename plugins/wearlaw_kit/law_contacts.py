@@ -65,13 +65,13 @@ def borders(law: Law) -> tuple[Border, ...]:
 
     `declared_names_are_variables` refuses other names and values.
     """
-    found = [
+    limits = [
         (name, float(value))
         for name, values in (law.breakpoints(law.numbers) or {}).items()
         for value in values
         if name in LAW_VARIABLES and np.isfinite(value)
     ]
-    return tuple(sorted(found, key=lambda border: border[0] == "wear_index"))
+    return tuple(sorted(limits, key=lambda border: border[0] == "wear_index"))
 
 
 def for_each_contact(law: Law, examine: Callable[[Contact], None], several: bool = False) -> None:
@@ -82,13 +82,13 @@ def for_each_contact(law: Law, examine: Callable[[Contact], None], several: bool
     """
     of_law = () if several and law.outcome.of == "patch" else borders(law)
     if law.scale == "patch":
-        found = [("", on_line(of_law, 0, POINTS, 1))]
+        contacts = [("", on_line(of_law, 0, POINTS, 1))]
     else:
-        found = [("", on_line(of_law, seed, POINTS, nodes)) for seed, nodes in enumerate(LINES)]
-        found += [("on strips: ", on_strips(of_law, seed, POINTS, axes)) for seed, axes in enumerate(AXES)]
+        contacts = [("", on_line(of_law, seed, POINTS, nodes)) for seed, nodes in enumerate(LINES)]
+        contacts += [("on strips: ", on_strips(of_law, seed, POINTS, axes)) for seed, axes in enumerate(AXES)]
     if not several:
-        found.append(("on the means of an ellipse: ", means_of(of_law, 0, POINTS)))
-    for where, contact in found:
+        contacts.append(("on the means of an ellipse: ", means_of(of_law, 0, POINTS)))
+    for where, contact in contacts:
         with failing(where):
             for_each(with_problem(contact, law), examine)
 
@@ -232,8 +232,8 @@ def with_totals(**fields: Any) -> Contact:
     area, nodes = fields["area"], tuple(range(fields["rolling_speed"].ndim, fields["area"].ndim))
 
     def total(value: Array) -> Array:
-        found: Array = (value * area).sum(nodes)
-        return found
+        summed: Array = (value * area).sum(nodes)
+        return summed
 
     if "strip_width" in fields:
         qx, qy, sx, sy = (fields[name] for name in ("traction_x", "traction_y", "slip_x", "slip_y"))
@@ -288,12 +288,12 @@ def retotalled(contact: Contact, **changed: Array) -> Contact:
         turned = getattr(contact, name) == 0.0
         for axis, alone in (("x", values[name]), ("y", 0.0)):
             values[f"{name}_{axis}"] = np.where(turned, alone, getattr(contact, f"{name}_{axis}") * factors[name])
-    found = with_totals(**values, y=contact.y, strip_width=contact.strip_width).replaced(problem=contact.problem)
+    recomputed = with_totals(**values, y=contact.y, strip_width=contact.strip_width).replaced(problem=contact.problem)
     if not _of_means(contact):
-        return found
+        return recomputed
     # The Tγ of means is not the product of their traction and slip.
     factor = factors["traction"] * factors["slip"] * factors["area"]
-    return found.replaced(wear_index=contact.wear_index * factor[..., 0, 0])
+    return recomputed.replaced(wear_index=contact.wear_index * factor[..., 0, 0])
 
 
 def _ratio(new: Array, old: Array) -> Array:

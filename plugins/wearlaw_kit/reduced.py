@@ -107,10 +107,10 @@ def unit_creepages(problem: Problem) -> tuple[Array, Array, Array]:
     if problem.geometry == "line":
         none = np.zeros(problem.batch_shape)
         return problem.friction_coefficient * problem.half_width / problem.relative_radius, none, none
-    known = kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
+    coefficients = kalker.coefficients(problem.a / problem.b, problem.poisson_ratio)
     area = problem.a * problem.b
     unit = friction_limit(problem) / (problem.shear_modulus * area)
-    return unit / known.c11, unit / known.c22, unit / (np.sqrt(area) * known.c23)
+    return unit / coefficients.c11, unit / coefficients.c22, unit / (np.sqrt(area) * coefficients.c23)
 
 
 def at_reduced(problem: Problem, longitudinal: Array | float, lateral: Array | float, spin: Array | float) -> Problem:

@@ -46,8 +46,8 @@ ROUNDING = 1e-10
 
 def varied(rig: Rig) -> dict[str, Quantity | float]:
     """Return the conditions of the example that are numbers, with or without a unit; words and records are none."""
-    found = {name: _number(value) for name, value in rig.example.items()}
-    return {name: value for name, value in found.items() if value is not None}
+    numbers = {name: _number(value) for name, value in rig.example.items()}
+    return {name: value for name, value in numbers.items() if value is not None}
 
 
 def _number(value: object) -> Quantity | float | None:
@@ -73,12 +73,12 @@ def times(value: Quantity | float, factors: Array | float) -> Any:
 
 def values_of(problem: Any) -> dict[str, Any]:
     """Return the numbers that a problem holds, by name; zero for missing patches, and 1 or 0 for `exists`."""
-    found = {field.name: getattr(problem, field.name) for field in dataclasses.fields(problem)}
+    fields = {field.name: getattr(problem, field.name) for field in dataclasses.fields(problem)}
     if problem.strips is not None:
-        found |= {name: getattr(problem.strips, name.removesuffix(" of strips")) for name in OF_STRIPS}
+        fields |= {name: getattr(problem.strips, name.removesuffix(" of strips")) for name in OF_STRIPS}
     values = {
         name: value
-        for name, value in found.items()
+        for name, value in fields.items()
         if (hasattr(value, "dtype") and value.dtype.kind != "O") or isinstance(value, int | float)
     }
     exists: Any = values.pop("exists", None)
@@ -95,8 +95,8 @@ def _problem(rig: Rig, **changed: Any) -> Any:
     return rig.checked_problem({**rig.example, **changed})
 
 
-def _assert_same(found: Any, expected: dict[str, Array], what: str) -> None:
-    for name, value in values_of(found).items():
+def _assert_same(problem: Any, expected: dict[str, Array], what: str) -> None:
+    for name, value in values_of(problem).items():
         assert_close(value, expected[name], f"{what}: {name}")
 
 
@@ -137,8 +137,8 @@ def problem_has_the_shape_of_the_conditions(rig: Rig) -> None:
             kind = getattr(value, "dtype", type(value))
             assert kind == np.float64, f"{name} of the problem is of type {kind}, not float64"
             full = (*shape, *map(len, problem.dims.values()))
-            found = value.shape[:-1] if name in OF_STRIPS else value.shape
-            assert found == full, f"{name} has shape {value.shape} for conditions of shape {shape}"
+            actual = value.shape[:-1] if name in OF_STRIPS else value.shape
+            assert actual == full, f"{name} has shape {value.shape} for conditions of shape {shape}"
 
 
 @rule(Rig)
@@ -151,8 +151,8 @@ def arrays_equal_single_calls(rig: Rig) -> None:
         _assert_same(_problem(rig, **{name: times(value, FACTORS)}), expected, f"an array of {name}")
     first, *rest = values
 
-    def changed(one: Array | float, others: Array | float) -> Conditions:
-        return {name: times(values[name], one if name == first else others) for name in (first, *rest)}
+    def changed(leading: Array | float, others: Array | float) -> Conditions:
+        return {name: times(values[name], leading if name == first else others) for name in (first, *rest)}
 
     rows = [[values_of(_problem(rig, **changed(i, j))) for j in FACTORS] for i in FACTORS[:2]]
     expected = {field: np.array([[single[field] for single in row] for row in rows]) for field in rows[0][0]}
@@ -163,9 +163,9 @@ def arrays_equal_single_calls(rig: Rig) -> None:
 @rule(Rig)
 def conditions_are_declared(rig: Rig) -> None:
     """`conditions()` has the names in the example and the one in `creepage`, and the example is one test."""
-    known, creepage = rig.conditions(), () if rig.creepage is None else (rig.creepage,)
+    declared, creepage = rig.conditions(), () if rig.creepage is None else (rig.creepage,)
     for name in (*rig.example, *creepage):
-        assert name in known, f"`conditions()` does not name '{name}', only {', '.join(known) or 'none'}"
+        assert name in declared, f"`conditions()` does not name '{name}', only {', '.join(declared) or 'none'}"
     for name in creepage:
         assert name in varied(rig), f"the example gives no '{name}', which `creepage` names"
     for name, value in varied(rig).items():
@@ -178,7 +178,9 @@ def units_of_conditions_are_checked(rig: Rig) -> None:
 
     Each condition of the example with a unit is tried, and each one that the rig declares with a unit.
     """
-    declared = {name: Q(1.0, one.unit.unit) for name, one in rig.conditions().items() if one.unit is not None}
+    declared = {
+        name: Q(1.0, condition.unit.unit) for name, condition in rig.conditions().items() if condition.unit is not None
+    }
     for name, value in {**declared, **varied(rig)}.items():
         if isinstance(value, pint.Quantity):
             number, other = value.magnitude, Q(value.magnitude, "candela")  # of which no condition of a rig is
@@ -202,17 +204,17 @@ def values_that_are_no_numbers_are_refused(rig: Rig) -> None:
     for name, value in varied(rig).items():
         for number, optional in ((np.nan, False), (np.inf, True)):
             numbers = np.array([getattr(value, "magnitude", value), number])
-            given = {**rig.example, name: in_unit_of(value, numbers)}
-            _assert_refused(rig, given, InputError, name, f"{number} in {name}", optional=optional)
+            conditions = {**rig.example, name: in_unit_of(value, numbers)}
+            _assert_refused(rig, conditions, InputError, name, f"{number} in {name}", optional=optional)
 
 
 def _assert_refused(
-    rig: Rig, given: Conditions, kind: type[WearlawError], name: str, what: str, optional: bool = False
+    rig: Rig, conditions: Conditions, kind: type[WearlawError], name: str, what: str, optional: bool = False
 ) -> None:
     """Assert that conditions raise an error that names one of them; if `optional`, they may give a problem too."""
     wanted = f"raise wearlaw.{kind.__name__} with a message that names '{name}'"
     try:
-        rig.checked_problem(given)
+        rig.checked_problem(conditions)
     except WearlawError as raised:
         error = raised
     else:
@@ -286,8 +288,8 @@ def creepage_is_proportional_to_its_condition(rig: Rig) -> None:
     whole = _crept(rig, 1.0).existing()
     assert (whole.longitudinal_creepage != 0.0).all(), f"the example has no creepage; give another {rig.creepage}"
     for share in (0.5, 0.0, -1.0):
-        found = _crept(rig, share).existing()
+        crept = _crept(rig, share).existing()
         expected = values_of(whole)
         expected["longitudinal_creepage"] = share * expected["longitudinal_creepage"]
-        expected["rolling_speed"] = values_of(found)["rolling_speed"]
-        _assert_same(found, expected, f"{share} times the {rig.creepage}")
+        expected["rolling_speed"] = values_of(crept)["rolling_speed"]
+        _assert_same(crept, expected, f"{share} times the {rig.creepage}")

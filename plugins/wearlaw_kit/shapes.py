@@ -126,10 +126,10 @@ def sizes(problem: Problem, forces: CreepForces) -> dict[str, Array]:
     return {"longitudinal": size, "lateral": size, "spin_moment": moment}
 
 
-def assert_same_forces(problem: Problem, found: CreepForces, due: CreepForces, message: str, error: float) -> None:
+def assert_same_forces(problem: Problem, actual: CreepForces, due: CreepForces, message: str, error: float) -> None:
     """Assert that forces and moment agree to a share of their sizes."""
     for name, size in sizes(problem, due).items():
-        assert_close(getattr(found, name), getattr(due, name), f"{WORDS[name]} {message}", 0.0, error * size)
+        assert_close(getattr(actual, name), getattr(due, name), f"{WORDS[name]} {message}", 0.0, error * size)
 
 
 def of_model(model: ContactModel, points: int) -> list[tuple[ContactModel, Problem]]:
@@ -161,10 +161,10 @@ def on_shapes(
                 with failing(shape.where):
                     check(model, shape)
 
-        def known(model: ContactModel) -> bool:
+        def applicable(model: ContactModel) -> bool:
             return bool(solved(model)) and applies(model)
 
-        return rule(ContactModel, *claims, applies=known, **options)(on_all)
+        return rule(ContactModel, *claims, applies=applicable, **options)(on_all)
 
     return decorate
 

@@ -18,7 +18,7 @@ from wearlaw_kit.shapes import assert_same_forces, forces_as, of_stage
 POINTS = 24
 """Operating points at which a stage is tried."""
 
-FOUND = 1e-9
+FIXED_POINT = 1e-9
 """Relative difference of two results of one problem, since a fixed point is found only to the tolerance of its search.
 
 Searches that stop at a hundred roundings in friction lie far below it.
@@ -42,16 +42,18 @@ def points_are_independent(stage: Stage) -> None:
         together = integrate_forces(model, problem)
         for point in range(0, POINTS, 5):
             alone = integrate_forces(model, problem[point])
-            found = forces_as(together, operator.itemgetter(point))
-            assert_same_forces(problem[point], found, alone, "of a point in a batch", FOUND)
+            part = forces_as(together, operator.itemgetter(point))
+            assert_same_forces(problem[point], part, alone, "of a point in a batch", FIXED_POINT)
 
 
 @rule(Stage)
 def opposite_creepages_have_opposite_forces(stage: Stage) -> None:
     """If all creepages change sign, so do the forces."""
     for model, problem in of_stage(stage, POINTS):
-        forces, turned = (integrate_forces(model, one) for one in (problem, creeping(problem, -1.0)))
-        assert_same_forces(problem, forces_as(turned, np.negative), forces, "of the opposite creepages, turned", FOUND)
+        forces, turned = (integrate_forces(model, case) for case in (problem, creeping(problem, -1.0)))
+        assert_same_forces(
+            problem, forces_as(turned, np.negative), forces, "of the opposite creepages, turned", FIXED_POINT
+        )
 
 
 @rule(Stage, always=True)
@@ -84,4 +86,4 @@ def _held(problem: Problem) -> Problem:
 def contact_is_in_double_precision(stage: Stage) -> None:
     """The forces are exact to the search of a fixed point, in steps of 1e-8 of creepage, friction and half-length."""
     for model, problem in of_stage(stage, POINTS):
-        assert_digits(model, problem, FOUND)
+        assert_digits(model, problem, FIXED_POINT)

@@ -43,19 +43,19 @@ def units_of_conditions_do_not_matter(rig: Rig) -> None:
         for name, value in varied(rig).items()
         if not isinstance(value, int)
     }
-    given = {name: value.to_base_units() for name, value in quantities.items()}
+    in_si = {name: value.to_base_units() for name, value in quantities.items()}
     other = {
-        name: in_another_unit(given[name]) if value.units == given[name].units else given[name].to(value.units)
+        name: in_another_unit(in_si[name]) if value.units == in_si[name].units else in_si[name].to(value.units)
         for name, value in quantities.items()
     }
-    _assert_same(_made(rig, other), _made(rig, given), "the problem of conditions", other)
+    _assert_same(_made(rig, other), _made(rig, in_si), "the problem of conditions", other)
 
 
 @rule(Model, always=True)
 def units_of_parameters_do_not_matter(model: Model) -> None:
     """The result is the same if each parameter is given in another unit: in SI, or in hundredths of SI units."""
-    given = {name: value for name, value in model if isinstance(value, pint.Quantity)}
-    other = {name: in_another_unit(value) for name, value in given.items()}
+    quantities = {name: value for name, value in model if isinstance(value, pint.Quantity)}
+    other = {name: in_another_unit(value) for name, value in quantities.items()}
     _assert_same(_computed(model.model_copy(update=other)), _computed(model), "the result with parameters", other)
 
 
@@ -66,9 +66,9 @@ def in_another_unit(value: Any) -> Any:
     return Q(value.to(unit).magnitude, unit)
 
 
-def _assert_same(found: Array, due: Array, what: str, other: Mapping[str, Any]) -> None:
+def _assert_same(actual: Array, due: Array, what: str, other: Mapping[str, Any]) -> None:
     in_units = ", ".join(f"{name} in {value.units or '-'}" for name, value in other.items())
-    assert_close(found, due, f"{what}, {in_units}", SAME_RESULT)
+    assert_close(actual, due, f"{what}, {in_units}", SAME_RESULT)
 
 
 def _computed(model: Model, points: int = POINTS) -> Array:
@@ -78,12 +78,12 @@ def _computed(model: Model, points: int = POINTS) -> Array:
         return model.rate(random_contacts(points, law=model), model.numbers)
     assert isinstance(model, ContactModel | Stage)
     models = of_stage(model, points) if isinstance(model, Stage) else of_model(model, points)
-    solved = [one.solve(problem) for one, problem in models]
-    found = [getattr(contact, name) for contact in solved for name in TOTALS]
+    solved = [solver.solve(problem) for solver, problem in models]
+    totals = [getattr(contact, name) for contact in solved for name in TOTALS]
     if isinstance(model, LineContactModel):
         excess = model.excess_dissipation(LINE.draw(points), 1e6)
-        found += [] if excess is None else [excess]
-    return np.stack(found)
+        totals += [] if excess is None else [excess]
+    return np.stack(totals)
 
 
 @rule(Law)
@@ -95,14 +95,14 @@ def acceleration_does_not_matter(model: Law | ContactModel) -> None:
     except InputError:  # numba is not installed
         return
     try:
-        found = _computed(model, FEW)
+        compiled = _computed(model, FEW)
         accelerate(False)
-        assert_close(found, _computed(model, FEW), "the result with compiled loops", SAME_RESULT)
+        assert_close(compiled, _computed(model, FEW), "the result with compiled loops", SAME_RESULT)
     finally:
         accelerate(None)
 
 
-def _made(rig: Rig, given: Mapping[str, Any]) -> Array:
+def _made(rig: Rig, conditions: Mapping[str, Any]) -> Array:
     """Return the numbers of the problem that a rig makes, one after the other."""
-    values = values_of(rig.checked_problem({**rig.example, **given}))
+    values = values_of(rig.checked_problem({**rig.example, **conditions}))
     return np.concatenate([np.ravel(values[name]) for name in PRECISE])
