@@ -58,10 +58,10 @@ def read_rig(path: Path | None) -> Rig:
 
 def listed(option: str, text: str) -> list[str]:
     """Return the parts between commas, at least one."""
-    found = [part for part in (part.strip() for part in text.split(",")) if part]
-    if not found:
+    parts = [part for part in (part.strip() for part in text.split(",")) if part]
+    if not parts:
         raise click.UsageError(f"{option}: name at least one, got {shown(text)}")
-    return found
+    return parts
 
 
 def fields(option: str, settings: tuple[str, ...], form: str = "FIELD=VALUE") -> dict[str, str]:
@@ -108,23 +108,23 @@ def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
         Further fields.
     """
     name, *settings = re.split(r":(?![\\/])", text)  # not within "C:/law.toml"
-    given = {**values(text, tuple(settings)), **(fixed or {})}
+    fields = {**values(text, tuple(settings)), **(fixed or {})}
     if is_law_file(name):
-        return read_law(name).model_copy(update=given)
+        return read_law(name).model_copy(update=fields)
     try:
-        return loader.law(name, **given)
+        return loader.law(name, **fields)
     except ConfigurationError as error:
         if not any(problem.message == "is missing" for problem in error.problems):
             raise
-        raise InputError(f"{error}; write the law as {_form(name, given)}") from None
+        raise InputError(f"{error}; write the law as {_form(name, fields)}") from None
 
 
-def _form(name: str, given: Mapping[str, str | float]) -> str:
+def _form(name: str, fields: Mapping[str, str | float]) -> str:
     """Return a law with its required fields, and those with an example, as it stands on the command line."""
     parts = [name]
     for field, about in {**loader.installed("wear law"), **loader.installed("law")}[name].model_fields.items():
-        if field in given or about.is_required() or about.examples:
-            shown = given.get(field, (about.examples or ["VALUE"])[0])
+        if field in fields or about.is_required() or about.examples:
+            shown = fields.get(field, (about.examples or ["VALUE"])[0])
             parts.append(f'{field}="{shown}"' if " " in str(shown) else f"{field}={shown}")
     return ":".join(parts)
 

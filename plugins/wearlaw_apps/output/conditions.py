@@ -55,14 +55,16 @@ class Conditions:
         Text of the others, such as a law of friction.
     """
 
-    def __init__(self, given: Mapping[str, Any], shape: tuple[int, ...]) -> None:
+    def __init__(self, conditions: Mapping[str, Any], shape: tuple[int, ...]) -> None:
         self.numbers: dict[str, Known] = {}
         self.others: dict[str, str] = {}
-        for name, value in given.items():
-            known = None if value is None else Known.of(value)
-            if known is not None and _fits(np.shape(known.values), shape):
-                values = np.asarray(known.values)
-                self.numbers[name] = Known(values.reshape((1,) * (len(shape) - values.ndim) + values.shape), known.unit)
+        for name, value in conditions.items():
+            number = None if value is None else Known.of(value)
+            if number is not None and _fits(np.shape(number.values), shape):
+                values = np.asarray(number.values)
+                self.numbers[name] = Known(
+                    values.reshape((1,) * (len(shape) - values.ndim) + values.shape), number.unit
+                )
             elif value is not None:
                 self.others[name] = str(value)
 
@@ -77,44 +79,50 @@ class Conditions:
 
     def chosen(self, selection: Selection) -> Conditions:
         """Return the conditions of some of the operating points."""
-        found = Conditions({}, ())
-        found.others = self.others
-        found.numbers = {name: Known(_chosen(one.values, selection), one.unit) for name, one in self.numbers.items()}
-        return found
+        part = Conditions({}, ())
+        part.others = self.others
+        part.numbers = {
+            name: Known(_chosen(condition.values, selection), condition.unit)
+            for name, condition in self.numbers.items()
+        }
+        return part
 
     def text(self, without: Collection[str] = ()) -> str:
         """Return the conditions in words, those with several values as their range."""
-        found = []
-        for name, one in self.numbers.items():
-            if name not in without and one.values.size:
-                ends = dict.fromkeys(f"{end:.4g}" for end in (one.values.min(), one.values.max()))
-                found.append(f"{name_of(name)} {' to '.join(ends)} {one.unit or ''}".rstrip())
-        found += [f"{name_of(name)} {text}" for name, text in self.others.items() if name not in without]
-        return ", ".join(found)
+        texts = []
+        for name, condition in self.numbers.items():
+            if name not in without and condition.values.size:
+                ends = dict.fromkeys(f"{end:.4g}" for end in (condition.values.min(), condition.values.max()))
+                texts.append(f"{name_of(name)} {' to '.join(ends)} {condition.unit or ''}".rstrip())
+        texts += [f"{name_of(name)} {text}" for name, text in self.others.items() if name not in without]
+        return ", ".join(texts)
 
     def varying(self, axis: int) -> list[str]:
         """Return the names of the conditions that vary along an axis."""
-        return [name for name, one in self.numbers.items() if one.values.shape[axis] > 1]
+        return [name for name, condition in self.numbers.items() if condition.values.shape[axis] > 1]
 
     def axes(self, names: Sequence[str], taken: Collection[str]) -> list[str]:
         """Return names for the axes of the operating points.
 
         An axis along which a single condition varies, and along no other, has its name; the others keep theirs.
         """
-        found = list(names)
+        labels = list(names)
         for axis in range(len(names)):
             alone = self.varying(axis)
             if len(alone) == 1 and alone[0] not in taken:
                 (name,) = alone
                 if self.numbers[name].values.size == self.numbers[name].values.shape[axis]:
-                    found[axis] = name
-        return found
+                    labels[axis] = name
+        return labels
 
 
 def _chosen(values: Array, selection: Selection) -> Array:
     """Return the chosen entries of a condition, with an axis for each of the conditions, of full length or 1."""
     sizes_and_positions = zip(values.shape, selection.positions, strict=False)
-    kept = (one if size > 1 else 0 if isinstance(one, int) else slice(None) for size, one in sizes_and_positions)
+    kept = (
+        position if size > 1 else 0 if isinstance(position, int) else slice(None)
+        for size, position in sizes_and_positions
+    )
     return Selection(tuple(kept)).of(values)
 
 

@@ -217,7 +217,7 @@ def lone_points(curve: Curve) -> list[int]:
 def map_range(figure: FigureData) -> tuple[float, float]:
     """Return the least and the largest value of the maps of a figure, which share a scale of colours."""
     maps = [panel.map for panel in figure.panels if panel.map is not None]
-    values = np.concatenate([np.ravel(one.values) for one in maps])
+    values = np.concatenate([np.ravel(drawn_map.values) for drawn_map in maps])
     seen = values[np.isfinite(values) & ((values > 0.0) | (maps[0].scale == "linear"))]
     return (float(seen.min()), float(seen.max())) if seen.size else (0.0, 1.0)
 

@@ -60,8 +60,8 @@ def dataset(prediction: Prediction, conditions: Conditions, names: Sequence[str]
     chosen = default_variables(prediction, conditions.numbers) if names is None else names_in(names, "names")
     dims = [*conditions.axes(every[:count], {*problem.dims, *chosen}), *every[count:]]
     coordinates = {
-        name: _coordinate(name, one, dims[:count])
-        for name, one in conditions.numbers.items()
+        name: _coordinate(name, condition, dims[:count])
+        for name, condition in conditions.numbers.items()
         if name not in problem.dims and name not in chosen
     }
     variables = {}
@@ -73,24 +73,24 @@ def dataset(prediction: Prediction, conditions: Conditions, names: Sequence[str]
     return labelled(problem, coordinates, variables).assign_attrs(conditions.others)
 
 
-def _coordinate(name: str, one: Known, dims: Sequence[str]) -> tuple[list[str], Array, dict[str, str]]:
-    kept = [axis for axis, size in enumerate(one.values.shape) if size > 1]
-    values = one.values.reshape([one.values.shape[axis] for axis in kept])
-    return [dims[axis] for axis in kept], values, {"units": one.unit or "", "long_name": name_of(name)}
+def _coordinate(name: str, condition: Known, dims: Sequence[str]) -> tuple[list[str], Array, dict[str, str]]:
+    kept = [axis for axis, size in enumerate(condition.values.shape) if size > 1]
+    values = condition.values.reshape([condition.values.shape[axis] for axis in kept])
+    return [dims[axis] for axis in kept], values, {"units": condition.unit or "", "long_name": name_of(name)}
 
 
 def to_dataframe(prediction: Prediction, solution: Solution, names: Sequence[str] | None) -> pandas.DataFrame:
     """Return a prediction as a table; see `Prediction.to_dataframe`."""
     conditions = Conditions.of(solution)
-    found = dataset(prediction, conditions, names)
-    units = {str(name): one.attrs.get("units", "") for name, one in found.variables.items()}
+    data = dataset(prediction, conditions, names)
+    units = {str(name): variable.attrs.get("units", "") for name, variable in data.variables.items()}
     problem = prediction.problem
-    (dims, *_) = (list(one.dims) for one in found.data_vars.values())
-    rows = found.to_dataframe(dim_order=dims) if dims else found.expand_dims(POINT).to_dataframe()
+    (dims, *_) = (list(variable.dims) for variable in data.data_vars.values())
+    rows = data.to_dataframe(dim_order=dims) if dims else data.expand_dims(POINT).to_dataframe()
     if problem.resolved is not None:
         rows = rows[problem.resolved.reshape(-1)]
-    order = [*conditions.numbers, *problem.dims, *found.data_vars]
-    columns = [name for name in dict.fromkeys(order) if name in found.variables]
+    order = [*conditions.numbers, *problem.dims, *data.data_vars]
+    columns = [name for name in dict.fromkeys(order) if name in data.variables]
     table = rows.reset_index()[columns]
     return table.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit})
 

@@ -181,8 +181,8 @@ def log_ticks(low: float, high: float) -> list[float]:
     powers = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1.0)
     powers = powers[:: max(1, len(powers) // 8)]
     for digits in ((1.0,), (1.0, 2.0, 5.0), (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)):
-        found = np.ravel(np.multiply.outer(10.0**powers, digits))
-        seen = found[(found >= low * (1.0 - 1e-9)) & (found <= high * (1.0 + 1e-9))]
+        ticks = np.ravel(np.multiply.outer(10.0**powers, digits))
+        seen = ticks[(ticks >= low * (1.0 - 1e-9)) & (ticks <= high * (1.0 + 1e-9))]
         if seen.size >= TICKS:
             return [float(f"{tick:.6g}") for tick in seen]
     step = 10.0 ** np.floor(np.log10(high - low)) / 2.0
@@ -239,8 +239,8 @@ def _draw_map(axes: Axes, drawn: Map, norm: Any) -> None:
 def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
     """Add one legend for all panels, with each label once."""
     entries: dict[str, Any] = {}
-    for one, panel in zip(axes, figure.panels, strict=True):
-        labelled = ((artist, str(artist.get_label())) for artist in one.get_lines())
+    for drawn_axes, panel in zip(axes, figure.panels, strict=True):
+        labelled = ((artist, str(artist.get_label())) for artist in drawn_axes.get_lines())
         entries |= {label: artist for artist, label in labelled if not label.startswith("_")}
         for shade in panel.shades:
             entries[_literal(shade.label)] = Patch(facecolor=_grey(shade), edgecolor="0.6", linewidth=0.5)

@@ -22,21 +22,21 @@ def labels(models: Sequence[Model]) -> list[str]:
 
     The name of a law for one body has that body, as in "usfd(body=rail)". A law with a label has its label.
     """
-    found = []
+    names = []
     for model in models:
         label = getattr(model, "label", None)
         if label is not None:
-            found.append(label)
+            names.append(label)
             continue
         namesakes = [other for other in models if other.name == model.name and not getattr(other, "label", None)]
         body = ["body"] if getattr(model, "body", None) is not None else []
         fields = dict.fromkeys([*_telling_apart(namesakes), *body])
         options = [f"{field}={text_of(getattr(model, field))}" for field in fields]
-        found.append(f"{model.name}({', '.join(options)})" if options else model.name)
-    for name in found:
-        if found.count(name) > 1:
+        names.append(f"{model.name}({', '.join(options)})" if options else model.name)
+    for name in names:
+        if names.count(name) > 1:
             raise InputError(f"the model {name} is listed twice; leave one out, or give it other options or a label")
-    return found
+    return names
 
 
 def labelled(models: Sequence[ModelT]) -> dict[str, ModelT]:
@@ -67,13 +67,13 @@ def readable(unit: str) -> str:
 
 def in_words(labels: Mapping[str, Label]) -> str:
     """Return the labels of a patch in words, such as "left, patch 1"; a number stands behind the name of its axis."""
-    return ", ".join(one if isinstance(one, str) else f"{name_of(axis)} {one}" for axis, one in labels.items())
+    return ", ".join(label if isinstance(label, str) else f"{name_of(axis)} {label}" for axis, label in labels.items())
 
 
 def unit_of(name: str, value: Quantity, laws: Sequence[Law]) -> str:
     """Return the unit of a variable in results, in the notation of `UNITS`."""
-    known = {**UNITS, **outcome_units(laws)}
-    return known[name] if name in known else symbol(value.units, "~C")
+    units = {**UNITS, **outcome_units(laws)}
+    return units[name] if name in units else symbol(value.units, "~C")
 
 
 def long_name(variable: str, laws: Sequence[Law]) -> str:

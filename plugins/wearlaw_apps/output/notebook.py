@@ -90,8 +90,8 @@ def law_curve(law: Law) -> str:
     try:
         with caught_warnings():
             of_any = law.model_copy(update={"body": None})
-            found = Pipeline(rig=rig, contact_model=model, laws=(of_any,)).predict(rig.checked_problem(CONDITIONS))
-        x, y = found.wear_index.m_as("N"), found[law.outcome.name].m_as(law.outcome.unit or "")
+            prediction = Pipeline(rig=rig, contact_model=model, laws=(of_any,)).predict(rig.checked_problem(CONDITIONS))
+        x, y = prediction.wear_index.m_as("N"), prediction[law.outcome.name].m_as(law.outcome.unit or "")
     except WearlawError:
         return ""
     there = (x > 0.0) & (y > 0.0) & np.isfinite(y)
@@ -100,7 +100,7 @@ def law_curve(law: Law) -> str:
     across, up = (np.log10(values[there]) for values in (x, y))
     at_x = 10.0 + (WIDTH - 20.0) * (across - across.min()) / (np.ptp(across) or 1.0)
     at_y = HEIGHT - 22.0 - (HEIGHT - 44.0) * (up - up.min()) / (np.ptp(up) or 1.0)
-    points = " ".join(f"{one:.1f},{other:.1f}" for one, other in zip(at_x, at_y, strict=True))
+    points = " ".join(f"{px:.1f},{py:.1f}" for px, py in zip(at_x, at_y, strict=True))
     unit = readable(law.outcome.unit) or "-"
     head = f"{name_of(law.outcome.name)} {10 ** up.min():.3g} to {10 ** up.max():.3g} {unit}"
     foot = f"wear index Tγ {10 ** across.min():.3g} to {10 ** across.max():.3g} N, two discs"

@@ -23,7 +23,7 @@ def caught_warnings(*kinds: type[Warning]) -> Iterator[list[Warning]]:
     that enter it at once leave the changes behind, so one thread at a time enters it here.
     """
     kept, thread = kinds or (WearlawWarning,), get_ident()
-    found: list[Warning] = []
+    caught: list[Warning] = []
     with _CATCHING, warnings.catch_warnings(), apart():
         for kind in kept:
             warnings.simplefilter("always", kind)
@@ -38,12 +38,12 @@ def caught_warnings(*kinds: type[Warning]) -> Iterator[list[Warning]]:
             line: str | None = None,
         ) -> None:
             if get_ident() == thread and isinstance(message, kept):
-                found.append(message)
+                caught.append(message)
             else:
                 show(message, category, filename, lineno, file, line)
 
         warnings.showwarning = keep
-        yield found
+        yield caught
 
 
 @dataclass
@@ -90,13 +90,13 @@ def grouped(texts: Iterable[str]) -> list[str]:
         subject, _, remark = text.partition(": ")
         head, _, tail = remark.rpartition("; ")
         groups.setdefault(head or remark or text, []).append((subject, f"; {tail}" if head else ""))
-    found = []
+    notes = []
     for head, members in groups.items():
         subjects, tails = zip(*members, strict=True)
         if subjects == (head,):
-            found.append(head)
+            notes.append(head)
         elif len({*tails}) == 1:
-            found.append(f"{', '.join(subjects)}: {head}{tails[0]}")
+            notes.append(f"{', '.join(subjects)}: {head}{tails[0]}")
         else:
-            found.append(head + "".join(f"; {subject}: {tail[2:]}" for subject, tail in members))
-    return found
+            notes.append(head + "".join(f"; {subject}: {tail[2:]}" for subject, tail in members))
+    return notes

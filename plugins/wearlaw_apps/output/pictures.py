@@ -66,23 +66,23 @@ def _over_points(
 ) -> Axes:
     """Draw a variable over the operating points: a map over two axes of many values, otherwise curves."""
     problem = prediction.problem
-    found, variable = _found(prediction, conditions, name, x)
-    dims = [str(dim) for dim in found[variable].dims if dim not in problem.dims]
+    data, variable = _found(prediction, conditions, name, x)
+    dims = [str(dim) for dim in data[variable].dims if dim not in problem.dims]
     if len(dims) > 2:
         raise InputError(
             f"plot: there are {len(dims)} axes of operating points, and a picture shows two; choose some of the points,"
             " as in r.isel(point_0=0).plot()"
         )
     for dim in dims:  # conditions that vary together give an axis of positions
-        if dim not in found.coords:
-            found = found.assign_coords({dim: (dim, range(found.sizes[dim]), {"long_name": "operating point"})})
-    along = x if x in dims else max(dims, key=lambda dim: found.sizes[dim])
+        if dim not in data.coords:
+            data = data.assign_coords({dim: (dim, range(data.sizes[dim]), {"long_name": "operating point"})})
+    along = x if x in dims else max(dims, key=lambda dim: data.sizes[dim])
     others = [dim for dim in dims if dim != along]
-    if x is None and others and found.sizes[others[0]] > MOST_CURVES:
-        return _titled(_map(found, variable, along, others[0], problem, ax), conditions, dims)
-    together = [name for name in conditions.numbers if name in found and found[name].dims == (along,)]
+    if x is None and others and data.sizes[others[0]] > MOST_CURVES:
+        return _titled(_map(data, variable, along, others[0], problem, ax), conditions, dims)
+    together = [name for name in conditions.numbers if name in data and data[name].dims == (along,)]
     across = x or (along if along in together or not together else together[0])
-    return _titled(_curves(found, variable, across, others, problem, ax), conditions, (across, *others))
+    return _titled(_curves(data, variable, across, others, problem, ax), conditions, (across, *others))
 
 
 def _found(
@@ -96,25 +96,25 @@ def _found(
         names.append(x)
     if variable in outcomes:
         names.append(OUTSIDE_RANGE)
-    found = dataset(prediction, conditions, names)
-    points = [dim for dim in found[variable].dims if dim not in prediction.problem.dims]
-    return found.squeeze([dim for dim in points if found.sizes[dim] == 1]), variable
+    data = dataset(prediction, conditions, names)
+    points = [dim for dim in data[variable].dims if dim not in prediction.problem.dims]
+    return data.squeeze([dim for dim in points if data.sizes[dim] == 1]), variable
 
 
 def _curves(
-    found: xarray.Dataset, variable: str, across: str, others: Sequence[str], problem: Problem, ax: Axes | None
+    data: xarray.Dataset, variable: str, across: str, others: Sequence[str], problem: Problem, ax: Axes | None
 ) -> Axes:
     """Draw a curve for each value of the other axes and for each patch."""
-    apart = [*others, *(dim for dim in problem.dims if dim in found.dims)]
+    apart = [*others, *(dim for dim in problem.dims if dim in data.dims)]
     curves: list[Curve] = []
-    for index in np.ndindex(*(found.sizes[dim] for dim in apart)):
+    for index in np.ndindex(*(data.sizes[dim] for dim in apart)):
         place = dict(zip(apart, index, strict=True))
-        here = found.isel(place)
+        here = data.isel(place)
         x, y = (np.atleast_1d(here[name].values) for name in (across, variable))
         there = np.isfinite(x) & np.isfinite(y)
         outside = np.atleast_1d(here[OUTSIDE_RANGE].values > 0.0)[there] if OUTSIDE_RANGE in here else None
         if there.any():
-            label_here = _series(found, place, problem)
+            label_here = _series(data, place, problem)
             curves.append(Curve(label_here, x[there], y[there], colour=len(curves), outside=outside))
     if not curves:
         raise InputError(f"plot: {variable} has no value at these operating points")
@@ -126,32 +126,32 @@ def _curves(
         drawn.plot([], [], color="black", linewidth=THIN, alpha=PALE, label=OUTSIDE)
     if apart or pale:
         drawn.legend(fontsize="small")
-    drawn.set(xlabel=_label(found[across]), ylabel=_label(found[variable]))
+    drawn.set(xlabel=_label(data[across]), ylabel=_label(data[variable]))
     return drawn
 
 
-def _map(found: xarray.Dataset, variable: str, along: str, up: str, problem: Problem, ax: Axes | None) -> Axes:
+def _map(data: xarray.Dataset, variable: str, along: str, up: str, problem: Problem, ax: Axes | None) -> Axes:
     """Draw a map over two axes; hatching marks what lies outside the range of the law."""
-    values = found[variable]
+    values = data[variable]
     if values.ndim > 2:
-        known = " and ".join(f"{dim} {labels}" for dim, labels in problem.dims.items())
-        raise InputError(f"plot: a map shows one patch; choose one of {known}, as in r.sel(...).plot()")
+        patches = " and ".join(f"{dim} {labels}" for dim, labels in problem.dims.items())
+        raise InputError(f"plot: a map shows one patch; choose one of {patches}, as in r.sel(...).plot()")
     bar = {"label": _label(values)}
     drawn: Axes = values.plot.pcolormesh(x=along, y=up, cbar_kwargs=bar, **_look(ax)).axes
-    if OUTSIDE_RANGE in found and (found[OUTSIDE_RANGE] > 0.0).any():
-        marks = found[OUTSIDE_RANGE].transpose(up, along)
+    if OUTSIDE_RANGE in data and (data[OUTSIDE_RANGE] > 0.0).any():
+        marks = data[OUTSIDE_RANGE].transpose(up, along)
         drawn.contourf(marks[along], marks[up], marks, levels=[0.5, 1.5], colors="none", hatches=["///"])
         drawn.fill_between([], [], facecolor="none", edgecolor="black", hatch="///", label=OUTSIDE)
         drawn.legend(fontsize="small")
-    drawn.set(xlabel=_label(found[along]), ylabel=_label(found[up]))
+    drawn.set(xlabel=_label(data[along]), ylabel=_label(data[up]))
     return drawn
 
 
 def _bars(prediction: Prediction, conditions: Conditions, name: str | None, ax: Axes | None) -> Axes:
     """Draw a variable of each existing patch at one operating point."""
-    found, variable = _found(prediction, conditions, name)
-    dims = [str(dim) for dim in found[variable].dims]
-    table = found.to_dataframe(dim_order=dims).dropna(subset=variable)
+    data, variable = _found(prediction, conditions, name)
+    dims = [str(dim) for dim in data[variable].dims]
+    table = data.to_dataframe(dim_order=dims).dropna(subset=variable)
     labels = [row if isinstance(row, tuple) else (row,) for row in table.index.tolist()]
     names = [in_words(dict(zip(dims, row, strict=True))) for row in labels]
     drawn: Axes = table[[variable]].set_axis(names).plot.bar(legend=False, rot=0, **_look(ax))
@@ -161,7 +161,7 @@ def _bars(prediction: Prediction, conditions: Conditions, name: str | None, ax: 
         drawn.patches[place].set(alpha=PALE, label=OUTSIDE if place == outside[0] else "_")
     if outside:
         drawn.legend(handles=[drawn.patches[outside[0]]], fontsize="small")
-    drawn.set(xlabel="", ylabel=_label(found[variable]))
+    drawn.set(xlabel="", ylabel=_label(data[variable]))
     drawn.axhline(0.0, color="black", linewidth=0.8)
     return drawn
 
@@ -175,8 +175,8 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
             ' such as wl.contact_model("exact") for discs and wl.contact_model("strip_theory") for wheels'
         )
     line = prediction.problem.geometry == "line"
-    found = fields_of(prediction)
-    every = [str(one) for one in found.data_vars]
+    data = fields_of(prediction)
+    every = [str(variable) for variable in data.data_vars]
     if name is not None and name not in every:
         raise InputError(
             f"plot: there is one operating point, and {shown(name)} is no field of its patch"
@@ -185,16 +185,16 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
     if not line:
         variable = name or FIELDS[0]
         axes: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
-        mesh = axes.pcolormesh(*raster(prediction, found[variable].values, *PIXELS), rasterized=True)
-        axes.figure.colorbar(mesh, ax=axes, shrink=0.8, label=_label(found[variable]))
-        axes.set(xlabel=_label(found["x"]), ylabel=_label(found["y"]), aspect="equal")
+        mesh = axes.pcolormesh(*raster(prediction, data[variable].values, *PIXELS), rasterized=True)
+        axes.figure.colorbar(mesh, ax=axes, shrink=0.8, label=_label(data[variable]))
+        axes.set(xlabel=_label(data["x"]), ylabel=_label(data["y"]), aspect="equal")
         return axes
     names = list(ALONG) if name is None else [name]
-    table = found.to_dataframe().reset_index()
-    style = ["--" if one == "traction_bound" else "-" for one in names]
-    labels = [name_of(one) for one in names]
+    table = data.to_dataframe().reset_index()
+    style = ["--" if variable == "traction_bound" else "-" for variable in names]
+    labels = [name_of(variable) for variable in names]
     drawn: Axes = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
-    drawn.set(xlabel=_label(found["x"]), ylabel=_label(found[names[0]]) if name else label("pressure", "traction"))
+    drawn.set(xlabel=_label(data["x"]), ylabel=_label(data[names[0]]) if name else label("pressure", "traction"))
     return drawn
 
 
@@ -207,7 +207,9 @@ def fields_of(prediction: Prediction) -> xarray.Dataset:
         return prediction.profile
     contact = prediction.contact
     columns, shape = fields(contact, prediction.laws, ("x", "y", *FIELDS)), contact.pressure.shape
-    shaped = {name: (np.broadcast_to(one, shape).reshape(shape[-2:]), unit) for name, (one, unit) in columns.items()}
+    shaped = {
+        name: (np.broadcast_to(values, shape).reshape(shape[-2:]), unit) for name, (values, unit) in columns.items()
+    }
     data = data_of(("node", "strip"), shaped)
     return labelled(prediction.problem.replaced(dims={}), {name: data.pop(name) for name in ("x", "y")}, data)
 
@@ -266,16 +268,16 @@ def _look(ax: Axes | None) -> dict[str, Any]:
     return {"figsize": SIZE} if ax is None else {"ax": ax}
 
 
-def _series(found: xarray.Dataset, place: Mapping[str, int], problem: Problem) -> str:
+def _series(data: xarray.Dataset, place: Mapping[str, int], problem: Problem) -> str:
     """Return the name of a curve: the value of each other condition, and the patch."""
-    of_points = [_value(found[dim].isel({dim: at})) for dim, at in place.items() if dim not in problem.dims]
-    patch = in_words({dim: found[dim].values[at] for dim, at in place.items() if dim in problem.dims})
+    of_points = [_value(data[dim].isel({dim: at})) for dim, at in place.items() if dim not in problem.dims]
+    patch = in_words({dim: data[dim].values[at] for dim, at in place.items() if dim in problem.dims})
     return ", ".join([*of_points, *([patch] if patch else [])])
 
 
-def _value(one: xarray.DataArray) -> str:
+def _value(condition: xarray.DataArray) -> str:
     """Return the name and the value of a condition."""
-    return f"{name_of(str(one.name))} {one.item():.4g} {_unit(one)}".rstrip()
+    return f"{name_of(str(condition.name))} {condition.item():.4g} {_unit(condition)}".rstrip()
 
 
 def _titled(drawn: Axes, conditions: Conditions, variable: Collection[str]) -> Axes:
@@ -286,10 +288,10 @@ def _titled(drawn: Axes, conditions: Conditions, variable: Collection[str]) -> A
     return drawn
 
 
-def _label(one: xarray.DataArray) -> str:
+def _label(variable: xarray.DataArray) -> str:
     """Return the label of an axis."""
-    return f"{one.attrs.get('long_name', name_of(str(one.name)))} [{_unit(one) or '-'}]"
+    return f"{variable.attrs.get('long_name', name_of(str(variable.name)))} [{_unit(variable) or '-'}]"
 
 
-def _unit(one: xarray.DataArray) -> str:
-    return readable(one.attrs.get("units", ""))
+def _unit(variable: xarray.DataArray) -> str:
+    return readable(variable.attrs.get("units", ""))

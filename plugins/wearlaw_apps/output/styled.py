@@ -44,9 +44,9 @@ class Marked(float):
 
     def __new__(cls, value: float, marks: str) -> Marked:
         """Return the number with its marks."""
-        found = super().__new__(cls, value)
-        found.marks = marks
-        return found
+        number = super().__new__(cls, value)
+        number.marks = marks
+        return number
 
 
 def is_number(value: Any) -> bool:
@@ -78,8 +78,8 @@ def html_table(frame: pd.DataFrame, caption: str) -> str:
     heads = [f'<span class="number">{head}</span>' if at_right else head
              for head, at_right in zip(heads, right, strict=True)]  # fmt: skip
     style = _styled(frame, _html, heads, first_as_index=True).set_td_classes(classes.iloc[:, 1:])
-    found: str = style.set_caption(html.escape(caption)).to_html()
-    return found[found.index("<table") :].replace(f' id="T_{UUID}"', "")
+    table: str = style.set_caption(html.escape(caption)).to_html()
+    return table[table.index("<table") :].replace(f' id="T_{UUID}"', "")
 
 
 def latex_table(frame: pd.DataFrame, footnotes: Iterable[str] = ()) -> str:

@@ -64,7 +64,7 @@ def wear_profile(solution: Solution, body: str, strips: int | None, at: Quantity
     per = "metre rolled" if turns else "passage of a wheel"
     if problem.unloaded is not None:
         columns = {
-            name: (np.where(problem.unloaded[..., None], 0.0, one), unit) for name, (one, unit) in columns.items()
+            name: (np.where(problem.unloaded[..., None], 0.0, values), unit) for name, (values, unit) in columns.items()
         }
     if at is not None:
         return _on_profile(problem, worn, across.y, across.width, columns, per, at)
@@ -106,12 +106,12 @@ def _on_profile(
     arc, of_strip = _arc(body, y), [values for values, _ in columns.values()]
     if problem.exists is not None:
         exists = problem.exists
-        there, arc, width, *of_strip = there[exists.reshape(-1)], *(one[exists] for one in (arc, width, *of_strip))
-    arc, width, *of_strip = (one.reshape(-1, one.shape[-1]) for one in (arc, width, *of_strip))
+        there, arc, width, *of_strip = there[exists.reshape(-1)], *(array[exists] for array in (arc, width, *of_strip))
+    arc, width, *of_strip = (array.reshape(-1, array.shape[-1]) for array in (arc, width, *of_strip))
     for some in blocks(there.size, max(BLOCK // positions.size, 1)):
-        index, found = onto_positions(arc[some], width[some], [one[some] for one in of_strip], positions)
+        index, losses = onto_positions(arc[some], width[some], [array[some] for array in of_strip], positions)
         flat = index + positions.size * there[some, None]
-        for total, values in zip(sums.values(), found, strict=True):
+        for total, values in zip(sums.values(), losses, strict=True):
             np.add.at(total.reshape(-1), flat, values)
     dims = [*rest, POSITION]
     data = data_of(dims, {name: (total, columns[name][1]) for name, total in sums.items()}, per)
@@ -171,15 +171,15 @@ def onto_positions(
     into = places - np.take_along_axis(edges, strip, -1)
     t = np.where(own_step > 0.0, np.clip(into / _or_one(own_step), 0.0, 1.0), into >= 0.0)
     rising, leaving, arriving = t * t * (3.0 - 2.0 * t), own_step * t * (1.0 - t) ** 2, own_step * t * t * (t - 1.0)
-    found = []
+    means = []
     for loss in losses:
         lost = np.take_along_axis(loss, order, axis=-1) * width
         slope = _slopes(np.where(step > 0.0, lost / _or_one(step), 0.0), step)
         before = np.concatenate([np.zeros_like(lost[:, :1]), lost.cumsum(axis=-1)], axis=-1)
         up_to = np.take_along_axis(before, strip, -1) + np.take_along_axis(lost, strip, -1) * rising
         up_to += np.take_along_axis(slope, strip, -1) * leaving + np.take_along_axis(slope, strip + 1, -1) * arriving
-        found.append(np.maximum(np.diff(up_to, axis=-1), 0.0) / np.diff(ends)[index])
-    return index, found
+        means.append(np.maximum(np.diff(up_to, axis=-1), 0.0) / np.diff(ends)[index])
+    return index, means
 
 
 def _cells(edges: Array, ends: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
