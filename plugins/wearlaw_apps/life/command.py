@@ -62,34 +62,34 @@ def life(
     folder = output or folder_for(str(line), "life")
     partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
     loaded, notes = load_case(case), Notes()
-    given: dict[str, Any] = values("--set", settings)
+    arguments: dict[str, Any] = values("--set", settings)
     with results_folder(folder, overwrite, LIFE) as fresh:
         with notes.of("life"), caught_warnings(wl.ResumeWarning) as resumed:
             predict: wl.Pipeline[...] = loaded.rig | loaded.contact_models[0]
             for stage in loaded.stages:
                 predict = predict | stage
             predict = predict | loaded.wear_laws[0]
-            found = wl.wear_out(
+            result = wl.wear_out(
                 predict, line, over=value(over), sep=sep, decimal=decimal, until=values("--until", until),
-                workers=workers, store=partial, resume=resume, progress=True, **given,
+                workers=workers, store=partial, resume=resume, progress=True, **arguments,
             )  # fmt: skip
-        laws = [repr(law) for law in found.pipeline.laws]
-        record = {"wearlaw": wl.__version__, "ended": found.ended, "laws": laws, "notes": notes.texts,
-                  "notes_of_steps": found.notes}  # fmt: skip
-        names = write_files(fresh, LIFE, record, _tables(found), [found.figure()], figure_formats, latex)
+        laws = [repr(law) for law in result.pipeline.laws]
+        record = {"wearlaw": wl.__version__, "ended": result.ended, "laws": laws, "notes": notes.texts,
+                  "notes_of_steps": result.notes}  # fmt: skip
+        names = write_files(fresh, LIFE, record, _tables(result), [result.figure()], figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
     print_notes([*map(str, resumed), *notes.texts])
-    click.echo(repr(found))
+    click.echo(repr(result))
     print_results(folder, names)
 
 
-def _tables(found: Life) -> dict[str, pd.DataFrame]:
+def _tables(life: Life) -> dict[str, pd.DataFrame]:
     """Return the measures, the profiles at each step, and the last ones, by the names of their files."""
-    profiles = found.profiles.drop_vars("body")
-    units = {name: one.attrs.get("units") for name, one in profiles.variables.items()}
+    profiles = life.profiles.drop_vars("body")
+    units = {name: variable.attrs.get("units") for name, variable in profiles.variables.items()}
     heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit}
-    tables = {"life": found.table, "profiles": profiles.to_dataframe().reset_index().rename(columns=heads)}
-    for side, profile in zip(profiles["side"].values, found.worn_profiles[-1], strict=True):
+    tables = {"life": life.table, "profiles": profiles.to_dataframe().reset_index().rename(columns=heads)}
+    for side, profile in zip(profiles["side"].values, life.worn_profiles[-1], strict=True):
         y, z = (value.magnitude for value in profile.points)
         tables["worn" if side == "mean" else f"worn_{side}"] = pd.DataFrame({"y [mm]": y, "z [mm]": z})
     return tables

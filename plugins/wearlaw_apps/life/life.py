@@ -161,10 +161,12 @@ class Life:
         why = {"": ", interrupted", "over": ""}.get(self.ended, f", to the limit of {_words(self.ended)}")
         steps = "1 step" if len(self.table) == 2 else f"{len(self.table) - 1} steps"
         lines = [f"Life of a {self.body}: {_number(last.iloc[0])} {unit or along}, {steps}{why}"]
-        for one in map(str, self.table.columns[1:]):
-            if not one.startswith("factor") and np.isfinite(last[one]):
-                unit = readable(name_and_unit(one)[1])
-                lines.append(f"  {_words(one):<26}{_number(first[one])} to {_number(last[one])} {unit}".rstrip())
+        for column in map(str, self.table.columns[1:]):
+            if not column.startswith("factor") and np.isfinite(last[column]):
+                unit = readable(name_and_unit(column)[1])
+                lines.append(
+                    f"  {_words(column):<26}{_number(first[column])} to {_number(last[column])} {unit}".rstrip()
+                )
         return "\n".join(lines)
 
 

@@ -81,8 +81,8 @@ class Line:
             wear, notes = Wear(**part.arrays), part.record["notes"]
         else:
             total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at), self.points)
-            found = run(total, lambda _: None, self._workers, self._client)
-            notes = [[type(one).__name__, str(one)] for one in found]
+            remarks = run(total, lambda _: None, self._workers, self._client)
+            notes = [[type(remark).__name__, str(remark)] for remark in remarks]
             depth, mass = (wl.Q(total.arrays()[name], self.job.units[name]).to_base_units() for name in Wear._fields)
             wear = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude))
             if self._kept is not None:

@@ -135,8 +135,8 @@ def wear_out(
     if not conicity_step > 0.0:
         raise wl.InputError(f"conicity_step: must be positive, or math.inf for no limit; got {conicity_step:g}")
     distance = _distance(over, body)
-    new = tuple(even(one) for one in _profiles(predict.rig, body, sides))
-    longest = max(np.ptp(one.curve.s) for one in new)
+    new = tuple(even(profile) for profile in _profiles(predict.rig, body, sides))
+    longest = max(np.ptp(profile.curve.s) for profile in new)
     at = positions(new, math.ceil(longest / length.si(spacing, "spacing")) + 1)
     with ExitStack() as stack:
         points = stack.enter_context(

@@ -28,7 +28,7 @@ EDGE = 1e-3
 
 def positions(profiles: Sequence[Profile], count: int) -> Array:
     """Return even arc lengths from end to end of profiles [m]."""
-    ends = np.array([one.curve.s[[0, -1]] for one in profiles])
+    ends = np.array([profile.curve.s[[0, -1]] for profile in profiles])
     return np.linspace(ends[:, 0].min(), ends[:, 1].max(), count)
 
 
@@ -44,8 +44,8 @@ def smoothed(depth: Array, at: Array, length: float) -> Array:
     """
     if not length:
         return depth
-    found: Array = scipy.ndimage.gaussian_filter1d(depth, length / (at[1] - at[0]), mode="reflect")
-    return found
+    smooth: Array = scipy.ndimage.gaussian_filter1d(depth, length / (at[1] - at[0]), mode="reflect")
+    return smooth
 
 
 def removed(profile: Profile, at: Array, depth: Array) -> Profile:
@@ -64,7 +64,7 @@ def swept(old: Profile, new: Profile, radius: float = np.inf) -> float:
     Both are taken as polygons through their points, closed at their ends. A wheel turns about an axis at a distance
     `radius` from z = 0 [m]; the volume is exact for frustums of cones.
     """
-    ends = [[1e-3 * value.magnitude for value in one.points] for one in (old, new)]
+    ends = [[1e-3 * value.magnitude for value in profile.points] for profile in (old, new)]
     y, z = (np.concatenate([ends[0][axis], ends[1][axis][::-1], ends[0][axis][:1]]) for axis in (0, 1))
     low, high = z[:-1], z[1:]
     section = 0.5 * (low + high)
@@ -95,12 +95,12 @@ def conserving(profile: Profile, at: Array, depth: Array, volume: float, radius:
         new = removed(profile, at, factor * depth)
         return new, swept(profile, new, radius)
 
-    new, found = by(1.0)
-    before, factor = (1.0, found), volume / found
+    new, lost = by(1.0)
+    before, factor = (1.0, lost), volume / lost
     for _ in range(STEPS):
-        new, found = by(factor)
-        if abs(found - volume) <= ACCURACY * volume or found == before[1]:
+        new, lost = by(factor)
+        if abs(lost - volume) <= ACCURACY * volume or lost == before[1]:
             break
-        slope = (found - before[1]) / (factor - before[0])
-        before, factor = (factor, found), factor + (volume - found) / slope
+        slope = (lost - before[1]) / (factor - before[0])
+        before, factor = (factor, lost), factor + (volume - lost) / slope
     return new, factor

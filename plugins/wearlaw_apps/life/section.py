@@ -27,34 +27,34 @@ def section(study: wl.Study) -> wl.Section:
     InputError
         If the case has no such sweep, or it varies more than one condition.
     """
-    given = study.conditions(sweep=LINE)
-    varying = [name for name, value in given.items() if np.ndim(getattr(value, "magnitude", value))]
+    conditions = study.conditions(sweep=LINE)
+    varying = [name for name, value in conditions.items() if np.ndim(getattr(value, "magnitude", value))]
     if len(varying) != 1:
         raise wl.InputError(f"the section 'life' takes a sweep {LINE!r} of one condition, got {len(varying)}")
     (name,) = varying
-    values = given.pop(name)
+    values = conditions.pop(name)
     unit = f"{values.units:~C}"
     states = pd.DataFrame({f"{name} [{unit}]": values.magnitude, "share": 1.0 / values.size})
     predict = study.pairs[0].pipeline
     with caught_warnings():  # the sweep of the study has said them
-        found = wear_out(predict, states, over=OVER, **given)
-        figures = (found.figure(), _states(predict, name, values, given))
+        life = wear_out(predict, states, over=OVER, **conditions)
+        figures = (life.figure(), _states(predict, name, values, conditions))
     return wl.Section(
         title="The life of a wheel",
         text=f"An example, not a service rate: {OVER:~P} with equal shares of the {values.size} states of the sweep"
         f" '{LINE}'. Real lines have curves, in which flanges wear.",
-        tables={"life": found.table},
+        tables={"life": life.table},
         figures=figures,
     )
 
 
-def _states(predict: wl.Pipeline[...], name: str, values: wl.Quantity, given: dict[str, object]) -> wl.FigureData:
+def _states(predict: wl.Pipeline[...], name: str, values: wl.Quantity, conditions: dict[str, object]) -> wl.FigureData:
     """Return the depth that single states wear across the new profile."""
     chosen = np.unique(np.linspace(0, values.size - 1, min(values.size, STATES)).round().astype(int))
     s = predict.rig.wheel.curve.s  # type: ignore[attr-defined]
     at = wl.Q(np.arange(1e3 * s[0], 1e3 * s[-1], 0.25), "mm")
-    found = predict(**{name: values[chosen]}, **given)
-    depth = found.wear_profile("wheel", at=at)["depth"]
+    prediction = predict(**{name: values[chosen]}, **conditions)
+    depth = prediction.wear_profile("wheel", at=at)["depth"]
     panels = []
     for side in depth["side"].values:
         curves = tuple(

@@ -71,25 +71,25 @@ class Limits:
         self.ends: dict[str, tuple[str, float]] = {}
         """The column and the limit of each measure, and of the distance as "over"."""
         for name, limit in until.items():
-            found = [name] if name in there else [f"{name}{side}" for side in SIDES[2] if f"{name}{side}" in there]
-            if not found:
+            measures = [name] if name in there else [f"{name}{side}" for side in SIDES[2] if f"{name}{side}" in there]
+            if not measures:
                 raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
-            unit, what = name_and_unit(there[found[0]])[1], f"until: {name}"
+            unit, what = name_and_unit(there[measures[0]])[1], f"until: {name}"
             value = float(wl.Unit(unit).si(limit, what) / unit_in_si(unit) if unit else wl.coefficient(limit, what))
-            for one in found:
-                first = start[there[one]]
-                towards = TOWARDS.get(one.removesuffix("_left").removesuffix("_right"), value - first)
+            for measure in measures:
+                first = start[there[measure]]
+                towards = TOWARDS.get(measure.removesuffix("_left").removesuffix("_right"), value - first)
                 if (value - first) * towards <= 0.0:
                     must = {1.0: "lie above", -1.0: "lie below"}.get(towards, "differ from")
                     has = f"{first:.4g} {unit}".rstrip()
                     raise wl.InputError(f"{what}: must {must} that of the new profile, {has}; got {wl.shown(limit)}")
-                self.ends[one] = there[one], value
+                self.ends[measure] = there[measure], value
         self.ends["over"] = along, over
 
     def _ways(self, row: Mapping[str, float]) -> Array:
         """Return the share of the way from the start to each limit."""
         start = self._start
-        return np.array([(row[one] - start[one]) / (end - start[one]) for one, end in self.ends.values()])
+        return np.array([(row[column] - start[column]) / (end - start[column]) for column, end in self.ends.values()])
 
     def reached(self, row: Mapping[str, float]) -> str:
         """Return the measure that is at its limit, or "over"; "" if the life goes on."""
@@ -219,7 +219,7 @@ class Steps:
         if len(profiles) == 1:
             row["mass [kg]"] = float(mass.mean())
         if mass.size == 2:
-            row |= {f"mass{side} [kg]": float(one) for side, one in zip(SIDES[2], mass, strict=True)}
+            row |= {f"mass{side} [kg]": float(lost) for side, lost in zip(SIDES[2], mass, strict=True)}
         for side, new, profile in zip(sides, self.new, profiles, strict=True):
             depth = new.depth_to(profile, wl.Q(1e3 * new.curve.s, "mm")).magnitude.max()
             row[f"depth{side} [mm]"] = float(depth) if done else 0.0
@@ -230,7 +230,7 @@ class Steps:
             row[CONICITY] = float(rig.equivalent_conicity(amplitude="3 mm").m_as(""))
         except (AttributeError, wl.InputError):  # the rig has none, or these profiles
             row[CONICITY] = math.nan
-        row |= {f"factor{side}": one for side, one in zip(sides, factors, strict=True)}
+        row |= {f"factor{side}": factor for side, factor in zip(sides, factors, strict=True)}
         return State(predict.model_copy(update={"rig": rig}), profiles, mass, row)
 
 
