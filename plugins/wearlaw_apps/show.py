@@ -37,18 +37,18 @@ def list_plugins() -> None:
     """List what the installed plugins provide, by kind and name, and the plugins that failed to load."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PluginWarning)  # the listing below names what is left out
-        found = loader.discovered()
+        plugins = loader.discovered()
     rows = [("kind", "name", "distribution", "version")]
     rows += [
         (kind, name, origin.distribution, origin.version)
-        for kind, shelf in found.shelves.items()
+        for kind, shelf in plugins.shelves.items()
         for name, provided in sorted(shelf.providers.items())
         for _, origin in provided
     ]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
         click.echo("  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
-    for plugin in found.broken:
+    for plugin in plugins.broken:
         click.echo(f"left out: {plugin}", err=True)
 
 
@@ -76,24 +76,24 @@ def explain(name: str) -> str:
     if is_law_file(name):
         law = read_law(name)
         return describe(type(law), f"{name}: parameters for", law)
-    found = loader.discovered()
-    kinds = [kind for kind, shelf in found.shelves.items() if name in shelf.providers]
+    plugins = loader.discovered()
+    kinds = [kind for kind, shelf in plugins.shelves.items() if name in shelf.providers]
     if not kinds:
-        known = dict.fromkeys(one for shelf in found.shelves.values() for one in shelf.items())
-        raise UnknownModelError(found.unknown("model, material, case, test set or section", name, known))
-    return "\n\n".join(_explained(kind, name, found.find(kind, name)) for kind in kinds)
+        names = dict.fromkeys(entry for shelf in plugins.shelves.values() for entry in shelf.items())
+        raise UnknownModelError(plugins.unknown("model, material, case, test set or section", name, names))
+    return "\n\n".join(_explained(kind, name, plugins.find(kind, name)) for kind in kinds)
 
 
 def _explained(kind: str, name: str, item: Any) -> str:
-    found = loader.discovered()
-    head = f"{name}: a {kind} of {found[kind].origin(name)}"
+    plugins = loader.discovered()
+    head = f"{name}: a {kind} of {plugins[kind].origin(name)}"
     if kind == "parameter set":
         return describe(type(item), f"{head}, for", item)
     if kind in loader.MODELS:
         return describe(item)
     tell = _TELL.get(kind)
     if tell is None:
-        module, _, function = found.explanations[kind].partition(":")
+        module, _, function = plugins.explanations[kind].partition(":")
         tell = load(module, function, f"wearlaw show {name}")
     return "\n".join([head, "", *tell(name, item)])
 

@@ -148,21 +148,21 @@ class Table:
                 f'{argument}: must map names to columns, such as {{"force": "Fz [N]"}}, got {shown(columns)}'
             )
         wrong: list[str] = []
-        found: dict[str, Column] = {}
+        selected: dict[str, Column] = {}
         for column in self.heads if columns is None else ():
-            if column.name in found:
-                wrong.append(f"{column.name} is given twice, by '{found[column.name].head}' and '{column.head}'")
-            found[column.name] = column
+            if column.name in selected:
+                wrong.append(f"{column.name} is given twice, by '{selected[column.name].head}' and '{column.head}'")
+            selected[column.name] = column
         for name, text in (columns or {}).items():
             try:
                 if not name.isidentifier():
                     raise DataError(f"{argument}: '{name}' is no name; use letters, digits and underscores")
-                found[name] = self._find(name, text)
+                selected[name] = self._find(name, text)
             except (DataError, UnitError) as error:
                 wrong.append(str(error))
         if wrong:
             raise DataError(f"{self.label} is wrong in:", wrong)
-        return found
+        return selected
 
     def pieces(self, columns: Sequence[Column], gaps: Collection[str] = ()) -> Iterator[list[Array]]:
         """Yield the values of columns piece by piece.
@@ -198,34 +198,34 @@ class Table:
     def _find(self, name: str, text: str) -> Column:
         """Return the column that a text names, with its sign and the unit that the text or the table states."""
         for sign, rest in ((1.0, text), (-1.0, text.removeprefix("-").strip())):
-            given = _column(rest, 0)
-            for found in (
-                [one for one in self.heads if one.head == rest],
-                [one for one in self.heads if one.name == given.name],
+            wanted = _column(rest, 0)
+            for matches in (
+                [column for column in self.heads if column.head == rest],
+                [column for column in self.heads if column.name == wanted.name],
             ):
-                if len(found) > 1:
-                    raise DataError(f"{name}: the column '{rest}' is there {len(found)} times; rename all but one")
-                if found:
-                    return found[0]._replace(name=name, unit=_agreed(name, given, found[0]), sign=sign)
-        known = [one.head for one in self.heads]
-        near = did_you_mean(text.removeprefix("-"), [*known, *(one.name for one in self.heads)]).rstrip(".")
-        listed = ", ".join(f"'{one}'" for one in known[:LISTED]) + (", ..." if len(known) > LISTED else "")
+                if len(matches) > 1:
+                    raise DataError(f"{name}: the column '{rest}' is there {len(matches)} times; rename all but one")
+                if matches:
+                    return matches[0]._replace(name=name, unit=_agreed(name, wanted, matches[0]), sign=sign)
+        heads = [column.head for column in self.heads]
+        near = did_you_mean(text.removeprefix("-"), [*heads, *(column.name for column in self.heads)]).rstrip(".")
+        listed = ", ".join(f"'{column}'" for column in heads[:LISTED]) + (", ..." if len(heads) > LISTED else "")
         raise DataError(f"{name}: there is no column '{text}'{near or ';'} The columns are {listed}")
 
     def _numbers(self, columns: Sequence[Column], frame: Any, first: int, gaps: Collection[str]) -> list[Array]:
         """Return columns of a frame, the first row of which has the number `first`, as floats."""
-        found, wrong = [], []
+        arrays, wrong = [], []
         for column in columns:
             cells = frame[column.place]
             values, missing = _floats(cells, self.decimal)
-            found.append(values if column.sign > 0 else -values)
+            arrays.append(values if column.sign > 0 else -values)
             without = np.isnan(values) & ~(missing & (column.name in gaps))
             wrong += [
                 (int(row), column, "" if missing[row] else str(cells.iloc[row]))
                 for row in np.flatnonzero(without)[:PROBLEMS]
             ]
         if wrong:
-            wrong = sorted(wrong, key=lambda one: one[0])[:PROBLEMS]
+            wrong = sorted(wrong, key=lambda cell: cell[0])[:PROBLEMS]
             if self._hint(wrong[0][2]):  # all others of the column are alike
                 wrong = wrong[:1]
             places = self._rows_in_words({first + row for row, _, _ in wrong})
@@ -237,7 +237,7 @@ class Table:
                     for row, column, text in wrong
                 ],
             )
-        return found
+        return arrays
 
     def _hint(self, text: str) -> str:
         """Return how to read a number with the other decimal mark."""
@@ -256,20 +256,20 @@ def _column(head: str, place: int) -> Column:
     return Column(name, head, place, unit)
 
 
-def _agreed(name: str, given: Column, column: Column) -> str | None:
+def _agreed(name: str, wanted: Column, column: Column) -> str | None:
     """Return the unit that the user states for a column, or else that of the table, which must not be another one."""
-    if given.unit is None:
+    if wanted.unit is None:
         return column.unit
     try:
-        unit = Q(1.0, given.unit)
+        unit = Q(1.0, wanted.unit)
     except UnitError as error:
         raise UnitError(f"{name}: column '{column.head}': {error}") from None
-    if column.unit is not None and given.unit != column.unit:
+    if column.unit is not None and wanted.unit != column.unit:
         with suppress(UnitError):  # what the table states may be no unit
             if Q(1.0, column.unit) != unit:
-                units = f"'{given.unit}' and '{column.unit}'"
+                units = f"'{wanted.unit}' and '{column.unit}'"
                 raise DataError(f"{name}: column '{column.head}': has the units {units}; keep one of them")
-    return given.unit
+    return wanted.unit
 
 
 def _known(unit: str) -> str:
@@ -351,9 +351,9 @@ class FrameTable(Table):
 def _frame(dataset: xarray.Dataset) -> pandas.DataFrame:
     """Return a dataset as a table, with units in its heads."""
     if len(dataset.sizes) != 1:
-        along = ", ".join(f"'{name}' along {' × '.join(map(str, one.dims))}" for name, one in dataset.items())
+        along = ", ".join(f"'{name}' along {' × '.join(map(str, variable.dims))}" for name, variable in dataset.items())
         raise DataError(f"table: its columns must all lie along one dimension, got {along}; select some of them")
-    units = {name: one.attrs.get("units") for name, one in dataset.variables.items()}
+    units = {name: variable.attrs.get("units") for name, variable in dataset.variables.items()}
     frame = dataset.to_dataframe()
     return frame.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit})
 
@@ -456,8 +456,8 @@ class CsvTable(Table):
         with self._opened() as file:
             reader = csv.reader(file, delimiter=self.sep, skipinitialspace=True, strict=True)
             line = self._skip + 1
-            for found in reader:
-                cells = self._cells(found)
+            for row in reader:
+                cells = self._cells(row)
                 comment = self._comment and cells and cells[0].startswith(self._comment)
                 if not comment and any(cell not in MISSING for cell in cells):
                     yield line, cells
@@ -466,10 +466,10 @@ class CsvTable(Table):
     def _rows_in_words(self, rows: Collection[int]) -> dict[int, str]:
         try:
             lines = itertools.islice(self._rows(), max(rows) + 1)
-            found = {row: f"line {line}" for row, (line, _) in enumerate(lines) if row in rows}
+            words = {row: f"line {line}" for row, (line, _) in enumerate(lines) if row in rows}
         except DataError:  # on another machine
-            found = {}
-        return {**super()._rows_in_words(rows), **found}
+            words = {}
+        return {**super()._rows_in_words(rows), **words}
 
     def _uneven(self) -> DataError:
         """Return the error for rows of other lengths than the header."""
