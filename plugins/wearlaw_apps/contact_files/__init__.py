@@ -67,8 +67,8 @@ class ContactMat(wl.Reader):
 
     @model_validator(mode="after")
     def _all_or_none(self) -> ContactMat:
-        given = [value is not None for value in (self.cksi, self.ceta, self.cphi)]
-        if any(given) and not all(given):
+        stated = [value is not None for value in (self.cksi, self.ceta, self.cphi)]
+        if any(stated) and not all(stated):
             raise ValueError("cksi, ceta and cphi: give all three, or none to derive them from the file")
         return self
 
@@ -113,10 +113,10 @@ class ContactMat(wl.Reader):
         if self.cksi is not None and self.ceta is not None and self.cphi is not None:
             spin = MM * wl.scalar_si(self.cphi, "1/m")
             return Creepages(fields.sign * self.cksi, fields.sign * self.ceta, fields.body * spin)
-        found = None
+        creepages = None
         if case.steady and math.isclose(case.step, case.grid.dx, rel_tol=1e-4):
             sticks = fields.state == ADHESION
-            found = derived(
+            creepages = derived(
                 fields.x / MM,
                 fields.y / MM,
                 fields.slip,
@@ -125,19 +125,19 @@ class ContactMat(wl.Reader):
                 case.step,
                 case.flexibilities,
             )
-        if found is None:
+        if creepages is None:
             transient = "it is a step of transient rolling (T = 2)"
             steady = "its fields are not those of a rigid motion in steady rolling with DQ = DX"
             raise wl.DataError(
                 f"'{case.path}': does not determine the creepages, since {steady if case.steady else transient}; give"
                 ' those that CONTACT prints, as in cksi=0.002, ceta=0.001, cphi="0.0003 1/mm"'
             )
-        return found
+        return creepages
 
     def _problem(self, case: Case, fields: _Fields, creepages: Creepages) -> wl.Problem:
-        modulus = [1e6 * one for one in case.shear_moduli]
-        flexibility = 0.5 * (1.0 / modulus[0] + 1.0 / modulus[1])  # 1/G, with ν/G the mean of both bodies
-        ratio = 0.5 * sum(nu / one for nu, one in zip(case.poisson_ratios, modulus, strict=True)) / flexibility
+        moduli = [1e6 * value for value in case.shear_moduli]
+        flexibility = 0.5 * (1.0 / moduli[0] + 1.0 / moduli[1])  # 1/G, with ν/G the mean of both bodies
+        ratio = 0.5 * sum(nu / modulus for nu, modulus in zip(case.poisson_ratios, moduli, strict=True)) / flexibility
         area = fields.length * fields.strip_width
         force = (fields.pressure * area).sum()
         along = fields.length.sum(axis=0)
@@ -208,9 +208,9 @@ class _Fields:
         forwards = (slice(None, None, -1), slice(None)) if turned > 0.0 else (slice(None), slice(None, None, -1))
 
         def over_grid(values: Array, elsewhere: float = 0.0) -> Array:
-            found = np.full(shape, elsewhere)
-            found[place] = values
-            return np.ascontiguousarray(found[forwards])
+            field = np.full(shape, elsewhere)
+            field[place] = values
+            return np.ascontiguousarray(field[forwards])
 
         along = grid.xl + (low_x + np.arange(shape[0]) + 0.5) * grid.dx
         across = grid.yl + (low_y + np.arange(shape[1]) + 0.5) * grid.dy

@@ -81,18 +81,18 @@ def wear(
     first, *others = files
     folder = output or folder_for(first, "wear")
     notes, chosen = Notes(), [law_of(text) for text in laws]
-    given = fields("--option", options)
+    settings = fields("--option", options)
     labels = _labels(files)
     with results_folder(folder, overwrite, WEAR) as fresh:
-        contact = read_contact(files if others else first, reader=reader, **given)
+        contact = read_contact(files if others else first, reader=reader, **settings)
         with notes.of("wear"):
-            found = Prediction.of(contact.patch_mean() if patch_mean else contact, *chosen)
-        if not others and found.problem.batch_shape:
-            labels = [f"{labels[0]} {number}" for number in range(1, found.problem.size + 1)]
+            prediction = Prediction.of(contact.patch_mean() if patch_mean else contact, *chosen)
+        if not others and prediction.problem.batch_shape:
+            labels = [f"{labels[0]} {number}" for number in range(1, prediction.problem.size + 1)]
         with notes.of("wear"):
-            table = worn_table(found, labels)
-            figure = worn_figure(found, labels, " and ".join(law.name for law in chosen))
-            tables = {"wear": table, **profile_tables(found, labels)}
+            table = worn_table(prediction, labels)
+            figure = worn_figure(prediction, labels, " and ".join(law.name for law in chosen))
+            tables = {"wear": table, **profile_tables(prediction, labels)}
         _note_powers(table, notes)
         with notes.of("figure"):
             record = {
@@ -108,7 +108,7 @@ def wear(
 
 def _labels(files: Sequence[str]) -> list[str]:
     """Return the names of the files without their folders, or the paths if names are equal."""
-    names = [Path(one).name for one in files]
+    names = [Path(file).name for file in files]
     return names if len({*names}) == len(names) else [*files]
 
 

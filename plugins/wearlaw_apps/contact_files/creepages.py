@@ -57,14 +57,14 @@ def derived(
     spin_x, spin_y = (1.0, 1.0)
     if flexibilities is not None:
         spin_x, spin_y = flexibilities[0] / flexibilities[2], flexibilities[1] / flexibilities[2]
-    one, none = np.ones(int(here.sum())), np.zeros(int(here.sum()))
-    longitudinal = np.stack([one, none, -spin_x * across], axis=-1)
-    lateral = np.stack([none, one, -spin_y * (along - step / 6.0)], axis=-1)
-    matrix, known = np.concatenate([longitudinal, lateral]), np.concatenate(rigid)
-    found, _, rank, _ = np.linalg.lstsq(matrix, known, rcond=None)
+    ones, zeros = np.ones(int(here.sum())), np.zeros(int(here.sum()))
+    longitudinal = np.stack([ones, zeros, -spin_x * across], axis=-1)
+    lateral = np.stack([zeros, ones, -spin_y * (along - step / 6.0)], axis=-1)
+    matrix, rigid_slip = np.concatenate([longitudinal, lateral]), np.concatenate(rigid)
+    solution, _, rank, _ = np.linalg.lstsq(matrix, rigid_slip, rcond=None)
     if rank < 3:
         return None
-    left = np.linalg.norm(known - matrix @ found)
-    if not left <= MOST * np.linalg.norm(known):
+    left = np.linalg.norm(rigid_slip - matrix @ solution)
+    if not left <= MOST * np.linalg.norm(rigid_slip):
         return None
-    return Creepages(*found.tolist())
+    return Creepages(*solution.tolist())

@@ -84,7 +84,7 @@ def _head(path: Path) -> bytes:
         with path.open("rb") as file:
             return file.read(HEAD)
     except FileNotFoundError:
-        beside = sorted(one.name for one in path.parent.glob(f"[!.]*{escape(path.suffix)}"))
+        beside = sorted(entry.name for entry in path.parent.glob(f"[!.]*{escape(path.suffix)}"))
         raise DataError(f"there is no file {shown(path)}{did_you_mean(path.name, beside)}") from None
     except OSError as error:
         raise DataError(f"cannot read {shown(path)}: {error.strerror}") from None
@@ -94,13 +94,15 @@ def _recognised(path: Path, head: bytes) -> type[Reader]:
     """Return the one reader for the ending and the content of a file."""
     every: dict[str, list[tuple[type[Reader], Any]]] = loader.discovered()["reader"].providers
     candidates = [
-        (one, f"{shown(name)} of {origin}")
+        (reader, f"{shown(name)} of {origin}")
         for name, providers in every.items()
-        for one, origin in providers
-        if path.suffix.lower() in one.suffixes
+        for reader, origin in providers
+        if path.suffix.lower() in reader.suffixes
     ]
     if not candidates:
-        endings = sorted({suffix for providers in every.values() for one, _ in providers for suffix in one.suffixes})
+        endings = sorted(
+            {suffix for providers in every.values() for reader, _ in providers for suffix in reader.suffixes}
+        )
         raise DataError(
             f"cannot read {shown(path)}: no reader reads files that end in {shown(path.suffix)}; those of the"
             f" installed readers end in {', '.join(endings)}. If it is a file of theirs, name the reader, as in"
@@ -108,7 +110,7 @@ def _recognised(path: Path, head: bytes) -> type[Reader]:
         )
     if len(candidates) == 1:
         return candidates[0][0]  # whose error says what is wrong with the content
-    fitting = [(one, name) for one, name in candidates if one.recognises(head)]
+    fitting = [(reader, name) for reader, name in candidates if reader.recognises(head)]
     if len(fitting) == 1:
         return fitting[0][0]
     names = " and ".join(name for _, name in fitting or candidates)
@@ -120,24 +122,24 @@ def _recognised(path: Path, head: bytes) -> type[Reader]:
 
 def _stacked(paths: Sequence[Path], contacts: Sequence[Contact]) -> Contact:
     """Return contacts of one operating point each as a batch."""
-    problems = [_single(path, one) for path, one in zip(paths, contacts, strict=True)]
+    problems = [_single(path, contact) for path, contact in zip(paths, contacts, strict=True)]
     first = problems[0]
-    for path, one in zip(paths, problems, strict=True):
-        if one.geometry != first.geometry or (one.strips is None) != (first.strips is None):
+    for path, problem in zip(paths, problems, strict=True):
+        if problem.geometry != first.geometry or (problem.strips is None) != (first.strips is None):
             raise InputError(
-                f"{shown(path)}: is of geometry '{one.geometry}', but {shown(paths[0])} is of '{first.geometry}'"
+                f"{shown(path)}: is of geometry '{problem.geometry}', but {shown(paths[0])} is of '{first.geometry}'"
             )
-        _check_bodies(path, one, paths[0], first)
+        _check_bodies(path, problem, paths[0], first)
     problem = _stacked_problem(problems)
-    nodes = tuple(np.max([one.pressure.shape for one in contacts], axis=0).tolist())
-    fields: dict[str, Any] = {name: np.array([getattr(one, name) for one in contacts]) for name in TOTALS}
+    nodes = tuple(np.max([contact.pressure.shape for contact in contacts], axis=0).tolist())
+    fields: dict[str, Any] = {name: np.array([getattr(contact, name) for contact in contacts]) for name in TOTALS}
     for name in ("pressure", "traction", "slip", "traction_bound", "area", *COMPONENTS):
-        fields[name] = np.array([_padded(getattr(one, name), nodes, "constant") for one in contacts])
-    fields["x"] = np.array([_padded(one.x, nodes, "edge") for one in contacts])
+        fields[name] = np.array([_padded(getattr(contact, name), nodes, "constant") for contact in contacts])
+    fields["x"] = np.array([_padded(contact.x, nodes, "edge") for contact in contacts])
     if not contacts[0].on_strips:
         return Contact(**{name: value for name, value in fields.items() if name not in COMPONENTS}, problem=problem)
-    width = [_padded(one.strip_width, nodes[1:], "edge") for one in contacts]
-    fields["y"] = np.array([_evenly_on(one.y, one.strip_width, nodes) for one in contacts])
+    width = [_padded(contact.strip_width, nodes[1:], "edge") for contact in contacts]
+    fields["y"] = np.array([_evenly_on(contact.y, contact.strip_width, nodes) for contact in contacts])
     return Contact(**fields, strip_width=np.array(width), problem=problem)
 
 
@@ -153,7 +155,9 @@ def _single(path: Path, contact: Contact) -> Problem:
 
 def _check_bodies(path: Path, problem: Problem, first_path: Path, first: Problem) -> None:
     """Raise an error unless the bodies of two problems are of the same materials and both roll or both do not."""
-    materials, others = ({name: body.material for name, body in one.bodies.items()} for one in (problem, first))
+    materials, others = (
+        {name: body.material for name, body in bodies.items()} for bodies in (problem.bodies, first.bodies)
+    )
     if materials != others:
         raise InputError(
             f"{shown(path)}: its bodies are of other materials than those of {shown(first_path)}, {materials} and not"
@@ -161,46 +165,46 @@ def _check_bodies(path: Path, problem: Problem, first_path: Path, first: Problem
         )
     for name, body in problem.bodies.items():
         if np.isinf(body.rolling_radius) != np.isinf(first.bodies[name].rolling_radius):
-            without, one = (path, first_path) if np.isinf(body.rolling_radius) else (first_path, path)
+            without, with_radius = (path, first_path) if np.isinf(body.rolling_radius) else (first_path, path)
             raise InputError(
-                f"{shown(without)}: has no radius of {shown(name)}, but {shown(one)} has one; give the radius in the"
-                " options of the reader, or read these files apart"
+                f"{shown(without)}: has no radius of {shown(name)}, but {shown(with_radius)} has one; give the radius"
+                " in the options of the reader, or read these files apart"
             )
 
 
 def _stacked_problem(problems: Sequence[Problem]) -> Problem:
     fields: dict[str, Any] = {}
     for name in ARRAYS:
-        values = [getattr(one, name) for one in problems]
+        values = [getattr(problem, name) for problem in problems]
         some = any(value is not None for value in values)
         fields[name] = np.array([0.0 if value is None else value for value in values]) if some else None
-    strips = [one.strips for one in problems if one.strips is not None]
+    strips = [problem.strips for problem in problems if problem.strips is not None]
     if strips:
-        count = (max(one.y.size for one in strips),)
+        count = (max(strip.y.size for strip in strips),)
         made = {
-            name: np.array([_padded(getattr(one, name), count, "constant") for one in strips])
+            name: np.array([_padded(getattr(strip, name), count, "constant") for strip in strips])
             for name in ("half_length", "max_pressure")
         }
-        made["width"] = np.array([_padded(one.width, count, "edge") for one in strips])
-        made["y"] = np.array([_evenly_on(one.y, one.width, count) for one in strips])
+        made["width"] = np.array([_padded(strip.width, count, "edge") for strip in strips])
+        made["y"] = np.array([_evenly_on(strip.y, strip.width, count) for strip in strips])
         fields["strips"] = Strips(**made)
-    bodies = {name: _stacked_body([one.bodies[name] for one in problems]) for name in problems[0].bodies}
+    bodies = {name: _stacked_body([problem.bodies[name] for problem in problems]) for name in problems[0].bodies}
     return problems[0].replaced(**fields, bodies=bodies)
 
 
 def _stacked_body(bodies: Sequence[Body]) -> Body:
-    found: dict[str, Any] = {"rolling_radius": np.array([float(body.rolling_radius) for body in bodies])}
+    fields: dict[str, Any] = {"rolling_radius": np.array([float(body.rolling_radius) for body in bodies])}
     if all(body.profile_position is not None for body in bodies):
         for name in ("profile_position", "profile_direction"):
-            found[name] = np.array([float(getattr(body, name)) for body in bodies])
+            fields[name] = np.array([float(getattr(body, name)) for body in bodies])
     else:
-        found["profile_position"] = None
-    return dataclasses.replace(bodies[0], **found)
+        fields["profile_position"] = None
+    return dataclasses.replace(bodies[0], **fields)
 
 
 def _padded(values: Array, shape: tuple[int, ...], mode: Any) -> Array:
     """Return an array of a larger shape, with zeros or the values of the edge after its own."""
-    more = [(0, whole - own) for whole, own in zip(shape, values.shape, strict=True)]
+    more = [(0, whole - size) for whole, size in zip(shape, values.shape, strict=True)]
     return np.pad(values, more, mode=mode)
 
 
@@ -208,5 +212,5 @@ def _evenly_on(y: Array, width: Array, shape: tuple[int, ...]) -> Array:
     """Return the positions of strips, continued beyond the last one by its width."""
     padded = _padded(y, shape, "edge")
     beyond = np.maximum(np.arange(shape[-1]) - (width.size - 1), 0) * width[-1]
-    found: Array = padded + beyond
-    return found
+    positions: Array = padded + beyond
+    return positions

@@ -91,7 +91,7 @@ def read_subsurface(path: str | os.PathLike[str], block: int = 1) -> xarray.Data
 
 def _blocks(table: Table) -> list[tuple[int, tuple[int, int, int]]]:
     """Return the first row of points of each block, and the numbers of its points along x, y and z."""
-    found, row = [], 0
+    blocks, row = [], 0
     while row < len(table.values):
         nx, ny, nz = (table.whole(row, column, f"N{'XYZ'[column]}", range(1, 10**7)) for column in range(3))
         last = row + nx * ny * nz
@@ -100,6 +100,6 @@ def _blocks(table: Table) -> list[tuple[int, tuple[int, int, int]]]:
                 f"'{table.path}', line {table.lines[-1]}: ends after {len(table.values) - row - 1} points of the block"
                 f" that begins in line {table.lines[row]}, which has {nx} x {ny} x {nz}; the file is cut short there"
             )
-        found.append((row + 1, (nx, ny, nz)))
+        blocks.append((row + 1, (nx, ny, nz)))
         row = last + 1
-    return found
+    return blocks

@@ -48,11 +48,13 @@ class Table:
         got = f"{self.values[row, column]:g}"
         raise wl.DataError(f"'{self.path}', line {self.lines[row]}, column {column + 1} ({name}): {rule}, got {got}")
 
-    def whole(self, row: int, column: int, name: str, known: Sequence[int] | range) -> int:
+    def whole(self, row: int, column: int, name: str, choices: Sequence[int] | range) -> int:
         """Return a whole number among those known, or raise an error."""
         value = self.values[row, column]
-        if value not in known:
-            some = f"from {known[0]} to {known[-1]}" if isinstance(known, range) else " or ".join(map(str, known))
+        if value not in choices:
+            some = (
+                f"from {choices[0]} to {choices[-1]}" if isinstance(choices, range) else " or ".join(map(str, choices))
+            )
             self.wrong(row, column, name, f"must be {some}")
         return int(value)
 
@@ -139,8 +141,8 @@ def _numbers(table: tables.Table, name: str) -> Array:
 
 def _number(text: str) -> float:
     """Return a number, or NaN for anything else."""
-    found = NUMBER.fullmatch(text)
-    if found is None:
+    match = NUMBER.fullmatch(text)
+    if match is None:
         return math.nan
-    digits, signed, plain = found.groups()
+    digits, signed, plain = match.groups()
     return float(f"{digits}e{signed or plain or 0}")
