@@ -52,17 +52,19 @@ VIEWPORT = """document.head.insertAdjacentHTML("beforeend",
 
 def patch_figures(predictions: Mapping[str, wl.Prediction]) -> list[wl.FigureData]:
     """Return figures of pressure, slip and wear in a patch, by the first law that sees its cells; [] if none does."""
-    law, prediction = next(((law, one) for law, one in predictions.items() if one.scale == "cells"), ("", None))
+    law, prediction = next(
+        ((law, prediction) for law, prediction in predictions.items() if prediction.scale == "cells"), ("", None)
+    )
     if prediction is None:
         return []
-    found = fields_of(prediction)
+    fields = fields_of(prediction)
     (wear,) = named_outcomes(prediction.laws)  # such as "wear_rate_rail", of a law for the rail alone
     figures, along = [], wl.PlotAxis(label("x"))
     for name, of in (("pressure", "pressure"), ("slip", "slip"), ("wear_rate", wear)):
         if prediction.problem.geometry == "line":
-            panel = wl.Panel(along, wl.PlotAxis(label(name)), (wl.Curve(law, found["x"].values, found[of].values),))
+            panel = wl.Panel(along, wl.PlotAxis(label(name)), (wl.Curve(law, fields["x"].values, fields[of].values),))
         else:
-            drawn = Map("", *raster(prediction, found[of].values))
+            drawn = Map("", *raster(prediction, fields[of].values))
             panel = wl.Panel(along, wl.PlotAxis("y [mm]"), (), equal=True, map=drawn)
         title = f"{label(name)} by {law}" if name == "wear_rate" else label(name)
         figures.append(wl.FigureData(name, title, (panel,)))
@@ -78,7 +80,7 @@ def by_patch(predictions: Mapping[str, wl.Prediction]) -> dict[str, dict[str, wl
     """Return predictions by law for each existing patch, by its label, "" for the only one of a rig."""
     for first in predictions.values():
         rows: Any = first.to_dataframe(["wear_rate"])[[*first.problem.dims]].to_dict("records")
-        return {in_words(row): {law: one.sel(**row) for law, one in predictions.items()} for row in rows}
+        return {in_words(row): {law: prediction.sel(**row) for law, prediction in predictions.items()} for row in rows}
     return {}
 
 
@@ -87,18 +89,18 @@ def numbers(patches: Mapping[str, Mapping[str, wl.Prediction]]) -> str:
     columns = {}
     for patch, predictions in patches.items():
         first = next(iter(predictions.values()))
-        wear = {f"wear rate by {law}": one.wear_rate for law, one in predictions.items()}
+        wear = {f"wear rate by {law}": prediction.wear_rate for law, prediction in predictions.items()}
         columns[patch] = wear | {name_of(name): first[name] for name in SHOWN[first.problem.geometry]}
     return str(pd.DataFrame(columns).map(repr).to_html(border=0, header=len(columns) > 1))
 
 
 def slider(rig: Any, name: str, value: object) -> Any:
     """Return a slider in a `unit` that starts at a condition; None for no number, such as a law of friction."""
-    known, bounds = Known.of(value), getattr(rig.conditions().get(name), "unit", None)
-    if known is None or np.ndim(known.values):
+    number, bounds = Known.of(value), getattr(rig.conditions().get(name), "unit", None)
+    if number is None or np.ndim(number.values):
         return None
-    unit = VARIABLES[name].unit if name in VARIABLES else known.unit or ""
-    start = float(wl.Q(known.values, known.unit or "").m_as(unit))
+    unit = VARIABLES[name].unit if name in VARIABLES else number.unit or ""
+    start = float(wl.Q(number.values, number.unit or "").m_as(unit))
     high = 2.0 * abs(start) or 1.0
     low = -high if bounds is not None and bounds.negative and not bounds.positive else 0.01 * high
     text = label(name, units={name: unit}).removesuffix(" [-]")
@@ -111,11 +113,11 @@ def slider(rig: Any, name: str, value: object) -> Any:
 class Page:
     """The page of a rig, which starts from its example conditions and the given ones."""
 
-    def __init__(self, subject: Subject, given: Mapping[str, Any]) -> None:
-        self.subject, self.start = subject, subject.conditions(given)
+    def __init__(self, subject: Subject, conditions: Mapping[str, Any]) -> None:
+        self.subject, self.start = subject, subject.conditions(conditions)
         subject.rig.checked_problem(self.start)  # an error of what is given, before there is a page with notes
         sliders = {name: slider(subject.rig, name, value) for name, value in self.start.items()}
-        self.sliders = {name: one for name, one in sliders.items() if one is not None}
+        self.sliders = {name: control for name, control in sliders.items() if control is not None}
         self.model = pn.widgets.Select(label="Contact model", options=[*subject.models], **STRETCHED)
         self.laws = pn.widgets.CheckBoxGroup(options=[*subject.laws], value=subject.first_laws, inline=True)
         self.patch = pn.widgets.Select(label="Patch", options=[""], visible=False, **STRETCHED)
@@ -124,9 +126,9 @@ class Page:
         self.notes, self.numbers, self.python = (pn.pane.HTML(stylesheets=[TABLE], **STRETCHED) for _ in range(3))
         self._update()
         self._update()  # for its time: the first predictions load and compile
-        for one in self.sliders.values():
-            one.param.watch(self._moved, "value")
-            one.param.watch(self._update, "value_throttled")
+        for control in self.sliders.values():
+            control.param.watch(self._moved, "value")
+            control.param.watch(self._update, "value_throttled")
         for widget in (self.model, self.laws, self.patch):
             widget.param.watch(self._update, "value")
 
@@ -149,8 +151,8 @@ class Page:
     def _show(self, model: str, laws: list[str]) -> None:
         notes, started = Notes(), perf_counter()
         conditions = dict(self.start)
-        for name, one in self.sliders.items():
-            conditions[name] = f"{one.value:.6g} {one.unit}" if one.unit else float(f"{one.value:.6g}")
+        for name, control in self.sliders.items():
+            conditions[name] = f"{control.value:.6g} {control.unit}" if control.unit else float(f"{control.value:.6g}")
         predictions = self.subject.predict(model, laws, conditions, notes)
         curve = self._curve(predictions, conditions) if perf_counter() - started < SLOW else []
         self.seconds = perf_counter() - started
@@ -173,16 +175,19 @@ class Page:
         along = self.sliders[creepage]
         x = np.linspace(along.start, along.end, CURVE)
         there = {**conditions, creepage: wl.Q(x, along.unit)}
-        found = self.subject.predict(self.model.value, [*predictions], there, Notes())
-        curves = [wl.Curve(law, x, largest(one), colour=number) for number, (law, one) in enumerate(found.items())]
-        now = np.array([largest(one) for one in predictions.values()])
+        predicted = self.subject.predict(self.model.value, [*predictions], there, Notes())
+        curves = [
+            wl.Curve(law, x, largest(prediction), colour=number)
+            for number, (law, prediction) in enumerate(predicted.items())
+        ]
+        now = np.array([largest(prediction) for prediction in predictions.values()])
         point = wl.Curve("now", np.full(now.shape, along.value), now, colour=BLACK, points=True)
         panel = wl.Panel(wl.PlotAxis(along.label), wl.PlotAxis(label("wear_rate")), (*curves, point))
         return [wl.FigureData("curve", f"wear over {name_of(creepage)}", (panel,))]
 
     def _profiles(self, predictions: Mapping[str, wl.Prediction]) -> Iterable[wl.FigureData]:
         """Return the figures of a rig with profiles, such as a wheelset."""
-        resolved = {law: one for law, one in predictions.items() if one.scale == "cells"}
+        resolved = {law: prediction for law, prediction in predictions.items() if prediction.scale == "cells"}
         draw = getattr(self.subject.rig, "profile_figures", None)
         return draw(resolved) if draw and resolved else ()
 
@@ -276,10 +281,12 @@ def named(rig: str, chosen: Iterable[str] = ()) -> Subject:
     for name in chosen:
         read = wl.read_law if is_law_file(name) else wl.wear_law
         laws[read(name)] = f"wl.{read.__name__}({name!r})"
-    found = wl.installed("rig").get(rig)
-    if found is not None:
-        given = "".join(f", {name}={text!r}" for name, text in found.example_fields.items())
-        return Subject(wl.rig(rig, **found.example_fields), "rig", f"rig = wl.rig({rig!r}{given})", own_laws=laws)
+    rig_type = wl.installed("rig").get(rig)
+    if rig_type is not None:
+        arguments = "".join(f", {name}={text!r}" for name, text in rig_type.example_fields.items())
+        return Subject(
+            wl.rig(rig, **rig_type.example_fields), "rig", f"rig = wl.rig({rig!r}{arguments})", own_laws=laws
+        )
     case = load_case(rig)
     models, wear_laws, stages = (
         numbered(f"case.{name}", getattr(case, name)) for name in ("contact_models", "wear_laws", "stages")

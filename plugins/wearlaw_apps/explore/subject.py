@@ -33,8 +33,8 @@ class Subject:
     def __post_init__(self) -> None:
         by_use = sorted(wl.installed("contact model"), key=lambda name: name != FIRST)
         models = {**self.own_models, **_installed(wl.contact_model, by_use)}
-        own = {law: code for law, code in self.own_laws.items() if isinstance(law, wl.WearLaw)}
-        laws = {**own, **_installed(wl.wear_law, [*wl.installed("wear law"), *wl.installed("parameter set")])}
+        wear_laws = {law: code for law, code in self.own_laws.items() if isinstance(law, wl.WearLaw)}
+        laws = {**wear_laws, **_installed(wl.wear_law, [*wl.installed("wear law"), *wl.installed("parameter set")])}
         self.codes = {MEANS: "wl.patch_mean()", **self.stages, **models, **laws}
         fitting = []
         for model in models:
@@ -42,12 +42,12 @@ class Subject:
                 self.rig | model
                 fitting.append(model)
         self.models, self.laws = labelled(fitting), labelled([*laws])
-        self.first_laws = [*self.laws][: len(own)] or ["usfd"]
+        self.first_laws = [*self.laws][: len(wear_laws)] or ["usfd"]
 
-    def conditions(self, given: Mapping[str, Any]) -> dict[str, Any]:
+    def conditions(self, conditions: Mapping[str, Any]) -> dict[str, Any]:
         """Return the example conditions of the rig and the given ones, which replace those that they exclude."""
-        replaced = [name for names in self.rig.choices if {*names} & {*given} for name in names]
-        return {name: value for name, value in self.rig.example.items() if name not in replaced} | dict(given)
+        replaced = [name for names in self.rig.choices if {*names} & {*conditions} for name in names]
+        return {name: value for name, value in self.rig.example.items() if name not in replaced} | dict(conditions)
 
     def pipeline(self, model: str, law: str) -> Any:
         """Return the pipeline of a contact model and a law, by their labels; a law of patch means gets them."""
@@ -60,19 +60,19 @@ class Subject:
         self, model: str, laws: Sequence[str], conditions: Mapping[str, Any], notes: Notes
     ) -> dict[str, wl.Prediction]:
         """Return a prediction for each law, by its label; there are notes of warnings and errors."""
-        found: dict[str, wl.Prediction] = {}
+        predictions: dict[str, wl.Prediction] = {}
         for law in laws:
             try:
                 with notes.of(law):
-                    found[law] = self.pipeline(model, law)(**conditions)
+                    predictions[law] = self.pipeline(model, law)(**conditions)
             except wl.WearlawError as error:
                 notes.add(f"{law}: {error}")
-        return found
+        return predictions
 
     def python(self, model: str, laws: Sequence[str], conditions: Mapping[str, Any]) -> str:
         """Return the Python that predicts the same."""
-        given = ", ".join(f"{name}={value!r}" for name, value in conditions.items())
-        lines = ["import wearlaw as wl", "", self.setup, f"conditions = dict({given})"]
+        arguments = ", ".join(f"{name}={value!r}" for name, value in conditions.items())
+        lines = ["import wearlaw as wl", "", self.setup, f"conditions = dict({arguments})"]
         for pipeline in (self.pipeline(model, law) for law in laws):
             parts = (pipeline.contact_model, *pipeline.stages, *pipeline.laws)
             lines.append(f"print(({' | '.join([self.code, *(self.codes[part] for part in parts)])})(**conditions))")
@@ -86,8 +86,8 @@ def numbered(code: str, parts: Iterable[Any]) -> dict[Any, str]:
 
 def _installed(make: Callable[[str], Any], names: Iterable[str]) -> dict[Any, str]:
     """Return the models that need no numbers from the user, each with the Python that makes it."""
-    found = {}
+    codes = {}
     for name in names:
         with suppress(wl.ConfigurationError):
-            found[make(name)] = f'wl.{make.__name__}("{name}")'
-    return found
+            codes[make(name)] = f'wl.{make.__name__}("{name}")'
+    return codes
