@@ -143,8 +143,8 @@ def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = No
 
 def _check_axes(job: Job, problem: Problem, part: Points) -> None:
     """Raise an error unless the axes of a block's problem are the operating points and the rig's own axes."""
-    own = tuple(map(len, job.dims.values()))
-    if problem.dims != job.dims or problem.batch_shape != ((part.size, *own) if part.dims else own):
+    rig_axes = tuple(map(len, job.dims.values()))
+    if problem.dims != job.dims or problem.batch_shape != ((part.size, *rig_axes) if part.dims else rig_axes):
         raise fault(
             job.pipeline.rig,
             f"gave a batch of shape {problem.batch_shape} with the axes {problem.dims!r} for {part.size} operating"
@@ -171,26 +171,26 @@ def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
     watch = RangeWatch(*job.pipeline.laws)
     if job.dims:
         watch.counted = "patches"
-    watch.points = sum(one.points for one in every)
-    for one in every:
-        for name, seen in one.ranges.items():
+    watch.points = sum(block.points for block in every)
+    for block in every:
+        for name, seen in block.ranges.items():
             watch.see_outside(name, Seen(*seen))
-    watch.overload = max((one.overload for one in every if one.overload), default=None)
-    with caught_warnings() as found, OneWarning():
-        for one in every:
-            remark(one.unusual)
-            watch.see_ratios(one.ratios)
+    watch.overload = max((block.overload for block in every if block.overload), default=None)
+    with caught_warnings() as caught, OneWarning():
+        for block in every:
+            remark(block.unusual)
+            watch.see_ratios(block.ratios)
         watch.warn()
-    first = next((text for one in every for text in one.remarks), None)
-    return found if first is None else [*found, RangeWarning(first)]
+    first = next((text for block in every for text in block.remarks), None)
+    return caught if first is None else [*caught, RangeWarning(first)]
 
 
 def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Prediction:
     """Return a prediction of zeros, with all names and units of the solved one, at no cost."""
-    none, one = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
-    every = (none,) * len(laws)
-    slip = SlipTotals(mean_slip=none, slip_area=none, patch_area=one, cell_wear_index=none)
-    totals = Totals(every, every, none, none, none, patch_area=one, slip=slip, across=(None,) * len(laws))
+    zeros, ones = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
+    every = (zeros,) * len(laws)
+    slip = SlipTotals(mean_slip=zeros, slip_area=zeros, patch_area=ones, cell_wear_index=zeros)
+    totals = Totals(every, every, zeros, zeros, zeros, patch_area=ones, slip=slip, across=(None,) * len(laws))
     return Prediction(Solution(problem, model, laws, totals))
 
 

@@ -80,8 +80,8 @@ class Folder:
         ):  # zarr's, of a crash
             return False
         try:
-            found = zarr.open_group(str(self.path), mode="r").attrs
-            before, status = json.loads(str(found["provenance"])), found["status"]
+            attrs = zarr.open_group(str(self.path), mode="r").attrs
+            before, status = json.loads(str(attrs["provenance"])), attrs["status"]
         except (OSError, ValueError, KeyError, TypeError):
             raise OutputError(
                 f"store: {shown(self.path)} is not empty, and holds no {self._subject} of wearlaw; choose another"

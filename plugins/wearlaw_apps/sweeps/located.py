@@ -47,11 +47,11 @@ def _located(
         part = points.part([slice(start, stop)])
         conditions = part.conditions()
         if single:
-            conditions |= {name: one.given(float(one.values[0])) for name, one in part.varying.items()}
+            conditions |= {name: axis.given(float(axis.values[0])) for name, axis in part.varying.items()}
         try:
             pose(conditions)
-        except InputError as one:
-            return one
+        except InputError as wrong:
+            return wrong
         return None
 
     low, high = 0, len(numbers)
@@ -64,7 +64,7 @@ def _located(
     message = str(first)
     name = next((name for name in points.varying if message.startswith(f"{name}: ")), None)
     if name is None:
-        values = (f"{key} = {one.values[low]:.4g} {one.unit or ''}".rstrip() for key, one in points.varying.items())
+        values = (f"{key} = {axis.values[low]:.4g} {axis.unit or ''}".rstrip() for key, axis in points.varying.items())
         return DataError(f"{table.label}, {table.where(numbers[low])} ({', '.join(values)}): {message}")
     if low == 0 and type(table) is Table and fault(len(numbers) - 1, len(numbers), single=True):
         return error  # in memory, and wrong from end to end

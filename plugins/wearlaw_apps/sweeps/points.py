@@ -105,7 +105,7 @@ class Block:
     @property
     def shape(self) -> tuple[int, ...]:
         """Number of values along each dimension."""
-        return tuple(one.stop - one.start for one in self.slices)
+        return tuple(span.stop - span.start for span in self.slices)
 
     @property
     def size(self) -> int:
@@ -147,7 +147,7 @@ class Points:
     @cached_property
     def sizes(self) -> dict[str, int]:
         """Number of values along each dimension."""
-        return {one.dim: one.values.size for one in self.varying.values()}
+        return {axis.dim: axis.values.size for axis in self.varying.values()}
 
     @property
     def dims(self) -> tuple[str, ...]:
@@ -185,8 +185,8 @@ class Points:
     def part(self, slices: Iterable[slice]) -> Points:
         """Return the points of a block."""
         by_dim = dict(zip(self.dims, slices, strict=True))
-        varying = {name: one[by_dim[one.dim]] for name, one in self.varying.items()}
-        kept = {name: one[by_dim[one.dim]] for name, one in self.kept.items()}
+        varying = {name: axis[by_dim[axis.dim]] for name, axis in self.varying.items()}
+        kept = {name: axis[by_dim[axis.dim]] for name, axis in self.kept.items()}
         numbers = None if self.numbers is None else self.numbers[by_dim[self.dims[0]]]
         return Points(self.fixed, varying, kept=kept, file=self.file, numbers=numbers)
 
@@ -196,12 +196,12 @@ class Points:
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as arguments of a prediction, with an entry for each operating point."""
-        laid_out = {name: one.given(self._laid_out(one)) for name, one in self.varying.items()}
+        laid_out = {name: axis.given(self._laid_out(axis)) for name, axis in self.varying.items()}
         return {**self.fixed, **laid_out}
 
-    def _laid_out(self, one: Varying) -> Array:
-        shape = [-1 if dim == one.dim else 1 for dim in self.dims]
-        return np.broadcast_to(one.values.reshape(shape), self.shape).reshape(-1)
+    def _laid_out(self, axis: Varying) -> Array:
+        shape = [-1 if dim == axis.dim else 1 for dim in self.dims]
+        return np.broadcast_to(axis.values.reshape(shape), self.shape).reshape(-1)
 
 
 def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Varying]]:

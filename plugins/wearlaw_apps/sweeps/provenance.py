@@ -107,5 +107,5 @@ def parts(value: object) -> Iterator[Configuration]:
         inner = (getattr(value, name) for name in type(value).model_fields)
     elif isinstance(value, (list, tuple)):
         inner = value
-    for one in inner:
-        yield from parts(one)
+    for entry in inner:
+        yield from parts(entry)

@@ -100,24 +100,28 @@ def attributes(status: str, provenance: Provenance, notes: Sequence[str] = ()) -
 def dataset(points: Points, variables: Mapping[str, Array], job: Job, attrs: Mapping[str, str]) -> xarray.Dataset:
     """Return results as a dataset with the conditions as coordinates, except those on disk."""
     coordinates: dict[str, Any] = {**points.rows, **labels_of(job)}
-    for name, one in points.coordinates().items():
-        if not one.on_disk:
-            coordinates[name] = (one.dim, one.values, {"units": one.unit or ""})
+    for name, condition in points.coordinates().items():
+        if not condition.on_disk:
+            coordinates[name] = (condition.dim, condition.values, {"units": condition.unit or ""})
     fixed = {name: Known.of(value) for name, value in points.fixed.items()}
-    coordinates |= {name: ((), float(one.values), {"units": one.unit or ""}) for name, one in fixed.items() if one}
+    coordinates |= {
+        name: ((), float(condition.values), {"units": condition.unit or ""})
+        for name, condition in fixed.items()
+        if condition
+    }
     data = {
         name: ((*points.dims, *job.labels(name)), values, job.attributes(name)) for name, values in variables.items()
     }
-    others = {name: str(points.fixed[name]) for name, one in fixed.items() if one is None}
+    others = {name: str(points.fixed[name]) for name, condition in fixed.items() if condition is None}
     return xarray.Dataset(data, coordinates, {**others, **attrs})
 
 
 def labels_of(job: Job) -> dict[str, Any]:
     """Return the axes of outputs at a point as coordinates; zarr has a stable format only for texts of any length."""
-    found: dict[str, Any] = {}
+    coordinates: dict[str, Any] = {}
     every = [axis for output in job.units for axis in job.labels(output).items()]
     for name, labels in dict(every).items():
         numbers = np.array(labels) if all(isinstance(label, int | float) for label in labels) else None
         attrs = {"units": VARIABLES[name].unit} if name in VARIABLES else {}
-        found[name] = (name, np.array(labels, dtype=object) if numbers is None else numbers, attrs)
-    return found
+        coordinates[name] = (name, np.array(labels, dtype=object) if numbers is None else numbers, attrs)
+    return coordinates

@@ -47,7 +47,7 @@ class Pipelines(Generic[P]):
     ) -> None:
         self._parts = rig, models, stages
         self._dims = dims
-        if not models or not all(isinstance(one, ContactModel) for one in models):
+        if not models or not all(isinstance(model, ContactModel) for model in models):
             raise CompositionError(
                 f'give lists of models, as in rig | [wl.contact_model("exact")], not {shown(models)}'
             )
@@ -87,21 +87,21 @@ class Pipelines(Generic[P]):
         """Return the predictions of all pipelines as one dataset, as from `Prediction.to_dataset`."""
         with needed_for("a dataset", "sweeps"):
             import xarray
-        found: list[xarray.Dataset] = []
+        datasets: list[xarray.Dataset] = []
         seen = set()
         with caught_warnings() as caught:
             for (model, law), pipeline in self.pipelines.items():
                 prediction = pipeline(*positional, **conditions)
                 every = prediction.to_dataset()
                 of_law = [name for name in (*named_outcomes(prediction.laws), MASS, OUTSIDE_RANGE) if name in every]
-                found.append(every[of_law].expand_dims({MODEL: [model], LAW: [law]}))
+                datasets.append(every[of_law].expand_dims({MODEL: [model], LAW: [law]}))
                 if model not in seen:  # the contact is the same for all laws
                     seen.add(model)
-                    found.append(every.drop_vars(of_law).expand_dims({MODEL: [model]}))
-        for warning in {(type(one), str(one)): one for one in caught}.values():
+                    datasets.append(every.drop_vars(of_law).expand_dims({MODEL: [model]}))
+        for warning in {(type(warning), str(warning)): warning for warning in caught}.values():
             warn(warning)
         models, laws = self._labels
-        whole = xarray.merge(found, join="outer", compat="no_conflicts").sel({MODEL: models, LAW: laws})
+        whole = xarray.merge(datasets, join="outer", compat="no_conflicts").sel({MODEL: models, LAW: laws})
         whole = whole.squeeze([dim for dim in (MODEL, LAW) if dim not in self._dims])
         return whole if laws != [""] else whole.drop_vars(LAW)
 

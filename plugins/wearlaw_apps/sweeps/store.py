@@ -45,7 +45,7 @@ class Store(Target):
 
     def __init__(self, job: Job, points: Points, path: Path, resume: bool) -> None:
         super().__init__(job, points)
-        large = sum(one.values.size for one in points.coordinates().values() if one.on_disk)
+        large = sum(condition.values.size for condition in points.coordinates().values() if condition.on_disk)
         size = bytes_of(job, points) + large * ITEM
         self._folder = Folder(path, provenance_of(job, points), resume, size=size)
         self.path, self.store, self.resumed = path, str(path.absolute()), self._folder.resumed
@@ -106,7 +106,7 @@ class Store(Target):
 
     def _chunk(self, name: str, array: Any, block: Block) -> Path:
         """Return the file of a block in the array of an output."""
-        which = [one.start // size for one, size in zip(block.slices, self.points.block_shape, strict=True)]
+        which = [span.start // size for span, size in zip(block.slices, self.points.block_shape, strict=True)]
         key = array.metadata.encode_chunk_key((*which, *(0 for _ in self.job.labels(name))))
         return self.path / str(array.path) / str(key)
 
@@ -122,8 +122,8 @@ class Store(Target):
         """Mark the store as complete and open it; values are read when used."""
         group = zarr.open_group(self.store, mode="r+", zarr_format=3)
         group.attrs.update(attributes(COMPLETE, self._folder.provenance, notes))
-        found: xarray.Dataset = xarray.open_zarr(self.store, chunks=None, consolidated=False, zarr_format=3)
-        return found
+        dataset: xarray.Dataset = xarray.open_zarr(self.store, chunks=None, consolidated=False, zarr_format=3)
+        return dataset
 
     def close(self) -> None:
         """Let other processes write the folder."""

@@ -68,37 +68,39 @@ def operating_points(
     for name in arrays:
         raise DataError(f"{name}: beside a table it must be one value; add it to the table as a column")
     table = open_table(source, **as_csv)
-    kept, given = _chosen(table, columns, keep, predict.rig if ignoring else None)
-    for name in given:
+    kept, varying = _chosen(table, columns, keep, predict.rig if ignoring else None)
+    for name in varying:
         if name in fixed or name in kept:
             raise DataError(f"{table.label}: {name} is given twice; keep one")
-    if not given:
+    if not varying:
         raise DataError(f"{table.label}: none of its columns is a condition; name them in columns={{...}}")
     try:
-        predict.rig.check_names({**fixed, **given})
+        predict.rig.check_names({**fixed, **varying})
     except ConditionsError as error:
         name = str(error).partition(": ")[0]
-        if name not in given:
+        if name not in varying:
             raise
-        raise ConditionsError(f"{table.label}, column '{given[name].head}': {error}") from None
+        raise ConditionsError(f"{table.label}, column '{varying[name].head}': {error}") from None
     file = isinstance(source, str | os.PathLike)
     origin = f" of {Path(source).name}" if file else ""
-    every = [*kept.values(), *given.values()]
+    every = [*kept.values(), *varying.values()]
     with ExitStack() as stack:
         beside = Path(tempfile.gettempdir()) if store is None else Path(store).parent
         on_disk = file and (summed or store is not None)
         collected = _read(table, every, kept, _files(beside, len(every), stack) if on_disk else None)
-        found = {
-            one.name: Varying(table.dim, values, one.unit, file * f"{'-' * (one.sign < 0)}{one.head}{origin}")
-            for one, values in zip(every, collected, strict=True)
+        axes = {
+            column.name: Varying(
+                table.dim, values, column.unit, file * f"{'-' * (column.sign < 0)}{column.head}{origin}"
+            )
+            for column, values in zip(every, collected, strict=True)
         }
         points = Points(
             fixed,
-            {name: found[name] for name in given},
+            {name: axes[name] for name in varying},
             {dim: labels for dim, labels in table.labels.items() if dim == table.dim},
-            kept={name: found[name] for name in kept},
+            kept={name: axes[name] for name in kept},
             file=table if file else Table(table.label),
-            numbers=range(found[next(iter(given))].values.size),
+            numbers=range(axes[next(iter(varying))].values.size),
         )
         if summed and keep is not None:
             check_shares(points, keep[SHARE])
@@ -111,21 +113,21 @@ def _chosen(
     """Return the columns to keep and those of conditions, by name; of a rig, without those that it does not know."""
     wrong: list[str] = []
     kept: dict[str, Column] = {}
-    given: dict[str, Column] = {}
-    for choice, argument, found in ((keep or {}, "keep", kept), (columns, "columns", given)):
+    conditions: dict[str, Column] = {}
+    for choice, argument, selected in ((keep or {}, "keep", kept), (columns, "columns", conditions)):
         try:
-            found |= table.select(choice, argument)
+            selected |= table.select(choice, argument)
         except DataError as error:
             if not error.problems:
                 raise
             wrong += error.problems
     if columns is None:
         places = {column.place for column in kept.values()}
-        given = {name: column for name, column in given.items() if column.place not in places}
-        if rig is not None and (unknown := _unknown(given, rig)):
-            heads = ", ".join(f"'{given.pop(name).head}'" for name in unknown)
+        conditions = {name: column for name, column in conditions.items() if column.place not in places}
+        if rig is not None and (unknown := _unknown(conditions, rig)):
+            heads = ", ".join(f"'{conditions.pop(name).head}'" for name in unknown)
             warn(f"{table.label}: ignored columns {heads}; rig '{rig.name}' has no such conditions", WearlawWarning)
-    for name, column in given.items():
+    for name, column in conditions.items():
         try:
             if column.unit is None and columns is not None and name in VARIABLES and VARIABLES[name].unit:
                 raise UnitError(advice(name, "-" * (column.sign < 0) + column.head))
@@ -134,14 +136,16 @@ def _chosen(
             wrong.append(f"{name}: column '{column.head}': {error}")
     if wrong:
         raise DataError(f"{table.label} is wrong in:", wrong)
-    return kept, given
+    return kept, conditions
 
 
 def _unknown(names: Iterable[str], rig: Rig) -> list[str]:
     """Return the names that are neither conditions nor fields of a rig, nor misspelt conditions."""
-    known = list(rig.conditions())
-    near = (name for name in names if name not in known and name not in type(rig).model_fields)
-    return [name for name in near if known and not get_close_matches(name.lower(), known, n=1, cutoff=MISSPELT)]
+    conditions = list(rig.conditions())
+    near = (name for name in names if name not in conditions and name not in type(rig).model_fields)
+    return [
+        name for name in near if conditions and not get_close_matches(name.lower(), conditions, n=1, cutoff=MISSPELT)
+    ]
 
 
 def _files(folder: Path, count: int, stack: ExitStack) -> list[IO[bytes]]:
@@ -167,4 +171,4 @@ def _read(
         raise DataError(f"{table.label}: has no rows")
     if into is None:
         return [np.concatenate(some) for some in zip(*pieces, strict=True)]
-    return [cast(Array, OnDisk(one)) for one in into]  # in the place of arrays, of which it has what is used
+    return [cast(Array, OnDisk(file)) for file in into]  # in the place of arrays, of which it has what is used

@@ -96,8 +96,8 @@ class ProfileJob(Job):
         """Return the axes of an output; those of the profile are the rig's but for patches, and the positions [mm]."""
         if name in self.others:
             return super().labels(name)
-        own = {name: labels for name, labels in self.dims.items() if name != PATCH}
-        return {**own, POSITION: tuple((1e3 * self.at).tolist())}
+        axes = {name: labels for name, labels in self.dims.items() if name != PATCH}
+        return {**axes, POSITION: tuple((1e3 * self.at).tolist())}
 
     @property
     def _patches(self) -> int:
@@ -146,21 +146,21 @@ class ProfileJob(Job):
         """Return the depth and the sliding distance, (points, *sides, positions), or the sums of these and the mass."""
         with caught_warnings():  # `of` has given those of the law and the body
             across = prediction.wear_profile(self.body, at=Q(1e3 * self.at, "mm"))
-        found = {
+        losses = {
             name: Q(across[name].values, across[name].attrs["units"]).m_as(unit)
             for name, unit in self.units.items()
             if name in across
         }
         if not self.summed:
-            return {**found, **outputs_of(prediction, self.others)}
+            return {**losses, **outputs_of(prediction, self.others)}
         mass = prediction.mass_lost("1 km" if "km" in self.units["mass"] else "1 m", self.body).m_as("mg")
         if PATCH in self.dims:
             mass = np.nansum(mass, axis=self._patches)
         share = part.kept[SHARE]
         shares = coefficient(share.given(share.values), SHARE, positive=False)
         return {
-            name: np.asarray(np.tensordot(shares, one, axes=1), np.float64)
-            for name, one in {**found, "mass": mass}.items()
+            name: np.asarray(np.tensordot(shares, loss, axes=1), np.float64)
+            for name, loss in {**losses, "mass": mass}.items()
         }
 
 
@@ -219,10 +219,10 @@ class Sum(Target):
             for name, values in self._totals.items()
         }
         attrs = attributes(COMPLETE, provenance_of(self.job, self.points), notes)
-        found = xarray.Dataset(data, coordinates, attrs)
+        sums = xarray.Dataset(data, coordinates, attrs)
         if self._parts is not None:
-            self._parts.finish(found)
-        return found
+            self._parts.finish(sums)
+        return sums
 
     def close(self) -> None:
         """Let other processes write the folder."""
