@@ -83,19 +83,19 @@ def fitted(bench: Bench, model: str, highest: float, norm: Norm) -> Fitted:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.WearlawWarning)  # the study itself has already warned
         predict = bench.rig | wl.contact_model(model) | published
-        found = wl.fit(predict, tests, free=FREE, scatter=norm, bootstrap=0, starts=0)
-    values = {name: number(found.parameters[name], USFD_UNITS[name]) for name in FREE}
+        fit = wl.fit(predict, tests, free=FREE, scatter=norm, bootstrap=0, starts=0)
+    values = {name: number(fit.parameters[name], USFD_UNITS[name]) for name in FREE}
     local = bench.rate(model, published, creepage)
     apart = local - target if norm == "absolute" else np.log(local / target)
-    return Fitted(model, highest, norm, values, float(found.rms.magnitude), float(np.sqrt(np.mean(apart**2))))
+    return Fitted(model, highest, norm, values, float(fit.rms.magnitude), float(np.sqrt(np.mean(apart**2))))
 
 
 def follows_from_a_fit(fits: list[Fitted]) -> wl.CheckedClaim:
     """Compare the paper's sets with the fits for other ranges and measures of the difference."""
     parts, ours = [], []
     for model, words in THEORY.items():
-        published, of_model = usfd_parameters(model), [one for one in fits if one.model == model]
-        apart = [max(abs(one.parameters[name] / published[name] - 1.0) for name in FREE) for one in of_model]
+        published, of_model = usfd_parameters(model), [fit for fit in fits if fit.model == model]
+        apart = [max(abs(fit.parameters[name] / published[name] - 1.0) for name in FREE) for fit in of_model]
         near = sum(share < SIMILAR for share in apart)
         parts += [near > 0, near == len(of_model)]
         ours.append(f"{near} of {len(of_model)} fits similar, the closest to {100 * min(apart):.1f} % ({words})")
@@ -118,14 +118,14 @@ def table(fits: list[Fitted]) -> pd.DataFrame:
         rows += [
             {
                 "contact model": words,
-                "differences": "absolute [µg/m/mm²]" if one.norm == "absolute" else "ln(local/global) [-]",
-                "up to creepage [%]": one.highest,
-                **{heads[name]: round(one.parameters[name], 2) for name in FREE},
-                "rms of the fit": round(one.rms, 4),
-                "rms of the paper's set": round(one.rms_published, 4),
+                "differences": "absolute [µg/m/mm²]" if fit.norm == "absolute" else "ln(local/global) [-]",
+                "up to creepage [%]": fit.highest,
+                **{heads[name]: round(fit.parameters[name], 2) for name in FREE},
+                "rms of the fit": round(fit.rms, 4),
+                "rms of the paper's set": round(fit.rms_published, 4),
             }
-            for one in fits
-            if one.model == model
+            for fit in fits
+            if fit.model == model
         ]
     order = ["contact model", "differences", "up to creepage [%]", *heads.values()]
     return pd.DataFrame(rows, columns=[*order, "rms of the fit", "rms of the paper's set"])
