@@ -364,7 +364,7 @@ def kth_on_both_theories(bench: Bench) -> wl.CheckedClaim:
     exact, fastsim = ([bench.rate(model, KTH) for model in pair] for pair in (("exact", PRINTED), (LINE, KALKER)))
     theories = [float(np.abs(cells - other)[bench.slow].max()) for other in exact for cells in fastsim]
     lowest = float((fastsim[0] / exact[0])[0])
-    highest = bench.rate("global", KTH)[bench.tested].max()
+    highest = bench.rate("global", KTH)[bench.tested].max()  # in the window of the paper's figure
     until, share, then = beyond_slow(bench, "fastsim", "exact")
     lower, _ = borders("kth", "slip_speed")
     return wl.CheckedClaim(
@@ -380,7 +380,10 @@ def kth_on_both_theories(bench: Bench) -> wl.CheckedClaim:
 
 
 def beyond_slow(bench: Bench, model: str, other: str) -> tuple[str, float, str]:
-    """Return up to where cells stay slow, and KTH of one contact model relative to another's beyond, with its words."""
+    """Return where cells start to pass the lower slip speed, and how far KTH of two models differs beyond, with words.
+
+    The difference is relative to the other model.
+    """
     until = f"up to {np.floor(10.0 * bench.creepage[bench.slow].max(initial=TESTED[0])) / 10.0:.1f} %"
     beyond = bench.tested & ~bench.slow
     if not beyond.any():
@@ -392,7 +395,7 @@ def beyond_slow(bench: Bench, model: str, other: str) -> tuple[str, float, str]:
 def kth_local_like_global(bench: Bench) -> wl.CheckedClaim:
     means = bench.rate("global", KTH)
     averages = [float(np.abs(bench.rate(model, KTH) - means)[bench.slow].max()) for model in ("exact", PRINTED)]
-    in_mild = means[bench.tested & bench.regimes[0]].max()
+    in_mild = means[bench.tested & bench.regimes[0]].max()  # in the window of the paper's figure
     until, share, then = beyond_slow(bench, "exact", "global")
     lower, _ = borders("kth", "slip_speed")
     return wl.CheckedClaim(
