@@ -235,7 +235,8 @@ def measured(**columns: Any) -> wl.WearTests:
 
 
 COLUMNS: list[tuple[dict[str, Any], str]] = [
-    ({"creepage": ("creepage [%]", np.linspace(0.01, 0.02, 12))}, "usually 0.03 to 60 %; did you mean 0.015?"),
+    ({"creepage": ("creepage [%]", np.linspace(0.01, 0.02, 12))}, "usually 0.1 to 60 %; did you mean 0.015?"),
+    ({"creepage": ("creepage [%]", np.linspace(0.01, 0.12, 12))}, "is 0.065 %, usually 0.1 to 60 %"),
     (
         {"max_pressure": ("max_pressure [MPa]", np.full(12, 1.5e6))},
         "column max_pressure: its median is 1.5e+06 MPa, usually 5",
@@ -274,6 +275,17 @@ def test_a_column_of_tests_in_the_wrong_unit_is_told_by_its_median(
 
     (found,) = said(run)
     assert sentence in found
+
+
+def test_models_compared_say_once_what_is_unusual_for_all_of_them() -> None:
+    tests = measured(max_pressure=("max_pressure [GPa]", np.full(12, 1500.0)))
+    rig = wl.TwinDisc.suros(material=STEEL)
+    laws = [wl.wear_law("energy", mass_per_energy="1 ug/J"), wl.wear_law("archard", coefficient=1e-4, hardness="3 GPa")]
+    with warnings.catch_warnings(action="ignore", category=wl.WearlawWarning):
+        notes = wl.compare([rig | EXACT | law for law in laws], tests).notes
+    assert [note.partition(": half")[0] for note in notes if "half the patch's length" in note] == ["tests: a"]
+    (hard,) = (note for note in notes if "times the hardness" in note)
+    assert hard.startswith("tests: hardness: ")
 
 
 def test_ordinary_tests_get_no_warning() -> None:

@@ -46,7 +46,7 @@ COLUMNS = {
 """All columns of tests of discs."""
 
 USUAL: Mapping[str, Unit] = {
-    "creepage": Unit("%", usual=(0.03, 60.0)),
+    "creepage": Unit("%", usual=(0.1, 60.0)),  # 1 to 10 % as ratios stay below
     "normal_force": Unit("kN", usual=(0.01, 300.0)),
     "normal_force_per_width": Unit("kN/m", usual=(1.0, 30000.0)),
     "max_pressure": Unit("MPa", usual=(5.0, 10000.0)),

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from threading import RLock, get_ident
 from typing import TextIO
 
-from wearlaw.errors import WearlawWarning, warn, with_problems
+from wearlaw.errors import UnusualWarning, WearlawWarning, warn, with_problems
 from wearlaw.units.usual import OneWarning, apart
 
 _CATCHING = RLock()
@@ -74,7 +74,9 @@ class Notes:
         with caught_warnings() as caught, OneWarning():
             yield
         for warning in caught:
-            self.add(f"{subject}: {warning}", type(warning))
+            texts = str(warning).splitlines() if isinstance(warning, UnusualWarning) else [str(warning)]
+            for text in texts:
+                self.add(f"{subject}: {text}", type(warning))
 
     def warn(self) -> None:
         """Raise the notes that are warnings, one warning a kind."""
