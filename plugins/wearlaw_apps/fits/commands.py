@@ -135,11 +135,11 @@ def fit(
     folder = output or folder_for(tests, "fit")
     notes = Notes()
     with results_folder(folder, overwrite, FIT) as fresh:
-        names, given = listed("--free", free), values("--fixed", fixed)
+        names, law_fields = listed("--free", free), values("--fixed", fixed)
         if law is not None:
             name = Path(law.partition(":")[0]).stem
-            given["label"] = label or f"{name} fitted to {Path(tests).stem}"
-        if both := [name for name in names if name in given]:
+            law_fields["label"] = label or f"{name} fitted to {Path(tests).stem}"
+        if both := [name for name in names if name in law_fields]:
             raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
         measured = read_tests(tests, sep=sep, decimal=decimal)
         if FRICTION not in names:
@@ -148,7 +148,7 @@ def fit(
         for text in stages:
             predict = predict | stage(text)
         if law is not None:
-            predict = predict | law_of(law, given)
+            predict = predict | law_of(law, law_fields)
             _note_fixed(predict.laws[0], names, notes)
         with notes.of("fit"), Bar(bootstrap) as bar:
             bar.stage("fitting")
@@ -163,13 +163,13 @@ def fit(
 
 def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | float]]:
     """Return the least and greatest values of parameters by name."""
-    found: dict[str, tuple[str | float, str | float]] = {}
+    bounds: dict[str, tuple[str | float, str | float]] = {}
     for field, text in fields("--bounds", settings, "FIELD=LOW:HIGH").items():
         low, colon, high = text.partition(":")
         if not colon:
             raise click.UsageError(f"--bounds: write it as FIELD=LOW:HIGH, got {shown(f'{field}={text}')}")
-        found[field] = value(low.strip()), value(high.strip())
-    return found
+        bounds[field] = value(low.strip()), value(high.strip())
+    return bounds
 
 
 def _note_fixed(law: Law, free: list[str], notes: Notes) -> None:
@@ -240,8 +240,8 @@ def compare(
     with results_folder(folder, overwrite, COMPARISON) as fresh:
         measured = read_tests(tests, sep=sep, decimal=decimal)
         _note_friction(measured, friction, notes)
-        given = {text: law_of(text) for text in listed("--laws", laws)}
-        named = {law.label or text: law for text, law in given.items()}
+        chosen = {text: law_of(text) for text in listed("--laws", laws)}
+        named = {law.label or text: law for text, law in chosen.items()}
         suffix = f" with {' and '.join(stages)}" if stages else ""
         models = {f"{text}{suffix}": contact_model(text) for text in listed("--contacts", contacts)}
         around = [stage(text) for text in stages]
@@ -268,7 +268,7 @@ def compare(
 
 def _freed(settings: tuple[str, ...], laws: Mapping[str, Law]) -> dict[str, list[str]]:
     """Return the fields to fit by law, as --laws writes it; the name alone will do if only one law has it."""
-    found: dict[str, list[str]] = {}
+    fields_of_law: dict[str, list[str]] = {}
     for setting in settings:
         name, _, freed = setting.rpartition("=")
         texts = [name] if name in laws else [text for text, law in laws.items() if law.name == name]
@@ -276,19 +276,19 @@ def _freed(settings: tuple[str, ...], laws: Mapping[str, Law]) -> dict[str, list
             raise click.UsageError(
                 f"--free: write it as LAW=FIELDS, with a LAW of {','.join(laws)}, got {shown(setting)}"
             )
-        if texts[0] in found:
+        if texts[0] in fields_of_law:
             raise click.UsageError(
                 f"--free: {shown(name)} is given twice; write all its fields behind one, between commas"
             )
-        found[texts[0]] = listed("--free", freed)
-    return found
+        fields_of_law[texts[0]] = listed("--free", freed)
+    return fields_of_law
 
 
 def _fits(
     pairs: list[Pair], free: list[str], tests: WearTests, notes: Notes, settings: Mapping[str, Any]
 ) -> list[tuple[Names, Predictor]]:
     """Return the fits of a law on each contact, without those that the tests do not determine."""
-    found: list[tuple[Names, Predictor]] = []
+    fits: list[tuple[Names, Predictor]] = []
     refused = []
     with Bar(len(pairs)) as bar:
         bar.stage("fitting")
@@ -297,15 +297,15 @@ def _fits(
             try:
                 # The comparison says once of the tests that they are beyond the elastic limit.
                 with notes.of(names.label), caught_warnings(PlasticityWarning):
-                    found.append((names, fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)))
+                    fits.append((names, fit_parameters(pair.pipeline, tests, free, bootstrap=0, **settings)))
             except FitError as error:
                 refused.append(f"{names.label} is left out: {error}")
             bar(1)
-    if not found:
+    if not fits:
         raise FitError(refused[0])
     for text in refused:
         notes.add(text)
-    return found
+    return fits
 
 
 def _write_fit(
@@ -317,7 +317,7 @@ def _write_fit(
         "intervals": {name: [text_of(end) for end in ends] for name, ends in fit.intervals.items()},
         "interval_method": fit.interval_method,
         "aic": fit.aic,
-        "lack_of_fit": [asdict(one) for one in fit.lack_of_fit],
+        "lack_of_fit": [asdict(test) for test in fit.lack_of_fit],
         "provenance": fit.provenance,
         "predict": fit.predict.model_dump(mode="json"),
         "notes": list(notes),
@@ -337,7 +337,9 @@ def _write_comparison(
         "wearlaw": __version__,
         "tests": comparison.tests.source,
         "cross_validated": comparison.cross_validated,
-        "predictors": {one.names.label: one.pipeline.model_dump(mode="json") for one in comparison.compared},
+        "predictors": {
+            predictor.names.label: predictor.pipeline.model_dump(mode="json") for predictor in comparison.compared
+        },
         "notes": list(notes),
     }
     tables = {"ranking": comparison.table(), "predictions": comparison.predictions()}

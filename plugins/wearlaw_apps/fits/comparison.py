@@ -153,14 +153,18 @@ class Comparison:
         return self._ranking().rename(columns={"rms_error": f"rms_error [{self.unit or '-'}]"})
 
     def _ranking(self) -> pd.DataFrame:
-        rows = [{**vars(one), **vars(one.agreement), "predictor": one.names.label} for one in self.compared]
+        rows = [
+            {**vars(predictor), **vars(predictor.agreement), "predictor": predictor.names.label}
+            for predictor in self.compared
+        ]
         frame = pd.DataFrame(rows, columns=list(COLUMNS)).astype(COLUMNS)
         return frame.assign(rms_error=in_unit(frame["rms_error"].to_numpy(float), self.unit)).astype(COLUMNS)
 
     def predictions(self) -> pd.DataFrame:
         """Return the tests with the values of each predictor; the heads of the columns hold the units."""
         predicted = {
-            f"{one.names.label} [{self.unit or '-'}]": in_unit(one.predicted, self.unit) for one in self.compared
+            f"{predictor.names.label} [{self.unit or '-'}]": in_unit(predictor.predicted, self.unit)
+            for predictor in self.compared
         }
         return self.tests.to_dataframe().assign(**predicted)
 
@@ -171,15 +175,17 @@ class Comparison:
         axes are linear and show all tests.
         """
         measured = self.measured
-        values = np.stack([measured, *(one.predicted for one in self.compared)])
+        values = np.stack([measured, *(predictor.predicted for predictor in self.compared)])
         linear = bool((values < 0.0).any())
-        laws = list(dict.fromkeys(one.names.law for one in self.compared))
+        laws = list(dict.fromkeys(predictor.names.law for predictor in self.compared))
         panels: dict[str, list[Curve]] = {}
-        for one in self.compared:
-            drawn = np.full(measured.shape, linear) | ((one.predicted > 0) & (measured > 0))
-            x, y = (in_unit(some[drawn], self.unit) for some in (one.predicted, measured))
-            curve = Curve(one.names.law, x, y, colour=laws.index(one.names.law) % BLACK, points=True, hollow=True)
-            panels.setdefault(one.names.contact, []).append(curve)
+        for predictor in self.compared:
+            drawn = np.full(measured.shape, linear) | ((predictor.predicted > 0) & (measured > 0))
+            x, y = (in_unit(some[drawn], self.unit) for some in (predictor.predicted, measured))
+            curve = Curve(
+                predictor.names.law, x, y, colour=laws.index(predictor.names.law) % BLACK, points=True, hollow=True
+            )
+            panels.setdefault(predictor.names.contact, []).append(curve)
         zeros = int(((values[1:] == 0.0) | (measured == 0.0)).sum(axis=-1).max())
         hidden = f" Not shown: {name_of(self.outcome)}s of zero, in up to {zeros} tests." if zeros else ""
         lines = "The line is equality." if linear else f"The lines are equality and a factor of two.{hidden}"
@@ -284,23 +290,23 @@ def compare(
     `in_sample` counts the tests; cross-validation ranks fits by tests that they have not seen.
     """
     expect_tests(tests)
-    given = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
-    if not given:
+    every = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
+    if not every:
         raise InputError("give at least one predictor, such as rig | contact_model | law")
-    for one in given:
-        if not isinstance(one, Pipeline | Fit) or not _pipeline(one).laws:
+    for predictor in every:
+        if not isinstance(predictor, Pipeline | Fit) or not _pipeline(predictor).laws:
             raise InputError(
-                f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {shown(one)}"
+                f"a predictor of wear is a pipeline, rig | contact_model | law, or a Fit of one, not {shown(predictor)}"
             )
-    outcome = _outcome(given, tests, outcome)
-    names = _names(given, outcome)
+    outcome = _outcome(every, tests, outcome)
+    names = _names(every, outcome)
     if isinstance(predictors, Mapping):
-        names = [Names(own, own, of_models.contact) for own, of_models in zip(predictors, names, strict=True)]
+        names = [Names(name, name, of_models.contact) for name, of_models in zip(predictors, names, strict=True)]
     notes = Notes()
-    named = list(zip(names, given, strict=True))
-    found = compare_named(named, tests, friction_coefficient, outcome, cross_validate, notes=notes)
+    named = list(zip(names, every, strict=True))
+    comparison = compare_named(named, tests, friction_coefficient, outcome, cross_validate, notes=notes)
     notes.warn()
-    return found
+    return comparison
 
 
 @steady
@@ -321,10 +327,10 @@ def compare_named(
     twice = [name for name in taken if taken.count(name) > 1]
     if twice:
         raise InputError(f"two predictors are called {shown(twice[0])}; give a mapping from names of your own to them")
-    given = [predictor for _, predictor in named]
-    outcome = _outcome(given, tests, outcome)
-    unit = _law(given[0], outcome).outcome.unit
-    tests = tests.measuring([name for one in given for name in named_outcomes(_pipeline(one).laws)])
+    predictors = [predictor for _, predictor in named]
+    outcome = _outcome(predictors, tests, outcome)
+    unit = _law(predictors[0], outcome).outcome.unit
+    tests = tests.measuring([name for predictor in predictors for name in named_outcomes(_pipeline(predictor).laws)])
     notes = Notes() if notes is None else notes
     measured, name = tests.measured(outcome, unit), name_of(outcome)
     there = ~np.isnan(measured)
@@ -332,37 +338,39 @@ def compare_named(
         raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
     if not there.all():
         notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out", FitWarning)
-    for one in given:
-        for column, text in tests.unusual(_pipeline(one).rig).items():
+    for predictor in predictors:
+        for column, text in tests.unusual(_pipeline(predictor).rig).items():
             notes.add(f"{column}: {text}", UnusualWarning)
     task = _Task(tests[there], outcome, unit, measured[there], friction_coefficient, notes)
-    compared = [task.compared(*one) for one in named]
+    compared = [task.compared(*pair) for pair in named]
     how = ""
     if cross_validate is not None:
-        parts, how = task.folds(given, cross_validate)
-        with Bar(len(parts) * sum(isinstance(one, Fit) for one in given), progress) as bar:
+        parts, how = task.folds(predictors, cross_validate)
+        with Bar(len(parts) * sum(isinstance(predictor, Fit) for predictor in predictors), progress) as bar:
             bar.stage("cross-validating")
             compared = [
-                task.unseen(old, one, parts, bar) if isinstance(one, Fit) else old
-                for old, one in zip(compared, given, strict=True)
+                task.unseen(old, predictor, parts, bar) if isinstance(predictor, Fit) else old
+                for old, predictor in zip(compared, predictors, strict=True)
             ]
-    if len({one.scatter for one in given if isinstance(one, Fit)}) > 1:
+    if len({predictor.scatter for predictor in predictors if isinstance(predictor, Fit)}) > 1:
         notes.add("AIC is left blank, since the fits take the tests to scatter in different ways", FitWarning)
-        compared = [replace(one, fitted=None, aic=None, aicc=None) for one in compared]
-    seen = [f"{one.names.label} ({one.in_sample} of {len(task.tests)})" for one in compared if one.in_sample]
+        compared = [replace(result, fitted=None, aic=None, aicc=None) for result in compared]
+    seen = [
+        f"{result.names.label} ({result.in_sample} of {len(task.tests)})" for result in compared if result.in_sample
+    ]
     if seen:
         notes.add(
             f"fitted to these tests, which flatters their rank: {', '.join(seen)}; compare on other tests, or"
             " cross-validate",
             FitWarning,
         )
-    ranked = sorted(compared, key=lambda one: one.agreement.rank)
+    ranked = sorted(compared, key=lambda result: result.agreement.rank)
     return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, unit, how)
 
 
-def _outcome(given: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:
+def _outcome(predictors: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:
     """Return the outcome to compare: the given one, or the only one that all predict and the tests measure."""
-    predicted = [named_outcomes(_pipeline(one).laws) for one in given]
+    predicted = [named_outcomes(_pipeline(predictor).laws) for predictor in predictors]
     every = list(dict.fromkeys(name for names in predicted for name in names))
     shared = [name for name in every if all(name in names for names in predicted)]
     if outcome is not None:
@@ -375,7 +383,9 @@ def _outcome(given: Sequence[Predictor], tests: WearTests, outcome: str | None) 
     if not shared:
         raise InputError(f"the predictors have no outcome in common; they predict {', '.join(every)}")
     tests = tests.measuring(shared)
-    measured = [name for name in shared if not np.isnan(tests.measured(name, _law(given[0], name).outcome.unit)).all()]
+    measured = [
+        name for name in shared if not np.isnan(tests.measured(name, _law(predictors[0], name).outcome.unit)).all()
+    ]
     if len(measured) > 1:
         raise InputError(
             f"the predictors share {' and '.join(measured)}, which are all measured; choose one, as in"
@@ -396,15 +406,15 @@ def _law(predictor: Predictor, outcome: str) -> Law:
 
 def _names(predictors: Sequence[Predictor], outcome: str) -> list[Names]:
     """Return names of predictors after their models, as in a study."""
-    models = _labels([_pipeline(one).contact_model for one in predictors])
-    stages = iter(_labels([stage for one in predictors for stage in _pipeline(one).stages]))
-    laws = iter(_labels([_law(one, outcome) for one in predictors if isinstance(one, Pipeline)]))
+    models = _labels([_pipeline(predictor).contact_model for predictor in predictors])
+    stages = iter(_labels([stage for predictor in predictors for stage in _pipeline(predictor).stages]))
+    laws = iter(_labels([_law(predictor, outcome) for predictor in predictors if isinstance(predictor, Pipeline)]))
     names = []
-    for one, model in zip(predictors, models, strict=True):
-        named = [(stage, next(stages)) for stage in _pipeline(one).stages]
+    for predictor, model in zip(predictors, models, strict=True):
+        named = [(stage, next(stages)) for stage in _pipeline(predictor).stages]
         contact = ", ".join([model, *("patch means" if stage.gives_means else name for stage, name in named)])
-        own = _law(one, outcome)
-        law = next(laws) if isinstance(one, Pipeline) else own.label or f"{own.name} fitted"
+        law_of_fit = _law(predictor, outcome)
+        law = next(laws) if isinstance(predictor, Pipeline) else law_of_fit.label or f"{law_of_fit.name} fitted"
         names.append(Names(f"{law} on {contact}", law, contact))
     return names
 
@@ -415,8 +425,8 @@ def _labels(models: Sequence[Model]) -> list[str]:
     for model in models:
         if model not in distinct:
             distinct.append(model)
-    found = labels(distinct)
-    return [found[distinct.index(model)] for model in models]
+    names = labels(distinct)
+    return [names[distinct.index(model)] for model in models]
 
 
 @dataclass(frozen=True)
@@ -443,10 +453,10 @@ class _Task:
                 FitWarning,
             )
         calibration = _law(predictor, self.outcome).calibration
-        known = set(calibration.tests if calibration else ())
-        seen = sum(digest in known for digest in self.tests.digests(self.outcome, self.unit))
-        found = Compared(names, _pipeline(predictor), predicted, errors, seen)
-        return self._with_aic(found, predictor) if isinstance(predictor, Fit) else found
+        fitted_to = set(calibration.tests if calibration else ())
+        seen = sum(digest in fitted_to for digest in self.tests.digests(self.outcome, self.unit))
+        result = Compared(names, _pipeline(predictor), predicted, errors, seen)
+        return self._with_aic(result, predictor) if isinstance(predictor, Fit) else result
 
     def unseen(self, old: Compared, fit: Fit, parts: Sequence[NDArray[np.intp]], bar: Bar) -> Compared:
         """Return a fit with its predictions of each test by fits to the tests of other folds."""
@@ -467,7 +477,7 @@ class _Task:
             bar(1)
         return replace(old, predicted=predicted, agreement=agreement(predicted, self.measured), in_sample=0)
 
-    def folds(self, given: Sequence[Predictor], how: Folds) -> tuple[list[NDArray[np.intp]], str]:
+    def folds(self, predictors: Sequence[Predictor], how: Folds) -> tuple[list[NDArray[np.intp]], str]:
         """Return the indices of the tests in each fold, and the way in words.
 
         Tests that repeat each other are in one fold, since a fit that has seen one of them has seen the others.
@@ -476,12 +486,12 @@ class _Task:
         -----
         M. Stone, J. R. Stat. Soc. B 36 (1974) 111-147.
         """
-        if not any(isinstance(one, Fit) for one in given):
+        if not any(isinstance(predictor, Fit) for predictor in predictors):
             raise InputError(
                 "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
                 ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
             )
-        conditions = self._conditions(given[0], self.tests, self.friction)
+        conditions = self._conditions(predictors[0], self.tests, self.friction)
         conditions.pop(TRACTION, None)  # measured tractions of repeated tests scatter
         points = repeats(conditions, len(self.tests))
         count = int(points.max()) + 1
@@ -523,15 +533,15 @@ class _Task:
                 unusual.pop(condition, None)
         return np.asarray(prediction[law.outcome.name].to_base_units().magnitude)
 
-    def _with_aic(self, found: Compared, fit: Fit) -> Compared:
+    def _with_aic(self, result: Compared, fit: Fit) -> Compared:
         """Return a predictor with the AIC of its fit; add a note if it was not fitted to exactly these tests."""
-        digests, *others = (one.tests.digests(one.observable, one.unit) for one in fit.observations)
+        digests, *others = (observed.tests.digests(observed.observable, observed.unit) for observed in fit.observations)
         if others or digests != self.tests.digests(self.outcome, self.unit):
-            text = f"{found.names.label}: was fitted to other tests or measurements, so its AIC is left blank"
+            text = f"{result.names.label}: was fitted to other tests or measurements, so its AIC is left blank"
             self.notes.add(text, FitWarning)
-            return found
+            return result
         free = len(fit.parameters)
         k = free + (fit.scatter != "uncertainty")
         spare = len(self.tests) - k - 1
         aicc = fit.aic + 2.0 * k * (k + 1) / spare if spare > 0 else None
-        return replace(found, fitted=free, aic=fit.aic, aicc=aicc)
+        return replace(result, fitted=free, aic=fit.aic, aicc=aicc)

@@ -44,7 +44,9 @@ class Distribution:
         return values
 
     def __post_init__(self) -> None:
-        first, second = (one if isinstance(one, pint.Quantity) else Q(one, "") for one in (self.first, self.second))
+        first, second = (
+            number if isinstance(number, pint.Quantity) else Q(number, "") for number in (self.first, self.second)
+        )
         if self.kind == "lognormal":
             if not first.magnitude > 0.0:
                 raise InputError(f"{self}: the median must be positive")
@@ -105,13 +107,13 @@ def published_range() -> PublishedRange:
 def _value(value: QuantityLike | float, name: str) -> Value:
     """Return one of the two numbers of a distribution, or raise an `InputError` that names the argument."""
     try:
-        found = parse(value) if isinstance(value, str) else value
-        magnitude = real_array(found.magnitude if isinstance(found, pint.Quantity) else found)
+        number = parse(value) if isinstance(value, str) else value
+        magnitude = real_array(number.magnitude if isinstance(number, pint.Quantity) else number)
     except UnitError as error:
         raise UnitError(f"{name}: {error}") from None
     if magnitude.ndim:
         raise InputError(f"{name}: must be one value, got an array of shape {magnitude.shape}")
-    return found if isinstance(found, pint.Quantity) else float(magnitude)
+    return number if isinstance(number, pint.Quantity) else float(magnitude)
 
 
 def _shown(value: Value) -> str:

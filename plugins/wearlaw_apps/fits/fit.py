@@ -161,27 +161,28 @@ def fit(
         best = task.solve(starts, seed)
         replicates = None
         if bootstrap:
-            groups = np.repeat(np.arange(len(task.observations)), [one.measured.size for one in task.observations])
+            counts = [observed.measured.size for observed in task.observations]
+            groups = np.repeat(np.arange(len(counts)), counts)
             replicates = replicate(task.model, best, task.free.bounds, groups, bootstrap, seed, on_progress)
-        found = _result(task, best, replicates, confidence, settings)
+        result = _result(task, best, replicates, confidence, settings)
         unusual.clear()  # the search visits parameters that nobody asked for, and columns are seen by their medians
         if (
-            FRICTION in found.parameters
-            and (friction := found.parameters[FRICTION].magnitude) > RATIOS["friction"].most
+            FRICTION in result.parameters
+            and (friction := result.parameters[FRICTION].magnitude) > RATIOS["friction"].most
         ):
             unusual[FRICTION] = (
                 f"the fit gives {friction:.4g}, usually at most {RATIOS['friction'].most:g}; are tractions in percent,"
                 " loads in the wrong unit, or columns swapped?"
             )
-    problem = found.observations[0].problem
-    overload = overload_of(problem, integrate_forces(found.predict.staged_model, problem).tangential)
+    problem = result.observations[0].problem
+    overload = overload_of(problem, integrate_forces(result.predict.staged_model, problem).tangential)
     if overload:
         overload.warn()
-    poor = (one.warning for one in found.lack_of_fit if one.poor)
+    poor = (test.warning for test in result.lack_of_fit if test.poor)
     for text in (*poor, *_at_bounds(task, best), *_unreliable(task, replicates)):
         warn(text, FitWarning)
     _warn_of_kept(task)
-    return found
+    return result
 
 
 @dataclass
@@ -209,16 +210,16 @@ class _Task:
         if not isinstance(predict, Pipeline):
             raise FitError(f"predict: give a rig with a contact model, and laws or none, not {shown(predict)}")
         if friction is not None:
-            given = coefficient(friction, FRICTION)
-            if given.ndim:
+            number = coefficient(friction, FRICTION)
+            if number.ndim:
                 raise FitError(f"{FRICTION}: must be one number; one for each test can stand in a column of the tests")
-            friction = float(given)
+            friction = float(number)
         predict = predict.with_law(*(law.explicit() for law in predict.laws)) if predict.laws else predict
         first = _first_friction(tests, friction) if FRICTION in free else friction
         parameters = FreeParameters.of(predict, free, first, bounds)
         observations = observe(predict, tests.measuring(named_outcomes(predict.laws)), parameters, first, scatter)
-        stated = any(one.scatter == "uncertainty" for one in observations)
-        count = sum(one.measured.size for one in observations)
+        stated = any(observed.scatter == "uncertainty" for observed in observations)
+        count = sum(observed.measured.size for observed in observations)
         if count <= len(parameters.names):
             raise FitError(
                 f"tests: {count} measurement{'s' if count > 1 else ''} cannot tell {len(parameters.names)} parameters"
@@ -228,17 +229,18 @@ class _Task:
 
     def parts(self, values: Array) -> list[Array]:
         """Return values of all measurements, (n,), by their kind, as views."""
-        return np.split(values, np.cumsum([one.measured.size for one in self.observations])[:-1])
+        return np.split(values, np.cumsum([observed.measured.size for observed in self.observations])[:-1])
 
     def model(self, theta: Array) -> Array:
         """Return the weighted residuals (sets, n) of scaled parameters (sets, p)."""
         values = self.free.columns(theta)
-        return np.concatenate([one.compare(one.predicted(values)) for one in self.observations], axis=-1) * self.weights
+        residuals = [observed.compare(observed.predicted(values)) for observed in self.observations]
+        return np.concatenate(residuals, axis=-1) * self.weights
 
     def residuals(self, best: Solutions) -> Array:
         """Return the residuals of a fit without their weights, (n,)."""
-        found: Array = best.residuals[0] / self.weights
-        return found
+        residuals: Array = best.residuals[0] / self.weights
+        return residuals
 
     def solve(self, starts: int, seed: int) -> Solutions:
         """Return the best fit."""
@@ -265,13 +267,13 @@ class _Task:
 
     def _weigh(self, best: Solutions) -> None:
         """Weigh each kind of measurement by its scatter about the fit."""
-        for own, weights in zip(self.parts(self.residuals(best)), self.parts(self.weights), strict=True):
-            scatter = math.sqrt(float(np.mean(own**2)))
-            if own.size >= LEAST_GROUP and scatter > 0.0:
+        for residuals, weights in zip(self.parts(self.residuals(best)), self.parts(self.weights), strict=True):
+            scatter = math.sqrt(float(np.mean(residuals**2)))
+            if residuals.size >= LEAST_GROUP and scatter > 0.0:
                 weights[:] = 1.0 / max(scatter, LEAST_SCATTER)
 
 
-def _first_friction(tests: WearTests, given: float | None) -> float:
+def _first_friction(tests: WearTests, friction: float | None) -> float:
     """Return a starting value of the friction coefficient: given, from the tests, or the greatest traction."""
     traction = tests.columns.get("traction_coefficient")
     if traction is None or np.isnan(traction).all():
@@ -279,8 +281,8 @@ def _first_friction(tests: WearTests, given: float | None) -> float:
             "free: the friction coefficient is fitted to measured traction, and the tests have none; add a column"
             " 'traction_coefficient', 'tangential_force [N]' or 'frictional_heat [W]', or give friction_coefficient"
         )
-    if given is not None:
-        return given
+    if friction is not None:
+        return friction
     if tests.friction_coefficient is not None:
         return float(np.mean(tests.friction_coefficient))
     return float(np.nanmax(traction))
@@ -291,7 +293,7 @@ def _result(
 ) -> Fit:
     """Return the result of a fit."""
     free, values = task.free, task.free.columns(best.theta)
-    observations = tuple(_with_friction(one, values) for one in task.observations)
+    observations = tuple(_with_friction(observed, values) for observed in task.observations)
     by_student = student_intervals(best, confidence)
     ends = by_student if replicates is None else studentised_intervals(best, replicates, confidence)
     samples = {} if replicates is None else free.columns(replicates.theta)
@@ -308,7 +310,7 @@ def _result(
         scatter=task.scatter,
         chi2=chi2,
         aic=aic,
-        samples={name: free.quantity(name, one) for name, one in samples.items()},
+        samples={name: free.quantity(name, draws) for name, draws in samples.items()},
         observations=observations,
         lack_of_fit=tuple(_lack_of_fit(task, best, confidence)),
         settings=settings,
@@ -318,11 +320,11 @@ def _result(
 def _lack_of_fit(task: _Task, best: Solutions, confidence: float) -> Iterator[LackOfFit]:
     """Yield a test for each kind of measurement whose scatter is known."""
     residuals, leverages = task.parts(task.residuals(best)), task.parts(leverage(best))
-    for one, own, spent in zip(task.observations, residuals, leverages, strict=True):
-        points, known = repeats(one.conditions, own.size), one.scatter == "uncertainty"
-        found = lack_of_fit(one.observable, own, points, float(spent.sum()), confidence, known)
-        if found is not None:
-            yield found
+    for observed, errors, spent in zip(task.observations, residuals, leverages, strict=True):
+        points, stated = repeats(observed.conditions, errors.size), observed.scatter == "uncertainty"
+        test = lack_of_fit(observed.observable, errors, points, float(spent.sum()), confidence, stated)
+        if test is not None:
+            yield test
 
 
 def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Quantity, Quantity]]:
@@ -333,40 +335,42 @@ def _pairs(free: FreeParameters, ends: tuple[Array, Array]) -> dict[str, tuple[Q
     }
 
 
-def _with_friction(one: Observations, values: Mapping[str, Array]) -> Observations:
+def _with_friction(observed: Observations, values: Mapping[str, Array]) -> Observations:
     if FRICTION not in values:
-        return one
+        return observed
     friction = float(values[FRICTION][0])
-    problem = one.problem.replaced(friction_coefficient=np.full(one.measured.shape, friction))
-    return dataclasses.replace(one, conditions={**one.conditions, FRICTION: friction}, problem=problem)
+    problem = observed.problem.replaced(friction_coefficient=np.full(observed.measured.shape, friction))
+    return dataclasses.replace(observed, conditions={**observed.conditions, FRICTION: friction}, problem=problem)
 
 
 def _fitted_pipeline(task: _Task, values: Mapping[str, Array], observations: Sequence[Observations]) -> Pipeline[...]:
     """Return the pipeline with the fitted numbers; laws with free numbers record the fit."""
-    given = task.predict
+    original = task.predict
     at_places = {place: float(values[name][0]) for name, place in task.free.places.items()}
-    for one in observations:
-        nothing = one.predicted(values)[0] <= FLOOR
-        if one.scatter == "relative" and nothing.any():
+    for observed in observations:
+        nothing = observed.predicted(values)[0] <= FLOOR
+        if observed.scatter == "relative" and nothing.any():
             raise FitError(
-                f"the best fit predicts no {name_of(one.observable)} in {test_names(one.tests, nothing)}; leave these"
-                ' tests out, or fit with scatter="absolute"'
+                f"the best fit predicts no {name_of(observed.observable)} in {test_names(observed.tests, nothing)};"
+                ' leave these tests out, or fit with scatter="absolute"'
             )
     try:
-        stages = changed_parts(given.stages, "stage", at_places)
-        laws = list(changed_parts(given.laws, "law", at_places))
+        stages = changed_parts(original.stages, "stage", at_places)
+        laws = list(changed_parts(original.laws, "law", at_places))
     except ConfigurationError as error:
         raise FitError(f"the best fit has parameters that the model does not accept; try bounds: {error}") from None
-    predict = given.model_copy(update={"stages": stages})
-    for one in observations:
-        if one.law is not None and one.law in task.free.freed_laws:
-            laws[one.law] = laws[one.law].model_copy(update={"fitted_for": _calibration(task, predict, one)})
+    predict = original.model_copy(update={"stages": stages})
+    for observed in observations:
+        if observed.law is not None and observed.law in task.free.freed_laws:
+            laws[observed.law] = laws[observed.law].model_copy(
+                update={"fitted_for": _calibration(task, predict, observed)}
+            )
     return predict.with_law(*laws) if laws else predict
 
 
-def _calibration(task: _Task, predict: Pipeline[...], one: Observations) -> Calibration:
+def _calibration(task: _Task, predict: Pipeline[...], observed: Observations) -> Calibration:
     """Return the calibration of a fitted law."""
-    problem, model = one.problem, predict.contact_model
+    problem, model = observed.problem, predict.contact_model
     means = {
         "pressure": Totals().mean(problem, "pressure"),
         "slip_speed": Totals().mean(problem, "slip_speed"),
@@ -383,8 +387,8 @@ def _calibration(task: _Task, predict: Pipeline[...], one: Observations) -> Cali
         materials=_materials(predict.rig),
         bodies=tuple(body.material for body in problem.bodies.values()),
         stated_range=tuple((name, *_ends(name, values)) for name, values in means.items()),
-        tests=one.tests.digests(one.observable, one.unit),
-        source=f"fitted to {one.measured.size} tests{of}{with_stages}",
+        tests=observed.tests.digests(observed.observable, observed.unit),
+        source=f"fitted to {observed.measured.size} tests{of}{with_stages}",
     )
 
 
@@ -444,9 +448,9 @@ def _warn_of_kept(task: _Task) -> None:
     """Warn the caller of `fit` if a law keeps parameters that were fitted for another contact."""
     predict = task.predict
     free = {(place.index, place.field) for place in task.free.places.values() if place.kind == "law"}
-    for one in task.observations:
-        if one.law is None:
+    for observed in task.observations:
+        if observed.law is None:
             continue
-        law, problem = predict.laws[one.law], one.problem
-        if any((one.law, name) not in free for name in law.numbers):
+        law, problem = predict.laws[observed.law], observed.problem
+        if any((observed.law, name) not in free for name in law.numbers):
             warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law)

@@ -136,14 +136,14 @@ def _places(predict: Pipeline[...], free: tuple[str, ...]) -> dict[str, Place]:
             place = place_of(predict, name, others=[FRICTION])
         except InputError as error:
             raise FitError(f"free: {error}") from None
-        own = numbers(part_at(predict, place))
-        if place.field not in own:
-            inner = [one for one in own if one.startswith(f"{place.field}.")]
+        fields = numbers(part_at(predict, place))
+        if place.field not in fields:
+            inner = [field for field in fields if field.startswith(f"{place.field}.")]
             raise FitError(f"free: {shown(name)} is several numbers; name some of {', '.join(inner)}")
         places[name] = place
     if not free or len(set(places.values())) < len(free):
-        known = ", ".join([*known_names(predict), FRICTION])
-        raise FitError(f"free: name each parameter once, at least one of {known}; got {shown(free)}")
+        names = ", ".join([*known_names(predict), FRICTION])
+        raise FitError(f"free: name each parameter once, at least one of {names}; got {shown(free)}")
     return places
 
 
@@ -153,12 +153,12 @@ def give_bounds(name: str) -> str:
 
 
 def _ends(
-    name: str, like: Quantity | float, allowed: tuple[float, float, bool], given: tuple[Any, Any] | None
+    name: str, like: Quantity | float, allowed: tuple[float, float, bool], pair: tuple[Any, Any] | None
 ) -> tuple[float, float]:
     """Return the bounds of a parameter in SI."""
     first = number_in_si(like)
     least, most, positive = allowed
-    if given is None:
+    if pair is None:
         if first == 0.0:
             raise FitError(
                 f"bounds: the first value of {shown(name)} is zero, which says nothing of its size; {give_bounds(name)}"
@@ -172,17 +172,17 @@ def _ends(
                 float(end)
                 if not unit and isinstance(end, float | int)
                 else float(Unit(unit, positive=False).si(end, name))
-                for end in given
+                for end in pair
             )
         except (UnitError, TypeError, ValueError) as error:
             raise FitError(
-                f"bounds: {shown(name)} must have two values, low and high, got {shown(given)}: {error}"
+                f"bounds: {shown(name)} must have two values, low and high, got {shown(pair)}: {error}"
             ) from None
         if not least <= low < high <= most or (positive and low <= 0.0):
             ends = " to ".join(repr(number_like(like, end)) for end in (least, most))
             raise FitError(
                 f"bounds: {shown(name)} must have two values in ascending order in the range {ends}"
-                f"{', greater than zero' if positive else ''}; got {shown(given)}"
+                f"{', greater than zero' if positive else ''}; got {shown(pair)}"
             )
     if np.isfinite(least):
         low = max(low, least + ROUNDINGS * abs(least))
@@ -215,6 +215,6 @@ def allowed_range(record: Configuration, name: str) -> tuple[float, float, bool]
 
 def _rules_within(annotation: Any) -> Iterator[Any]:
     """Yield the rules of the types in a union, such as those of `Annotated[float, Field(ge=1)] | None`."""
-    for one in get_args(annotation):
-        for rule in getattr(one, "__metadata__", ()):
+    for member in get_args(annotation):
+        for rule in getattr(member, "__metadata__", ()):
             yield from rule.metadata if isinstance(rule, FieldInfo) else (rule,)

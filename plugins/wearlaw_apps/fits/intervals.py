@@ -45,8 +45,8 @@ def covariance(fits: Solutions) -> Array:
     """Return the covariance of the parameters, s² (JᵀJ)⁻¹ with s² = Σr²/(n - p), of shape (sets, p, p)."""
     tests, count = fits.jacobian.shape[1:]
     variance = fits.cost / (tests - count)
-    found: Array = variance[:, None, None] * _inverse_normal(fits.jacobian)
-    return found
+    matrix: Array = variance[:, None, None] * _inverse_normal(fits.jacobian)
+    return matrix
 
 
 def undetermined(jacobian: Array) -> NDArray[np.bool_]:
@@ -68,8 +68,8 @@ def standard_errors(fits: Solutions) -> Array:
 def leverage(fit: Solutions) -> Array:
     """Return the leverage of each test, (n,): how much its prediction follows its measurement, from 0 to 1."""
     slopes = fit.jacobian[0]
-    found: Array = np.einsum("np,pq,nq->n", slopes, _inverse_normal(fit.jacobian)[0], slopes)
-    return found
+    leverages: Array = np.einsum("np,pq,nq->n", slopes, _inverse_normal(fit.jacobian)[0], slopes)
+    return leverages
 
 
 def student_intervals(fit: Solutions, confidence: float) -> tuple[Array, Array]:
@@ -107,17 +107,17 @@ def replicate(
         members = np.flatnonzero(groups == group)
         centred = scatter[members] - scatter[members].mean()
         drawn[:, members] = centred[generator.integers(0, members.size, (count, members.size))]
-    found = []
+    fits = []
     for first in range(0, count, BATCH):
         targets = predicted - drawn[first : first + BATCH]
         start = np.broadcast_to(fit.theta[0], (len(targets), fit.theta.shape[1]))
-        found.append(fit_many(model, targets, start, bounds))
+        fits.append(fit_many(model, targets, start, bounds))
         if on_progress is not None:
             on_progress(len(targets))
     return Replicates(
-        np.concatenate([one.theta for one in found]),
-        np.concatenate([np.where(undetermined(one.jacobian), 0.0, standard_errors(one)) for one in found]),
-        float(np.mean(np.concatenate([one.converged for one in found]))),
+        np.concatenate([batch.theta for batch in fits]),
+        np.concatenate([np.where(undetermined(batch.jacobian), 0.0, standard_errors(batch)) for batch in fits]),
+        float(np.mean(np.concatenate([batch.converged for batch in fits]))),
     )
 
 
@@ -130,8 +130,8 @@ def studentised_intervals(fit: Solutions, replicates: Replicates, confidence: fl
     -----
     B. Efron and R. J. Tibshirani, An Introduction to the Bootstrap, Chapman & Hall 1993, section 12.5.
     """
-    own = replicates.standard_errors
-    ratio = np.divide(replicates.theta - fit.theta[0], own, out=np.full_like(own, np.nan), where=own > 0.0)
+    errors = replicates.standard_errors
+    ratio = np.divide(replicates.theta - fit.theta[0], errors, out=np.full_like(errors, np.nan), where=errors > 0.0)
     tail = 0.5 - 0.5 * confidence
     low, high = np.nanquantile(ratio, [tail, 1.0 - tail], axis=0)
     error = standard_errors(fit)[0]

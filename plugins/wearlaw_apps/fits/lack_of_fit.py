@@ -48,7 +48,7 @@ class LackOfFit:
 
     def __str__(self) -> str:
         name = "F" if self.method == "repeats" else "χ²/ν"
-        degrees = " and ".join(f"{one:.3g}" for one in self.degrees)
+        degrees = " and ".join(f"{number:.3g}" for number in self.degrees)
         return f"{name} = {self.value:.3g} with {degrees} degrees of freedom, p = {self.p_value:.2g}"
 
     @property
@@ -110,10 +110,10 @@ def repeats(conditions: Mapping[str, Any], count: int) -> NDArray[np.intp]:
     values = np.stack([np.broadcast_to(value, (count,)) for value in arrays], axis=-1)
     near = SAME * np.abs(values)
     points: list[int] = []
-    found = np.empty(count, dtype=np.intp)
+    numbers = np.empty(count, dtype=np.intp)
     for test, value in enumerate(values):
         same = (i for i, point in enumerate(points) if (np.abs(value - values[point]) <= near[point]).all())
-        found[test] = next(same, len(points))
-        if found[test] == len(points):
+        numbers[test] = next(same, len(points))
+        if numbers[test] == len(points):
             points.append(test)
-    return found
+    return numbers

@@ -71,8 +71,8 @@ class Solutions:
 
     def __getitem__(self, index: int) -> Solutions:
         """Return one of the fits, still with the axis of sets."""
-        one = slice(index, index + 1)
-        return Solutions(self.theta[one], self.residuals[one], self.jacobian[one], self.converged[one])
+        single = slice(index, index + 1)
+        return Solutions(self.theta[single], self.residuals[single], self.jacobian[single], self.converged[single])
 
 
 def jacobian(model: Model, theta: Array, predicted: Array, bounds: Bounds) -> Array:

@@ -45,7 +45,7 @@ def _parts(predict: Pipeline[...], kinds: Sequence[Kind]) -> Iterator[tuple[str,
     parts += [Place("law", i, "") for i in range(len(predict.laws))]
     models = [part_at(predict, place) for place in parts]
     for place, model in zip(parts, models, strict=True):
-        alike = [other for other, one in zip(parts, models, strict=True) if one.name == model.name]
+        alike = [other for other, namesake in zip(parts, models, strict=True) if namesake.name == model.name]
         suffix = f"_{getattr(model, 'body', None) or alike.index(place) + 1}" if len(alike) > 1 else ""
         if place.kind in (kinds or ("stage", "law")):
             yield f"{model.name}{suffix}", place, list(numbers(model))
@@ -65,21 +65,21 @@ def place_of(predict: Pipeline[...], name: str, *kinds: Kind, others: Sequence[s
     and its own, such as "usfd.m_m". The body follows the name of laws of one name for different bodies, as in
     "usfd_rail.m_m", and its place follows the name of other parts of one name, as in "third_body_2.reduction".
     """
-    found = [
-        (label, replace(place, field=own))
+    places = [
+        (label, replace(place, field=field))
         for label, place, names in _parts(predict, kinds)
-        for own in dict.fromkeys((name, name.removeprefix(f"{label}.")))
-        if any(number == own or number.startswith(f"{own}.") for number in names)
+        for field in dict.fromkeys((name, name.removeprefix(f"{label}.")))
+        if any(number == field or number.startswith(f"{field}.") for number in names)
     ]
-    if len(found) > 1:
-        full = " or ".join(f"'{label}.{name}'" for label, _ in found)
-        raise InputError(f"{shown(name)} is a number of {' and '.join(label for label, _ in found)}; write {full}")
-    if not found:
-        known = [*known_names(predict, *kinds), *others]
+    if len(places) > 1:
+        full = " or ".join(f"'{label}.{name}'" for label, _ in places)
+        raise InputError(f"{shown(name)} is a number of {' and '.join(label for label, _ in places)}; write {full}")
+    if not places:
+        choices = [*known_names(predict, *kinds), *others]
         raise InputError(
-            f"no number is called {shown(name)}{did_you_mean(name, known)} There are: {', '.join(known) or 'none'}"
+            f"no number is called {shown(name)}{did_you_mean(name, choices)} There are: {', '.join(choices) or 'none'}"
         )
-    return found[0][1]
+    return places[0][1]
 
 
 def part_at(predict: Pipeline[...], place: Place) -> Stage | Law:
@@ -94,12 +94,12 @@ def of_part(values: Mapping[Place, Any], kind: Kind, index: int) -> dict[str, An
 
 def changed_parts(parts: Sequence[PartT], kind: Kind, values: Mapping[Place, Any]) -> tuple[PartT, ...]:
     """Return stages or laws with some of their numbers changed, given as floats in SI."""
-    found = []
+    results = []
     for index, part in enumerate(parts):
-        own, like = of_part(values, kind, index), numbers(part)
-        new = {name: number_like(like[name], float(si)) for name, si in own.items()}
-        found.append(changed(part, new) if new else part)
-    return tuple(found)
+        changes, like = of_part(values, kind, index), numbers(part)
+        new = {name: number_like(like[name], float(si)) for name, si in changes.items()}
+        results.append(changed(part, new) if new else part)
+    return tuple(results)
 
 
 def outcomes_at(
@@ -112,29 +112,32 @@ def outcomes_at(
     """Return outcomes of laws in SI, (laws, points), at operating points (points,) with numbers of their own in SI."""
     laws = [predict.laws[index] for index in indices]
     problem = problem.replaced(**of_part(values, "condition", 0))
-    found = np.empty((len(laws), problem.size))
+    outcomes = np.empty((len(laws), problem.size))
     for model, members in _staged_models(predict, values):
         p = [
-            {**law.numbers, **{name: one[members][:, None] for name, one in of_part(values, "law", index).items()}}
+            {
+                **law.numbers,
+                **{name: number[members][:, None] for name, number in of_part(values, "law", index).items()},
+            }
             for index, law in zip(indices, laws, strict=True)
         ]
-        found[:, members] = integrate_laws(model, laws, problem[members], on_block, p).values
-    return found
+        outcomes[:, members] = integrate_laws(model, laws, problem[members], on_block, p).values
+    return outcomes
 
 
 def traction_at(predict: Pipeline[...], problem: Problem, values: Mapping[Place, Array]) -> Array:
     """Return T/N, (points,), at operating points with numbers of their own; see `outcomes_at`."""
     problem = problem.replaced(**of_part(values, "condition", 0))
-    found = np.empty(problem.size)
+    traction = np.empty(problem.size)
     for model, members in _staged_models(predict, values):
         part = problem[members]
-        found[members] = integrate_forces(model, part).tangential / part.normal_force
-    return found
+        traction[members] = integrate_forces(model, part).tangential / part.normal_force
+    return traction
 
 
 def _staged_models(predict: Pipeline[...], values: Mapping[Place, Array]) -> Iterator[tuple[ContactModel, Any]]:
     """Yield the contact model with the stages of each set of their numbers, and the points that share it."""
-    of_stages = {place: one for place, one in values.items() if place.kind == "stage"}
+    of_stages = {place: array for place, array in values.items() if place.kind == "stage"}
     if not of_stages:
         yield predict.staged_model, slice(None)
         return

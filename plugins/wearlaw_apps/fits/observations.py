@@ -81,9 +81,9 @@ class Observations:
         at_points = {place: np.repeat(values[name], points) for name, place in self.places.items()}
         try:
             if self.law is None:
-                found = traction_at(self.pipeline, problem, at_points)
+                predicted = traction_at(self.pipeline, problem, at_points)
             else:
-                found = outcomes_at(self.pipeline, problem, at_points, [self.law])
+                predicted = outcomes_at(self.pipeline, problem, at_points, [self.law])
         except (ConfigurationError, ModelError) as error:
             names = [name for name, place in self.places.items() if place.kind == "stage"]
             if not names:
@@ -92,7 +92,7 @@ class Observations:
                 f"the search for the best fit has met values of {' and '.join(names)} that the stage or the contact"
                 f" model does not accept; {give_bounds(names[0])}: {error}"
             ) from error
-        return found.reshape(sets, points)
+        return predicted.reshape(sets, points)
 
     def compare(self, predicted: Array) -> Array:
         """Return the residuals of predictions (..., n)."""
@@ -126,7 +126,7 @@ def observe(
         tests, labels=tuple(label or f"number {number}" for number, label in enumerate(tests.labels, 1))
     )
     outcomes: dict[str, int | None] = {**named_outcomes(pipeline.laws), TRACTION: None}
-    found = []
+    observations = []
     for name, index in outcomes.items():
         law = None if index is None else pipeline.laws[index]
         values = tests.measured(name, UNITS[TRACTION] if law is None else law.outcome.unit)
@@ -146,15 +146,15 @@ def observe(
         stated = name == WEAR and tests.wear_rate_uncertainty is not None
         chosen: Scatter = "uncertainty" if stated else scatter
         divisor = _divisor(name, selected, measured, chosen)
-        found.append(
+        observations.append(
             Observations(name, index, pipeline, free.places, selected, measured, conditions, problem, chosen, divisor)
         )
-    if not found:
+    if not observations:
         raise FitError(
             f"tests: none of the {len(tests)} tests has a measured {' or '.join(map(name_of, outcomes))}, to which"
             f" {' and '.join(of_contact)} could be fitted"
         )
-    return found
+    return observations
 
 
 def _divisor(observable: str, tests: WearTests, measured: Array, scatter: Scatter) -> Array:

@@ -62,16 +62,16 @@ def read_tests(
 
 def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
     """Return the text of a CSV file, or of shipped tests by their name."""
-    found = loader.discovered()
-    if path_or_name in found["test set"].providers:
-        text: str = found.find("test set", str(path_or_name))
+    plugins = loader.discovered()
+    if path_or_name in plugins["test set"].providers:
+        text: str = plugins.find("test set", str(path_or_name))
         return text
     path = Path(path_or_name)
     try:
         return read_text(path, LARGEST)
     except FileNotFoundError:
-        shipped = list(found["test set"].items())
-        beside = sorted(one.name for one in path.parent.glob("*.csv")) if path.parent.is_dir() else []
+        shipped = list(plugins["test set"].items())
+        beside = sorted(file.name for file in path.parent.glob("*.csv")) if path.parent.is_dir() else []
         hint = did_you_mean(path.name, [*beside, *shipped])
         raise DataError(f"there is no file {shown(path)}{hint} Shipped tests: {', '.join(shipped) or 'none'}") from None
     except InputError as error:
@@ -95,11 +95,11 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     wrong = list(_unknown(table, {*conditions, *measured}))
     if wrong:
         raise DataError(f"{table.label} are wrong in:", wrong)
-    given: dict[str, Values] = {}
+    columns: dict[str, Values] = {}
     for column in table.columns:
         try:
             if column not in TEXTS:
-                given[column] = table[column]
+                columns[column] = table[column]
         except DataError as error:
             wrong += error.problems
         except UnitError as error:
@@ -107,12 +107,15 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     if wrong:
         raise DataError(f"{table.label} are wrong in:", wrong)
     texts = {name: table.texts(name) for name in TEXTS if name in table.columns}
-    count = len(next(iter(given.values()), ()))
+    count = len(next(iter(columns.values()), ()))
     if not count:
         raise DataError(f"{table.label}: no test follows the header")
-    source = next((one.partition(":")[2].strip() for one in table.comments if one.casefold().startswith("source:")), "")
+    source = next(
+        (comment.partition(":")[2].strip() for comment in table.comments if comment.casefold().startswith("source:")),
+        "",
+    )
     return WearTests.checked(
-        given,
+        columns,
         texts.get("label", [""] * count),
         source or Path(name).name,
         measured,
@@ -121,7 +124,7 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     )
 
 
-def _unknown(table: Table, known: Collection[str]) -> Iterator[str]:
+def _unknown(table: Table, names: Collection[str]) -> Iterator[str]:
     """Yield what is wrong with columns that are neither of tests nor conditions or outcomes of installed rigs or laws.
 
     Another condition of a rig has a unit, and a name unlike those of missing columns.
@@ -129,7 +132,7 @@ def _unknown(table: Table, known: Collection[str]) -> Iterator[str]:
     missing = [name for name in (*COLUMNS, *TEXTS) if name not in table.columns]
     unknown = []
     for column in table.columns.values():
-        if column.name in (*COLUMNS, *TEXTS, *known):
+        if column.name in (*COLUMNS, *TEXTS, *names):
             continue
         of_body = column.name.startswith("wear_rate_")  # the wear rate of one body
         alike = [name for name in missing if not (of_body and name == "wear_rate")]
@@ -137,7 +140,7 @@ def _unknown(table: Table, known: Collection[str]) -> Iterator[str]:
             unknown.append(column)
             yield f"column '{column.head}': unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])}"
     if unknown:
-        heads = ", ".join(f"{name} [{one.unit}]" if one.unit else name for name, one in COLUMNS.items())
+        heads = ", ".join(f"{name} [{spec.unit}]" if spec.unit else name for name, spec in COLUMNS.items())
         yield (
             f"the columns are {heads}, {', '.join(TEXTS)}, in any unit; another condition of a rig has its unit in"
             " square brackets, as in 'mass [kg]'"

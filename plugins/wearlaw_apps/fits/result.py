@@ -112,14 +112,14 @@ class Fit:
     @property
     def provenance(self) -> dict[str, Any]:
         """Versions, stages with their fitted numbers, tests, settings and sums, as a TOML table."""
-        found, model = loader.discovered(), self.predict.contact_model
+        plugins, model = loader.discovered(), self.predict.contact_model
         return {
             "wearlaw": __version__,
-            "laws": {law.name: found[law.kind].distribution(law.name, type(law)) for law in self.predict.laws},
-            "contact_model": found["contact model"].distribution(model.name, type(model)),
+            "laws": {law.name: plugins[law.kind].distribution(law.name, type(law)) for law in self.predict.laws},
+            "contact_model": plugins["contact model"].distribution(model.name, type(model)),
             "stages": [specification(stage) for stage in self.predict.stages],
             "tests": self.tests.source,
-            "measurements": {one.observable: one.measured.size for one in self.observations},
+            "measurements": {observed.observable: observed.measured.size for observed in self.observations},
             "free": list(self.parameters),
             "scatter": self.scatter,
             "chi2": self.chi2,
@@ -164,18 +164,20 @@ class Fit:
         The ratio is NaN unless both values are positive.
         """
         frames = []
-        for one in self.observations:
-            predicted = self.fitted(one)
+        for observed in self.observations:
+            predicted = self.fitted(observed)
             ratio = np.full(predicted.shape, np.nan)
-            np.divide(predicted, one.measured, out=ratio, where=(predicted > 0.0) & (one.measured > 0.0))
-            absolute = one.scatter == "absolute"
-            residual = in_unit(predicted - one.measured, one.unit) if absolute else one.compare(predicted)
+            np.divide(predicted, observed.measured, out=ratio, where=(predicted > 0.0) & (observed.measured > 0.0))
+            absolute = observed.scatter == "absolute"
+            residual = (
+                in_unit(predicted - observed.measured, observed.unit) if absolute else observed.compare(predicted)
+            )
             columns = {
-                "label": one.tests.labels,
-                "observable": f"{one.observable} [{one.unit}]" if one.unit else one.observable,
-                "creepage [%]": in_unit(one.problem.creepage, UNITS["creepage"]),
-                "measured": in_unit(one.measured, one.unit),
-                "predicted": in_unit(predicted, one.unit),
+                "label": observed.tests.labels,
+                "observable": f"{observed.observable} [{observed.unit}]" if observed.unit else observed.observable,
+                "creepage [%]": in_unit(observed.problem.creepage, UNITS["creepage"]),
+                "measured": in_unit(observed.measured, observed.unit),
+                "predicted": in_unit(predicted, observed.unit),
                 "residual": residual,
                 "predicted/measured": ratio,
             }
@@ -228,7 +230,7 @@ class Fit:
         They are drawn over Tγ/A or over the one condition that varies, with the band of the bootstrap replicates. If
         several vary, measured values are drawn against fitted ones.
         """
-        panels = tuple(_panel(self, one) for one in self.observations)
+        panels = tuple(_panel(self, observed) for observed in self.observations)
         names, band = ", ".join(self.parameters), f"{self.confidence:.0%} of the bootstrap replicates"
         return FigureData("fit", f"Fit of {names}", panels, f"{names} fitted to {self.tests.source or 'tests'}.", band)
 
@@ -262,8 +264,10 @@ class Fit:
         return f"<div><b>{escape(self._head())}</b><table>{''.join(rows)}</table></div>"
 
     def _head(self) -> str:
-        degrees = sum(one.measured.size for one in self.observations) - len(self.parameters)
-        counts = " and ".join(f"{one.measured.size} {_plural(one.observable)}" for one in self.observations)
+        degrees = sum(observed.measured.size for observed in self.observations) - len(self.parameters)
+        counts = " and ".join(
+            f"{observed.measured.size} {_plural(observed.observable)}" for observed in self.observations
+        )
         return f"Fit to {counts}, {degrees} degrees of freedom, {self.scatter} scatter"
 
     def _lines(self) -> Iterator[tuple[str, str]]:
@@ -274,9 +278,9 @@ class Fit:
             yield name, f"{value.magnitude:<8.4g} ({low} to {high}) {unit}".rstrip()
         factor = f", a factor of {np.exp(self.rms.magnitude):.4g}" if self.observations[0].scatter == "relative" else ""
         yield "rms residual", f"{self.rms!r}{factor}"
-        for one in self.lack_of_fit:
-            of = f" of {name_of(one.observable)}" if len(self.observations) > 1 else ""
-            yield "lack of fit", f"{'yes' if one.poor else 'none'}{of}: {one}"
+        for test in self.lack_of_fit:
+            of = f" of {name_of(test.observable)}" if len(self.observations) > 1 else ""
+            yield "lack of fit", f"{'yes' if test.poor else 'none'}{of}: {test}"
         yield "intervals", f"{self.confidence:.0%}, {self.interval_method}"
 
 
@@ -284,41 +288,41 @@ def _plural(observable: str) -> str:
     return f"{observable.replace('_', ' ')}s" if observable in (WEAR, TRACTION) else f"values of {name_of(observable)}"
 
 
-def _panel(fit: Fit, one: Observations) -> Panel:
+def _panel(fit: Fit, observed: Observations) -> Panel:
     """Return measured and fitted values: along the one condition that varies, with a band, or else side by side."""
-    numbers = {name: _numbers(value) for name, value in one.conditions.items() if name != TRACTION}
+    numbers = {name: _numbers(value) for name, value in observed.conditions.items() if name != TRACTION}
     varied = [name for name, values in numbers.items() if np.ptp(values) > SAME * np.abs(values).mean()]
     if len(varied) != 1:
-        return _parity(one, fit.fitted(one))
+        return _parity(observed, fit.fitted(observed))
     name, values = varied[0], numbers[varied[0]]
     order = np.argsort(values, kind="stable")
-    conditions = {other: _finer(value, order) for other, value in one.conditions.items()}
-    problem = one.pipeline.posed(conditions, of_one_patch="fit")
-    if "creepage" in name and one.law is not None and (abs(np.sign(values).sum()) == values.size):
+    conditions = {other: _finer(value, order) for other, value in observed.conditions.items()}
+    problem = observed.pipeline.posed(conditions, of_one_patch="fit")
+    if "creepage" in name and observed.law is not None and (abs(np.sign(values).sum()) == values.size):
         axis = "wear_index_density"
         at_tests, along = (
-            in_unit(wear_index_density(fit.predict, some), UNITS[axis]) for some in (one.problem, problem)
+            in_unit(wear_index_density(fit.predict, some), UNITS[axis]) for some in (observed.problem, problem)
         )
-        x = PlotAxis(label(axis), "log" if (one.measured > 0.0).all() else "linear")
+        x = PlotAxis(label(axis), "log" if (observed.measured > 0.0).all() else "linear")
     else:
-        given = one.conditions[name]
-        unit = f"{given.units:~P}" if isinstance(given, pint.Quantity) else ""
+        condition = observed.conditions[name]
+        unit = f"{condition.units:~P}" if isinstance(condition, pint.Quantity) else ""
         at_tests, along = values, _numbers(conditions[name])
         x = PlotAxis(label(name, units={name: unit}))
-    measured = Curve("measured", at_tests, in_unit(one.measured, one.unit), colour=BLACK, points=True)
+    measured = Curve("measured", at_tests, in_unit(observed.measured, observed.unit), colour=BLACK, points=True)
     return Panel(
         x,
-        PlotAxis(one.label, x.scale),
-        (_curve(fit, one, problem, along), measured),
+        PlotAxis(observed.label, x.scale),
+        (_curve(fit, observed, problem, along), measured),
     )
 
 
-def _parity(one: Observations, fitted: Array) -> Panel:
+def _parity(observed: Observations, fitted: Array) -> Panel:
     """Return measured against fitted values."""
-    x, y = (in_unit(values, one.unit) for values in (fitted, one.measured))
+    x, y = (in_unit(values, observed.unit) for values in (fitted, observed.measured))
     values = np.concatenate([x, y])
     tests = Curve("tests", x, y, points=True, hollow=True)
-    (panel,) = parity_panels(one.label, [("", [tests])], values, bool((values <= 0.0).any()))
+    (panel,) = parity_panels(observed.label, [("", [tests])], values, bool((values <= 0.0).any()))
     return panel
 
 
@@ -336,12 +340,12 @@ def _finer(value: Any, order: NDArray[np.intp]) -> Any:
     return Q(finer, str(value.units)) if isinstance(value, pint.Quantity) else finer
 
 
-def _curve(fit: Fit, one: Observations, problem: Problem, along: Array) -> Curve:
+def _curve(fit: Fit, observed: Observations, problem: Problem, along: Array) -> Curve:
     """Return the fitted values at operating points, with the band of the bootstrap replicates."""
     order = np.argsort(along, kind="stable")
 
     def at(values: dict[str, Array]) -> Array:
-        return in_unit(one.predicted(values, problem), one.unit)[:, order]
+        return in_unit(observed.predicted(values, problem), observed.unit)[:, order]
 
     low = high = None
     if fit.samples:

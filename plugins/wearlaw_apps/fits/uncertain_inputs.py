@@ -50,7 +50,7 @@ class UncertainInput:
     def at(self, probability: Array) -> Sampled:
         """Return the values at probabilities."""
         values = {key: self.distribution.quantiles(probability, *ends) for key, ends in self.ends.items()}
-        return {key: one if self.unit is None else from_si(one, self.unit) for key, one in values.items()}
+        return {key: number if self.unit is None else from_si(number, self.unit) for key, number in values.items()}
 
 
 @dataclass(frozen=True)
@@ -73,13 +73,13 @@ class UncertainFit:
     def at(self, probability: Array) -> Sampled:
         """Return the values at probabilities."""
         which = np.minimum((probability * self._count).astype(np.intp), self._count - 1)
-        samples, found = self.fit.values_in_si(self.fit.samples), Sampled()
+        samples, drawn = self.fit.values_in_si(self.fit.samples), Sampled()
         for name, place in self.fit.observations[0].places.items():
             if place.kind != "condition":
-                found[place] = samples[name][which]
+                drawn[place] = samples[name][which]
             elif self.takes_friction:
-                found[name] = samples[name][which]
-        return found
+                drawn[name] = samples[name][which]
+        return drawn
 
     @property
     def _count(self) -> int:
@@ -96,46 +96,46 @@ def of_fit(fit: Fit, conditions: Mapping[str, Any]) -> UncertainFit:
     return UncertainFit(fit, FRICTION in fit.samples and conditions.get(FRICTION) is None)
 
 
-def of_condition(name: str, given: Distribution) -> UncertainInput:
+def of_condition(name: str, distribution: Distribution) -> UncertainInput:
     """Return a condition as an input, in the unit of the distribution's first number."""
-    unit = symbol(given.first.units, "~C") if isinstance(given.first, pint.Quantity) else None
-    return UncertainInput(name, str(given), given, {name: ends_in_si(name, given, unit)}, unit)
+    unit = symbol(distribution.first.units, "~C") if isinstance(distribution.first, pint.Quantity) else None
+    return UncertainInput(name, str(distribution), distribution, {name: ends_in_si(name, distribution, unit)}, unit)
 
 
-def of_numbers(predict: Pipeline[...], kind: Kind, given: Mapping[str, Any]) -> list[UncertainInput]:
+def of_numbers(predict: Pipeline[...], kind: Kind, distributions: Mapping[str, Any]) -> list[UncertainInput]:
     """Return distributed numbers of the laws or stages of a pipeline as inputs, by their names as in `place_of`."""
-    found = []
-    for name, one in given.items():
+    inputs = []
+    for name, number in distributions.items():
         try:
             place = place_of(predict, name, kind)
         except InputError as error:
             raise InputError(f"{kind}: {error}") from None
         part = (predict.laws if kind == "law" else predict.stages)[place.index]
-        ends, distribution = parameter(place.field, one, part)
+        ends, distribution = parameter(place.field, number, part)
         at_places: dict[str | Place, Ends] = {replace(place, field=field): pair for field, pair in ends.items()}
-        found.append(UncertainInput(name, str(one), distribution, at_places))
-    return found
+        inputs.append(UncertainInput(name, str(number), distribution, at_places))
+    return inputs
 
 
-def parameter(name: str, given: object, part: Law | Stage) -> tuple[dict[str, Ends], Distribution]:
+def parameter(name: str, spread: object, part: Law | Stage) -> tuple[dict[str, Ends], Distribution]:
     """Return the two numbers in SI for each field of a law or stage that an uncertain number moves, and how."""
-    if isinstance(given, PublishedRange):
+    if isinstance(spread, PublishedRange):
         return _published(name, part), uniform(0.0, 1.0)
-    if not isinstance(given, Distribution):
+    if not isinstance(spread, Distribution):
         raise InputError(
             f"{name}: must be a distribution, such as wl.normal(5.3, 0.5) with its unit, or wl.published_range();"
-            f" got {shown(given)}"
+            f" got {shown(spread)}"
         )
-    known = numbers(part.explicit() if isinstance(part, Law) else part)
-    if name not in known:
-        hint = did_you_mean(name, known)
-        raise InputError(f"{part.kind} '{part.name}' has no number {shown(name)}{hint} There are: {', '.join(known)}")
-    number = known[name]
+    choices = numbers(part.explicit() if isinstance(part, Law) else part)
+    if name not in choices:
+        hint = did_you_mean(name, choices)
+        raise InputError(f"{part.kind} '{part.name}' has no number {shown(name)}{hint} There are: {', '.join(choices)}")
+    number = choices[name]
     unit = symbol(number.units, "~C") if isinstance(number, pint.Quantity) else None
-    return {name: ends_in_si(name, given, unit)}, given
+    return {name: ends_in_si(name, spread, unit)}, spread
 
 
-def ends_in_si(name: str, given: Distribution, unit: str | None) -> Ends:
+def ends_in_si(name: str, distribution: Distribution, unit: str | None) -> Ends:
     """Return the two numbers of a distribution in SI; without a unit they are coefficients."""
 
     def in_si(value: Any) -> float:
@@ -143,7 +143,8 @@ def ends_in_si(name: str, given: Distribution, unit: str | None) -> Ends:
             return float(value if isinstance(value, float) else coefficient(value, name))
         return float(Unit(unit, positive=False).si(value, name))
 
-    return in_si(given.first), float(given.second) if given.kind == "lognormal" else in_si(given.second)
+    second = float(distribution.second) if distribution.kind == "lognormal" else in_si(distribution.second)
+    return in_si(distribution.first), second
 
 
 def _published(name: str, part: Law | Stage) -> dict[str, Ends]:
@@ -155,9 +156,9 @@ def _published(name: str, part: Law | Stage) -> dict[str, Ends]:
     ranges = {field: (low[field], high[field]) for field in low if low[field] != high[field]}
     ends = {field: pair for field, pair in ranges.items() if field == name or field.startswith(f"{name}.")}
     if not ends:
-        known = sorted({field.partition(".")[0] for field in ranges})
+        choices = sorted({field.partition(".")[0] for field in ranges})
         raise InputError(
-            f"{name}: {part.kind} '{part.name}' has no published range of it; there are: {', '.join(known) or 'none'}"
+            f"{name}: {part.kind} '{part.name}' has no published range of it; there are: {', '.join(choices) or 'none'}"
         )
     return ends
 

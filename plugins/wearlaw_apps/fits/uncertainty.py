@@ -108,7 +108,7 @@ def uncertainty(
     if not pipeline.laws:
         pipeline.wear_law  # noqa: B018  raises
     of_stages = of_numbers(pipeline, "stage", stage or {})
-    check_loads_stay(pipeline, "uncertainty", [one.name for one in of_stages])
+    check_loads_stay(pipeline, "uncertainty", [number.name for number in of_stages])
     distributed = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
     of_conditions = [of_condition(name, value) for name, value in distributed.items()]
     inputs = [*of_conditions, *of_numbers(pipeline, "law", law or {}), *of_stages, *inputs]
@@ -117,18 +117,18 @@ def uncertainty(
             'nothing is uncertain; give a condition as a distribution, such as creepage=wl.uniform("0.5 %", "1 %"),'
             " or a parameter by law={...} or stage={...}"
         )
-    places = [place for one in inputs for place in one.at(np.array(0.5)) if isinstance(place, Place)]
+    places = [place for uncertain in inputs for place in uncertain.at(np.array(0.5)) if isinstance(place, Place)]
     twice = [place.field for place in places if places.count(place) > 1]
     if twice:
-        raise InputError(f"{' and '.join(one.name for one in inputs)}: {twice[0]} is given twice")
-    given = {name: one for name, one in conditions.items() if one is not None and name not in distributed}
-    explicit = pipeline.with_law(*(one.explicit() for one in pipeline.laws))
-    sampler = Sampler(explicit, given, tuple(inputs))
+        raise InputError(f"{' and '.join(uncertain.name for uncertain in inputs)}: {twice[0]} is given twice")
+    fixed = {name: value for name, value in conditions.items() if value is not None and name not in distributed}
+    explicit = pipeline.with_law(*(model.explicit() for model in pipeline.laws))
+    sampler = Sampler(explicit, fixed, tuple(inputs))
     count = 1 << (samples - 1).bit_length()
     sequence = scipy.stats.qmc.Sobol(len(inputs), rng=np.random.default_rng(seed))
     values = sampler.sampled(sequence.random_base2(count.bit_length() - 1).T, range(len(pipeline.laws)), warns=True)
     outcomes = zip(named_outcomes(pipeline.laws), pipeline.laws, values, strict=True)
-    return Uncertainty(sampler, {name: from_si(one, law.outcome.unit) for name, law, one in outcomes}, count, seed)
+    return Uncertainty(sampler, {name: from_si(drawn, law.outcome.unit) for name, law, drawn in outcomes}, count, seed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,13 +142,13 @@ class Sampler:
     @cached_property
     def known(self) -> dict[str, Known]:
         """The numeric conditions that are not distributed."""
-        found = {name: Known.of(value) for name, value in self.given.items()}
-        return {name: one for name, one in found.items() if one is not None}
+        numbers = {name: Known.of(value) for name, value in self.given.items()}
+        return {name: number for name, number in numbers.items() if number is not None}
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
         """The shape of the conditions that are not distributed."""
-        broadcast({name: one.values for name, one in self.known.items()})  # an error names shapes that do not fit
+        broadcast({name: number.values for name, number in self.known.items()})  # an error names shapes that do not fit
         # An error here is one of the conditions, not of single samples.
         conditions, _ = self._at(np.full(len(self.inputs), 0.5))
         shape: tuple[int, ...] = self.predict.posed(
@@ -165,14 +165,14 @@ class Sampler:
         conditions, numbers = self._at(np.clip(probability, INSIDE, 1.0 - INSIDE))
         for place in numbers:
             check_samples(part_at(self.predict, place), of_part(numbers, place.kind, place.index))
-        known = {
-            name: one.values[..., None] if one.unit is None else Q(one.values[..., None], one.unit)
-            for name, one in self.known.items()
+        fixed = {
+            name: number.values[..., None] if number.unit is None else Q(number.values[..., None], number.unit)
+            for name, number in self.known.items()
         }
         with steadily():
             try:
                 with OneWarning() as unusual:
-                    problem = self.predict.posed({**self.given, **known, **conditions})
+                    problem = self.predict.posed({**self.given, **fixed, **conditions})
                     if not warns:
                         unusual.clear()
             except InputError as error:
@@ -181,20 +181,20 @@ class Sampler:
             check_traction(self.predict.contact_model, flat)
             watch = RangeWatch(*(self.predict.laws[index] for index in indices))
             at_points = {place: np.broadcast_to(values, shape).reshape(-1) for place, values in numbers.items()}
-            found = outcomes_at(self.predict, flat, at_points, indices, watch.see if warns else None)
+            outcomes = outcomes_at(self.predict, flat, at_points, indices, watch.see if warns else None)
         if warns:
             self.predict.warn_of_problem(flat)
             warn_of_unlike_materials(self.predict.contact_model, flat)
             watch.warn()
-        return tuple(values.reshape(shape) for values in found)
+        return tuple(values.reshape(shape) for values in outcomes)
 
     def _at(self, probability: Array) -> tuple[dict[str, Any], dict[Place, Array]]:
         """Return the sampled conditions, and the sampled numbers of laws and stages."""
-        found: Sampled = {}
-        for one, row in zip(self.inputs, probability, strict=True):
-            found |= one.at(row)
-        numbers = {key: value for key, value in found.items() if isinstance(key, Place)}
-        return {key: value for key, value in found.items() if isinstance(key, str)}, numbers
+        sampled: Sampled = {}
+        for uncertain, row in zip(self.inputs, probability, strict=True):
+            sampled |= uncertain.at(row)
+        numbers = {key: value for key, value in sampled.items() if isinstance(key, Place)}
+        return {key: value for key, value in sampled.items() if isinstance(key, str)}, numbers
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -239,8 +239,8 @@ class Uncertainty:
     def __getitem__(self, outcome: str) -> Quantity:
         """Return the samples of an outcome by its name in results, along the last axis."""
         if outcome not in self.values:
-            known = f"{did_you_mean(outcome, self.values)} The outcomes are: {', '.join(self.values)}"
-            raise InputError(f"no law predicts {shown(outcome)}{known}")
+            hint = f"{did_you_mean(outcome, self.values)} The outcomes are: {', '.join(self.values)}"
+            raise InputError(f"no law predicts {shown(outcome)}{hint}")
         return self.values[outcome]
 
     @property
@@ -272,13 +272,13 @@ class Uncertainty:
         ends of its interval under "wear_rate_low" and "wear_rate_high".
         """
         columns = {}
-        for name, known in self.sampler.known.items():
-            head = f"{name} [{known.unit}]" if known.unit else name
-            columns[head] = np.broadcast_to(known.values, self.sampler.shape).reshape(-1)
-        for one in map(self.of, self.outcomes):
-            unit = f" [{one.unit}]" if one.unit else ""
-            for ending, value in zip(("", "_low", "_high"), (one.median, *one.interval()), strict=True):
-                columns[f"{one.outcomes[0]}{ending}{unit}"] = np.reshape(value.to(one.unit).magnitude, -1)
+        for name, condition in self.sampler.known.items():
+            head = f"{name} [{condition.unit}]" if condition.unit else name
+            columns[head] = np.broadcast_to(condition.values, self.sampler.shape).reshape(-1)
+        for single in map(self.of, self.outcomes):
+            unit = f" [{single.unit}]" if single.unit else ""
+            for ending, value in zip(("", "_low", "_high"), (single.median, *single.interval()), strict=True):
+                columns[f"{single.outcomes[0]}{ending}{unit}"] = np.reshape(value.to(single.unit).magnitude, -1)
         return pd.DataFrame(columns)
 
     def sobol(self) -> pd.DataFrame:
@@ -304,13 +304,13 @@ class Uncertainty:
             raise InputError(
                 f"sobol: the {name_of(outcome)} is the same in all samples, so there is no variance to explain"
             )
-        rows = pd.Index([one.name for one in inputs], name="input")
+        rows = pd.Index([uncertain.name for uncertain in inputs], name="input")
         if len(inputs) == 1:  # scipy takes no fewer than two
             alone = {"first_order": 1.0, "first_order_error": 0.0, "total_order": 1.0, "total_order_error": 0.0}
             return pd.DataFrame(alone, index=rows)
         every: list[Any] = [scipy.stats.uniform()] * len(inputs)
         index = named_outcomes(self.sampler.predict.laws)[outcome]
-        found = [
+        indices = [
             scipy.stats.sobol_indices(
                 func=lambda x: self.sampler.sampled(x, (index,))[0][None, :],
                 n=max(self.samples // SEQUENCES, 2),
@@ -321,7 +321,7 @@ class Uncertainty:
         ]
         table: dict[str, Array] = {}
         for order in ("first_order", "total_order"):
-            shares = np.array([np.ravel(getattr(one, order)) for one in found])
+            shares = np.array([np.ravel(getattr(estimate, order)) for estimate in indices])
             table |= {order: shares.mean(axis=0), f"{order}_error": shares.std(axis=0, ddof=1) / np.sqrt(SEQUENCES)}
         return pd.DataFrame(table, index=rows)
 
@@ -333,7 +333,7 @@ class Uncertainty:
         InputError
             If the operating points differ in more than one condition, or there are several outcomes.
         """
-        inputs = ", ".join(f"{one.name} {one.shown}" for one in self.sampler.inputs)
+        inputs = ", ".join(f"{uncertain.name} {uncertain.shown}" for uncertain in self.sampler.inputs)
         outcome = PlotAxis(label(self._only, units={self._only: self.unit}))
         panel = (_cumulative if math.prod(self.sampler.shape) == 1 else _along_axis)(self, outcome)
         samples, band = f"{self.samples} samples of {inputs}", f"{CONFIDENCE:.0%} of the samples"
@@ -376,14 +376,14 @@ class Uncertainty:
         first, *others = self.outcomes
         what = f"{len(self.outcomes)} outcomes" if others else f"the {name_of(first)}"
         lines = [f"Uncertainty of {what}, {self.samples} samples"]
-        for one in map(self.of, self.outcomes):
-            median, (low, high) = one.median, one.interval()
+        for single in map(self.of, self.outcomes):
+            median, (low, high) = single.median, single.interval()
             spread = f"{median!r}, {100 * CONFIDENCE:g} % of the samples {low!r} to {high!r}"
             several = bool(self.sampler.shape)
             lines.append(
-                f"{one.outcomes[0]:20} {f'medians {median.min()!r} to {median.max()!r}' if several else spread}"
+                f"{single.outcomes[0]:20} {f'medians {median.min()!r} to {median.max()!r}' if several else spread}"
             )
-        return "\n  ".join([*lines, *(f"{one.name:20} {one.shown}" for one in self.sampler.inputs)])
+        return "\n  ".join([*lines, *(f"{uncertain.name:20} {uncertain.shown}" for uncertain in self.sampler.inputs)])
 
 
 def _cumulative(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
@@ -400,13 +400,13 @@ def _cumulative(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
 
 
 def _along_axis(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
-    axes = {name: one for name, one in uncertainty.sampler.known.items() if np.size(one.values) > 1}
+    axes = {name: condition for name, condition in uncertainty.sampler.known.items() if np.size(condition.values) > 1}
     if len(axes) != 1:
         raise InputError(f"plot: needs one condition with several values, or none; there are {', '.join(axes)}")
-    ((name, one),) = axes.items()
-    x, shown = np.ravel(one.values), f"{name.replace('_', ' ')} [{one.unit or '-'}]"
+    ((name, condition),) = axes.items()
+    x, shown = np.ravel(condition.values), f"{name.replace('_', ' ')} [{condition.unit or '-'}]"
     if name in UNITS:
-        x, shown = Q(x, one.unit or "").to(UNITS[name]).magnitude, label(name)
+        x, shown = Q(x, condition.unit or "").to(UNITS[name]).magnitude, label(name)
     order = np.argsort(x)
     low, median, high = (
         np.ravel(values.magnitude)[order]

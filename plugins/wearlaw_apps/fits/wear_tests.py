@@ -157,16 +157,16 @@ class WearTests:
         others, measured = dict(other_conditions or {}), dict(outcomes or {})
         wrong = [f"{name} is unknown{did_you_mean(name, COLUMNS)}" for name in columns if name not in COLUMNS]
         wrong += [f"{name}: is an argument of its own" for name in (*others, *measured) if name in COLUMNS]
-        given: dict[str, Values] = {}
+        arrays: dict[str, Values] = {}
         for name, value in {**columns, **others, **measured}.items():
             try:
                 if value is not None:
-                    given[name] = _values(value)
+                    arrays[name] = _values(value)
             except UnitError as error:
                 wrong.append(f"{name}: {error}")
         if wrong:
             raise DataError("the tests are wrong in:", wrong)
-        same = _same_length(given)
+        same = _same_length(arrays)
         count = len(plain(next(iter(same.values()))))
         if labels is not None and (isinstance(labels, str) or len(labels) != count):
             raise DataError(f"labels: give one text for each of the {count} tests, got {shown(labels)}")
@@ -254,19 +254,21 @@ class WearTests:
     def unusual(self, rig: Rig) -> dict[str, str]:
         """Return the columns with an unusual median, each with what a warning says of it."""
         conditions = rig.conditions()
-        units = {name: one.unit for name, one in conditions.items() if one.unit is not None}
+        units = {name: condition.unit for name, condition in conditions.items() if condition.unit is not None}
         columns: dict[str, Quantity] = {
             name: from_si(values, self.units.get(name, COLUMNS[name].unit)) for name, values in self.columns.items()
         }
-        columns |= {name: one for name, one in self.other_conditions.items() if isinstance(one, pint.Quantity)}
-        found: dict[str, str] = {}
+        columns |= {
+            name: condition for name, condition in self.other_conditions.items() if isinstance(condition, pint.Quantity)
+        }
+        remarks: dict[str, str] = {}
         for name, values in columns.items():
             sizes = np.abs(values.magnitude[~np.isnan(values.magnitude)])
             unit = USUAL.get(name, units.get(name))
             if sizes.size and unit is not None:
                 text = unit.unusual(name, Q(float(np.median(sizes)), str(values.units)))
-                found |= {f"column {name}": f"its median {text}"} if text else {}
-        return found
+                remarks |= {f"column {name}": f"its median {text}"} if text else {}
+        return remarks
 
     def digests(self, name: str, unit: str) -> tuple[str, ...]:
         """Return a digest of each test: of its conditions and one measurement as in `measured`."""
@@ -349,7 +351,7 @@ class WearTests:
 
     def __repr__(self) -> str:
         every = self._values().items()
-        lines = [f"{len(self)} test{'s' if len(self) > 1 else ''}", *(self._range(*one) for one in every)]
+        lines = [f"{len(self)} test{'s' if len(self) > 1 else ''}", *(self._range(*item) for item in every)]
         return "\n  ".join(lines) + (f"\nfrom {self.source}" if self.source else "")
 
     def _range(self, name: str, values: Values) -> str:
@@ -390,7 +392,9 @@ def faulty_names(names: Collection[str], outcomes: Collection[str]) -> list[str]
     If there are other conditions of a rig, it checks itself whether creepage or load are missing.
     """
     others = any(name not in COLUMNS and name not in outcomes for name in names)
-    loads, tractions, forces = ([one for one in kind if one in names] for kind in (LOADS, TRACTIONS, MEASURED_FORCES))
+    loads, tractions, forces = (
+        [name for name in kind if name in names] for kind in (LOADS, TRACTIONS, MEASURED_FORCES)
+    )
     wrong = []
     if "creepage" not in names and (not others or "frictional_heat" in names):
         wrong.append(f"creepage: is missing; add a column '{head('creepage')}'")
@@ -425,10 +429,10 @@ def _faulty_values(
         yield name, np.abs(values) > about.limit, f"must not exceed {100.0 * about.limit:g} %; is its unit right?"
         if name in NEEDED:
             yield name, np.isnan(values), "every test needs it"
-    for name, given in others.items():
-        yield name, np.isinf(plain(given)), "must be finite"
+    for name, measured in others.items():
+        yield name, np.isinf(plain(measured)), "must be finite"
         if name not in outcomes:
-            yield name, np.isnan(plain(given)), "every test needs it"
+            yield name, np.isnan(plain(measured)), "every test needs it"
     for name in MEASURED_FORCES:
         if name in columns:
             traction = _with_traction(columns)["traction_coefficient"]
@@ -481,11 +485,11 @@ def _same_length(columns: Mapping[str, Values]) -> dict[str, Values]:
     if len(shape) != 1 or 0 in shape:
         shapes = ", ".join(f"{name} {np.shape(plain(values))}" for name, values in columns.items())
         raise DataError(f"give arrays with one entry for each test, all of one length; got {shapes}")
-    found: dict[str, Values] = {}
+    arrays: dict[str, Values] = {}
     for name, values in columns.items():
         copied = np.array(np.broadcast_to(plain(values), shape))
-        found[name] = Q(copied, str(values.units)) if isinstance(values, pint.Quantity) else copied
-    return found
+        arrays[name] = Q(copied, str(values.units)) if isinstance(values, pint.Quantity) else copied
+    return arrays
 
 
 def expect_tests(tests: object) -> None:
