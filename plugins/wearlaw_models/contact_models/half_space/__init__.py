@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from typing import Annotated, ClassVar
 
@@ -16,6 +17,16 @@ from wearlaw_models.contact_models.half_space.rolling import Friction, Patch
 
 WIDE = 1e4
 """Width of a strip that stands for a line, over half its length; the force is off by a share of (2/WIDE)²/2."""
+
+DIGITS = 12
+"""Decimals of the axes over √(ab) to which ellipses have the same grid."""
+
+
+@functools.lru_cache(maxsize=8)
+def of_ellipse(cells: int, root: float, poisson_ratio: float) -> Grid:
+    """Return the grid of ellipses of one shape, by √(a/b), which share its tables."""
+    middles = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
+    return Grid(root * middles, middles / root, np.full(cells, 2.0 / (cells * root)), poisson_ratio)
 
 
 class HalfSpace(wl.ContactModel):
@@ -153,7 +164,11 @@ class HalfSpace(wl.ContactModel):
         for point in range(flat.size):
             one = flat[point]
             c, force = float(size[point]), float(one.friction_coefficient * one.normal_force)
-            grid = Grid(columns[point] / c, strips.y[point] / c, strips.width[point] / c, float(one.poisson_ratio))
+            ratio = float(one.poisson_ratio)
+            if problem.geometry == "ellipse":
+                grid = of_ellipse(self.cells, round(float(np.sqrt(one.a / one.b)), DIGITS), ratio)
+            else:
+                grid = Grid(columns[point] / c, strips.y[point] / c, strips.width[point] / c, ratio)
             patch = Patch(grid, pressure[point].T * (c**2 / float(one.normal_force)))
             unit = force / (float(one.shear_modulus) * c**2)
             creepages = (

@@ -19,7 +19,10 @@ from wearlaw import Array
 from wearlaw_models.contact_models.half_space.cerruti import influence
 
 Field: TypeAlias = NDArray[np.floating[Any]]
-Spectra: TypeAlias = NDArray[np.complexfloating[Any, Any]]
+Spectra: TypeAlias = NDArray[np.inexact[Any]]
+
+SMALL = 150
+"""Most elements for which the products of all pairs are faster than FFTs."""
 
 EQUAL = 1e-10
 """Difference between widths, or distances, of rows that count as equal, over the width."""
@@ -31,7 +34,7 @@ class Grid:
     What tractions take up is a convolution along x. Rows that are equally wide and far apart make it one across x too,
     and FFTs on twice the grid compute it. Other rows, such as the strips of a wheelset, take part in pairs: FFTs along
     x leave a matrix of all rows for each wave number. That costs the square of their number, but rows are few there,
-    and the elements are exactly those of the strips.
+    and the elements are exactly those of the strips. A small grid has one matrix of all elements.
 
     Parameters
     ----------
@@ -50,16 +53,20 @@ class Grid:
         self.regular = bool(np.ptp(width) <= least and (np.abs(distance - width[0]) <= least).all())
         sources = 1 if self.regular else rows
         along, across, mixed = self._growth(y[:, None] - y[:sources], width[:sources])
-        self.growth = np.stack([along, across, -mixed]).astype(np.float32)
+        self.small = rows * columns <= SMALL
+        self.growth: Field = np.stack([along, across, -mixed]).astype(np.float64 if self.small else np.float32)
         """Growth along x by x, y by y, and x by y, by pairs of rows and distances along x from 1 - columns on."""
         self.stiffness = float(along[0, 0, columns - 1])
         """Slip that an element takes up by a unit traction of its own."""
         self.size = tuple(scipy.fft.next_fast_len(2 * n - 1, real=True) for n in (rows, columns))
+        if self.small:
+            self.spectra = _in_both(_square(*self.between(*np.divmod(np.arange(rows * columns), columns))))
+            return
         place = np.arange(1 - columns, columns) % self.size[1]
         kernels = np.zeros((3, *along.shape[:2], self.size[1]))
         kernels[..., place] = along, across, -mixed
         self.spectra = _in_both(self._spectra(kernels))
-        """What tractions take up half-way from the element before, over the tractions, by wave number."""
+        """What tractions take up half-way from the element before, by wave number, or by elements of a small grid."""
 
     def _growth(self, apart: Array, width: Array) -> tuple[Array, Array, Array]:
         """Return the growth of the displacement per way from the element before, (rows, rows, distances along x)."""
@@ -75,7 +82,7 @@ class Grid:
         """Return the transforms of kernels along x by x, y by y and x by y, (3, rows, rows, distances)."""
         if not self.regular:
             along, across, mixed = np.moveaxis(scipy.fft.rfft(kernels), -1, 1)
-            return np.block([[along, mixed], [mixed, across]])
+            return _square(along, across, mixed)
         rows = self.y.size
         both = np.zeros((3, *self.size))
         both[:, :rows] = kernels[:, :, 0]
@@ -85,12 +92,10 @@ class Grid:
 
     def between(self, row: NDArray[np.intp], column: NDArray[np.intp]) -> Field:
         """Return the growth along x by x, y by y, and x by y, of all pairs of elements, (3, elements, elements)."""
-        apart, other = row[:, None] - row, row
-        if self.regular:
-            row, other = np.abs(apart), 0 * row
-        else:
-            row = row[:, None]
-        growth: Field = self.growth[:, row, other, column[:, None] - column + self.x.size - 1]
+        apart, distances = row[:, None] - row, self.growth.shape[-1]
+        pair = np.abs(apart) if self.regular else row[:, None] * self.y.size + row
+        place = pair * distances + (column[:, None] - column + self.x.size - 1)
+        growth: Field = self.growth.reshape(3, -1).take(place, axis=1)
         if self.regular:
             growth[2] *= np.sign(apart)
         return growth
@@ -109,16 +114,18 @@ class Grid:
     @functools.cached_property
     def _around(self) -> dict[str, Spectra]:
         before = self.spectra["float64"]
-        if self.regular:
+        if self.regular and not self.small:
             return _in_both(1j * before.imag)
-        width = np.tile(self.width, 2)
-        after: Spectra = -before.conj().swapaxes(1, 2) * width / width[:, None]
+        width = np.tile(np.repeat(self.width, self.shape[1]) if self.small else self.width, 2)
+        after: Spectra = -before.conj().swapaxes(-1, -2) * width / width[:, None]
         return _in_both(0.5 * (before + after))
 
     def _product(self, spectra: Spectra, q: Field) -> Field:
         rows, columns = self.shape
         slip: Field
-        if self.regular:
+        if self.small:
+            slip = np.asarray(spectra @ q.ravel(), q.dtype).reshape(q.shape)
+        elif self.regular:
             along, across, mixed = spectra
             first, second = scipy.fft.rfft2(q, s=self.size)
             waves = np.stack([along * first + mixed * second, mixed * first + across * second])
@@ -140,6 +147,12 @@ class Grid:
         return Grid(x, y, width, self.poisson_ratio)
 
 
+def _square(along: Spectra, across: Spectra, mixed: Spectra) -> Spectra:
+    """Return the matrix of both directions."""
+    square: Spectra = np.block([[along, mixed], [mixed, across]])
+    return square
+
+
 def _in_both(spectra: Spectra) -> dict[str, Spectra]:
     """Return spectra for fields in double and in single precision, by their names."""
-    return {"float64": spectra, "float32": spectra.astype(np.complex64)}
+    return {"float64": spectra, "float32": spectra.astype(np.complex64 if spectra.dtype.kind == "c" else np.float32)}
