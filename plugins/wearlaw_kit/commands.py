@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import time
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
@@ -66,6 +67,8 @@ def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
 def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> None:
     """Check that an installed model keeps what wearlaw relies on. Prints a line a check; exit code 1 if any fails.
 
+    A line states the time of a check that takes a second or more.
+
     \b
     wearlaw check usfd
     wearlaw check usfd --option fitted_for=exact
@@ -108,20 +111,27 @@ def _made(model: type[Model], options: Mapping[str, object]) -> Model:
 
 def _outcome(check: Check, expected: str | None) -> str:
     """Run a check, print its line, with the reason if it is expected to fail, and return what to count it as."""
+    start = time.process_time()
     try:
         check()
     except AssertionError as error:
         if expected is not None:
-            click.echo(f"failed as expected {check.name}: {expected}")
+            click.echo(f"failed as expected {check.name}{_duration(start)}: {expected}")
             return "failed as expected"
         reason = str(error) or check.doc
-        click.echo(f"FAILED {check.name}: {reason.strip().splitlines()[0]}")
+        click.echo(f"FAILED {check.name}{_duration(start)}: {reason.strip().splitlines()[0]}")
         return "failed"
     if expected is not None:
-        click.echo(f"FAILED {check.name}: it passes, but is expected to fail: {expected}")
+        click.echo(f"FAILED {check.name}{_duration(start)}: it passes, but is expected to fail: {expected}")
         return "failed"
-    click.echo(f"ok {check.name}")
+    click.echo(f"ok {check.name}{_duration(start)}")
     return "ok"
+
+
+def _duration(start: float) -> str:
+    """Return the time that a check took of the processor, if that is a second or more."""
+    taken = time.process_time() - start
+    return f" ({taken:.0f} s)" if taken >= 1.0 else ""
 
 
 def _installed(name: str) -> type[Model] | Law:

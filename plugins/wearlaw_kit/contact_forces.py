@@ -174,9 +174,18 @@ def forces_are_continuous(model: ContactModel, shape: Shape) -> None:
     allowed = {"mean_slip": error * translation(at_magnitude(problem, high))}
     allowed |= dict.fromkeys(("force_x",) if shape is LINE else ("force_x", "force_y"), of_forces)
 
+    values: dict[tuple[int, float], dict[str, float]] = {}  # each place is solved once, for all names
+
     def solved(name: str, index: Indices, share: Array) -> Array:
-        value: Array = getattr(model.solve(at_magnitude(problem[index], low * (high / low) ** share)), name)
-        return value
+        places = list(zip(index.tolist(), share.tolist(), strict=True))
+        if new := list({place: None for place in places if place not in values}):
+            at, shares = (np.array(one) for one in zip(*new, strict=True))
+            contact = model.solve(at_magnitude(problem[at], low * (high / low) ** shares))
+            columns = [getattr(contact, one).tolist() for one in allowed]
+            values.update(
+                (place, dict(zip(allowed, row, strict=True))) for place, *row in zip(new, *columns, strict=True)
+            )
+        return np.array([values[place][name] for place in places])
 
     for name, step in allowed.items():
         for point, share, before, behind in find_jumps(partial(solved, name), problem.size, intervals):

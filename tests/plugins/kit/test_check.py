@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -60,6 +62,13 @@ def test_each_check_has_a_line_and_they_are_counted(install_model: InstallModel)
         "not claimed each_node_wears_by_itself: the hottest node heats the patch",
         f"{len(lines) - 2} ok, 0 failed, 1 not claimed",
     ]
+
+
+def test_a_slow_check_states_its_time(install_model: InstallModel, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = SimpleNamespace(process_time=itertools.count(0.0, 2.0).__next__)  # two seconds from one look to the next
+    monkeypatch.setattr("wearlaw_kit.commands.time", clock)  # private: a clock
+    lines, _ = checked(install_model, Own)
+    assert "ok rate_is_finite (2 s)" in lines
 
 
 @pytest.mark.parametrize(
