@@ -14,8 +14,8 @@ import wearlaw as wl
 from wearlaw.configuration import field_docstrings
 from wearlaw.loader import discovered
 from wearlaw.parameters import numbers
-from wearlaw.units.variables import UNITS, VARIABLES
-from wearlaw_apps.output.labels import label
+from wearlaw.units.variables import GIVEN, OWNERS, VARIABLES, Variable
+from wearlaw_apps.output.labels import readable
 from wearlaw_models.rigs.wheelset.rig import WheelsetProblem
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
@@ -147,27 +147,35 @@ def read(name: str, where: str, text: str) -> Documented:
     return Documented(name, where, found["symbol"] or "", found["unit"], meaning[0].upper() + meaning[1:])
 
 
+def variables() -> dict[str, Variable]:
+    """Return the variables of the core, and those that the rigs and laws that ship with wearlaw declare."""
+    declared = (*WheelsetProblem.results, *(law.outcome for law in shipped_laws()))
+    core = {name: variable for name, variable in VARIABLES.items() if name not in OWNERS}
+    return core | {variable.name: variable for variable in declared}
+
+
 def table() -> str:
     """Return the nomenclature as CSV: a row for each name, symbol and unit."""
     rows: dict[tuple[str, str, str], list[Documented]] = {}
     for one in documented():
         rows.setdefault((one.name, one.symbol, one.unit), []).append(one)
-    for name in VARIABLES.keys() - {one for one, *_ in rows}:
-        unit = label(name, units={name: VARIABLES[name].unit}).rpartition("[")[2].rstrip("]")
-        rows[name, VARIABLES[name].symbol, unit] = []
+    known = variables()
+    for name in known.keys() - {one for one, *_ in rows}:
+        rows[name, known[name].symbol, readable(known[name].unit) or "-"] = []
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(HEAD)
     for (name, symbol, unit), places in sorted(rows.items()):
         used_in = ", ".join(dict.fromkeys(f"`{place.where}`" for place in places))
-        shown = label(name) if name in UNITS else ""
+        on_axes = name in known and name not in GIVEN
+        shown = f"{known[name].long_name} [{readable(known[name].unit) or '-'}]" if on_axes else ""
         writer.writerow((symbol, f"`{name}`", meaning(name, symbol, places), f"[{unit}]", shown, used_in))
     return file.getvalue()
 
 
 def meaning(name: str, symbol: str, places: list[Documented]) -> str:
     """Return the meaning in the table of variables, or else, as for another symbol, the shortest in docstrings."""
-    variable = VARIABLES.get(name)
+    variable = variables().get(name)
     if variable and symbol in ("", variable.symbol):
         return variable.meaning
     return min((place.meaning for place in places), key=len)

@@ -87,6 +87,7 @@ from wearlaw.units.quantities import (
     parse,
     scalar_si,
 )
+from wearlaw.units.variables import Variable
 from wearlaw.version import __version__
 
 __all__ = [
@@ -159,6 +160,7 @@ __all__ = [
     "UnitError",
     "UnknownModelError",
     "UnusualWarning",
+    "Variable",
     "WearLaw",
     "WearLawField",
     "WearlawError",

@@ -254,7 +254,7 @@ def _declared(model: type[Model], default: Model | None) -> Iterator[str]:
         outcome = model.outcome
         of = "mean over the area of the patch" if outcome.of == "area mean" else "one value for the whole patch"
         unit = symbol(Q(1.0, outcome.unit).units, "~P") or "-"
-        yield f"predicts: {outcome.name} [{unit}], {of}{', may be negative' if outcome.signed else ''}"
+        yield f"predicts: {outcome.name} [{unit}], {of}{', may be negative' if outcome.sign == 'any' else ''}"
     if isinstance(default, Law):
         yield from _of_law(default)
     elif isinstance(default, ContactModel):
@@ -288,17 +288,18 @@ def _of_law(law: Law) -> Iterator[str]:
     if breakpoints is None:
         yield "branches: not declared"
     for variable, values in (breakpoints or {}).items():
-        yield f"branches in {variable} at {', '.join(_si(variable, value) for value in values)}"
+        yield f"branches in {variable} at {', '.join(_level(law, variable, value) for value in values)}"
     for variable, values in law.jumps(law.numbers).items():
-        yield f"jumps in {variable} at {', '.join(_si(variable, value) for value in values)}"
+        yield f"jumps in {variable} at {', '.join(_level(law, variable, value) for value in values)}"
     for variable, (low, high) in law.valid_range.items():
-        yield f"known range of mean {variable} from {_si(variable, low)} to {_si(variable, high)}"
+        yield f"known range of mean {variable} from {_level(law, variable, low)} to {_level(law, variable, high)}"
     if law.band() is not None:
         yield "band: published parameter ranges give a low, a middle and a high law"
 
 
-def _si(variable: str, value: float) -> str:
-    return repr(from_si(value, UNITS[variable]))
+def _level(law: Law, variable: str, value: float) -> str:
+    own = law.variables.get(variable)
+    return repr(from_si(value, own.unit if own else UNITS[variable]))
 
 
 def wrapped(prefix: str, text: str) -> list[str]:

@@ -80,7 +80,7 @@ def rate_is_finite(law: Law, contact: Contact) -> None:
     assert np.isfinite(rate).all(), f"the rate is not finite: {rate!r}"
 
 
-@on_contacts(Law, always=True, applies=lambda law: not law.outcome.signed)
+@on_contacts(Law, always=True, applies=lambda law: law.outcome.sign != "any")
 def rate_is_never_negative(law: Law, contact: Contact) -> None:
     """Wear takes material away; no rate is below zero, whatever the sign of the creepage."""
     rate = law.rate(contact, law.numbers)

@@ -32,7 +32,7 @@ class Damage(wl.Law):
 
     name: ClassVar[str] = "damage"
     source: ClassVar[str] = "test"
-    outcome = wl.Outcome("rcf_damage", unit="", of="patch", signed=True)
+    outcome = wl.Outcome("rcf_damage", unit="", of="patch", sign="any")
 
     threshold: Annotated[wl.Quantity, wl.Unit("N")] = Q(15.0, "N")
     slope: Annotated[wl.Quantity, wl.Unit("1/N")] = Q(1e-6, "1/N")

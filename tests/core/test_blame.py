@@ -96,7 +96,7 @@ PLUGIN = """
         name = "own_variable"
         @property
         def own_variables(self):
-            return {"heat": lambda contact: contact.heat}
+            return {wl.Variable("heat", unit="W"): lambda contact: contact.heat}
         def breakpoints(self, p):
             return {"heat": (1.0,)}
 

@@ -241,7 +241,7 @@ class Unsigned(Wrong):
     """The same, for an outcome that cannot be negative."""
 
     name: ClassVar[str] = "unsigned"
-    outcome = dataclasses.replace(Damage.outcome, signed=False)
+    outcome = dataclasses.replace(Damage.outcome, sign="not negative")
 
 
 @pytest.mark.parametrize(
@@ -263,6 +263,9 @@ def test_a_wrong_law_is_named(law: wl.Law, said: str) -> None:
 # --- Borders in a variable of the law's own --------------------------------------------------------------------
 
 
+POWER = wl.Variable("power", unit="W/mm^2")
+
+
 class Switch(wl.WearLaw):
     """Wear that starts at a frictional power density, named by the table of variables or by the law itself."""
 
@@ -277,7 +280,7 @@ class Switch(wl.WearLaw):
 
     @property
     def own_variables(self) -> Any:
-        return {"power": lambda contact: contact.wear_index_density * contact.per_node(contact.rolling_speed)}
+        return {POWER: lambda contact: contact.wear_index_density * contact.per_node(contact.rolling_speed)}
 
     def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         return {self.variable: (p["border"],)}

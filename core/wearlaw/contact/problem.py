@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.material import Material
 from wearlaw.errors import CompositionError, ConditionsError, InputError, shown
 from wearlaw.units.quantities import QuantityLike, coefficient, scalar_si
-from wearlaw.units.variables import VARIABLES
+from wearlaw.units.variables import VARIABLES, Variable, declare
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -264,6 +264,18 @@ class Problem:
     exists: NDArray[np.bool_] | None = None
     unloaded: NDArray[np.bool_] | None = None
 
+    results: ClassVar[tuple[Variable, ...]] = ()
+    """Fields that a subclass adds to the results of predictions: arrays of the batch shape, in SI or of texts."""
+
+    def __init_subclass__(cls) -> None:
+        """Put the results of a subclass into the table of variables."""
+        if not (isinstance(cls.results, tuple) and all(isinstance(one, Variable) for one in cls.results)):
+            raise InputError(
+                f'{cls.__name__}.results: must be a tuple of variables, such as (wl.Variable("wheel_load", unit="kN"),)'
+            )
+        for variable in vars(cls).get("results", ()):
+            declare(cls, variable)
+
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         creepage: object = self.longitudinal_creepage
@@ -326,6 +338,11 @@ class Problem:
         modulus = si.pop("shear_modulus") / (1.0 - si["poisson_ratio"])
         per_width = si.pop("normal_force") / si["track_width"]
         return cls.line_from_si(normal_force_per_width=per_width, effective_modulus=modulus, **si).checked()
+
+    @classmethod
+    def of(cls, problem: Problem, **fields: Any) -> Self:
+        """Return another problem as one of this class, with the fields that the class adds, and others replaced."""
+        return cls(**{one.name: getattr(problem, one.name) for one in dataclasses.fields(Problem)} | fields)
 
     def checked(self) -> Self:
         """Return the problem, or raise an error if its load or its coefficients are such as no contact has.
@@ -483,11 +500,6 @@ class Problem:
     def resolved(self) -> NDArray[np.bool_] | None:
         """Marks the patches with results: those that exist, and those that bear no load. None if all have."""
         return self.exists if self.unloaded is None or self.exists is None else self.exists | self.unloaded
-
-    @property
-    def results(self) -> Mapping[str, str]:
-        """Units of the fields that a subclass adds to the results of predictions, by name; {} by default."""
-        return {}
 
     @property
     def creepage(self) -> Array:
@@ -655,8 +667,8 @@ class Problem:
 
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Strips.mapped`."""
-        fields: dict[str, Any] = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        for name in ARRAYS:
+        fields: dict[str, Any] = {one.name: getattr(self, one.name) for one in dataclasses.fields(self)}
+        for name in (*ARRAYS, *(variable.name for variable in self.results)):
             if fields[name] is not None:
                 fields[name] = function(fields[name])
         if self.strips is not None:

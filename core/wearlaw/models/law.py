@@ -3,7 +3,7 @@
 import math
 from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
 
@@ -25,7 +25,6 @@ from wearlaw.errors import (
     CalibrationWarning,
     CompositionError,
     InputError,
-    UnitError,
     did_you_mean,
     shown,
     warn,
@@ -34,8 +33,7 @@ from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.model import Blame, Model, check_scale, fault
 from wearlaw.parameters import numbers_in_si
 from wearlaw.units.quantities import WEAR_RATE, Quantity, Unit, from_si
-from wearlaw.units.registry import unit_in_si
-from wearlaw.units.variables import UNITS, VARIABLES
+from wearlaw.units.variables import UNITS, VARIABLES, Variable, declare
 
 Numbers: TypeAlias = Mapping[str, float | Array]
 """A law's numbers in SI, by the names of its fields; a number of a record within a law as "coefficient.low_speed".
@@ -116,45 +114,30 @@ class Calibration(Configuration):
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """What a law predicts, and its unit.
+class Outcome(Variable):
+    """What a law predicts: a `Variable`, such as "rcf_damage", not negative unless `sign` is "any".
 
     Attributes
     ----------
-    name : str
-        Name in results, such as "rcf_damage".
-    unit : str
-        Unit in results, such as "W/mm^2"; "" for a plain number. The law itself returns SI values.
     of : {"area mean", "patch"}
         "area mean" if the law gives a value at each node; the result is its mean over the area of the patch. "patch" if
         it gives one value for the whole patch, such as the damage by one passage. Such a value is never averaged over
         the area and never summed over several patches.
-    signed : bool
-        Whether the value may be negative.
     """
 
-    name: str
-    unit: str
-    of: Literal["area mean", "patch"]
-    signed: bool = False
+    sign: Literal["positive", "not negative", "any"] = "not negative"
+    of: Literal["area mean", "patch"] = field(kw_only=True)
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        if not (isinstance(self.name, str) and self.name.isidentifier()):
-            raise InputError(
-                f"outcome: its name must be made of letters, digits and underscores, got {shown(self.name)}"
-            )
+        """Check the fields, and fill in the words."""
+        super().__post_init__()
         if self.of not in ("area mean", "patch"):
             raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shown(self.of)}")
         known = VARIABLES.get(self.name)
-        if known is not None:
-            if self.name != WEAR:
-                raise InputError(f"outcome '{self.name}': this name has a meaning, {known.name}; choose another one")
-            return
-        try:
-            unit_in_si(self.unit)
-        except UnitError as error:
-            raise UnitError(f"outcome '{self.name}': {error}") from None
+        if known is None:
+            self._check_unit()
+        elif self.name != WEAR and not isinstance(known, Outcome):
+            raise InputError(f"outcome '{self.name}': this name has a meaning, {known.long_name}; choose another one")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -242,6 +225,8 @@ class Law(Model):
                     f"{cls.__name__} has no outcome; add what it predicts, as in"
                     ' outcome = wl.Outcome("rcf_damage", unit="", of="patch"), or derive it from wl.WearLaw'
                 )
+            if "outcome" in vars(cls):
+                declare(cls, cls.outcome)
             check_scale(cls, SCALES)
             known = cls.__pydantic_fields__
             for name in Law.model_fields:
@@ -252,7 +237,7 @@ class Law(Model):
         """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` names no variable."""
         with Blame(self):
             points = {"breakpoints": self.breakpoints(self.numbers) or {}, "jumps": self.jumps(self.numbers)}
-            known = (*LAW_VARIABLES, *self.own_variables)
+            known = (*LAW_VARIABLES, *self.variables)
             declared = {
                 **{name: (variables, known) for name, variables in points.items()},
                 "monotone_in": (self.monotone_in, LAW_VARIABLES),
@@ -349,13 +334,14 @@ class Law(Model):
 
         This is a check of results for users. On its way to the best fit, a law may pass through negative values.
         """
-        if self.outcome.signed:
+        if self.outcome.sign == "any":
             return
         low, _ = extremes(value)
         if low < 0.0 and (value < -error()).any():
-            of = self.outcome.name.replace("_", " ")
             shown = from_si(low, self.outcome.unit)
-            raise fault(self, f"gives a negative {of}, {shown!r}; see its parameters and the wear index")
+            raise fault(
+                self, f"gives a negative {self.outcome.long_name}, {shown!r}; see its parameters and the wear index"
+            )
 
     def _warn_of_calibration(self, contact: Contact, scale: Scale) -> None:
         """Warn if the parameters were fitted for another kind of contact, as far as the contact shows its kind."""
@@ -389,17 +375,25 @@ class Law(Model):
         return None
 
     @property
-    def own_variables(self) -> Mapping[str, Callable[[Contact], Array]]:
+    def own_variables(self) -> Mapping[Variable, Callable[[Contact], Array]]:
         """Variables of the law's own in which it branches, each a function from a contact to one value for a node."""
         return {}
 
+    @cached_property
+    def variables(self) -> Mapping[str, Variable]:
+        """The variables of the law's own by name."""
+        with Blame(self):
+            own = self.own_variables
+        if not all(isinstance(variable, Variable) for variable in own):
+            raise fault(self, f"gives {shown([*own])} as `own_variables`; they must be of type wl.Variable")
+        return {variable.name: variable for variable in own}
+
     def value_at(self, contact: Contact, name: str) -> Array:
         """Return a variable of the law's own or of the contact at the nodes, in SI."""
-        own = self.own_variables.get(name)
-        if own is None:
+        if name not in self.variables:
             return variable_at_nodes(contact, name)
         with Blame(self):
-            return own(contact)
+            return self.own_variables[self.variables[name]](contact)
 
     def jumps(self, p: Numbers) -> BreakpointMap:  # noqa: ARG002
         """Return the breakpoints at which the rate jumps."""

@@ -507,9 +507,7 @@ def splits_of(model: LineContactModel, law: Law, p: Numbers, problem: Problem, s
         breakpoints = law.breakpoints(p)
     if breakpoints is None:
         return None
-    per_node = {
-        name: values for name, values in breakpoints.items() if name in NODE_VARIABLES or name in law.own_variables
-    }
+    per_node = {name: values for name, values in breakpoints.items() if name in NODE_VARIABLES or name in law.variables}
     return crossings(model, problem.forward(), slip, per_node, law.value_at)
 
 

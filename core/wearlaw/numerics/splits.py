@@ -34,7 +34,7 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
     rate = solver.rate(law, contact, problem, p)
     with Blame(law, p):
         jumps = law.jumps(p)
-    known = {*NODE_VARIABLES, *law.own_variables}
+    known = {*NODE_VARIABLES, *law.variables}
     levels = [(name, value) for name, values in jumps.items() if name in known for value in values]
     if not levels or contact.x.shape[-2] == 1:
         return rate

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import reduce
 
-import numpy as np
-
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
@@ -75,8 +73,7 @@ class Staged(ContactModel):
         check_problem(self, found)
         if there is problem:
             return found
-        of_rig = {name: getattr(problem, name) for name in problem.results}
-        texts = {name: value for name, value in of_rig.items() if np.asarray(value).dtype.kind != "f"}
+        texts = {one.name: getattr(problem, one.name) for one in problem.results if one.text}
         return found.mapped(problem.unflatten, problem.unflatten).replaced(
             dims=problem.dims, exists=problem.exists, unloaded=problem.unloaded, **texts
         )

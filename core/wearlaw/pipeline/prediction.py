@@ -175,9 +175,10 @@ class Prediction:
             return self._si(self._solution.value(index), self.laws[index].outcome.unit)
         if name.endswith(ERROR) and name.removesuffix(ERROR) in named:
             return self._error(named[name.removesuffix(ERROR)])
-        if name in self.problem.results:
-            value, unit = np.asarray(getattr(self.problem, name)), self.problem.results[name]
-            return self._si(value, unit) if value.dtype.kind == "f" else quantity(value, unit)
+        of_rig = next((one for one in self.problem.results if one.name == name), None)
+        if of_rig is not None:
+            value = np.asarray(getattr(self.problem, name))
+            return quantity(value, of_rig.unit) if of_rig.text else self._si(value, of_rig.unit)
         if not name.startswith("_") and hasattr(type(self), name):
             value = getattr(self, name)
             if isinstance(value, pint.Quantity):

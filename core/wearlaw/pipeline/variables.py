@@ -29,9 +29,6 @@ OF_CONTACT = (
     "mean_slip",
     "first_yield",
     "shakedown_limit",
-    "guiding_force",
-    "wheel_load",
-    "derailment_quotient",
 )
 """Variables that depend on the contact model but not on the wear law; no prediction has all of them."""
 
@@ -47,7 +44,7 @@ OF_POINT = (
 )
 """Variables that depend on the operating point alone; no prediction has all of them."""
 
-OF_PATCH = ("lateral_creepage", "spin", "contact_angle", "lateral_displacement")
+OF_PATCH = ("lateral_creepage", "spin", "contact_angle")
 """Variables of one of several patches, which differ in them; with one patch they repeat the conditions."""
 
 MASS = "mass_per_distance"
@@ -56,10 +53,7 @@ MASS = "mass_per_distance"
 OUTSIDE_RANGE = "outside_range"
 """The variable that marks points outside the range of a law."""
 
-TEXTS = frozenset({"status"})
-"""Variables that are texts, not numbers."""
-
-MORE = ("patch_area", OUTSIDE_RANGE, *TEXTS)
+MORE = ("patch_area", OUTSIDE_RANGE)
 """Further variables of predictions and sweeps."""
 
 OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
@@ -89,7 +83,8 @@ def default_variables(
     Conditions, which are coordinates, are `without`. `several_patches` says whether the rig makes several patches, if
     the prediction does not show it.
     """
-    known = (MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *MORE)
+    of_rig = (variable.name for variable in prediction.problem.results)
+    known = (MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *of_rig, *MORE)
     every = (*named_outcomes(prediction.laws), *offered(prediction, known, several_patches))
     left_out = {*without}
     return [name for name in dict.fromkeys(every) if name not in left_out]
@@ -108,7 +103,7 @@ def offered(prediction: Predicted, variables: Iterable[str], several_patches: bo
 
 
 def _has(prediction: Predicted, name: str) -> bool:
-    if name in prediction.problem.results:
+    if any(name == variable.name for variable in prediction.problem.results):
         return True
     try:
         return isinstance(getattr(prediction, name, None), pint.Quantity)

@@ -82,4 +82,4 @@ def long_name(variable: str, laws: Sequence[Law]) -> str:
     if index is None:
         return name_of(variable)
     law = laws[index]
-    return name_of(law.outcome.name) + (f" of {law.body}" if law.body is not None else "")
+    return law.outcome.long_name + (f" of {law.body}" if law.body is not None else "")

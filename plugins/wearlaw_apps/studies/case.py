@@ -296,9 +296,9 @@ def case_text(name_or_path: str) -> str:
 
 def case_schema() -> dict[str, Any]:
     """Return the JSON Schema of a case file, with the options of all installed models."""
+    plugins = loader.discovered()
     schema = Case.model_json_schema(by_alias=True)
-    definitions = schema["$defs"]
-    properties, plugins = schema["properties"], loader.discovered()
+    properties, definitions = schema["properties"], schema["$defs"]
     for field in ("contact_models", "stages", "laws", "wear_laws"):
         shelf = plugins[field.replace("_", " ").removesuffix("s")]
         properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, WithJsonSchema, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from wearlaw.configuration import Configuration
 from wearlaw.errors import ConfigurationError, Fault
+from wearlaw.models.law import WEAR
 from wearlaw.pipeline.variables import MASS, OF_CONTACT, OF_PATCH, OF_POINT
+from wearlaw.units.variables import OWNERS, is_text
 
 OF_PROFILE = ("pressure", "traction", "traction_bound", "slip", "wear_rate", "creepage")
 """Variables along the patch of a line contact; the creepage of the operating point is a horizontal line."""
@@ -26,13 +30,25 @@ def _variables(value: Any) -> Any:
     return (value,) if isinstance(value, str) else value
 
 
-_VARIABLE = {"enum": list(dict.fromkeys(("wear_rate", MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *OF_PROFILE, *ACROSS)))}
+class _Schema:
+    """The JSON Schema of names of variables, with those that installed models declare."""
+
+    def __init__(self, *first: str, several: bool = False) -> None:
+        self.first, self.several = first, several
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        declared = (name for name in OWNERS if not is_text(name))
+        names = {"enum": list(dict.fromkeys((*self.first, *OF_CONTACT, *OF_POINT, *OF_PATCH, *declared)))}
+        return {"anyOf": [names, {"type": "array", "items": names, "minItems": 1}]} if self.several else names
+
+
+_SHOWN = (WEAR, MASS, *OF_PROFILE, *ACROSS)
 
 Variables = Annotated[
     tuple[str, ...],
     BeforeValidator(_variables),
     Field(min_length=1),
-    WithJsonSchema({"anyOf": [_VARIABLE, {"type": "array", "items": _VARIABLE, "minItems": 1}]}),
+    _Schema(*_SHOWN, several=True),
 ]
 """One variable, or several with the same unit."""
 
@@ -85,13 +101,13 @@ class FigureSpec(Window):
     """The sweep to show; give this or `profile`."""
     profile: str | None = None
     """The profile to show."""
-    x: Annotated[str, Field(json_schema_extra={"enum": ["x", "y", *OF_CONTACT, *OF_POINT, *OF_PATCH]})] = "x"
+    x: Annotated[str, _Schema("x", "y")] = "x"
     """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The pairs whose wear rates or other outcomes are shown, such as "usfd on exact". Default: all."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The contact models whose other variables are shown. Default: all."""
-    map: Annotated[str, WithJsonSchema(_VARIABLE)] | None = None
+    map: Annotated[str, _Schema(*_SHOWN)] | None = None
     """A variable to show in colours over two axes of a sweep, `x` and `y`. Each pair or contact model has a panel."""
     measured: bool = False
     """Whether to show the measured tests."""

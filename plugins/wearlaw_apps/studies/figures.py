@@ -163,7 +163,7 @@ def _over(results: Results, name: str, y: str, x: str, plane: tuple[str, str] | 
         return FigureSpec(sweep=name, x=plane[0], y=(plane[1],), map=y)
     sweep, creepage, tests = results.sweeps[name], results.case.rig.creepage, results.case.measured
     axis, outcome = main_axis(sweep, creepage), results.case.outcomes.get(y)
-    log = not (outcome and outcome.signed) and fit_for_log(along(sweep, axis)[y].values)
+    log = not (outcome and outcome.sign == "any") and fit_for_log(along(sweep, axis)[y].values)
     scale = results.case.sweeps[name].spacing(axis)
     measured = tests is not None and axis == creepage and {x, y} <= {*known_variables(tests.data)}
     return FigureSpec(sweep=name, x=x, y=(y,), x_scale=scale, y_scale="log" if log else "linear", measured=measured)
@@ -494,7 +494,7 @@ def _maps(
     values = [series.data[variable].transpose(y, x).values for _, series in all_series]
     values = values if signed or of_pairs else [np.abs(array) for array in values]
     outcome = results.case.outcomes.get(variable)
-    scale: Scale = "log" if not (outcome and outcome.signed) and fit_for_log(*values) else "linear"
+    scale: Scale = "log" if not (outcome and outcome.sign == "any") and fit_for_log(*values) else "linear"
     axes, places = [], []
     for path, name in (("x", x), ("y", y)):
         at = _converted(plane[name].values, results.case.result_units[name], units[name])

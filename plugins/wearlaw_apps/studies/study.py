@@ -265,7 +265,7 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
     for number, pair in enumerate(usable):
         evaluated = pair.contact_model in contacts
         of_pair = _of_pair(pair, first)
-        of_contact, of_every = ([], []) if evaluated else _of_contact(pair, first, case, conditions)
+        of_contact, of_every = ([], []) if evaluated else _of_contact(pair, first, case, grid, conditions)
         of_point = [v for v in of_every if v not in of_points]
         with notes.of(f"sweep '{name}'"):
             warn_of_unlike_materials(pair.pipeline.contact_model, first)
@@ -308,14 +308,17 @@ def _of_pair(pair: Pair, problem: Problem) -> list[str]:
     return [pair.outcome.name, *error, "outside_range", *mass]
 
 
-def _of_contact(pair: Pair, problem: Problem, case: Case, conditions: Collection[str]) -> tuple[list[str], list[str]]:
+def _of_contact(
+    pair: Pair, problem: Problem, case: Case, grid: Grid, conditions: Collection[str]
+) -> tuple[list[str], list[str]]:
     """Return the variables of a contact model but those given, and those of the points, which do not depend on it.
 
     If the rig balances its loads, all depend on it.
     """
     with caught_warnings():  # the sweep repeats them
         prediction = pair.pipeline.without_law().predict(problem)
-    of_contact = [v for v in offered(prediction, OF_CONTACT) if v not in conditions]
+    of_rig = (one.name for one in problem.results if not one.text and one.name not in grid.given)
+    of_contact = [v for v in (*offered(prediction, OF_CONTACT), *of_rig) if v not in conditions]
     # A rig may use the name of a variable for something else.
     same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
     of_point = [v for v in same if v not in conditions]

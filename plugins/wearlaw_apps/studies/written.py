@@ -124,7 +124,8 @@ def table(study: Study) -> pd.DataFrame:
     variables = (*OF_POINT, *study.case.units, *OF_PATCH)
     of_point = [name for name in variables if name in rows and name not in OF_CONTACT]
     of_pairs = [str(v) for sweep in study.sweeps.values() for v in sweep.data_vars if "pair" in sweep[v].dims]
-    of_contact = [name for name in OF_CONTACT if name in rows]
+    of_rig = (str(v) for sweep in study.sweeps.values() for v in sweep.data_vars if "contact_model" in sweep[v].dims)
+    of_contact = [name for name in (*OF_CONTACT, *of_rig) if name in rows]
     laws = ("wear_law", "law") if study.case.laws else ("wear_law",)
     patches = [axis for sweep in study.sweeps.values() for axis in patch_axes(sweep)]
     names = dict.fromkeys(("sweep", "contact_model", *laws, *patches, *of_point, *of_pairs, *of_contact))

@@ -12,8 +12,7 @@ import numpy as np
 import xarray
 
 from wearlaw.arrays import Array
-from wearlaw.pipeline.variables import TEXTS
-from wearlaw.units.variables import VARIABLES
+from wearlaw.units.variables import VARIABLES, is_text
 from wearlaw_apps.output.conditions import Known
 from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_apps.sweeps.points import ITEM, Block, Points
@@ -73,7 +72,7 @@ class Memory(Target):
     def __init__(self, job: Job, points: Points) -> None:
         check_memory(bytes_of(job, points), 'give a folder for them, store="..."')
         super().__init__(job, points)
-        dtypes = {name: object if name in TEXTS else np.float64 for name in job.units}
+        dtypes = {name: object if is_text(name) else np.float64 for name in job.units}
         self._arrays = {name: np.empty(points.shape + job.own_shape(name), dtypes[name]) for name in job.units}
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:

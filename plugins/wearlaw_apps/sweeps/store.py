@@ -14,7 +14,7 @@ from pydantic import TypeAdapter
 
 from wearlaw.arrays import Array
 from wearlaw.errors import OutputError, shown
-from wearlaw.pipeline.variables import TEXTS
+from wearlaw.units.variables import is_text
 from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_apps.sweeps.folder import CHECKED, Folder, write_dataset
 from wearlaw_apps.sweeps.points import ITEM, Block, Points, Varying
@@ -67,7 +67,7 @@ class Store(Target):
         for name in job.units:
             if name not in there:
                 shape, chunks = points.shape + job.own_shape(name), points.block_shape + job.own_shape(name)
-                dims, text = (*points.dims, *job.labels(name)), name in TEXTS
+                dims, text = (*points.dims, *job.labels(name)), is_text(name)
                 _add_array(group, name, shape, chunks, dims, job.attributes(name), text)
         if not self.resumed or RECORDS not in group:
             group.create_array(RECORDS, shape=(len(points.blocks()),), chunks=(1,), dtype=str, compressors=CHECKED)

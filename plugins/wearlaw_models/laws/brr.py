@@ -16,6 +16,13 @@ SectionPerForce = Annotated[wl.Quantity, wl.Unit("mm^3/km/N")]
 Section = Annotated[wl.Quantity, wl.Unit("mm^3/km")]
 Force = Annotated[wl.Quantity, wl.Unit("N")]
 
+WITHOUT_SPIN = wl.Variable(
+    "wear_index_without_spin",
+    unit="N",
+    meaning="Wear index without the part of the spin, ξFx + ηFy",
+    symbol="ξFx + ηFy",
+)
+
 ROUNDING = 1e-12
 """Relative difference below which two regimes count as continuous."""
 
@@ -105,12 +112,12 @@ class BRR(wl.WearLaw):
 
     @property
     def _variable(self) -> str:
-        return "wear_index" if self.spin == "included" else "wear_index_without_spin"
+        return "wear_index" if self.spin == "included" else WITHOUT_SPIN.name
 
     @property
-    def own_variables(self) -> Mapping[str, Callable[[wl.Contact], Array]]:
+    def own_variables(self) -> Mapping[wl.Variable, Callable[[wl.Contact], Array]]:
         """Tγ without the part of the spin, if that is left out."""
-        return {} if self.spin == "included" else {self._variable: _without_spin}
+        return {} if self.spin == "included" else {WITHOUT_SPIN: _without_spin}
 
     @cached_property
     def published(self) -> wl.Calibration | None:

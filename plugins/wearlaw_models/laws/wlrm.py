@@ -13,6 +13,13 @@ from wearlaw import Array
 
 Force = Annotated[wl.Quantity, wl.Unit("N")]
 
+WITHOUT_SPIN = wl.Variable(
+    "wear_index_without_spin",
+    unit="N",
+    meaning="Wear index without the part of the spin, ξFx + ηFy",
+    symbol="ξFx + ηFy",
+)
+
 
 class WLRM(wl.Law):
     """Fatigue damage by a passage against Tγ: it rises to a peak, and falls where wear removes cracks.
@@ -37,7 +44,13 @@ class WLRM(wl.Law):
         "M. Burstow, Whole life rail model application and development for RSSB: development of an RCF damage"
         " parameter, AEA Technology 2003, RSSB research project T115; the form alone, since the report was not read"
     )
-    outcome: ClassVar[wl.Outcome] = wl.Outcome("rcf_damage", unit="", of="patch", signed=True)
+    outcome: ClassVar[wl.Outcome] = wl.Outcome(
+        "rcf_damage",
+        unit="",
+        meaning="Damage by rolling contact fatigue, by one passage",
+        sign="any",
+        of="patch",
+    )
 
     threshold: Force
     """Tγ below which there is no damage [N]."""
@@ -85,13 +98,13 @@ class WLRM(wl.Law):
 
     def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
         """Return the three points."""
-        variable = "wear_index" if self.spin == "included" else "wear_index_without_spin"
+        variable = "wear_index" if self.spin == "included" else WITHOUT_SPIN.name
         return {variable: (p["threshold"], p["peak"], p["balance"])}
 
     @property
-    def own_variables(self) -> Mapping[str, Callable[[wl.Contact], Array]]:
+    def own_variables(self) -> Mapping[wl.Variable, Callable[[wl.Contact], Array]]:
         """Tγ without the part of the spin, if that is left out."""
-        return {} if self.spin == "included" else {"wear_index_without_spin": _without_spin}
+        return {} if self.spin == "included" else {WITHOUT_SPIN: _without_spin}
 
 
 def _without_spin(contact: wl.Contact) -> Array:

@@ -130,7 +130,7 @@ class Cracks(Damage):
     """The same, of an outcome that no installed law has."""
 
     name: ClassVar[str] = "cracks"
-    outcome = wl.Outcome("crack_growth", unit="", of="patch", signed=True)
+    outcome = wl.Outcome("crack_growth", unit="", of="patch", sign="any")
 
 
 CSV = """# source: made up

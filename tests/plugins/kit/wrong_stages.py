@@ -106,7 +106,7 @@ class Damage(wl.Law):
 
     name: ClassVar[str] = "damage"
     source: ClassVar[str] = "test"
-    outcome = wl.Outcome("rcf_damage", unit="", of="patch", signed=True)
+    outcome = wl.Outcome("rcf_damage", unit="", of="patch", sign="any")
     threshold: Annotated[wl.Quantity, wl.Unit("N")] = Field(default="15 N", validate_default=True)
     """Threshold of Tγ [N]."""
 

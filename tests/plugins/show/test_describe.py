@@ -145,7 +145,7 @@ def test_the_example_of_a_rig_is_a_script_that_runs(name: str, monkeypatch: pyte
 
 def test_a_rig_shows_its_conditions_with_units_and_choices() -> None:
     shown = said(wl.WheelRail)
-    assert "normal_force [kN] Normal force, N [N]." in shown
+    assert "normal_force [kN] Normal force, N [N];" in shown
     assert "friction_coefficient (must be given) Friction coefficient, μ [-]." in shown
     assert "exactly one of normal_force, max_pressure must be given" in shown
 

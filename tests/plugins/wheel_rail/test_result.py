@@ -95,7 +95,7 @@ def test_the_profile_of_the_wheel_sums_to_the_mass_it_loses(within: float) -> No
     profile = result.wear_profile("wheel", strips=101)
     assert profile.depth.attrs["units"] == "um/km"
     assert profile.depth.attrs["long_name"] == "depth per metre rolled"
-    assert profile.y.attrs["long_name"] == VARIABLES["y"].name
+    assert profile.y.attrs["long_name"] == VARIABLES["y"].long_name
     # Depth × width × circumference × density is the mass lost per metre. The profile has strips of equal width, whose
     # midpoint rule is off by O(strips^-3/2) next to the ends, where the depth goes to zero like (1 - |y|/b)^(1/2) or
     # faster: 101^-1.5 = 1e-3.

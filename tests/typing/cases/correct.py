@@ -213,7 +213,7 @@ class Fatigue(wl.Law):
 
     name: ClassVar[str] = "fatigue"
     source: ClassVar[str] = "made up"
-    outcome: ClassVar[wl.Outcome] = wl.Outcome("rcf_damage", unit="", of="patch", signed=True)
+    outcome: ClassVar[wl.Outcome] = wl.Outcome("rcf_damage", unit="", of="patch", sign="any")
 
     threshold: Annotated[wl.Quantity, wl.Unit("N")]
 
@@ -221,8 +221,8 @@ class Fatigue(wl.Law):
         return 1e-6 * (contact.wear_index - p["threshold"])
 
     @property
-    def own_variables(self) -> Mapping[str, Callable[[wl.Contact], wl.Array]]:
-        return {"pv": lambda contact: contact.pressure * contact.slip_speed}
+    def own_variables(self) -> Mapping[wl.Variable, Callable[[wl.Contact], wl.Array]]:
+        return {wl.Variable("pv", unit="W/mm^2"): lambda contact: contact.pressure * contact.slip_speed}
 
 
 class Flash(Fatigue):

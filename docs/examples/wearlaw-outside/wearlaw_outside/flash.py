@@ -16,7 +16,14 @@ class Flash(wl.Law):
 
     name: ClassVar[str] = "flash"
     source: ClassVar[str] = "H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., Oxford 1959, 2.9"
-    outcome: ClassVar[wl.Outcome] = wl.Outcome("flash_temperature", unit="K", of="patch")
+    outcome: ClassVar[wl.Outcome] = wl.Outcome(
+        "flash_temperature",
+        unit="K",
+        of="patch",
+        long_name="flash temperature Θ",
+        meaning="Rise of the surface temperature at the trailing edge",
+        symbol="Θ",
+    )
     example_material: ClassVar[wl.Material | None] = MADE_UP_STEEL
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:

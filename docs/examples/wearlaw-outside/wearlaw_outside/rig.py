@@ -1,5 +1,6 @@
 """A weight on two rollers."""
 
+import dataclasses
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, TypedDict, Unpack
 
@@ -19,6 +20,23 @@ class WeightedConditions(TypedDict):
     """Friction coefficient, μ [-]."""
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class WeightedProblem(wl.Problem):
+    """The contact of the rollers, with the load on the bearings of the lower one."""
+
+    bearing_load: wl.Array
+
+    results: ClassVar[tuple[wl.Variable, ...]] = (
+        wl.Variable(
+            "bearing_load",
+            unit="N",
+            long_name="bearing load B",
+            meaning="Load of each of the two bearings of the lower roller",
+            symbol="B",
+        ),
+    )
+
+
 class Weighted(wl.Rig):
     """Two rollers of one material, the upper one pressed down by a weight."""
 
@@ -34,11 +52,13 @@ class Weighted(wl.Rig):
     def problem(self, **conditions: Unpack[WeightedConditions]) -> wl.Problem:
         """Return the contact problem of the conditions; arrays broadcast against each other."""
         given = self.in_si(conditions)
-        return self.rollers.problem(
-            normal_force=wl.Q(given["mass"] * GRAVITY, "N"),
+        weight = given["mass"] * GRAVITY
+        problem = self.rollers.problem(
+            normal_force=wl.Q(weight, "N"),
             creepage=wl.Q(given["creepage"], ""),
             friction_coefficient=given["friction_coefficient"],
         )
+        return WeightedProblem.of(problem, bearing_load=0.5 * weight)
 
     @property
     def bodies(self) -> Mapping[str, wl.Body]:

@@ -24,7 +24,7 @@ from wearlaw.models.model import Blame, Model
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.quantities import Q, from_si
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import UNITS, VARIABLES, name_of
+from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_apps.fits.pairs import Pair
 from wearlaw_apps.output.labels import label as label_of
 from wearlaw_apps.output.labels import labelled, readable
@@ -139,17 +139,16 @@ def _compact(quantity: Any) -> str:
 
 
 def _borders(law: Law) -> str:
-    """Return the borders of the regimes of a law in words; a variable that only the law knows is in SI units."""
+    """Return the borders of the regimes of a law in words."""
     with Blame(law):
         borders = law.breakpoints(law.numbers)
     if borders is None:
         return "not known"
     shown = []
     for name, values in borders.items():
-        unit = UNITS.get(name, "")
-        numbers = ", ".join(f"{from_si(value, unit).magnitude:.4g}" if unit else f"{value:.4g}" for value in values)
-        variable = VARIABLES.get(name)
-        shown.append(f"{(variable and variable.symbol) or name_of(name)} {numbers} {readable(unit)}".rstrip())
+        variable = law.variables[name] if name in law.variables else VARIABLES[name]
+        numbers = ", ".join(f"{from_si(value, variable.unit).magnitude:.4g}" for value in values)
+        shown.append(f"{variable.symbol or variable.long_name} {numbers} {readable(variable.unit)}".rstrip())
     return "; ".join(shown) or "none"
 
 

@@ -77,14 +77,21 @@ class WheelsetConditions(TypedDict, total=False):
     """Distance rolled since the bodies were new [m], for laws of running-in."""
 
 
-RESULTS: Mapping[str, str] = {
-    "lateral_displacement": "mm",
-    "guiding_force": "kN",
-    "wheel_load": "kN",
-    "derailment_quotient": "",
-    "status": "",
-}
-"""Units of the results for a wheelset and its wheels."""
+RESULTS = (
+    wl.Variable(
+        "guiding_force",
+        "kN",
+        "guiding force Y",
+        "Lateral force of a wheel on its rail, positive to the right",
+        "Y",
+        "any",
+    ),
+    wl.Variable("wheel_load", "kN", "wheel load Q", "Vertical force of a wheel on its rail", "Q"),
+    wl.Variable("derailment_quotient", "", "derailment quotient Y/Q", "Guiding force over wheel load", "Y/Q", "any"),
+    wl.Variable("lateral_displacement", "mm", meaning="Lateral displacement of the wheelset in the track", sign="any"),
+    wl.Variable("status", "", meaning='Why a position of a wheelset has no result, or "balanced"', text=True),
+)
+"""The results for a wheelset and its wheels."""
 
 FLANGE_DEPTH = 10e-3
 """Depth below the taping line at which the thickness of a flange is measured (EN 15313) [m]."""
@@ -164,10 +171,7 @@ class WheelsetProblem(wl.Problem):
     balance: Balance
     shape: tuple[int, ...]
 
-    @property
-    def results(self) -> Mapping[str, str]:
-        """Units of displacement and forces, and the status."""
-        return RESULTS
+    results: ClassVar[tuple[wl.Variable, ...]] = RESULTS
 
     @property
     def climbs(self) -> NDArray[np.bool_]:
@@ -179,7 +183,7 @@ class WheelsetProblem(wl.Problem):
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
         mapped = super(WheelsetProblem, self).mapped(function, of_strips)  # a class with slots has no plain super()
-        names = ("roll", "penetration", "imbalance", *RESULTS)
+        names = ("roll", "penetration", "imbalance")
         return mapped.replaced(**{name: function(getattr(self, name)) for name in names})
 
 
@@ -604,7 +608,7 @@ class Wheelset(wl.Rig):
                 profile_direction=side,
             ),
         }
-        fields = {name: getattr(problem, name) for name in wl.Problem.__dataclass_fields__}
+        fields: dict[str, Any] = {}
         if distance is not None:
             fields["rolled_distance"] = np.broadcast_to(distance[:, None, None], exists.shape).reshape(
                 *shape, 2, PATCHES
@@ -620,7 +624,7 @@ class Wheelset(wl.Rig):
             "derailment_quotient": wide((balance.lateral / balance.vertical)[candidates.point, candidates.side]),
             "status": np.broadcast_to(status[:, None, None], exists.shape).reshape(*shape, 2, PATCHES),
         }
-        return WheelsetProblem(**fields, balance=balance, shape=shape)
+        return WheelsetProblem.of(problem, **fields, balance=balance, shape=shape)
 
     def _check_contact(self, displacement: Array, touching: Touching) -> None:
         """Raise an error where a wheel does not stand on its rail."""
