@@ -314,9 +314,6 @@ def case_schema() -> dict[str, Any]:
         *({**table, "required": ["model"]} for table in _tables(sets, definitions)),
     ]
     schema["anyOf"] = [{"required": [name], "properties": {name: {"minItems": 1}}} for name in ("wear_laws", "laws")]
-    outcomes = [law.outcome.name for law in plugins["law"].items().values()]
-    for window, field in (("FigureSpec", "y"), ("FigureSpec", "map"), ("Window", "y")):
-        _add_outcomes(definitions[window]["properties"][field], outcomes)
     properties["sections"]["items"] = {"enum": list(plugins["section"].items())}
     rigs = plugins["rig"].items()
     bare = [name for name, rig in rigs.items() if not any(option.is_required() for option in rig.model_fields.values())]
@@ -331,16 +328,6 @@ def case_schema() -> dict[str, Any]:
             properties["rig"]["anyOf"] += tables
             axis["enum"] = list(dict.fromkeys([*axis["enum"], *conditions]))
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
-
-
-def _add_outcomes(schema: Any, outcomes: list[str]) -> None:
-    """Add names of outcomes to the variables that a schema accepts."""
-    for inner in schema.get("anyOf", []):
-        _add_outcomes(inner, outcomes)
-    if "items" in schema:
-        _add_outcomes(schema["items"], outcomes)
-    if "enum" in schema:
-        schema["enum"] = list(dict.fromkeys([*schema["enum"], *outcomes]))
 
 
 @contextmanager
