@@ -10,7 +10,8 @@ import pytest
 import wearlaw as wl
 from tests.cases import InstallModel
 from tests.environments import ROOT
-from wearlaw_apps.studies.case import Case, case_schema
+from wearlaw_apps.studies import Case
+from wearlaw_apps.studies.case import case_schema  # private: the schema without a process
 from wearlaw_apps.studies.report.page import report  # private: the page without a process and a folder
 from wearlaw_apps.studies.written import table  # private: the table that it writes
 
