@@ -12,6 +12,7 @@ from tests.plugins.contact_files.files import FILES
 from tests.plugins.full_theory import spheres
 from wearlaw import Array
 from wearlaw_kit.reduced import random_ellipses  # private: batches of patches
+from wearlaw_models.contact_models.half_space.step import Step  # private: the steps are counted
 
 CARTER = 0.3 * 972253.0
 """μN [N] of the cylinder that CONTACT solved."""
@@ -226,6 +227,23 @@ def test_friction_that_falls_is_that_of_the_slip_at_each_element() -> None:
     slips = there & (speed > 0.0)
     assert found.traction[slips] == pytest.approx(found.traction_bound[slips], rel=1e-12)
     assert (found.tangential_force < wl.contact_model("half_space", cells=12).solve(problem).tangential_force).all()
+
+
+def test_friction_that_falls_costs_a_few_more_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken, steps = Step.solved, []
+
+    def counted(step: Step, slip: Array, fixed: Array, share: float) -> Array:
+        steps.append(share)
+        return taken(step, slip, fixed, share)
+
+    monkeypatch.setattr(Step, "solved", counted)
+    counts = []
+    for options in ({}, {"limit_ratio": 0.6, "decay": "2 s/m"}):
+        steps.clear()
+        wl.contact_model("half_space", cells=40, **options).solve(line())
+        counts.append(len(steps))
+    # They are twice as many. Without the slope of the friction, the bound follows the slip in four times as many.
+    assert counts[1] < 3 * counts[0]
 
 
 def test_friction_that_falls_in_full_slip_is_that_of_the_creepage() -> None:
