@@ -217,10 +217,10 @@ def checked_job(
     InputError
         If there is no such output, or it is a condition.
     """
-    one, laws, conditions = first.flatten()[:1], pipeline.laws, {*points.coordinates(), *points.fixed}
-    if one.geometry == "line":
-        check_traction(pipeline.contact_model, one)
-    prediction = unsolved(one, pipeline.staged_model, laws)
+    point, laws, conditions = first.flatten()[:1], pipeline.laws, {*points.coordinates(), *points.fixed}
+    if point.geometry == "line":
+        check_traction(pipeline.contact_model, point)
+    prediction = unsolved(point, pipeline.staged_model, laws)
     names, notes = [] if outputs is None else names_in(outputs, "outputs"), []
     if outputs is None:
         names = default_variables(prediction, conditions, bool(first.dims))
@@ -271,20 +271,20 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
     def along(dim: str, values: slice) -> Problem:
         line = points.part(values if other == dim else slice(0, 1) for other in points.dims)
         with caught_warnings():  # the blocks record them
-            return posed(line, lambda given: pipeline.rig.checked_problem({**not_given, **given}))
+            return posed(line, lambda arrays: pipeline.rig.checked_problem({**not_given, **arrays}))
 
     first = along(points.dims[0], slice(0, SAMPLE))
     slipperiest, there = first, first if first.size or first.unloaded is not None else None
-    known = points.sizes[points.dims[0]] <= SAMPLE
-    for dim in points.dims[1 if known else 0 :]:
+    whole = points.sizes[points.dims[0]] <= SAMPLE
+    for dim in points.dims[1 if whole else 0 :]:
         size = points.sizes[dim]
         every = max(size // SAMPLE, 1) if first.dims else 1
         step = size if points.file is None else every * BLOCK  # a table of any length must not need more memory
         for start in range(0, size, step):
-            one = along(dim, slice(start, start + step, every))
-            slipperiest = min(slipperiest, one, key=lambda some: np.nanmin(some.friction_coefficient, initial=np.inf))
-            if there is None and one.size:
-                there = one
+            sample = along(dim, slice(start, start + step, every))
+            slipperiest = min(slipperiest, sample, key=lambda p: np.nanmin(p.friction_coefficient, initial=np.inf))
+            if there is None and sample.size:
+                there = sample
     pipeline.warn_of_problem(first)
     warn_of_unlike_materials(pipeline.contact_model, slipperiest)
     if there is None:
