@@ -255,6 +255,8 @@ def _declared(model: type[Model], default: Model | None) -> Iterator[str]:
         of = "mean over the area of the patch" if outcome.of == "area mean" else "one value for the whole patch"
         unit = symbol(Q(1.0, outcome.unit).units, "~P") or "-"
         yield f"predicts: {outcome.name} [{unit}], {of}{', may be negative' if outcome.sign == 'any' else ''}"
+        if outcome.meaning:
+            yield f"  {outcome.meaning}{f', {outcome.symbol}' if outcome.symbol else ''}"
     if isinstance(default, Law):
         yield from _of_law(default)
     elif isinstance(default, ContactModel):

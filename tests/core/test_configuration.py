@@ -6,7 +6,7 @@ import copy
 import inspect
 import pickle
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import pytest
@@ -85,6 +85,24 @@ def test_a_field_without_its_unit_says_what_to_write(record: type[Any], said: st
     with pytest.raises(wl.WearlawError) as caught:
         use(record)
     assert str(caught.value).startswith(said)
+
+
+@pytest.mark.parametrize(("default", "due"), [(5.3e-9, '"5.3e-09 mm"'), ("5 um", '"5 um"'), (Q(5.0, "um"), '"5.0 µm"')])
+def test_a_field_without_its_type_says_what_to_write(default: object, due: str) -> None:
+    said = rf'^Film\.depth: has no type\. .* write depth: Annotated\[wl\.Quantity, wl\.Unit\("mm"\)\] = {due}'
+    with pytest.raises(wl.ModelError, match=said):
+        type("Film", (Configuration,), {"depth": default, "__module__": __name__})
+
+
+def test_a_model_without_its_name_says_what_to_write() -> None:
+    class Mine(wl.WearLaw):
+        source: ClassVar[str] = "made up"
+
+        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+            return contact.wear_index_density
+
+    with pytest.raises(wl.ModelError, match=r'Mine: has no name; write name: ClassVar\[str\] = "mine" in the class'):
+        Mine()
 
 
 def test_all_wrong_fields_are_named_at_once_with_their_paths() -> None:

@@ -170,11 +170,11 @@ class Outside(wl.Rig):
 
 
 def test_fields_and_conditions_from_outside_have_the_same_mechanism() -> None:
-    (fields,) = said(lambda: Outside(arm="100 m", share=40.0))
+    (fields,) = said(lambda: Outside(arm=Q(100.0, "m"), share=40.0))
     assert fields == (
         "Outside: arm: is 100 m, usually 50 to 500 mm; did you mean 100 mm?\nOutside: share: is 40, usually 0 to 1"
     )
-    predict = Outside(arm="100 mm") | EXACT
+    predict = Outside(arm=Q(100.0, "mm")) | EXACT
     (conditions,) = said(lambda: predict(mass="50000 kg", humidity=Q(60, ""), friction_coefficient=0.3))
     assert conditions.splitlines()[:2] == [
         "mass: is 50000 kg, usually 1 to 500 kg; did you mean 50 kg?",

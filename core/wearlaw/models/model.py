@@ -57,6 +57,14 @@ class Model(Configuration, ABC):
         cls = type(self)
         return f"class {cls.__name__}{cls._provided_by(cls)}"
 
+    if not TYPE_CHECKING:  # checkers keep the signature that pydantic derives from the fields
+
+        def __init__(self, /, **fields: object) -> None:
+            if not hasattr(type(self), "name"):
+                cls = type(self).__name__
+                raise ModelError(f'{cls}: has no name; write name: ClassVar[str] = "{cls.lower()}" in the class')
+            super().__init__(**fields)
+
     @classmethod
     def subject(cls) -> str:
         """Return the name of this model in messages."""
