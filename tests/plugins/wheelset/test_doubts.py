@@ -10,7 +10,7 @@ import pytest
 
 import wearlaw as wl
 from tests.plugins.wheelset.test_input import pair
-from tests.plugins.wheelset.wheelsets import through
+from tests.plugins.wheelset.wheelsets import through, wheelset
 from wearlaw import Array, Q
 
 WHEEL, RAIL = wl.Profile.s1002(), wl.Profile.uic60()
@@ -250,3 +250,23 @@ def test_narrow_heads_are_rails_too() -> None:
     y, z = sampled(RAIL)
     gauge_side = y < -14e-3
     assert through(y[gauge_side], z[gauge_side], "rail").kind == "rail"  # higher than wide
+
+
+@pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
+@pytest.mark.parametrize("seed", range(12))
+def test_plausible_wheelsets_get_no_word(seed: int) -> None:
+    """From trams to freight; an `UnusualWarning` is an error here."""
+    random = np.random.default_rng(seed)
+    axle = wheelset(
+        rail=wl.Profile.named(str(random.choice(["rail_60e1", "rail_54e1", "uic60"]))),
+        rail_cant=str(random.choice(["1:40", "1:20"])),
+        nominal_radius=Q(random.uniform(300.0, 625.0), "mm"),
+        rolling_speed=Q(random.uniform(1.0, 90.0), "m/s"),
+    )
+    predict = axle | wl.contact_model("strip_theory") | wl.wear_law(str(random.choice(["usfd", "kth"])))
+    predict(
+        lateral_displacement=Q(random.uniform(-6.0, 6.0), "mm"),
+        yaw=Q(random.uniform(-5.0, 8.0), "mrad"),
+        vertical_load=Q(random.uniform(15.0, 125.0), "kN"),
+        friction_coefficient=random.uniform(0.05, 0.6),
+    )
