@@ -122,7 +122,7 @@ def test_a_stage_is_described() -> None:
 
 def test_a_law_of_another_outcome_is_described_with_unit_and_sign(monkeypatch: pytest.MonkeyPatch) -> None:
     cases.installer(monkeypatch)(Heat)
-    assert "declares: predicts: heat_flux [W/mm²], mean over the area of the patch scale:" in said(Heat)
+    assert "declares: predicts: heat_flux [W/mm²], mean over the area of the patch Heat flux scale:" in said(Heat)
     wlrm = said(loader.discovered()["law"].items()["wlrm"])
     assert wlrm.startswith("wlrm: a law of wearlaw")
     assert "body = None The body that the law is for, by its name in the rig" in wlrm
