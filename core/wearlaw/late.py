@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from wearlaw_apps.fits.wear_tests import WearTests
     from wearlaw_apps.life.over_distance import wear_out
     from wearlaw_apps.output.curves import Curve, FigureData, Panel, PlotAxis
+    from wearlaw_apps.output.datasets import to_dataframe
     from wearlaw_apps.studies.case import load_case
     from wearlaw_apps.studies.sections import CheckedClaim, Section, Verdict
     from wearlaw_apps.studies.study import Study, run
@@ -67,6 +68,7 @@ __all__ = [
     "read_tests",
     "run",
     "sweep",
+    "to_dataframe",
     "uncertainty",
     "uniform",
     "wear_coefficient",
@@ -87,6 +89,7 @@ PUBLIC = {
     "wearlaw_apps.fits.wear_tests": ("WearTests",),
     "wearlaw_apps.life.over_distance": ("wear_out",),
     "wearlaw_apps.output.curves": ("Curve", "FigureData", "Panel", "PlotAxis"),
+    "wearlaw_apps.output.datasets": ("to_dataframe",),
     "wearlaw_apps.studies.case": ("load_case",),
     "wearlaw_apps.studies.sections": ("CheckedClaim", "Section", "Verdict"),
     "wearlaw_apps.studies.study": ("Study", "run"),
@@ -103,7 +106,7 @@ PUBLIC = {
 """Public names of wearlaw that plugins hold, by module."""
 
 METHODS = {
-    "wearlaw_apps.output.datasets": ("profile", "to_dataframe", "to_dataset"),
+    "wearlaw_apps.output.datasets": ("profile", "table", "to_dataset"),
     "wearlaw_apps.output.notebook": ("html", "of_prediction"),
     "wearlaw_apps.output.pictures": ("draw",),
     "wearlaw_apps.output.wear_profile": ("wear_profile",),

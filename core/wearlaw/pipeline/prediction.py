@@ -270,7 +270,7 @@ class Prediction:
             The conditions, the labels of the patches and the variables. The heads hold the units, as in
             "wear_rate [ug/m/mm^2]"; `wearlaw.sweep` and `wearlaw.read_tests` read such heads.
         """
-        made: pandas.DataFrame = method("to_dataframe", "a table")(self, self._solution, names)
+        made: pandas.DataFrame = method("table", "a table")(self, self._solution, names)
         return made
 
     def plot(self, name: str | None = None, *, x: str | None = None, ax: Axes | None = None) -> Axes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -79,20 +79,44 @@ def _coordinate(name: str, condition: Known, dims: Sequence[str]) -> tuple[list[
     return [dims[axis] for axis in kept], values, {"units": condition.unit or "", "long_name": name_of(name)}
 
 
-def to_dataframe(prediction: Prediction, solution: Solution, names: Sequence[str] | None) -> pandas.DataFrame:
+def table(prediction: Prediction, solution: Solution, names: Sequence[str] | None) -> pandas.DataFrame:
     """Return a prediction as a table; see `Prediction.to_dataframe`."""
     conditions = Conditions.of(solution)
     data = dataset(prediction, conditions, names)
-    units = {str(name): variable.attrs.get("units", "") for name, variable in data.variables.items()}
     problem = prediction.problem
-    (dims, *_) = (list(variable.dims) for variable in data.data_vars.values())
-    rows = data.to_dataframe(dim_order=dims) if dims else data.expand_dims(POINT).to_dataframe()
-    if problem.resolved is not None:
-        rows = rows[problem.resolved.reshape(-1)]
-    order = [*conditions.numbers, *problem.dims, *data.data_vars]
-    columns = [name for name in dict.fromkeys(order) if name in data.variables]
-    table = rows.reset_index()[columns]
-    return table.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit})
+    rows = _rows(data, [*conditions.numbers, *problem.dims, *data.data_vars])
+    return rows if problem.resolved is None else rows[problem.resolved.reshape(-1)].reset_index(drop=True)
+
+
+def to_dataframe(data: xarray.Dataset, /) -> pandas.DataFrame:
+    """Return a dataset of wearlaw, such as the results of a sweep, as a table with units in its heads.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        The units are in `attrs["units"]` of its variables.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each combination of the dimensions, and a column for each coordinate and variable. The heads are such
+        as "wear_rate [ug/m/mm^2]"; `wearlaw.sweep` and `wearlaw.read_tests` read them.
+    """
+    return _rows(data, [*data.coords, *data.data_vars])
+
+
+def _rows(data: xarray.Dataset, order: Iterable[Hashable]) -> pandas.DataFrame:
+    """Return a row for each combination of the dimensions of a dataset, with columns in an order."""
+    dims = max((variable.dims for variable in data.data_vars.values()), key=len, default=())
+    rows = (
+        data.to_dataframe(dim_order=dims if set(dims) == set(data.sizes) else None)
+        if data.sizes
+        else data.expand_dims(POINT).to_dataframe()
+    )
+    names = [str(name) for name in dict.fromkeys(order) if name in data.variables]
+    units = {name: data[name].attrs.get("units") for name in names}
+    heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit}
+    return rows.reset_index()[names].rename(columns=heads)
 
 
 def profile(solution: Solution) -> xarray.Dataset:

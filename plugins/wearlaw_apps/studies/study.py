@@ -35,7 +35,7 @@ from wearlaw.pipeline.composition import warn_of_unlike_materials
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.variables import ERROR, MASS, OF_CONTACT, OF_PATCH, OF_POINT, offered, outcome_units
-from wearlaw.units.variables import UNITS
+from wearlaw.units.variables import UNITS, name_of
 from wearlaw.version import __version__
 from wearlaw_apps.fits.pairs import Pair
 from wearlaw_apps.output.notes import Notes, caught_warnings
@@ -130,8 +130,11 @@ def run(
         warnings.warn(kept(evaluator.kept, evaluator.blocks, store), ResumeWarning, stacklevel=3)
     for text in of_profiles.texts:
         notes.add(text)
+    words = {name: outcome.long_name for name, outcome in case.outcomes.items()}
     for dataset in (*sweeps.values(), *profiles.values()):
         dataset.attrs.update(title=case.title, provenance=json.dumps(provenance(case)))
+        for name, variable in dataset.variables.items():
+            variable.attrs.setdefault("long_name", words.get(str(name)) or name_of(str(name)))
     study = Study(case, tuple(pairs), sweeps, profiles, tuple(notes.texts))
     sections = tuple(_section(name, study, notes) for name in case.sections)
     return replace(study, notes=tuple(notes.texts), sections=sections)

@@ -21,6 +21,7 @@ from wearlaw_apps.studies.report.tables import tables
 from wearlaw_apps.studies.results import patch_axes
 from wearlaw_apps.studies.study import Study
 from wearlaw_apps.sweeps.points import ITEM
+from wearlaw_apps.sweeps.results import CONVENTIONS
 from wearlaw_apps.sweeps.room import check_disk, check_memory
 
 RESULTS = "results.nc"
@@ -80,7 +81,8 @@ def write(
     """
     case_files = written(study.case)
     on_stage("writing results")
-    groups = {f"sweeps/{name}": dataset for name, dataset in study.sweeps.items()}
+    groups = {"/": xarray.Dataset(attrs={**CONVENTIONS, "title": study.case.title})}
+    groups |= {f"sweeps/{name}": dataset for name, dataset in study.sweeps.items()}
     groups |= {f"profiles/{name}": dataset for name, dataset in study.profiles.items() if dataset}
     xarray.DataTree.from_dict(groups).to_netcdf(folder / RESULTS, engine="h5netcdf")
     if csv:

@@ -12,7 +12,7 @@ import numpy as np
 import xarray
 
 from wearlaw.arrays import Array
-from wearlaw.units.variables import VARIABLES, is_text
+from wearlaw.units.variables import VARIABLES, is_text, name_of
 from wearlaw_apps.output.conditions import Known
 from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_apps.sweeps.points import ITEM, Block, Points
@@ -21,6 +21,10 @@ from wearlaw_apps.sweeps.room import check_memory
 
 COMPLETE, INCOMPLETE = "complete", "incomplete"
 """Values of the attribute "status" of results."""
+
+
+CONVENTIONS = {"Conventions": "CF-1.8"}
+"""What files follow in names of attributes: the first version of the conventions that knows groups."""
 
 
 def bytes_of(job: Job, points: Points) -> int:
@@ -93,7 +97,12 @@ class Memory(Target):
 
 def attributes(status: str, provenance: Provenance, notes: Sequence[str] = ()) -> dict[str, str]:
     """Return the attributes of results: status, provenance, and remarks for the reader."""
-    return {"status": status, "provenance": json.dumps(provenance), "notes": "\n".join(notes)}
+    return {**CONVENTIONS, "status": status, "provenance": json.dumps(provenance), "notes": "\n".join(notes)}
+
+
+def described(name: str, unit: str | None) -> dict[str, str]:
+    """Return the attributes of a coordinate: its unit and its long name."""
+    return {"units": unit or "", "long_name": name_of(name)}
 
 
 def dataset(points: Points, variables: Mapping[str, Array], job: Job, attrs: Mapping[str, str]) -> xarray.Dataset:
@@ -101,10 +110,10 @@ def dataset(points: Points, variables: Mapping[str, Array], job: Job, attrs: Map
     coordinates: dict[str, Any] = {**points.rows, **labels_of(job)}
     for name, condition in points.coordinates().items():
         if not condition.on_disk:
-            coordinates[name] = (condition.dim, condition.values, {"units": condition.unit or ""})
+            coordinates[name] = (condition.dim, condition.values, described(name, condition.unit))
     fixed = {name: Known.of(value) for name, value in points.fixed.items()}
     coordinates |= {
-        name: ((), float(condition.values), {"units": condition.unit or ""})
+        name: ((), float(condition.values), described(name, condition.unit))
         for name, condition in fixed.items()
         if condition
     }
@@ -121,6 +130,6 @@ def labels_of(job: Job) -> dict[str, Any]:
     every = [axis for output in job.units for axis in job.labels(output).items()]
     for name, labels in dict(every).items():
         numbers = np.array(labels) if all(isinstance(label, int | float) for label in labels) else None
-        attrs = {"units": VARIABLES[name].unit} if name in VARIABLES else {}
+        attrs = described(name, VARIABLES[name].unit) if name in VARIABLES else {"long_name": name_of(name)}
         coordinates[name] = (name, np.array(labels, dtype=object) if numbers is None else numbers, attrs)
     return coordinates

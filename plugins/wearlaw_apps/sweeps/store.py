@@ -19,7 +19,7 @@ from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs
 from wearlaw_apps.sweeps.folder import CHECKED, Folder, write_dataset
 from wearlaw_apps.sweeps.points import ITEM, Block, Points, Varying
 from wearlaw_apps.sweeps.provenance import provenance_of
-from wearlaw_apps.sweeps.results import COMPLETE, INCOMPLETE, Target, attributes, bytes_of, dataset
+from wearlaw_apps.sweeps.results import COMPLETE, INCOMPLETE, Target, attributes, bytes_of, dataset, described
 from wearlaw_apps.sweeps.workers import RECORDS
 
 
@@ -84,7 +84,7 @@ class Store(Target):
         """Write a coordinate that is too large for memory, piece by piece."""
         step = dict(zip(self.points.dims, self.points.block_shape, strict=True))[column.dim]
         group = zarr.open_group(self.store, mode="r+", zarr_format=3)
-        array = _add_array(group, name, column.values.shape, (step,), (column.dim,), {"units": column.unit or ""})
+        array = _add_array(group, name, column.values.shape, (step,), (column.dim,), described(name, column.unit))
         for start in range(0, column.values.size, step):
             array[start : start + step] = column.values[start : start + step]
         if name != column.dim:  # as xarray tells coordinates from variables

@@ -127,13 +127,17 @@ def test_a_table_that_excel_cannot_read_is_left_out_unless_asked_for(
 def test_the_netcdf_file_holds_every_dataset_whole_in_a_group(study: wl.Study, results: Path) -> None:
     with xarray.open_datatree(results / "results.nc", engine="h5netcdf") as opened:
         groups = {node.path: node.to_dataset(inherit=False).load() for node in opened.leaves}
+        assert opened.attrs == {"Conventions": "CF-1.8", "title": study.case.title}
     datasets = {f"/sweeps/{name}": sweep for name, sweep in study.sweeps.items()}
     datasets |= {f"/profiles/{name}": profile for name, profile in study.profiles.items()}
     assert groups.keys() == datasets.keys()
     for path, dataset in datasets.items():
         xarray.testing.assert_identical(groups[path], dataset)
         assert Case(**json.loads(groups[path].attrs["provenance"])["case"]) == study.case
-        assert all("units" in values.attrs for values in groups[path].data_vars.values())
+        for values in groups[path].variables.values():
+            assert values.attrs["long_name"]
+            assert ("units" in values.attrs) == (values.dtype == np.float64)
+        assert "wear_rate" not in groups[path] or groups[path].wear_rate.attrs["long_name"] == "wear rate"
 
 
 @pytest.mark.validates(

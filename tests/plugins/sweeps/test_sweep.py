@@ -45,8 +45,25 @@ def test_results_are_labelled_as_the_conditions_were_given_with_units() -> None:
         "wear_rate": "ug/m/mm^2",
         "tangential_force": "N",
     }
-    assert ds.attrs["status"] == "complete"
+    words = {name: values.attrs["long_name"] for name, values in ds.variables.items()}
+    assert words["tangential_force"] == "tangential force T"
+    assert all(words[name].startswith(str(name).replace("_", " ")) for name in units)
+    assert (ds.attrs["status"], ds.attrs["Conventions"]) == ("complete", "CF-1.8")
     assert json.loads(ds.attrs["provenance"])["plugins"]["wear law usfd"].startswith("wearlaw ")
+
+
+def test_results_become_a_table_with_units_in_its_heads_which_a_sweep_reads() -> None:
+    predict = predictor()
+    ds = wl.sweep(predict, creepage=Q([1, 2], "%"), normal_force=Q([7, 8], "kN"), friction_coefficient=0.4)
+    table = wl.to_dataframe(ds[["wear_rate", "traction_coefficient"]])
+    assert list(table) == [
+        "creepage [%]", "normal_force [kN]", "friction_coefficient", "wear_rate [ug/m/mm^2]", "traction_coefficient"
+    ]  # fmt: skip
+    assert table["wear_rate [ug/m/mm^2]"].tolist() == ds.wear_rate.values.ravel().tolist()
+    again = wl.sweep(predict, table[["creepage [%]", "normal_force [kN]", "friction_coefficient"]])
+    assert again.wear_rate.values.tolist() == table["wear_rate [ug/m/mm^2]"].tolist()
+    (row,) = wl.to_dataframe(ds.isel(creepage=0, normal_force=1)).to_dict("records")
+    assert (row["creepage [%]"], row["normal_force [kN]"]) == (1.0, 8.0)
 
 
 HEADS = {
