@@ -502,12 +502,14 @@ class Contact:
     @property
     def forces(self) -> CreepForces:
         """The forces and the moment transmitted by the contact."""
-        return CreepForces(longitudinal=self.force_x, lateral=self.force_y, spin_moment=self.moment_z)
+        strips = self.problem and self.problem.strips
+        power = self.wear_index if strips and strips.has_creepages else None
+        return CreepForces(longitudinal=self.force_x, lateral=self.force_y, spin_moment=self.moment_z, power=power)
 
     def over_strip(self, value: Array) -> Array:
         """Return ∫ value dx along each strip of an ellipse, of shape (batch, strips)."""
         integral: Array = np.einsum("...ij,...ij->...j", value, self.area)
-        return integral / self.strip_width
+        return integral / np.where(integral == 0.0, 1.0, self.strip_width)  # zero on strips that fill up a batch
 
     def scaled_to_wear_index(self) -> Self:
         """Return the contact with slips scaled so that the nodes dissipate Tγ in total.
@@ -595,8 +597,9 @@ def _given_pressure(problem: Problem, x: Array, y: Array) -> Array:
     if problem.strips is None:
         a, b, p0 = (array[..., None, None] for array in (problem.a, problem.b, problem.max_pressure))
         return hertz_ellipse.pressure(x, y, a, b, p0)
-    share = x / problem.strips.half_length[..., None, :]
-    p0 = problem.strips.max_pressure[..., None, :]
+    strips = problem.strips
+    p0 = strips.max_pressure[..., None, :]
+    share = (x - strips.x[..., None, :]) / np.where(strips.half_length > 0.0, strips.half_length, 1.0)[..., None, :]
     pressure: Array = p0 * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
     return pressure
 

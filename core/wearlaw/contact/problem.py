@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
 
 import numpy as np
 
@@ -99,12 +99,17 @@ class Body:
         return Body(self.material, **values)
 
 
+_ZERO: Any = None
+"""Default of an array that becomes zero."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Strips:
     """The strips of a patch that is not an ellipse, as SI arrays of shape (batch, strips).
 
-    A strip lies along the rolling direction, with its middle at x = 0. Its pressure is p0 √(1 - (x/a)²), with p0 and a
-    of the strip.
+    A strip lies along the rolling direction. At the distance r from its middle its pressure is p0 √(1 - (r/a)²), with
+    p0 and a of the strip. Strips without width and pressure fill up patches with fewer strips than others of the batch;
+    they add nothing.
 
     Attributes
     ----------
@@ -113,19 +118,38 @@ class Strips:
     width : ndarray
         Width that it represents [m].
     half_length : ndarray
-        Half its length, a [m].
+        Half its length, a [m]; zero only where the width is zero.
     max_pressure : ndarray
         Its maximum pressure, p0 [Pa].
+    x : ndarray
+        Position of its middle along the rolling direction [m]; by default zero.
+    longitudinal_creepage, lateral_creepage, spin : ndarray or None
+        ξ [-], η [-] and φ [1/m] of the bodies in its middle, if radius or contact angle vary over the patch. Their
+        means, weighted with the normal force, are those of the problem. None if the bodies slip as in the problem, by
+        ξ - φy, η - φx and φ.
     """
 
     y: Array
     width: Array
     half_length: Array
     max_pressure: Array
+    x: Array = _ZERO
+    longitudinal_creepage: Array | None = None
+    lateral_creepage: Array | None = None
+    spin: Array | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
+        x: Any = self.x
+        if x is None:
+            object.__setattr__(self, "x", np.broadcast_to(0.0, self.y.shape))
         freeze(self, self.__slots__)
+
+    @property
+    def has_creepages(self) -> bool:
+        """Whether the strips have creepages of their own."""
+        creepages = self.longitudinal_creepage, self.lateral_creepage, self.spin
+        return any(creepage is not None for creepage in creepages)
 
     @property
     def area(self) -> Array:
@@ -143,7 +167,7 @@ class Strips:
         `of_strips` is the same function for arrays with an axis of strips after the batch, if there is one. It is much
         faster.
         """
-        arrays = {name: getattr(self, name) for name in self.__slots__}
+        arrays = {name: array for name in self.__slots__ if (array := getattr(self, name)) is not None}
         if of_strips is not None:
             return type(self)(**{name: of_strips(array) for name, array in arrays.items()})
         by_strip = {name: [function(strip) for strip in np.moveaxis(array, -1, 0)] for name, array in arrays.items()}
@@ -162,11 +186,15 @@ class CreepForces:
         Lateral force [N], with the sign of the lateral creepage and of the spin.
     spin_moment : ndarray
         Spin moment, Mz [N m], -∫ (x qy + y qx) dA, with the sign of the spin.
+    power : ndarray or None
+        Energy dissipated per metre rolled [N], Σ ξFx + ηFy + φMz over strips with creepages of their own; None if it
+        follows from the creepages of the problem.
     """
 
     longitudinal: Array
     lateral: Array
     spin_moment: Array
+    power: Array | None = None
 
     @classmethod
     def of_line(cls, force: Array) -> Self:
@@ -553,12 +581,22 @@ class Problem:
         return slip
 
     def _rigid_slip_of_strips(self, strips: Strips) -> Array:
-        """Return the root mean square of (ξ - φy, η - φx); the mean of x² over a strip is a²/3."""
-        spin = self.spin[..., None]
-        along = (self.longitudinal_creepage[..., None] - spin * strips.y) ** 2
-        across = self.lateral_creepage[..., None] ** 2 + spin**2 * strips.half_length**2 / 3.0
-        mean: Array = ((along + across) * strips.area).sum(axis=-1) / strips.area.sum(axis=-1)
+        """Return the root mean square of (ξ, η - φr) of the strips; the mean of r² over a strip is a²/3."""
+        along, across, spin = self.creepages_of_strips
+        square = along**2 + across**2 + spin**2 * strips.half_length**2 / 3.0
+        mean: Array = (square * strips.area).sum(axis=-1) / strips.area.sum(axis=-1)
         return np.sqrt(mean)
+
+    @property
+    def creepages_of_strips(self) -> tuple[Array, Array, Array]:
+        """ξ, η and φ in the middle of each strip, (batch, strips): its own, or those of the problem there."""
+        self.needs("strips", "creepages_of_strips")
+        strips = cast(Strips, self.strips)
+        along, across, spin = self.longitudinal_creepage, self.lateral_creepage, self.spin[..., None]
+        at_middle = along[..., None] - spin * strips.y, across[..., None] - spin * strips.x, spin + 0.0 * strips.y
+        own = strips.longitudinal_creepage, strips.lateral_creepage, strips.spin
+        along, across, spin = (at if one is None else one for at, one in zip(at_middle, own, strict=True))
+        return along, across, spin
 
     def body(self, name: str | None) -> Body:
         """Return the body with a name.
@@ -592,7 +630,9 @@ class Problem:
 
     @steady
     def power(self, forces: CreepForces) -> Array:
-        """Return the energy dissipated per metre rolled, Tγ = ξFx + ηFy + φMz [N]."""
+        """Return the energy dissipated per metre rolled, Tγ = ξFx + ηFy + φMz [N], or the power of the forces."""
+        if forces.power is not None:
+            return forces.power
         along = self.longitudinal_creepage * forces.longitudinal
         if self.geometry == "line":
             return along
@@ -620,8 +660,10 @@ class Problem:
         return self.replaced(normal_force=normal_force, a=scale * self.a, b=b, max_pressure=scale * self.max_pressure)
 
     def with_creepages(self, longitudinal: Array, lateral: Array, spin: Array) -> Self:
-        """Return the problem at other creepages, as SI arrays of the batch shape."""
-        return self.replaced(longitudinal_creepage=longitudinal, lateral_creepage=lateral, spin=spin)
+        """Return the problem at other creepages, as SI arrays of the batch shape; strips lose their own."""
+        creepages: dict[str, Any] = {"longitudinal_creepage": longitudinal, "lateral_creepage": lateral, "spin": spin}
+        none: dict[str, Any] = dict.fromkeys(creepages)
+        return self.replaced(**creepages, strips=self.strips and dataclasses.replace(self.strips, **none))
 
     def replaced(self, **fields: Any) -> Self:
         """Return the problem with some of its fields replaced."""

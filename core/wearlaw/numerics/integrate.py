@@ -203,12 +203,9 @@ def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: On
             wear = seen.over_strip(split_rates(solver, law, seen, part, of_nodes))
             values.append((wear * seen.strip_width).sum(axis=-1) / area)
             kept.append(Across.of(seen, wear) if keeps else None)
-        return Totals(
+        return Totals.of_forces(contact.forces)._replace(
             values=tuple(values),
             errors=(None,) * len(laws),
-            longitudinal=contact.force_x,
-            lateral=contact.force_y,
-            spin_moment=contact.moment_z,
             patch_area=area,
             sliding=_sliding(solver, [law for law, _ in laws], contact),
             slip=None if part.size == problem.size else SlipTotals.of(contact),

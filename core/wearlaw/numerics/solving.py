@@ -187,7 +187,8 @@ def check_problem(maker: Model, problem: Problem) -> None:
             )
         _check_posed(maker, problem, name, values, least)
     for name in Strips.__slots__ if problem.strips is not None else ():
-        _check_posed(maker, problem, f"{name} of strips", getattr(problem.strips, name), -math.inf)
+        if (values := getattr(problem.strips, name)) is not None:
+            _check_posed(maker, problem, f"{name} of strips", values, -math.inf)
 
 
 def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: float) -> None:

@@ -53,8 +53,11 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
         return rate
     point, node, strip = first
     second = point, node + 1, strip
-    length = contact.area / contact.strip_width[..., None, :]
-    border = _borders(contact.x, length, step)[first]
+    strips = problem.strips
+    width = np.where(contact.strip_width > 0.0, contact.strip_width, 1.0)  # of strips that fill up a batch it is zero
+    length = contact.area / width[..., None, :]
+    middle_at = 0.0 if strips is None else strips.x[..., None, :]
+    border = _borders(contact.x, length, step, middle_at)[first]
     shares = np.empty((node.size, len(levels) + 1))
     shares[:] = np.clip((border - contact.x[first]) / step[first], 0.0, 1.0)[:, None]
     in_first_until = shares[:, -1:].copy()
@@ -74,14 +77,14 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
     return split
 
 
-def _borders(x: Array, length: Array, step: Array) -> Array:
+def _borders(x: Array, length: Array, step: Array, middle: Array | float) -> Array:
     """Return the border between the cells of each node of a strip and the next one, (points, nodes - 1, strips) [m].
 
     If two nodes are as far apart as the halves of their cells, they lie in the middles of these. Otherwise the cells
-    fill the strip from end to end, and the middle of the strip is at x = 0.
+    fill the strip from end to end, about its middle.
     """
     half = 0.5 * length
-    filling = length.cumsum(axis=-2) - half.sum(axis=-2, keepdims=True)
+    filling = middle + length.cumsum(axis=-2) - half.sum(axis=-2, keepdims=True)
     in_middles = np.isclose(half[..., 1:, :] + half[..., :-1, :], step, rtol=ROUNDING, atol=0.0)
     return np.where(in_middles, x[..., :-1, :] + half[..., :-1, :], filling[..., :-1, :])
 

@@ -88,6 +88,8 @@ class Totals(NamedTuple):
         Area of the patch, the sum of its nodes' areas [m²]; None if it equals the area of the problem.
     sliding : ndarray or None
         For laws in p·s: μ∫p·s dA over Tγ = ξFx + ηFy + φMz [-], which is 1 under Coulomb's law, q = μp in slip.
+    dissipated : ndarray or None
+        The power of the forces, as in `CreepForces`.
     slip : SlipTotals or None
         The slip, if a patch that is not a line has several blocks; their contacts are not kept.
     across : tuple of Across or None
@@ -105,6 +107,7 @@ class Totals(NamedTuple):
     spin_moment: Array | None = None
     patch_area: Array | None = None
     sliding: Array | None = None
+    dissipated: Array | None = None
     slip: SlipTotals | None = None
     across: tuple[Across | None, ...] = ()
     contact: Contact | None = None
@@ -112,7 +115,12 @@ class Totals(NamedTuple):
     @classmethod
     def of_forces(cls, forces: CreepForces) -> Totals:
         """Return the totals of forces alone."""
-        return cls(longitudinal=forces.longitudinal, lateral=forces.lateral, spin_moment=forces.spin_moment)
+        return cls(
+            longitudinal=forces.longitudinal,
+            lateral=forces.lateral,
+            spin_moment=forces.spin_moment,
+            dissipated=forces.power,
+        )
 
     @classmethod
     def missing(cls, problem: Problem, laws: Sequence[object]) -> Totals:
@@ -129,7 +137,12 @@ class Totals(NamedTuple):
         assert self.longitudinal is not None
         if self.lateral is None or self.spin_moment is None:
             return CreepForces.of_line(self.longitudinal)
-        return CreepForces(longitudinal=self.longitudinal, lateral=self.lateral, spin_moment=self.spin_moment)
+        return CreepForces(
+            longitudinal=self.longitudinal,
+            lateral=self.lateral,
+            spin_moment=self.spin_moment,
+            power=self.dissipated,
+        )
 
     def tangential_force(self) -> Array:
         """Return the magnitude of the tangential force [N]."""

@@ -219,24 +219,31 @@ def raster(prediction: Prediction, field: Array, columns: int = 81, rows: int = 
 
     The edge is that of an ellipse, or else a smooth one through the ends of the strips.
     """
-    nodes, length, strips, width = _strips(prediction)
+    nodes, length, strips, width, middles = _strips(prediction)
+    field = field[:, prediction.contact.strip_width.reshape(-1) > 0.0]
     low, high = _ends(strips, width)
     y = low.min() + np.ptp([low, high]) * (np.arange(rows) + 0.5) / rows
-    edge = _edge(prediction, y)
-    x = edge.max() * (2.0 * np.arange(columns) + 1.0 - columns) / columns
+    edge, order = _edge(prediction, y), np.argsort(strips)
+    middle = np.interp(y, strips[order], middles[order])
+    begin, end = (middle - edge).min(), (middle + edge).max()
+    x = 0.5 * (begin + end) + 0.5 * (end - begin) * (2.0 * np.arange(columns) + 1.0 - columns) / columns
+    from_middle = x - middle[:, None]
     strip = np.abs(y[:, None] - strips).argmin(axis=1)
     stretch = edge / np.maximum(0.5 * length.sum(axis=0)[strip], np.finfo(float).tiny)
-    node = np.abs(x[:, None] - stretch[:, None, None] * nodes.T[strip, None]).argmin(axis=-1)
-    return 1e3 * x, 1e3 * y, np.where(np.abs(x) <= edge[:, None], field[node, strip[:, None]], np.nan)
+    node = np.abs(from_middle[..., None] - stretch[:, None, None] * nodes.T[strip, None]).argmin(axis=-1)
+    return 1e3 * x, 1e3 * y, np.where(np.abs(from_middle) <= edge[:, None], field[node, strip[:, None]], np.nan)
 
 
-def _strips(prediction: Prediction) -> tuple[Array, Array, Array, Array]:
-    """Return x of the nodes of a patch and their lengths, (nodes, strips), y of the strips and their widths [m]."""
-    contact = prediction.contact
+def _strips(prediction: Prediction) -> tuple[Array, Array, Array, Array, Array]:
+    """Return x of nodes from the middle of their strip, their lengths, and y, widths and x of the strips [m]."""
+    contact, strips = prediction.contact, prediction.problem.strips
     shape = contact.pressure.shape[-2:]
     width = contact.strip_width.reshape(shape[1])
+    middle = np.zeros(shape[1]) if strips is None else strips.x.reshape(shape[1])
     y = np.broadcast_to(contact.y, contact.pressure.shape).reshape(shape)[0]
-    return contact.x.reshape(shape), contact.area.reshape(shape) / width, y, width
+    wide = width > 0.0  # others fill up a batch
+    x, area = (values.reshape(shape)[:, wide] for values in (contact.x, contact.area))
+    return x - middle[wide], area / width[wide], y[wide], width[wide], middle[wide]
 
 
 def _edge(prediction: Prediction, y: Array) -> Array:
@@ -245,7 +252,7 @@ def _edge(prediction: Prediction, y: Array) -> Array:
     if problem.geometry == "ellipse":
         squared = problem.a**2 * np.maximum(1.0 - (y / problem.b) ** 2, 0.0)
     else:
-        _, length, strips, width = _strips(prediction)
+        _, length, strips, width, _ = _strips(prediction)
         low, high = _ends(strips, width)
         order = np.argsort(low)
         places = np.concatenate([[low.min()], 0.5 * (low + high)[order], [high.max()]])

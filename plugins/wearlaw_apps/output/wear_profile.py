@@ -158,6 +158,8 @@ def onto_positions(
     The slopes of the cubics are those of F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304, with
     weights for uneven steps.
     """
+    end = np.where(width > 0.0, arc + 0.5 * width, -np.inf).max(axis=-1, keepdims=True)
+    arc = np.where(width > 0.0, arc, end)  # strips that fill up a batch lie nowhere
     order = np.argsort(arc, axis=-1)
     arc, width = (np.take_along_axis(array, order, axis=-1) for array in (arc, width))
     lower, upper = arc - 0.5 * width, arc + 0.5 * width

@@ -192,7 +192,7 @@ class Thermal(wl.Stage):
     def _rises(self, contact: wl.Contact, problem: wl.Problem) -> Array:
         """Return θ [K] at the nodes, each with its heat spread evenly over the length that it represents."""
         width = contact.strip_width[..., None, :] if contact.on_strips else problem.track_width[..., None]
-        half = 0.5 * contact.area / width
+        half = 0.5 * contact.area / np.where(width > 0.0, width, 1.0)  # of strips that fill up a batch it is zero
         along = contact.rolling_speed.ndim  # the axis of the nodes of a strip
         begin, end = contact.x - half, contact.x + half
         heat = 2.0 * contact.wear_index_density

@@ -37,7 +37,7 @@ def test_mirrored_patch_has_the_mirrored_solution(elliptic: bool, roundings: int
     for name, sign in (("traction_x", 1), ("traction_y", -1), ("slip_x", 1), ("slip_y", -1)):
         here, there = getattr(one.fields, name), sign * getattr(other.fields, name)[..., ::-1]
         np.testing.assert_allclose(here, there, atol=tolerance * np.abs(here).max())
-    forces_here, forces_there = dataclasses.astuple(one.forces), dataclasses.astuple(other.forces)
+    forces_here, forces_there = (dataclasses.astuple(of.forces)[:3] for of in (one, other))
     for here, there, sign in zip(forces_here, forces_there, (1, -1, -1), strict=True):
         np.testing.assert_allclose(here, sign * there, atol=tolerance * np.abs(here).max())
 

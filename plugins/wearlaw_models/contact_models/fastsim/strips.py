@@ -42,12 +42,15 @@ class Layout(NamedTuple):
         Half the length [m].
     greatest : ndarray
         Bound of the traction in the middle [Pa].
+    x : ndarray or float
+        Position of the middle along the rolling direction [m].
     """
 
     y: Array
     width: Array
     half_length: Array
     greatest: Array
+    x: Array | float = 0.0
 
 
 def layout_on(ellipses: Ellipses, y_share: Array, width_share: Array) -> Layout:
@@ -69,13 +72,12 @@ def given_layout(problem: wl.Problem, elliptic: bool) -> Layout:
     """
     layout = problem.strips
     assert layout is not None
-    y, width, half_length, p0 = (
-        np.moveaxis(array, -1, 0) for array in (layout.y, layout.width, layout.half_length, layout.max_pressure)
-    )
+    arrays = layout.y, layout.width, layout.half_length, layout.max_pressure, layout.x
+    y, width, half_length, p0, x = (np.moveaxis(array, -1, 0) for array in arrays)
     shape = p0
     if not elliptic:  # ∫ p² dx = 4/3 a p0²
         shape = p0**2 * (problem.normal_force / (4.0 / 3.0 * half_length * width * p0**2).sum(axis=0))
-    return Layout(y, width, half_length, problem.friction_coefficient * shape)
+    return Layout(y, width, half_length, problem.friction_coefficient * shape, x)
 
 
 def nodes_along(count: int) -> tuple[int, int]:
@@ -100,10 +102,12 @@ def solve(problem: wl.Problem, ellipses: Ellipses, layout: Layout, count: int) -
     """Return the contact on strips, with as many nodes on each as among `count` strips."""
     nodes = strips(ellipses, layout, *nodes_along(count))
     _clear(ellipses, nodes.traction_x, nodes.traction_y, nodes.slip_x, nodes.slip_y)
+    totals = forces(layout, nodes)
+    np.add(nodes.x, layout.x, out=nodes.x)
     x, length, bound, q_x, q_y, s_x, s_y = (array.transpose(2, 0, 1) for array in nodes[:-1])
     contact = wl.Contact.from_strips(
         problem.flatten(),
-        forces(layout, nodes),
+        totals,
         x=x,
         y=layout.y.T,  # in the memory order of the nodes, strip by strip
         length=length,
@@ -158,7 +162,7 @@ def forces(layout: Layout, nodes: Nodes) -> wl.CreepForces:
 
 def _of_strips(layout: Layout, along: Array, across: Array, turning: Array) -> wl.CreepForces:
     """Return the forces and the moment from ∫ q_x, ∫ q_y and ∫ x q_y dx along strips."""
-    parts = along, across, turning + layout.y * along
+    parts = along, across, turning + layout.y * along + layout.x * across
     longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in parts)
     return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment)
 
@@ -171,11 +175,12 @@ def _strips(ellipses: Ellipses, layout: Layout, nodes: int) -> Strips:
 def _rows(ellipses: Ellipses, layout: Layout) -> Array:
     """Return strips as rows of an array, (7, strips, points), as in `_loops`."""
     _, _, creepage_x, creepage_y, spin, l1, l2, l3, _ = ellipses.arrays
-    y, _, half_length, greatest = layout
-    unit = half_length / greatest
+    y, _, half_length, greatest, x = layout
+    unit = np.divide(half_length, greatest, out=np.zeros_like(greatest), where=greatest > 0.0)
     growth = (
         (creepage_x / l1 - spin * y / l3) * unit,
-        creepage_y / l2 * unit,
+        (creepage_y / l2 - spin * x / l3) * unit,
         0.5 * spin / l3 * half_length * unit,
     )
-    return np.stack([*growth, half_length, greatest, l1 / unit, l2 / unit])
+    over = np.where(unit > 0.0, unit, np.inf)  # strips without pressure do not slip
+    return np.stack([*growth, half_length, greatest, l1 / over, l2 / over])

@@ -114,7 +114,10 @@ class HalfSpace(wl.ContactModel):
         strips = problem.flatten().strips
         assert strips is not None
         middles = (2.0 * np.arange(self.cells) + 1.0) / self.cells - 1.0
-        return self._solve(problem, strips, middles * strips.half_length.max(axis=-1, keepdims=True))
+        half_length = np.where(strips.max_pressure > 0.0, strips.half_length, 0.0)
+        begin = (strips.x - half_length).min(axis=-1, keepdims=True)
+        end = (strips.x + half_length).max(axis=-1, keepdims=True)
+        return self._solve(problem, strips, 0.5 * (begin + end) + 0.5 * (end - begin) * middles)
 
     def solve_line(self, problem: wl.Problem) -> wl.Contact:
         """Return the contact on elements of one strip, so wide that its middle is a line contact."""
@@ -152,38 +155,42 @@ class HalfSpace(wl.ContactModel):
     def _solve(self, problem: wl.Problem, strips: wl.Strips, columns: Array) -> wl.Contact:
         """Return the contact on elements in the columns at x of (points, cells) and the rows of the strips."""
         flat = problem.flatten()
-        share = columns[..., None] / strips.half_length[:, None, :]
+        half_length = np.where(strips.half_length > 0.0, strips.half_length, 1.0)
+        share = (columns[..., None] - strips.x[:, None, :]) / half_length[:, None, :]
         pressure = strips.max_pressure[:, None, :] * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
         length = np.where(pressure > 0.0, (columns[:, 1] - columns[:, 0])[:, None, None], 0.0)
         load = (pressure * length * strips.width[:, None, :]).sum(axis=(-2, -1))
         pressure *= (flat.normal_force / load)[:, None, None]
         size = np.sqrt(flat.a * flat.b)
-        # Of tractions and slip along x and along y, and of the bound.
-        fields, forces = np.zeros((5, *pressure.shape)), np.zeros((3, flat.size))
+        if problem.geometry == "ellipse":
+            creepages = flat.longitudinal_creepage[:, None] - flat.spin[:, None] * strips.y
+            creepages = np.stack(np.broadcast_arrays(creepages, flat.lateral_creepage[:, None], flat.spin[:, None]))
+        else:
+            along, across, spin = flat.creepages_of_strips
+            creepages = np.stack([along, across + spin * strips.x, spin])
+        # Of tractions and slip along x and along y, and of the bound; of forces, moment and power.
+        fields, totals = np.zeros((5, *pressure.shape)), np.zeros((4, flat.size))
         decay = wl.scalar_si(self.decay, "s/m")
         for point in range(flat.size):
             one = flat[point]
             c, force = float(size[point]), float(one.friction_coefficient * one.normal_force)
-            ratio = float(one.poisson_ratio)
+            ratio, rows = float(one.poisson_ratio), pressure[point].any(axis=0)  # without those that fill up the batch
             if problem.geometry == "ellipse":
                 grid = of_ellipse(self.cells, round(float(np.sqrt(one.a / one.b)), DIGITS), ratio)
             else:
-                grid = Grid(columns[point] / c, strips.y[point] / c, strips.width[point] / c, ratio)
-            patch = Patch(grid, pressure[point].T * (c**2 / float(one.normal_force)))
+                grid = Grid(columns[point] / c, strips.y[point, rows] / c, strips.width[point, rows] / c, ratio)
+            patch = Patch(grid, pressure[point, :, rows] * (c**2 / float(one.normal_force)))
             unit = force / (float(one.shear_modulus) * c**2)
-            creepages = (
-                float(one.longitudinal_creepage) / unit,
-                float(one.lateral_creepage) / unit,
-                float(one.spin) * c / unit,
-            )
+            reduced = creepages[:, point, rows, None] / unit * np.array([1.0, 1.0, c])[:, None, None]
             friction = Friction(self.limit_ratio, decay * unit * float(one.rolling_speed))
-            q, slip, bound = patch.solved(friction, creepages)
+            q, slip, bound = patch.solved(friction, reduced)
             stress, share = force / c**2, unit * slip / np.where(patch.inside, bound, 1.0)
-            fields[:, point] = np.stack([*(stress * q), *(share * q), stress * bound]).swapaxes(1, 2)
-            forces[:, point] = force * patch.forces(q) * [1.0, 1.0, c]
+            fields[:, point, :, rows] = np.stack([*(stress * q), *(share * q), stress * bound]).swapaxes(0, 1)
+            totals[:, point] = force * patch.totals(q, reduced) * [1.0, 1.0, c, unit]
+        forces = dict(zip(wl.CreepForces.__slots__, totals if strips.has_creepages else totals[:3], strict=False))
         contact = wl.Contact.from_strips(
             flat,
-            wl.CreepForces(longitudinal=forces[0], lateral=forces[1], spin_moment=forces[2]),
+            wl.CreepForces(**forces),
             x=np.broadcast_to(columns[..., None], pressure.shape),
             y=strips.y,
             length=length,

@@ -15,7 +15,7 @@ what is near.
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,10 +40,6 @@ NEAR, EARLY, LATE = 0.1, 0.1, 1e-4
 
 COARSE = 8
 """Fewest rows and columns of a coarser grid that gives a first guess."""
-
-
-Creepages: TypeAlias = tuple[float, float, float]
-"""Longitudinal and lateral creepage, and spin."""
 
 
 class Friction(NamedTuple):
@@ -82,6 +78,8 @@ class Solution(NamedTuple):
 class Patch:
     """The elements of a grid that touch, under a pressure.
 
+    Creepages are arrays of (3, rows, 1): ξ, η and φ of each row, whose rigid slip is (ξ, η - φx).
+
     Parameters
     ----------
     grid : Grid
@@ -94,30 +92,30 @@ class Patch:
         self.area = grid.step * grid.width[:, None]
         """Area of each element, (rows, 1)."""
 
-    def rigid_slip(self, ahead: float, xi: float, eta: float, phi: float) -> Array:
+    def rigid_slip(self, ahead: float, creepages: Array) -> Array:
         """Return the slip of rigid bodies a way ahead of the middles of the elements."""
-        x, y = np.broadcast_arrays(self.grid.x - ahead, self.grid.y[:, None])
-        return np.stack([xi - phi * y, eta - phi * x]) * self.inside
+        xi, eta, phi = creepages
+        return np.stack(np.broadcast_arrays(xi, eta - phi * (self.grid.x - ahead))) * self.inside
 
-    def slip(self, q: Array, xi: float, eta: float, phi: float) -> Array:
+    def slip(self, q: Array, creepages: Array) -> Array:
         """Return the slip in the middle of each element, the mean of those half-way from and to its neighbours.
 
         This slip dissipates ξFx + ηFy + φMz on the elements, whatever their size.
         """
-        slip: Array = self.rigid_slip(0.0, xi, eta, phi) - self.inside * self.grid.taken_up_around(q)
+        slip: Array = self.rigid_slip(0.0, creepages) - self.inside * self.grid.taken_up_around(q)
         return slip
 
-    def slipped(self, q: Array, slips: NDArray[np.bool_], creepages: Creepages) -> Array:
+    def slipped(self, q: Array, slips: NDArray[np.bool_], creepages: Array) -> Array:
         """Return the slip along tractions in the middle of the elements that slip, (rows, columns).
 
         An element that sticks slips in its second half if the next one slips. That energy is counted there.
         """
-        energy = (q * self.slip(q, *creepages)).sum(axis=0)
+        energy = (q * self.slip(q, creepages)).sum(axis=0)
         energy[:, 1:] += np.where(slips, 0.0, energy)[:, :-1]
         slip: Array = np.where(slips, np.maximum(energy, 0.0) / np.where(slips, np.hypot(*q), 1.0), 0.0)
         return slip
 
-    def guess(self, friction: Friction, creepages: Creepages) -> Array:
+    def guess(self, friction: Friction, creepages: Array) -> Array:
         """Return tractions from those on elements twice as long and wide, if they are not too few."""
         rows, columns = self.grid.shape
         if min(rows, columns) < 2 * COARSE:
@@ -125,16 +123,17 @@ class Patch:
         whole = np.pad(self.pressure, ((0, rows % 2), (0, columns % 2)))
         blocks = whole.reshape((rows + 1) // 2, 2, (columns + 1) // 2, 2).mean(axis=(1, 3))
         coarse = Patch(self.grid.coarser, blocks)
+        creepages = np.pad(creepages, ((0, 0), (0, rows % 2), (0, 0)), "edge").reshape(3, -1, 2, 1).mean(axis=2)
         q = coarse.rolling(friction, creepages, coarse.guess(friction, creepages), GUESS).traction
         share = q / np.where(coarse.inside, blocks, 1.0)
         guess: Array = share.repeat(2, axis=1).repeat(2, axis=2)[:, :rows, :columns] * self.pressure
         return guess
 
-    def solved(self, friction: Friction, creepages: Creepages) -> Solution:
+    def solved(self, friction: Friction, creepages: Array) -> Solution:
         """Return the solution to rounding."""
         return self.rolling(friction, creepages, self.guess(friction, creepages))
 
-    def rolling(self, friction: Friction, creepages: Creepages, q: Array, miss: float = MISS) -> Solution:
+    def rolling(self, friction: Friction, creepages: Array, q: Array, miss: float = MISS) -> Solution:
         """Return the solution from a first guess of the tractions.
 
         Raises
@@ -142,7 +141,7 @@ class Patch:
         ArithmeticError
             If there is no solution after all steps, or a step has none.
         """
-        w = self.rigid_slip(0.5 * self.grid.step, *creepages)
+        w = self.rigid_slip(0.5 * self.grid.step, creepages)
         blocks, settled, left, slips = Blocks(self.grid), False, np.inf, np.zeros(self.inside.shape, dtype=np.bool_)
         bound, slope = self.pressure, np.zeros(self.inside.shape)
         for number, rho in enumerate(STEPS / self.grid.stiffness):
@@ -168,11 +167,12 @@ class Patch:
             rest = np.where(slips, (length - bound) / (some * rho), 0.0)
             step = Step(self.grid, blocks, self.inside & ~slips, np.where(slips, axis, 0.0), rest, slope)
             q = q + fixed + step.solved(right, fixed, LATE if left <= NEAR else EARLY)
-        xi, eta, phi = creepages
+        xi, eta, phi = creepages.mean(axis=(1, 2))
         falls = "; friction may fall too fast with the slip for a steady one" if friction.falls else ""
         raise ArithmeticError(f"no solution at a reduced ξ, η and φ of {xi:g}, {eta:g} and {phi:g}{falls}")
 
-    def forces(self, q: Array) -> Array:
-        """Return Fx, Fy and Mz of tractions."""
-        fx, fy = self.area * q
-        return np.array([fx.sum(), fy.sum(), -(self.grid.x * fy).sum() - (self.grid.y[:, None] * fx).sum()])
+    def totals(self, q: Array, creepages: Array) -> Array:
+        """Return Fx, Fy and Mz of tractions, and the power that they take from the rigid slip."""
+        force = fx, fy = self.area * q
+        moment = -(self.grid.x * fy).sum() - (self.grid.y[:, None] * fx).sum()
+        return np.array([fx.sum(), fy.sum(), moment, (force * self.rigid_slip(0.0, creepages)).sum()])

@@ -92,9 +92,9 @@ class StripTheory(wl.ContactModel):
         """Return the forces of an ellipse or of strips, without the fields that only wear needs."""
         layout = self._layout(problem)
         strips, greatest = self._strips(problem.flatten(), layout)
-        forces = _forces(layout, greatest, fields.sums(strips, *self._nodes_along))
-        totals = {name: getattr(forces, name) for name in ("longitudinal", "lateral", "spin_moment")}
-        return wl.CreepForces(**{name: problem.unflatten(total) for name, total in totals.items()})
+        forces = _forces(layout, greatest, strips, fields.sums(strips, *self._nodes_along))
+        totals = {name: getattr(forces, name) for name in wl.CreepForces.__slots__}
+        return wl.CreepForces(**{name: problem.unflatten(total) for name, total in totals.items() if total is not None})
 
     def _layout(self, problem: wl.Problem) -> wl.Strips:
         """Return the strips of the patches, as arrays of shape (strips, points).
@@ -103,9 +103,7 @@ class StripTheory(wl.ContactModel):
         """
         flat, strips = problem.flatten(), problem.flatten().strips
         if strips is not None:
-            arrays = strips.y, strips.width, strips.half_length, strips.max_pressure
-            y, width, half_length, max_pressure = (np.moveaxis(array, -1, 0) for array in arrays)
-            return wl.Strips(y=y, width=width, half_length=half_length, max_pressure=max_pressure)
+            return strips.mapped(_by_strip, _by_strip)
         step = np.pi / (self.strips + 1)
         angle = step * np.arange(self.strips, 0, -1)
         return _across(flat, np.cos(angle), step * np.sin(angle))
@@ -119,29 +117,30 @@ class StripTheory(wl.ContactModel):
     def _strips(self, flat: wl.Problem, layout: wl.Strips) -> tuple[fields.Strips, Array]:
         """Return strips over their half lengths and greatest bounds, and these bounds [Pa], (strips, points)."""
         c = wl.kalker.coefficients(flat.a / flat.b, flat.poisson_ratio, self.interpolation)
-        greatest, half_length = flat.friction_coefficient * layout.max_pressure, layout.half_length
+        greatest = flat.friction_coefficient * layout.max_pressure
         if flat.strips is None:
             k_x, k_y = (
                 greatest * (0.5 * np.pi**2 / (flat.shear_modulus * coefficient)) for coefficient in (c.c11, c.c22)
             )
+            along, across, spin = flat.longitudinal_creepage - flat.spin * layout.y, flat.lateral_creepage, flat.spin
         else:
             k_x, k_y = full_slips(flat, layout, greatest, c.c11, c.c22)
-        strips = fields.Strips(
-            along=flat.longitudinal_creepage - flat.spin * layout.y,
-            across=flat.lateral_creepage,
-            turning=flat.spin * half_length,
-            k_x=k_x,
-            k_y=k_y,
-        )
+            along, across, spin = map(_by_strip, flat.creepages_of_strips)
+        strips = fields.Strips(along=along, across=across, turning=spin * layout.half_length, k_x=k_x, k_y=k_y)
+        if not greatest.all():  # strips without pressure stick, whatever their stiffness
+            loaded = greatest > 0.0
+            sticking = zip(strips, (0.0, 0.0, 0.0, 1.0, 1.0), strict=True)
+            strips = fields.Strips(*(np.where(loaded, value, instead) for value, instead in sticking))
         return strips, greatest
 
     def _contact(self, problem: wl.Problem, layout: wl.Strips) -> wl.Contact:
         flat = problem.flatten()
         strips, greatest = self._strips(flat, layout)
         nodes = fields.solve(strips, *self._nodes_along)
-        forces = _forces(layout, greatest, nodes.sums)
+        forces = _forces(layout, greatest, strips, nodes.sums)
         for lengths in (nodes.x, nodes.length):
             np.multiply(layout.half_length, lengths, out=lengths)
+        np.add(nodes.x, layout.x, out=nodes.x)
         for tractions in (nodes.bound, nodes.q_x, nodes.q_y):
             np.multiply(greatest, tractions, out=tractions)
         slip_x, slip_y = _slips(layout, nodes, flat.power(forces))
@@ -171,12 +170,21 @@ def _across(flat: wl.Problem, shares: Array, widths: Array) -> wl.Strips:
     return wl.Strips(y=y, width=width, half_length=half_length, max_pressure=max_pressure)
 
 
-def _forces(layout: wl.Strips, greatest: Array, sums: Array) -> wl.CreepForces:
-    """Return the forces and the moment that strips transmit, from the `fields.sums`."""
+def _by_strip(array: Array) -> Array:
+    """Return an array of (points, strips) as one of (strips, points), in the memory order of the loops."""
+    return np.ascontiguousarray(array.T)
+
+
+def _forces(layout: wl.Strips, greatest: Array, strips: fields.Strips, sums: Array) -> wl.CreepForces:
+    """Return the forces, the moment and the power of strips with creepages, from the `fields.sums`."""
     along, across, turning = layout.half_length * greatest * sums
-    parts = along, across, layout.half_length * turning + layout.y * along
+    parts = along, across, layout.half_length * turning + layout.y * along + layout.x * across
     longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in parts)
-    return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment)
+    power = None
+    if layout.has_creepages:
+        of_strips = strips.along * along + strips.across * across - strips.turning * turning
+        power = (layout.width * of_strips).sum(axis=0)
+    return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment, power=power)
 
 
 def _slips(layout: wl.Strips, nodes: fields.Nodes, power: Array) -> tuple[Array, Array]:

@@ -43,7 +43,8 @@ def full_slips(flat: wl.Problem, layout: wl.Strips, greatest: Array, c11: Array,
 
 def _curvatures(layout: wl.Strips, greatest: Array) -> Array:
     """Return a Σ g w/a² G_K and a Σ g w/a² G_E at the middle of each strip, (2, strips, points)."""
-    y, half_length, width = (np.ascontiguousarray(array) for array in (layout.y, layout.half_length, layout.width))
+    y, width = layout.y, layout.width
+    half_length = np.where(greatest > 0.0, layout.half_length, 1.0)  # that of a strip without pressure may be zero
     sums = greatest / half_length * np.stack(_up_to(0.5 * width / half_length)) * 2.0
     weight = greatest * width / half_length**2
     if wl.accelerated(y.shape[0] * y.size // PAIRS):

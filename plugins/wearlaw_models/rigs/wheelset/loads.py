@@ -846,7 +846,7 @@ class Balance:
         if self.pressure == "hertz":
             problem = wl.Problem.ellipse_from_si(**given, **made, normal_force=shapes["normal_force"])
         else:
-            strips = wl.Strips(**{name: shapes[name] for name in wl.Strips.__slots__})
+            strips = wl.Strips(**{name: shapes[name] for name in wl.Strips.__slots__ if name in shapes})
             problem = wl.Problem.of_strips(strips=strips, **given, **made)
         touch = self.penetration[part.wheel] > part.gap
         return problem, Patches(problem.normal_force, arc, place, sliding, touch)
