@@ -28,6 +28,7 @@ from wearlaw.late import needed_for
 from wearlaw.text_files import NOT_A_SPREADSHEET, SPREADSHEETS
 from wearlaw.units.quantities import Q, Quantity
 from wearlaw.units.registry import symbol
+from wearlaw_apps import sheets
 
 if TYPE_CHECKING:
     import pandas
@@ -42,6 +43,11 @@ ROW = "row"
 
 MISSING = ("", "-", "NA", "N/A", "n/a", "na", "nan", "NaN", "NAN", "null", "NULL", "None", "#N/A")
 """Cells without a value."""
+
+HEAD_LINES, SHOWN, LONGEST = 40, 4, 80
+"""Lines at the top that show the form of a file, those that a message shows, and its most characters of each."""
+
+SEPARATORS = {" ": "spaces", "\t": "tabs", ",": "commas", ";": "semicolons"}
 
 LISTED = 20
 """Most columns that a message lists."""
@@ -96,7 +102,7 @@ class Table:
 
     def __init__(self, label: str, heads: Iterable[str] = ()) -> None:
         self.label = label
-        self.heads = [_column(head, place) for place, head in enumerate(heads)]
+        self.heads = [named_column(head, place) for place, head in enumerate(heads)]
         self.columns: dict[str, Column] = {}
         self.comments: list[str] = []
         self.header = 0
@@ -187,6 +193,10 @@ class Table:
         """All rows."""
         raise NotImplementedError
 
+    def as_read(self) -> str:
+        """Return the first lines of a file as they were understood, for messages."""
+        return ""
+
     def _rows_in_words(self, rows: Collection[int]) -> dict[int, str]:
         return {row: f"row {row} (the first is row 0)" for row in rows}
 
@@ -198,7 +208,7 @@ class Table:
     def _find(self, name: str, text: str) -> Column:
         """Return the column that a text names, with its sign and the unit that the text or the table states."""
         for sign, rest in ((1.0, text), (-1.0, text.removeprefix("-").strip())):
-            wanted = _column(rest, 0)
+            wanted = named_column(rest, 0)
             for matches in (
                 [column for column in self.heads if column.head == rest],
                 [column for column in self.heads if column.name == wanted.name],
@@ -247,7 +257,7 @@ class Table:
         return ""
 
 
-def _column(head: str, place: int) -> Column:
+def named_column(head: str, place: int) -> Column:
     """Return the column of a head; an unknown unit is kept as it is written."""
     match = HEAD.fullmatch(head)
     name, unit = (match["name"], match["unit"]) if match else (head, None)
@@ -321,7 +331,10 @@ def read_table(
 def open_table(source: Any, *, sep: str | None = None, decimal: str = ".", comment: str = "#") -> Table:
     """Return a table without columns in use; arguments as for `read_table`."""
     if isinstance(source, str | os.PathLike):
-        return CsvTable(f"table {shown(Path(source))}", Path(source), sep, decimal, comment)
+        path, label = Path(source), f"table {shown(Path(source))}"
+        if path.suffix.lower() == ".xlsx":
+            return CsvTable(label, sheets.text_of(path, label), "\t", ".", comment)
+        return CsvTable(label, path, sep, decimal, comment)
     if hasattr(source, "read"):
         return CsvTable(f"table '{getattr(source, 'name', 'text')}'", source.read().encode(), sep, decimal, comment)
     pandas, xarray = sys.modules.get("pandas"), sys.modules.get("xarray")  # loaded already if the table is theirs
@@ -366,38 +379,52 @@ class CsvTable(Table):
         if decimal not in (".", ","):
             raise DataError(f'decimal: must be "." or ",", got {decimal!r}')
         self._source, self.decimal = source, decimal
-        self._skip, header = 0, ""
+        self._skip, header, units = 0, "", ""
+        with self._opened() as file:
+            head = [file.readline() for _ in range(HEAD_LINES)]
+            self._of_blocks = _begins_blocks(head)
+            if self._of_blocks:
+                self._source, head, sep = _joined(label, [*head, *file]).encode(), [], "\t"
         with self._opened() as file:
             while header := file.readline():
                 if "".join(header.split()).strip(",;") and not header.lstrip('" ').startswith(comment):
                     break
                 self._skip += 1
                 self.comments.append(header.strip('",; \t\r\n').lstrip(f"{comment} "))
+            units = file.readline()
         if not header:
             raise DataError(f"{label} is empty")
         marks = [mark for mark in ";\t," if mark in header]
         self.sep = sep or next(iter(marks), " " if _is_number(header.split()[0], decimal) else ",")
-        cells = self._cells(next(csv.reader([header], delimiter=self.sep, skipinitialspace=True)))
+        cells, below = map(self._split, (header, units))
         while cells and not cells[-1]:
             cells.pop()
         bare = all(_is_number(cell, decimal) for cell in cells)
         self.header = self._skip + 1
         self._skip += not bare
         self._comment = comment if bare else None
-        self.heads = [_column(str(place + 1) if bare else cell, place) for place, cell in enumerate(cells)]
+        if not bare and _are_units(below, decimal):
+            self._skip += 1
+            stated = (unit.strip("[]()") for unit in below)
+            pairs = itertools.zip_longest(cells, itertools.islice(stated, len(cells)), fillvalue="")
+            cells = [f"{cell} [{unit}]" if unit and "[" not in cell else cell for cell, unit in pairs]
+        self.heads = [named_column(str(place + 1) if bare else cell, place) for place, cell in enumerate(cells)]
+
+    def _split(self, line: str) -> list[str]:
+        return self._cells(next(csv.reader([line], delimiter=self.sep, skipinitialspace=True), []))
 
     def _cells(self, cells: Sequence[str]) -> list[str]:
         return " ".join(cells).split() if self.sep == " " else [cell.strip() for cell in cells]
 
     @contextmanager
-    def _opened(self) -> Iterator[TextIO]:
+    def _opened(self, whole: bool = False) -> Iterator[TextIO]:
         """Give the file as text, behind the lines to skip."""
         try:
             with io.BytesIO(self._source) if isinstance(self._source, bytes) else self._source.open("rb") as raw:
                 if isinstance(raw, io.BufferedReader) and raw.peek(1).startswith(SPREADSHEETS):
                     raise DataError(f"{self.label} cannot be read: {NOT_A_SPREADSHEET}")
                 file = io.TextIOWrapper(raw, encoding="utf-8-sig", newline="")
-                for _ in range(self._skip):
+                for _ in range(0 if whole else self._skip):
                     file.readline()
                 yield file
         except FileNotFoundError:
@@ -464,6 +491,8 @@ class CsvTable(Table):
                 line = self._skip + reader.line_num + 1
 
     def _rows_in_words(self, rows: Collection[int]) -> dict[int, str]:
+        if self._of_blocks:
+            return super()._rows_in_words(rows)
         try:
             lines = itertools.islice(self._rows(), max(rows) + 1)
             words = {row: f"line {line}" for row, (line, _) in enumerate(lines) if row in rows}
@@ -480,7 +509,14 @@ class CsvTable(Table):
             for line, cells in self._rows()
             if len(cells) < width or any(cell not in MISSING for cell in cells[width:])
         )
-        return DataError(f"{self.label} is wrong in:", itertools.islice(wrong, PROBLEMS))
+        return DataError(f"{self.label} is wrong in:", [*itertools.islice(wrong, PROBLEMS - 1), self.as_read()])
+
+    def as_read(self) -> str:
+        """Return the first lines as they were understood, for messages."""
+        with self._opened(whole=True) as file:
+            lines = [line for line in itertools.islice(file, SHOWN) if line.strip()]
+        cells = "; ".join(" | ".join(self._split(line))[:LONGEST] for line in lines)
+        return f"as read, with {SEPARATORS.get(self.sep, shown(self.sep))} between cells, it begins: {cells}"
 
 
 def _pandas() -> Any:
@@ -488,6 +524,54 @@ def _pandas() -> Any:
         import pandas
 
     return pandas
+
+
+def _are_units(cells: Sequence[str], decimal: str) -> bool:
+    """Return whether the cells below a header are units: no numbers, and units in more than half of those in use."""
+    texts = [cell.strip("[]()") for cell in cells if cell]
+    if not any(map(str.isalpha, "".join(texts))) or any(_is_number(text, decimal) for text in texts):
+        return False
+    known = 0
+    for text in texts:
+        with suppress(UnitError):
+            _known(text)
+            known += 1
+    return 2 * known > len(texts)
+
+
+def _begins_blocks(lines: Sequence[str]) -> bool:
+    """Return whether a file has blocks, one for each variable: its name, the number of points, and x and y of each."""
+    return any(
+        name.strip() and count.strip().isdigit() and ";" in pair and len(_pair(pair)) == 2
+        for name, count, pair in zip(lines, lines[1:], lines[2:], strict=False)
+    )
+
+
+def _pair(line: str) -> list[str]:
+    cells = [cell.strip() for cell in line.split(";")]
+    return cells if all(_is_number(cell, ".") for cell in cells) else []
+
+
+def _joined(label: str, lines: Sequence[str]) -> str:
+    """Return blocks as one table, with x in the first column and a column for each variable."""
+    x: list[str] = []
+    columns: dict[str, list[str]] = {}
+    name, rest = "", iter(enumerate(lines, 1))
+    for number, line in rest:
+        if not line.strip().isdigit():
+            name = line.strip() or name
+            continue
+        pairs = [_pair(row) for _, row in itertools.islice(rest, int(line))]
+        if len(pairs) < int(line) or any(len(pair) != 2 for pair in pairs):
+            raise DataError(f"{label}: the block '{name}' from line {number} has not {line.strip()} rows of x ; y")
+        if name in columns:
+            raise DataError(f"{label}: the block '{name}' from line {number} is there twice; rename one")
+        x = x or [pair[0] for pair in pairs]
+        if list(map(float, x)) != [float(pair[0]) for pair in pairs]:
+            first = next(iter(columns))
+            raise DataError(f"{label}: the blocks '{first}' and '{name}' have other x; export them at the same steps")
+        columns[name] = [pair[1] for pair in pairs]
+    return "\n".join(map("\t".join, [("x", *columns), *zip(x, *columns.values(), strict=True)])) + "\n"
 
 
 def _is_number(text: str, decimal: str) -> bool:

@@ -17,6 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
+from tests.plugins.tables.sheets import xlsx
 from wearlaw import Q
 from wearlaw_apps.tables import Table
 
@@ -148,7 +149,71 @@ def test_all_wrong_cells_are_named() -> None:
     assert [problem.split(",")[0] for problem in error.value.problems] == ["line 3", "line 5"]
     with pytest.raises(wl.DataError) as error:
         text("a,b\n1,2,3\n\n1,2\n4\n")["a"]
-    assert [problem.split(":")[0] for problem in error.value.problems] == ["line 2", "line 5"]
+    assert [problem.split(":")[0] for problem in error.value.problems] == [
+        "line 2",
+        "line 5",
+        "as read, with commas between cells, it begins",
+    ]
+
+
+@pytest.mark.parametrize("inline", [False, True])
+def test_a_spreadsheet_is_a_table_with_the_rows_of_its_sheet(tmp_path: Path, inline: bool) -> None:
+    rows = [["# made up"], ["Fz [kN]", None, "slip"], [7.1, None, 0.5], [], [7.25, "a & b", -1e-3]]
+    table = wl.read_table(xlsx(tmp_path / "run.xlsx", rows, [], inline=inline), {"force": "Fz", "slip": "-slip [%]"})
+    assert table.numbers("force").tolist() == [7.1, 7.25]
+    assert table.numbers("slip").tolist() == [-0.5, 1e-3]
+    assert (table.lines.tolist(), table.comments) == ([3, 5], ["made up"])
+    with pytest.raises(wl.DataError, match="has 2 sheets with cells; keep the one to read"):
+        wl.read_table(xlsx(tmp_path / "two.xlsx", rows, rows))
+
+
+@pytest.mark.parametrize(
+    ("units", "expected"),
+    [("[kN],[-],", True), ("kN,-,m", True), ("(kN);-;", True), ("7,8,9", False), ("dry,wet,2", False)],
+)
+def test_a_row_of_units_below_the_heads(units: str, expected: bool) -> None:
+    mark = ";" if ";" in units else ","
+    found = text(f"Fz{mark}xi{mark}s\n{units}\n1{mark}2{mark}3\n4{mark}5{mark}x\n", columns={"force": "Fz", "xi": "xi"})
+    assert (found.columns["force"].unit, found.columns["xi"].unit) == (("kN", "") if expected else (None, None))
+    if expected:
+        assert found.numbers("force").tolist() == [1.0, 4.0]
+        with pytest.raises(wl.DataError, match="line 4, column 's"):
+            wl.read_table(io.StringIO(f"s{mark}Fz\n[m]{mark}kN\n1{mark}2\nx{mark}5\n"))["s"]
+
+
+BLOCKS = """made up
+Mon Jan 1 2024
+
+W1L N
+2
+  0.00000000E+00 ;   6.00000000E+04
+  1.00000000E-02 ;   6.10000000E+04
+
+W1L xi
+2
+  0.00000000E+00 ;   1.00000000E-03
+  1.00000000E-02 ;   1.10000000E-03
+"""
+
+
+def test_blocks_of_a_vehicle_program_are_a_table() -> None:
+    found = text(BLOCKS, columns={"time": "x [s]", "force": "W1L N [N]", "xi": "-W1L xi [-]"})
+    assert found.numbers("time").tolist() == [0.0, 0.01]
+    assert found.numbers("force").tolist() == [6e4, 6.1e4]
+    assert found.numbers("xi").tolist() == [-1e-3, -1.1e-3]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("W1L xi\n2", "W1L xi\n3"), "the block 'W1L xi' from line 10 has not 3 rows of x ; y"),
+        (("W1L xi", "W1L N"), "the block 'W1L N' from line 10 is there twice; rename one"),
+        (("1.00000000E-02 ;   1.1", "2.00000000E-02 ;   1.1"), "the blocks 'W1L N' and 'W1L xi' have other x; export"),
+    ],
+)
+def test_blocks_that_do_not_fit_are_named(change: tuple[str, str], message: str) -> None:
+    with pytest.raises(wl.DataError, match=message):
+        text(BLOCKS.replace(*change), columns=None)
 
 
 def test_what_is_no_table_is_refused(tmp_path: Path) -> None:
@@ -156,8 +221,10 @@ def test_what_is_no_table_is_refused(tmp_path: Path) -> None:
     (tmp_path / "old.csv").write_bytes("Größe\n1\n".encode("cp1252"))
     (tmp_path / "none.csv").write_bytes(b"")
     (tmp_path / "run.xlsx").write_bytes(b"PK\x03\x04\x14\x00\x06\x00")
-    with pytest.raises(wl.DataError, match="cannot be read: it is a spreadsheet, not text; save its sheet as CSV"):
+    with pytest.raises(wl.DataError, match=r"is no spreadsheet in \.xlsx \(.*\); save its sheet as CSV"):
         wl.read_table(tmp_path / "run.xlsx")
+    with pytest.raises(wl.DataError, match="cannot be read: it is a spreadsheet, not text; save its sheet as CSV"):
+        wl.read_table((tmp_path / "run.xlsx").rename(tmp_path / "run.csv"))
     for wrong in ("run.nc", "old.csv", "none.csv", "missing.csv", ""):
         with pytest.raises(wl.DataError, match=re.escape(str(tmp_path / wrong))):
             wl.read_table(tmp_path / wrong)

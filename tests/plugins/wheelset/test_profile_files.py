@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wearlaw as wl
+from tests.plugins.tables.sheets import xlsx
 from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
 from wearlaw_models.rigs.wheelset.files import LARGEST  # private: the largest file that is read
@@ -235,6 +236,125 @@ def test_points_of_miniprof_may_be_commented_out_and_named_otherwise(tmp_path: P
     assert found == pytest.approx(np.delete(points, 5, axis=0), abs=1e-5)
 
 
+def test_miniprof_is_read_without_an_empty_line_with_remarks_and_by_parts(tmp_path: Path) -> None:
+    points = table()
+    lines = MEASURED.replace("\n\n", "\n").splitlines()
+    lines[-3] += ' " a zig-zag, x=3'
+    lines[-2] += " added by hand"
+    found = values(wl.read_profile(saved(tmp_path, "a.whl", "\n".join(lines))))
+    assert found == pytest.approx(points, abs=1e-5)
+    path = saved(tmp_path, "a.mpt", PARTS)
+    for part in (1, 2):
+        found = values(wl.read_profile(path, kind="wheel", shift_y="-70 mm", part=part))
+        assert found == pytest.approx(points, abs=1e-5)
+    with pytest.raises(wl.DataError, match="part must be from 1 to 2, got 3"):
+        wl.read_profile(path, kind="wheel", part=3)
+
+
+def test_points_of_a_scan_that_run_back_are_left_out_and_named(tmp_path: Path) -> None:
+    points = table()
+    measured = np.insert(points + BACK, [100, 130, 130], (points + BACK)[[97, 126, 128]] + [0.0, 0.01], axis=0)
+    path = saved(tmp_path, "a.whl", MEASURED[: MEASURED.index("\n\n") + 2] + rows(measured, " "))
+    first = MEASURED[: MEASURED.index("\n\n")].count("\n") + 3
+    with pytest.warns(wl.UnusualWarning, match=rf"a\.whl', repaired: left out line {first + 100}, line {first + 131}"):
+        profile = wl.read_profile(path)
+    assert values(profile)[:100] == pytest.approx(points[:100], abs=1e-5)
+    assert len(values(profile)) >= len(points) - 3
+
+
+# GENSYS --------------------------------------------------------------------------------------------------------------
+
+
+def test_profiles_of_gensys_have_y_towards_the_middle_of_the_track(tmp_path: Path) -> None:
+    """As the manual of KPF says: y to the centre of the track for both wheels, z down, remarks behind #."""
+    points = table()
+    lines = rows(points * [-1.0, 1.0], "   ").splitlines()
+    lines[1] += "   # Start as far out as possible."
+    text = "# a wheel\n" + "\n".join(lines)
+    assert values(wl.read_profile(saved(tmp_path, "a.wheel", text))) == pytest.approx(points, abs=1e-5)
+    rail = table(profile=RAIL.turned("-1.4 deg"))
+    text = rows(rail * [-1.0, 1.0], "   ")
+    assert wl.read_profile(saved(tmp_path, "a.rail", text)).apparent_cant.m_as("deg") == pytest.approx(1.4, abs=0.01)
+
+
+# Repairs -------------------------------------------------------------------------------------------------------------
+
+
+def mangled(points: Array, **changes: Any) -> Array:
+    result = points.copy()
+    for place, value in changes.items():
+        result[int(place[1:])] = value
+    return result
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda p: p * [-1.0, 1.0], "mirror_y=True"),
+        (lambda p: p * [1.0, -1.0], "mirror_z=True"),
+        (lambda p: p * [-1.0, -1.0], "mirror_z=True; mirror_y=True"),
+        (lambda p: p + BACK, 'shift_y="-70 mm"'),
+        (lambda p: p[:, ::-1], "y and z swapped"),
+        (lambda p: p * 1e-3, "taken in metres"),
+        (lambda p: np.insert(p, 80, p[80], axis=0), "left out line 82"),
+        (lambda p: np.insert(p, 80, p[76], axis=0), "left out line 81"),
+        (lambda p: np.delete(p, np.s_[-25:-10], axis=0), "filled by a straight line"),
+    ],
+)
+def test_repair_does_what_the_errors_suggest_and_lists_it(tmp_path: Path, change: Any, said: str) -> None:
+    points = table()
+    path = saved(tmp_path, "a.csv", rows(change(points), ","))
+    with pytest.raises(wl.DataError):
+        wl.read_profile(path, kind="wheel")
+    with pytest.warns(wl.UnusualWarning) as caught:
+        profile = wl.read_profile(path, kind="wheel", repair=True)
+    assert any(f"repaired: {said}" in str(warning.message) for warning in caught)
+    y, z = (value.magnitude for value in profile.points)
+    # The field side of the tread is a cone, so that a straight line fills its gap within the rounding of the points.
+    assert z == pytest.approx(np.interp(y, *points.T) if (np.diff(points[:, 0]) > 0).all() else z, abs=1e-4)
+    assert values(profile)[[0, -1]] == pytest.approx(points[[0, -1]], abs=1e-4)
+
+
+def test_repair_leaves_points_alone_that_are_in_no_order(tmp_path: Path) -> None:
+    mixed = np.random.default_rng(1).permutation(table())
+    with pytest.raises(wl.DataError, match="runs back on itself"):
+        wl.read_profile(saved(tmp_path, "a.csv", rows(mixed, ",")), kind="wheel", repair=True)
+
+
+@pytest.mark.parametrize("lean", [0.0, 5.0])
+def test_a_straight_side_may_be_given_by_its_ends(tmp_path: Path, lean: float) -> None:
+    points = table(0.5, RAIL)
+    inside = np.abs(points[:, 0]) < 35.9
+    ends = np.array([[-36.0 - lean / 10.0, 30.0]]), np.array([[36.0 + lean / 10.0, 30.0]])
+    given_by_ends = np.concatenate([ends[0], points[inside], ends[1]])
+    curve = wl.read_profile(saved(tmp_path, "a.csv", rows(given_by_ends, ",")), kind="rail").curve
+    for end, inner in ((0, 1), (-1, -2)):
+        low, high = 1e-3 * given_by_ends[end], 1e-3 * given_by_ends[inner]
+        side = (curve.z > high[1] + 1e-3) & (np.sign(curve.y) == np.sign(low[0]))
+        across = (curve.y[side] - high[0]) * (low[1] - high[1]) - (curve.z[side] - high[1]) * (low[0] - high[0])
+        # A cubic spline forgets its bend at the corner by 2 - sqrt(3) a point, at 0.5 mm: 7 % after 1 mm.
+        assert np.abs(across).max() / np.hypot(*(low - high)) < 0.02e-3
+    with pytest.raises(
+        wl.DataError, match=r"has a gap behind it: .* if it is straight there, in a file give repair=True"
+    ):
+        wl.read_profile(saved(tmp_path, "b.csv", rows(np.delete(points, np.s_[60:90], axis=0), ",")), kind="rail")
+
+
+@pytest.mark.parametrize(("angle", "turn"), [(-8.0, "8 deg"), (5.0, "-5 deg")])
+def test_a_rail_that_was_measured_turned_says_by_how_much(tmp_path: Path, angle: float, turn: str) -> None:
+    path = saved(tmp_path, "a.csv", rows(table(0.5, RAIL.turned(Q(angle, "deg"))), ","))
+    with pytest.warns(wl.UnusualWarning, match=f'turn="{turn}"'):
+        wl.read_profile(path, kind="rail")
+    assert wl.read_profile(path, kind="rail", turn=turn).apparent_cant.m_as("deg") == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_roller_may_be_as_narrow_as_5_mm(tmp_path: Path) -> None:
+    y = np.linspace(-2.5, 2.5, 51)
+    points = np.stack([y, 30.0 - np.sqrt(900.0 - y**2)], axis=1)
+    curve = wl.read_profile(saved(tmp_path, "a.csv", rows(points, ",")), kind="rail").curve
+    assert 1.0 / curve.curvature[curve.s.size // 2] == pytest.approx(30e-3, rel=1e-3)
+
+
 # Two columns ---------------------------------------------------------------------------------------------------------
 
 
@@ -260,11 +380,38 @@ def test_two_columns_are_read_as_programs_write_them(
     assert values(found) == pytest.approx(points, abs=1e-5)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "y z\n{}", "Wheel of car 7, worn\n\n{}", "y [mm]\tz [mm]\n{}", "! measured\n# by hand\n{}", "y z angle\n{}",
+        "date 2024\n y  [mm]   z [mm]\n{}",
+    ],
+)  # fmt: skip
+def test_white_space_titles_and_remarks_between_columns(tmp_path: Path, text: str) -> None:
+    points = table()
+    lines = [("\t ", "   ")[index % 2].join(line.split()) for index, line in enumerate(rows(points).splitlines())]
+    lines = [f"{line} 0.5" if "angle" in text else line for line in lines]
+    lines[3] += "  # a remark"
+    lines[4] += " ! another"
+    lines[5] += " the field side"
+    found = wl.read_profile(saved(tmp_path, "a.out", text.format("\n".join(lines))), kind="wheel")
+    assert values(found) == pytest.approx(points, abs=1e-5)
+
+
+def test_a_spreadsheet_is_read(tmp_path: Path) -> None:
+    points = table()
+    path = xlsx(tmp_path / "a.xlsx", [["z [mm]", "y [mm]"], *points[:, ::-1].tolist()])
+    assert values(wl.read_profile(path, kind="wheel")) == pytest.approx(points, abs=1e-12)
+
+
 # Errors --------------------------------------------------------------------------------------------------------------
 
 GOOD = simpack(table())
 COLUMNS = "y,z\n" + rows(table(), ",")
 MEASURED = NEW.format(columns="X,Y", count=len(table()), more="WheelDiameterTaperline=70") + rows(table() + BACK, " ")
+
+PARTS = "[FileInfo]\nProgramVer=2.1\n[Profile1Info]\nColumnDef=X,Y\n[Profile1Points]\n" + rows(table() + BACK)
+PARTS += "\n[Profile2Info]\nColumnDef=Y,X\n[Profile2Points]\n" + rows(table()[::-1, ::-1] + BACK[::-1])
 
 
 @pytest.mark.parametrize(
@@ -283,7 +430,11 @@ MEASURED = NEW.format(columns="X,Y", count=len(table()), more="WheelDiameterTape
         ("a.prw", simpack(np.repeat(table(), 2, axis=0)), r"line 20 \(y = .*\) is the same as .* \(15\d "),
         ("a.prw", simpack(table() * [1.0, -1.0]), r"upside down: .* has line 45 \(y = -54.9832 mm.*mirror_z=True"),
         ("a.whl", MEASURED.replace("X,Y", "X,Z"), "line 6: ColumnDef must name the columns X and Y, got 'X,Z'"),
-        ("a.whl", MEASURED.replace("\n\n", "\n"), "no empty line between its header and its points"),
+        ("a.whl", OLD.replace("\n\n", "\n") + rows(table(), " "), "older MiniProf, must end with an empty line"),
+        ("a.whl", f"{MEASURED}end of it\n", "line 163: a coordinate must be a number, got 'end'"),
+        ("a.mpt", PARTS, r"it has several parts: 1 from line 5, 2 from line \d+; say which to read, as in part=1"),
+        ("a.whe", "WHEELPROFILE\nworn\n", "line 1: 'WHEELPROFILE' is the format of VAMPIRE, .* not read; save two"),
+        ("a.slcs", "0.0 1.0 % offset\n2\n0 0\n1\n 0.0 'a.prr'\n", "line 5: .* list of slices along the track"),
         ("a.whl", "\n".join(MEASURED.splitlines()[:-7]), r"XYPoints says 153 points, but it has 146; is it whole"),
         ("a.whl", MEASURED.replace("=70", "=x"), "wheeldiametertaperline in the header must be a number, got 'x'"),
         ("a.csv", COLUMNS, "does not say whether it is a wheel or a rail; give kind="),
@@ -291,9 +442,9 @@ MEASURED = NEW.format(columns="X,Y", count=len(table()), more="WheelDiameterTape
         ("a.csv", "y,z\n1.0,2\n2.0,\n", "line 3, column 'z': is missing"),
         ("a.csv", "y [kg],z [mm]\n1.0,2.0\n", "kg"),
         ("a.csv", "z\n1.0\n", "line 1: a profile has two columns, y and z, found 1"),
-        ("a.xlsx", b"PK\x03\x04\x14\0\x06\0", "it is a spreadsheet, not text; save its sheet as CSV"),
+        ("a.xlsx", b"PK\x03\x04\x14\0\x06\0", r"is no spreadsheet in \.xlsx \(.*\); save its sheet as CSV"),
         ("a.csv", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "it is a spreadsheet, not text; save its sheet as CSV"),
-        ("a.xlsx", COLUMNS, r"the ending '\.xlsx' is not known; give a file that ends in \.prw, "),
+        ("a.out", COLUMNS, r"the ending '\.out' is not known; if it has two columns, y and z, give kind=\"rail\""),
         ("a.prw", b"\x89PNG\0\0", "it is not text"),
         ("a.csv", b" " * (LARGEST + 1), "it has more than 4 MiB, the most that is read; is it the right"),
     ],

@@ -21,6 +21,9 @@ CROWN, WIDEST_HEAD = 12e-3, 92e-3
 OUTWARDS = 1.0 / 80.0
 """Lean of a rail outwards from which it is doubted: half of the smallest cant in use, 1 in 40 [rad]."""
 
+TILTED = np.radians(4.0)
+"""Lean of a rail inwards from which it is doubted [rad]: a cant of 1 in 20 and 10 mm of side wear."""
+
 FAR = 20e-3
 """Height of a wheel at its taping line that no wear explains [m]."""
 
@@ -76,7 +79,13 @@ def of_shape(kind: Kind, curve: Curve, lean: float) -> Iterator[str]:
         if lean < -OUTWARDS:
             yield (
                 f"the head of the rail leans outwards by {np.degrees(-lean):.3g} deg: its gauge side must be at y < 0;"
-                " if it is mirrored, change the sign of y, in a file by mirror_y=True"
+                " if it is mirrored, change the sign of y, in a file by mirror_y=True; if it was measured turned, turn"
+                f' it, in a file by turn="{np.degrees(lean):.3g} deg"'
+            )
+        elif lean > TILTED:
+            yield (
+                f"the head of the rail leans inwards by {np.degrees(lean):.3g} deg, more than any cant in use; if"
+                f' it was measured turned, turn it, in a file by turn="{np.degrees(lean):.3g} deg"'
             )
     else:
         yield from of_height(curve)

@@ -1,17 +1,18 @@
-"""Files of profiles: Simpack, MiniProf and two columns.
+"""Files of profiles: Simpack, MiniProf, GENSYS and two columns.
 
 All readers return coordinates as wearlaw has them: y outwards, z down.
 """
 
 from __future__ import annotations
 
+import csv
 import io
 import math
 import os
 import re
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 from uuid import uuid4
@@ -27,10 +28,22 @@ LARGEST = 4 * 1024 * 1024
 
 Kind = Literal["wheel", "rail"]
 
-KINDS: dict[str, Kind] = {".prw": "wheel", ".whl": "wheel", ".prr": "rail", ".ban": "rail"}
+KINDS: dict[str, Kind] = {
+    ".prw": "wheel", ".whl": "wheel", ".wheel": "wheel", ".whe": "wheel",
+    ".prr": "rail", ".ban": "rail", ".rail": "rail", ".rai": "rail",
+}  # fmt: skip
 """Kind of profile by the ending of a file."""
-SIMPACK, MINIPROF, COLUMNS = (".prw", ".prr"), (".whl", ".ban"), (".csv", ".txt", ".dat", ".asc", "")
-ENDINGS = (*KINDS, ".csv", ".txt")
+SIMPACK, MINIPROF, GENSYS = (".prw", ".prr"), (".whl", ".ban", ".mpt"), (".wheel", ".rail")
+SPREADSHEET = ".xlsx"
+COLUMNS = (".csv", ".txt", ".dat", ".asc", "", ".whe", ".rai", *GENSYS, SPREADSHEET)
+
+REFUSED = {
+    r"(WHEEL|RAIL)PROFILE\b": "is the format of VAMPIRE, which is not read; save two columns as .csv, y outwards and z"
+    " down",
+    r"""[^'"=%!#]*\d[\s,]+['"][^'"]+\.\w+['"]""": "belongs to a list of slices along the track, which is not read;"
+    " a rail has one profile all along, so give one of the files in the list",
+}  # fmt: skip
+"""Lines of formats that are not read, with the reason."""
 
 
 NUMBERS = (
@@ -41,7 +54,11 @@ NUMBERS = (
 TEXTS = ("file", "file.mtime", "comment", "type", "units.len", "units.ang")
 """Keys of a Simpack file that say where the points are from."""
 
+READ = 40
+"""Lines at the top of a file that show its format."""
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
+HEAD = re.compile(r"[yz]|.*\[.*\]")
+"""The head of a column of coordinates."""
 TAPING = "WheelDiameterTaperline"
 """Key of a MiniProf file for the distance of the taping line from the back of the flange."""
 DIAMETER = "DiameterTaperline"
@@ -57,6 +74,7 @@ class Points:
     """The points of a file [m], outwards and down, each with its line; the kind is that of the content, if any.
 
     The height of points that are `taped` counts from the taping line, wherever that is, and the diameter is there [m].
+    Points that are `scanned` by a hand may run back.
     """
 
     y: Array
@@ -66,29 +84,39 @@ class Points:
     kind: Kind | None
     taped: bool = False
     diameter: float | None = None
+    scanned: bool = False
 
 
 def points_of(
-    path: Path, kind: Kind | None, units: str, sep: str | None = None, decimal: str = "."
+    path: Path, kind: Kind | None, units: str, sep: str | None = None, decimal: str = ".", part: int | None = None
 ) -> tuple[Points, Kind]:
-    """Return the points of a file, and their kind; `kind` and `units` are for what the file does not say.
+    """Return the points of a file, and their kind; `kind`, `units` and `part` are for what the file does not say.
 
     Raises
     ------
     FileError
         If the file is missing, too large, not regular or not text, or if its content is wrong.
     """
-    text = _text_of(path)
-    ending, lines = path.suffix.lower(), text.splitlines()
+    ending = path.suffix.lower()
     by_ending: Kind | None = KINDS.get(ending)
+    text = "" if ending == SPREADSHEET else _text_of(path)
+    lines = text.splitlines()
+    for number, line in enumerate(lines[:READ], 1):
+        for pattern, reason in REFUSED.items():
+            if re.match(pattern, line):
+                raise FileError(f"line {number}: {wl.shown(line.strip()[:40])} {reason}")
     if ending in SIMPACK or any(re.match(r"\s*spline\.begin", line) for line in lines):
         points = _simpack(lines, units)
-    elif ending in MINIPROF or (lines and _is_miniprof(lines)):
-        points = _miniprof(lines, by_ending or kind, units)
-    elif ending in COLUMNS:
-        points = _columns(text, units, sep, decimal)
+    elif ending in MINIPROF or _is_miniprof(lines):
+        points = _miniprof(lines, by_ending or kind, units, part)
+    elif ending in COLUMNS or kind is not None:
+        source = path if ending == SPREADSHEET else io.StringIO(_tabbed(lines, sep, decimal))
+        points = _columns(source, units, decimal)
+        if ending in GENSYS:  # y is positive towards the middle of the track
+            points = replace(points, y=-points.y)
     else:
-        raise FileError(f"the ending {wl.shown(ending)} is not known; give a file that ends in {', '.join(ENDINGS)}")
+        hint = 'if it has two columns, y and z, give kind="rail" or kind="wheel"'
+        raise FileError(f"the ending {wl.shown(ending)} is not known; {hint}")
     sure = kind or by_ending or points.kind
     if sure is None:
         hint = 'give kind="rail", in a case {file = "rail.csv", kind = "rail"}'
@@ -251,40 +279,40 @@ def _spaced(y: Array, z: Array, least: float) -> NDArray[np.bool_]:
 
 
 def _is_miniprof(lines: Sequence[str]) -> bool:
-    return any(re.match(r"\s*#?\s*(MINIPROF|MINIWHEELPROF|ProgramName=|ColumnDef=)", line) for line in lines[:40])
+    marks = r"\s*#?\s*(MINIPROF|MINIWHEELPROF|\[FileInfo\]|ProgramName=|ColumnDef=)"
+    return any(re.match(marks, line) for line in lines[:READ])
 
 
-def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
+def _miniprof(lines: Sequence[str], kind: Kind | None, units: str, part: int | None) -> Points:
     """Return the points of a MiniProf file.
 
-    The header ends with an empty line. In the newer generation it has lines such as Key=Value. X of a wheel is
-    outwards from the back of the flange, and its Y positive towards the flange, so down, from any height. X of a rail
-    is positive towards the gauge side, and its Y positive up.
+    In the newer generation the header has lines such as Key=Value, and in the older one it ends with an empty line.
+    Words behind a point are remarks. X of a wheel is outwards from the back of the flange, and its Y positive towards
+    the flange, so down, from any height. X of a rail is positive towards the gauge side, and its Y positive up.
     """
+    texts = [re.split('[!"%#]', line)[0].strip() for line in lines]
+    low, high = _part(texts, part)
     header: dict[str, str] = {}
-    table, ended = _Table(), False
     columns = ["X", "Y"]
-    for number, raw in enumerate(lines, 1):
-        text = raw.strip()
-        if not text:
-            ended |= number > 1
+    for number, text in enumerate(texts[:high], 1):
+        key, equals, value = (side.strip() for side in text.partition("="))
+        if not equals or NUMBER.match(key):
             continue
-        if text[0] in '!"%#':
-            continue
-        if ended:
-            cells = re.split(r"[\s;]+", re.split("[!%#]", text)[0].strip())
-            last = max(columns.index("X"), columns.index("Y"))
-            table.add(cells, number, last + 1, last + 1)
-            continue
-        key, equals, value = (part.strip() for part in text.partition("="))
-        if equals:
-            header[key.lower()] = value
+        header[key.lower()] = value
+        low = max(low, number)
         if key == "ColumnDef":
             columns = [name.strip() for name in value.split(",")]
             if not {"X", "Y"} <= set(columns):
                 raise FileError(f"line {number}: ColumnDef must name the columns X and Y, got '{value[:40]}'")
-    if not ended:
-        raise FileError("it has no empty line between its header and its points; name two columns alone .txt")
+    if not low and any(re.search("MINI(WHEEL)?PROF", line) for line in lines[:READ]):
+        low = next((number for number, line in enumerate(lines) if number and not line.strip()), 0)
+        if not low:
+            raise FileError("its header, of an older MiniProf, must end with an empty line; put one before the points")
+    table, last = _Table(), max(columns.index("X"), columns.index("Y"))
+    for number, text in enumerate(texts[low:high], low + 1):
+        if text:
+            cells = re.split(r"[\s;]+|,(?=.*\.)", text)
+            table.add([cell for cell in cells if cell], number, last + 1, last + 1)
     values, rows = table.columns()
     x, y = values[columns.index("X")], values[columns.index("Y")]
     offset = {}
@@ -292,26 +320,73 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str) -> Points:
         text = header.get(key, "")
         offset[key] = _number(text, 1, f"{key} in the header") if text else 0.0
     told = header.get("xypoints", "")
-    if told.isdigit() and sum(_is_point(line) for line in lines) < int(told):
-        raise FileError(f"XYPoints says {told} points, but it has {x.size}; is it whole?")
+    count = sum(_is_point(line) for line in lines[low:high])
+    if told.isdigit() and count < int(told):
+        raise FileError(f"XYPoints says {told} points, but it has {count}; is it whole?")
     factor = _factor(units)
     x, y = factor * (x + offset["xoffset"]), factor * (y + offset["yoffset"])
     if kind == "wheel":
         diameter = factor * offset[DIAMETER.lower()] or None
-        return Points(x - factor * offset[TAPING.lower()], y, None, rows, None, taped=True, diameter=diameter)
-    return Points(-x, -y, None, rows, None)
+        x, taped = x - factor * offset[TAPING.lower()], True
+        return Points(x, y, None, rows, None, taped=taped, diameter=diameter, scanned=True)
+    return Points(-x, -y, None, rows, None, scanned=True)
+
+
+def _part(texts: Sequence[str], part: int | None) -> tuple[int, int]:
+    """Return the lines between which the points of a part lie, in a file with several such as [Profile1Points]."""
+    starts = [number for number, text in enumerate(texts, 1) if re.fullmatch(r"\[Profile\w*Points\]", text)]
+    if part is None and len(starts) > 1:
+        places = ", ".join(f"{number} from line {start}" for number, start in enumerate(starts, 1))
+        raise FileError(f"it has several parts: {places}; say which to read, as in part=1")
+    if not starts and part is None:
+        return 0, len(texts)
+    if part is not None and not 1 <= part <= len(starts):
+        raise FileError(
+            f"part must be from 1 to {len(starts)}, got {part}" if starts else "it has no parts; leave out part"
+        )
+    start = starts[(part or 1) - 1]
+    ends = (number for number, text in enumerate(texts) if number >= start and text.startswith("["))
+    return start, next(ends, len(texts))
 
 
 def _is_point(line: str) -> bool:
-    """Return whether a line holds numbers, commented out or not."""
-    cells = re.split("[!%#]", line.strip().lstrip('!"%#'))[0].split()
-    return len(cells) > 1 and all(NUMBER.fullmatch(cell) for cell in cells)
+    """Return whether a line holds numbers, commented out or not, before any remark."""
+    cells = line.strip().lstrip('!"%#').split()
+    return len(cells) > 1 and all(NUMBER.fullmatch(cell.rstrip(",;")) for cell in cells[:2])
 
 
-def _columns(text: str, units: str, sep: str | None, decimal: str) -> Points:
+def _tabbed(lines: Sequence[str], sep: str | None, decimal: str) -> str:
+    """Return the lines of columns with tabs between the cells, without remarks and titles."""
+    texts = [re.split("[!#]", line)[0].strip() for line in lines]
+    if sep is None:
+        points = [text for text in texts if NUMBER.match(text)] or texts
+        sep = next((mark for mark in ";,".replace(decimal, "") if any(mark in text for text in points)), " ")
+
+    def cells_of(text: str) -> list[str]:
+        if sep == " ":
+            return re.findall(r'[^\s"\[]+(?:\s*\[[^\]]*\])?', text)
+        return [" ".join(cell.split()) for cell in next(csv.reader([text], delimiter=sep, skipinitialspace=True), [])]
+
+    def are_numbers(cells: Sequence[str]) -> list[bool]:
+        return [bool(NUMBER.fullmatch(cell.replace(decimal, "."))) for cell in cells]
+
+    rows, width = [], 0
+    for cells in map(cells_of, texts):
+        if not width and cells and not are_numbers(cells[:1])[0]:  # a header or a title
+            names = [HEAD.fullmatch(cell.lower()) for cell in cells]
+            cells = cells if any(names) else []
+            width = len(cells)
+        elif cells:
+            width = width or 2
+            cells = cells[:width] if all(are_numbers(cells[:2])) else cells
+        rows.append("\t".join(cells))
+    return "\n".join(rows)
+
+
+def _columns(source: Path | io.StringIO, units: str, decimal: str) -> Points:
     """Return the points of two columns, y outwards and z down, with a header or without."""
     try:
-        table = wl.read_table(io.StringIO(text), sep=sep, decimal=decimal)
+        table = wl.read_table(source, decimal=decimal)
         named = {name.lower(): column for name, column in table.columns.items()}
         columns = [named["y"], named["z"]] if {"y", "z"} <= named.keys() else list(named.values())[:2]
         if len(columns) < 2:
@@ -323,7 +398,8 @@ def _columns(text: str, units: str, sep: str | None, decimal: str) -> Points:
             for row in np.flatnonzero(np.isnan(values))[:1]:
                 raise FileError(f"{table.where(int(row), column.name)}: is missing")
     except wl.DataError as error:
-        raise FileError("; ".join(error.problems[:3]) or "it has no points") from None
+        subject = str(error) if isinstance(source, Path) else "it has no points"
+        raise FileError("; ".join(error.problems[:3]) or subject) from None
     if not y.size:
         raise FileError("it has no points")
     return Points(y, z, None, table.lines, None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,8 @@ LEAST_STEP = 1e-9
 """Distance below which two points are the same [m]."""
 LONGEST_STEP, TIMES_MEDIAN = 5e-3, 10.0
 """A step that is longer [m], and longer than so many times the median one, is a gap."""
+LOOP = 0.1
+"""Greatest share of the points in a loop that may be left out."""
 SHARPEST = 150.0
 """Turn at a point beyond which the profile runs back on itself [deg]."""
 NARROWEST, WIDEST = 5e-3, 300e-3
@@ -24,12 +27,34 @@ CLEAR = 5e-3
 """Height by which a profile must stand out to show which way up it is, or on which side its flange is [m]."""
 TIP = 1e-3
 """Height by which the top of a flange stands above both ends of the profile [m]."""
+UPRIGHT = np.radians(80.0)
+"""Slope from which a side is too steep to touch [rad], so that two points are enough for a straight one."""
+BACK = 5e-3
+"""Distance from y = 0 up to which the end of a wheel's profile is taken for the back of its flange [m]."""
 BLOCK = 64
 """Steps in a block whose bounding box is compared with those of others."""
 
 
 Name = Callable[[int], str]
 """Returns the name of a point in messages from its index."""
+
+
+class Repair(NamedTuple):
+    """How to mend points: leave some out, change coordinates by a matrix and a shift [m], or fill gaps straight."""
+
+    text: str
+    leave_out: NDArray[np.intp] = np.empty(0, dtype=np.intp)
+    matrix: tuple[tuple[float, float], tuple[float, float]] = ((1.0, 0.0), (0.0, 1.0))
+    shift_y: float = 0.0
+    fill: bool = False
+
+
+class PointsError(wl.InputError):
+    """Points make no profile; `repair` does what the message suggests, if that is clear."""
+
+    def __init__(self, message: str, repair: Repair | None = None) -> None:
+        super().__init__(message)
+        self.repair = repair
 
 
 def check_points(y: Array, z: Array, name: Name) -> None:
@@ -45,15 +70,22 @@ def check_points(y: Array, z: Array, name: Name) -> None:
         raise wl.InputError(f"y and z must have the same number of values, got {y.size} and {z.size}")
     if not FEWEST <= y.size <= MOST:
         raise wl.InputError(f"a profile needs {FEWEST} to {MOST} points, got {y.size}")
-    _refuse(~(np.isfinite(y) & np.isfinite(z)), y, z, name, "is not finite", "leave it out")
+    infinite = ~(np.isfinite(y) & np.isfinite(z))
+    _refuse(infinite, y, z, name, "is not finite", "leave it out", _without(infinite))
     with np.errstate(over="ignore"):  # an infinite extent is refused
         width, height = y.max() - y.min(), z.max() - z.min()
     if not NARROWEST <= width <= WIDEST:
-        hint = "; were they in metres? Give their unit" if width < WIDEST * 1e-3 else ""
-        hint = "; is their unit right?" if width > WIDEST else hint
-        hint = "; are y and z swapped?" if width < NARROWEST <= height <= WIDEST else hint
-        raise wl.InputError(
-            f"the points are {_mm(width)} wide, but a profile has {1e3 * NARROWEST:g} to {1e3 * WIDEST:g} mm{hint}"
+        hint, repair = "", None
+        if width < NARROWEST <= height <= WIDEST:
+            hint, repair = "; are y and z swapped?", Repair("y and z swapped", matrix=((0.0, 1.0), (1.0, 0.0)))
+        elif width < WIDEST * 1e-3:
+            hint = "; were they in metres? Give their unit"
+            repair = Repair("taken in metres", matrix=((1e3, 0.0), (0.0, 1e3)))
+        elif width > WIDEST:
+            hint = "; is their unit right?"
+        raise PointsError(
+            f"the points are {_mm(width)} wide, but a profile has {1e3 * NARROWEST:g} to {1e3 * WIDEST:g} mm{hint}",
+            repair,
         )
     if height > WIDEST:
         raise wl.InputError(
@@ -61,29 +93,61 @@ def check_points(y: Array, z: Array, name: Name) -> None:
         )
     step_y, step_z = np.diff(y), np.diff(z)
     step = np.hypot(step_y, step_z)
-    _refuse(np.append(False, step < LEAST_STEP), y, z, name, "is the same as the point before", "leave one of them out")
+    same = np.append(False, step < LEAST_STEP)
+    _refuse(same, y, z, name, "is the same as the point before", "leave one of them out", _without(same))
     cross = step_y[:-1] * step_z[1:] - step_z[:-1] * step_y[1:]
     turn = np.abs(np.arctan2(cross, step_y[:-1] * step_y[1:] + step_z[:-1] * step_z[1:]))
     back = np.zeros(y.size, dtype=np.bool_)
     back[1:-1] = turn > np.deg2rad(SHARPEST)
-    _refuse(back, y, z, name, "is where the profile runs back on itself", "put the points in their order")
+    advice = "put the points in their order, or leave out those that run back, in a file by repair=True"
+    _refuse(back, y, z, name, "is where the profile runs back on itself", advice, _shorter(back, y, z))
+    gaps = _gaps(y, z)
     longest = max(LONGEST_STEP, TIMES_MEDIAN * float(np.median(step)))
     _refuse(
-        np.append(step > longest, False),
+        np.append(gaps & ~_upright(y, z), False),
         y,
         z,
         name,
         f"has a gap behind it: the next point is {_mm(step.max())} away, the median distance is"
         f" {_mm(float(np.median(step)))}",
-        f"add points, so that no two are further apart than {_mm(longest)}, or cut the profile there",
+        f"add points, so that no two are further apart than {_mm(longest)}, or cut the profile there; if it is straight"
+        " there, in a file give repair=True",
+        Repair("filled by a straight line", fill=True),
     )
     crossing = crossed_steps(y, z)
     if crossing is not None:
         first, second = crossing
-        raise wl.InputError(
+        loop = np.arange(first + 1, second + 1)
+        raise PointsError(
             f"the profile crosses itself: the line behind {point(first, y, z, name)} meets that behind"
-            f" {point(second, y, z, name)}; leave out the points of the loop, or put all points in their order"
+            f" {point(second, y, z, name)}; leave out the points of the loop, or put all points in their order",
+            Repair("left out", loop) if loop.size <= LOOP * y.size else None,
         )
+
+
+def _gaps(y: Array, z: Array) -> NDArray[np.bool_]:
+    """Return which steps between points are gaps."""
+    step = np.hypot(np.diff(y), np.diff(z))
+    return step > max(LONGEST_STEP, TIMES_MEDIAN * float(np.median(step)))
+
+
+def _upright(y: Array, z: Array) -> NDArray[np.bool_]:
+    """Return which steps are too steep to touch, or undercut."""
+    along = np.diff(y) * (1.0 if y[-1] >= y[0] else -1.0)
+    upright: NDArray[np.bool_] = along < np.cos(UPRIGHT) * np.hypot(np.diff(y), np.diff(z))
+    return upright
+
+
+def filled(y: Array, z: Array, *more: Array, every: bool = False) -> tuple[Array, ...]:
+    """Return points [m], and more values of them, with points on the straight sides that are given by their ends.
+
+    With `every` all gaps are filled, otherwise those that are too steep to touch.
+    """
+    gaps = _gaps(y, z) if every else _gaps(y, z) & _upright(y, z)
+    step = np.hypot(np.diff(y), np.diff(z))
+    count = np.where(gaps, np.ceil(step / np.median(step)), 1.0)
+    place = np.append(0.0, np.cumsum(count))
+    return tuple(np.interp(np.arange(place[-1] + 1.0), place, value) for value in (y, z, *more))
 
 
 def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
@@ -95,9 +159,10 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
         If y and z are swapped, or if the profile stands out from its median height by more than 5 mm to the wrong side.
     """
     if swapped(kind, y, z):
-        raise wl.InputError(
+        raise PointsError(
             f"the {kind} lies on its side: it is {_mm(float(np.ptp(y)))} wide and {_mm(float(np.ptp(z)))} high; are y"
-            " and z swapped? y goes across the track and comes first in a file, unless its columns are named"
+            " and z swapped? y goes across the track and comes first in a file, unless its columns are named",
+            Repair("y and z swapped", matrix=((0.0, 1.0), (1.0, 0.0))),
         )
     order = np.argsort(y)
     across = np.linspace(y.min(), y.max(), 201)
@@ -109,22 +174,25 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
     if up > max(down, CLEAR) and at_end == (kind == "rail"):
         part = "flange" if kind == "wheel" else "side"
         place = int(np.argmin(z))
-        raise wl.InputError(
+        raise PointsError(
             f"the {kind} is upside down: z is positive down, but its {part} has {point(place, y, z, name)}, above its"
-            f" median height of {_mm(level)}; change the sign of z, in a file by mirror_z=True"
+            f" median height of {_mm(level)}; change the sign of z, in a file by mirror_z=True",
+            Repair("mirror_z=True", matrix=((1.0, 0.0), (0.0, -1.0))),
         )
     place = int(np.argmax(z))
     if kind != "wheel" or down <= CLEAR or y[place] < 0.0:
         return
     flange = point(place, y, z, name)
     if y[place] > 0.5 * (y.min() + y.max()):
-        raise wl.InputError(
+        raise PointsError(
             f"the wheel is mirrored: its flange must be at y < 0, but has {flange}; change the sign of y, in a file by"
-            " mirror_y=True. A left wheel has the same profile as a right one"
+            " mirror_y=True. A left wheel has the same profile as a right one",
+            Repair("mirror_y=True", matrix=((-1.0, 0.0), (0.0, 1.0))),
         )
-    raise wl.InputError(
+    raise PointsError(
         f"the wheel must have its origin at the taping line, with the flange at y < 0, but its flange has {flange};"
-        ' shift it, in a file by shift_y, such as shift_y="-70 mm" if y = 0 is the back of the flange'
+        ' shift it, in a file by shift_y, such as shift_y="-70 mm" if y = 0 is the back of the flange',
+        Repair('shift_y="-70 mm"', shift_y=-70e-3) if abs(y.min()) < BACK else None,
     )
 
 
@@ -183,11 +251,32 @@ def _cross(y: Array, z: Array, first: NDArray[np.intp], second: NDArray[np.intp]
     return crosses
 
 
-def _refuse(wrong: NDArray[np.bool_], y: Array, z: Array, name: Name, what: str, fix: str) -> None:
+def _refuse(
+    wrong: NDArray[np.bool_], y: Array, z: Array, name: Name, what: str, fix: str, repair: Repair | None
+) -> None:
     places = np.flatnonzero(wrong)
     if places.size:
         more = f" ({places.size} points in all)" if places.size > 1 else ""
-        raise wl.InputError(f"{point(int(places[0]), y, z, name)} {what}{more}; {fix}")
+        raise PointsError(f"{point(int(places[0]), y, z, name)} {what}{more}; {fix}", repair)
+
+
+def _without(wrong: NDArray[np.bool_]) -> Repair:
+    return Repair("left out", np.flatnonzero(wrong))
+
+
+def _shorter(back: NDArray[np.bool_], y: Array, z: Array) -> Repair | None:
+    """Return the repair of the first place at which a profile runs back: without the point there, or the next one.
+
+    The line is shorter without the one that is wrong.
+    """
+    if not back.any():
+        return None
+    first = int(back.argmax())
+
+    def length(without: int) -> float:
+        return float(np.hypot(np.diff(np.delete(y, without)), np.diff(np.delete(z, without))).sum())
+
+    return Repair("left out", np.array([min(first, first + 1, key=length)]))
 
 
 def point(index: int, y: Array, z: Array, name: Name) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from difflib import get_close_matches
 from functools import cache, cached_property
 from pathlib import Path
@@ -28,8 +29,9 @@ from wearlaw_models.rigs.wheelset.curve import Curve, joined, through_points
 from wearlaw_models.rigs.wheelset.files import Kind, points_of, write_points
 from wearlaw_models.rigs.wheelset.formulas import FORMULAS
 from wearlaw_models.rigs.wheelset.measures import depth_between, flange, hollow
-from wearlaw_models.rigs.wheelset.points import check_orientation, check_points, point
+from wearlaw_models.rigs.wheelset.points import check_orientation, check_points, filled, point
 from wearlaw_models.rigs.wheelset.reach import without_spots
+from wearlaw_models.rigs.wheelset.repairs import repaired
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -318,11 +320,11 @@ class Profile(wl.Configuration):
     def _through(self, keep: slice | NDArray[np.bool_]) -> Curve:
         """Return the curve of the points to keep."""
         y, z = (value[keep] for value in self._unmoved)
-        weights = None if self.weights is None else np.array(self.weights)[keep]
         way = slice(None, None, -1 if y[-1] < y[0] else 1)
+        weights = np.ones(y.size) if self.weights is None else np.array(self.weights)[keep]
+        y, z, weights = filled(y[way], z[way], weights[way])
         smoothing = wl.scalar_si(self.smoothing, "m")
-        weights = None if weights is None else weights[way]
-        return self._in_place(through_points(y[way], z[way], smoothing, weights, CONVEX[self.kind]))
+        return self._in_place(through_points(y, z, smoothing, weights, CONVEX[self.kind]))
 
     def _in_place(self, base: Curve) -> Curve:
         """Return a curve after the mirror, the turn and the shifts."""
@@ -603,11 +605,14 @@ class _File(wl.Configuration):
     units: str = "mm"
     sep: str | None = None
     decimal: str = "."
+    part: int | None = None
     mirror_y: Annotated[bool, Field(strict=True)] = False
     mirror_z: Annotated[bool, Field(strict=True)] = False
+    turn: Angle = Field(default="0 deg", validate_default=True)
     shift_y: Shift = Field(default="0 mm", validate_default=True)
     shift_z: Shift = Field(default="0 mm", validate_default=True)
     smoothing: Shift = Field(default="0 mm", validate_default=True)
+    repair: Annotated[bool, Field(strict=True)] = False
 
     def fields(self) -> dict[str, Any]:
         """Return the fields of the profile in the file."""
@@ -628,15 +633,19 @@ def read_profile(
     units: str = "mm",
     sep: str | None = None,
     decimal: str = ".",
+    part: int | None = None,
     mirror_y: bool = False,
     mirror_z: bool = False,
+    turn: wl.QuantityLike = "0 deg",
     shift_y: wl.QuantityLike = "0 mm",
     shift_z: wl.QuantityLike = "0 mm",
     smoothing: wl.QuantityLike = "0 mm",
+    repair: bool = False,
 ) -> Profile:
     """Return the profile of a file.
 
-    The ending gives the format: .prr and .prw of Simpack, .ban and .whl of MiniProf, or else two columns, y and z.
+    The ending or the first lines give the format: Simpack (.prr, .prw), MiniProf (.ban, .whl, .mpt), GENSYS (.rail,
+    .wheel), a spreadsheet (.xlsx), or else two columns, y and z.
 
     Parameters
     ----------
@@ -647,13 +656,20 @@ def read_profile(
     units : str
         Unit of length in the file, if the file does not give it.
     sep, decimal : str, optional
-        Of two columns: what separates the cells, and the decimal mark, as in `wearlaw.read_table`.
+        Of two columns: what separates the cells, by default semicolons, commas or any white space; the decimal mark.
+    part : int, optional
+        Which part of a MiniProf file with several to read, from 1.
     mirror_y, mirror_z : bool
         Whether to change the sign of y or z.
+    turn : Quantity or str
+        Turn about the origin, from y to z, after the mirrors.
     shift_y, shift_z : Quantity or str
-        Shift outwards and down, after the mirrors.
+        Shift outwards and down, after the mirrors and the turn.
     smoothing : Quantity or str
         Root mean square distance of the points from the curve; see `Profile.from_points`.
+    repair : bool
+        Whether to do what errors about the points suggest: leave points out, swap or mirror coordinates, shift a wheel
+        to its taping line, or fill a gap by a straight line. A warning lists what was done.
 
     Raises
     ------
@@ -661,15 +677,22 @@ def read_profile(
         If the file cannot be read, or does not hold a profile. The message names the file and the line.
     """
     try:
-        points, told = points_of(Path(path), kind, units, sep, decimal)
+        points, told = points_of(Path(path), kind, units, sep, decimal, part)
         length = wl.Unit("mm", positive=False)
-        y = (-1.0 if mirror_y else 1.0) * points.y + float(length.si(shift_y, "shift_y"))
-        z = (-1.0 if mirror_z else 1.0) * points.z
+        y, z = (-points.y if mirror_y else points.y), (-points.z if mirror_z else points.z)
+        angle = float(wl.Unit("deg", positive=False).si(turn, "turn"))
+        if angle:
+            y, z = np.cos(angle) * y - np.sin(angle) * z, np.sin(angle) * y + np.cos(angle) * z
+        y = y + float(length.si(shift_y, "shift_y"))
+        points, mended = repaired(replace(points, y=y, z=z), told, repair)
+        if mended:
+            doubts.warn(f"profile {wl.shown(path)}, repaired: {'; '.join(mended)}")
+        y, z = points.y, points.z
         if points.taped and y.min() <= 0.0 <= y.max():
-            check_points(y, z, lambda index: f"line {points.lines[index]}")
             way = slice(None, None, -1 if y[-1] < y[0] else 1)
+            across, down = filled(y[way], z[way])
             width = float(length.si(smoothing, "smoothing"))
-            z = z - float(through_points(y[way], z[way], width, None, CONVEX[told]).at(0.0)[1])
+            z = z - float(through_points(across, down, width, None, CONVEX[told]).at(0.0)[1])
         z = z + float(length.si(shift_z, "shift_z"))
         fields = _Fields(kind=told, y=wl.Q(1e3 * y, "mm"), z=wl.Q(1e3 * z, "mm"), smoothing=smoothing)
         if points.weights is not None:
