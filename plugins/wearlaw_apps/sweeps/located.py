@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
+
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import DataError, InputError
 from wearlaw.units.variables import VARIABLES
@@ -44,10 +46,10 @@ def _located(
     """Return the error for the first row that is wrong by itself, found by halving."""
 
     def fault(start: int, stop: int, single: bool = False) -> InputError | None:
-        part = points.part([slice(start, stop)])
+        part = points.part([slice(start, stop), *(slice(None) for _ in points.dims[1:])])
         conditions = part.conditions()
-        if single:
-            conditions |= {name: axis.given(float(axis.values[0])) for name, axis in part.varying.items()}
+        if single and part.size == 1:
+            conditions |= {name: axis.given(float(axis.values.flat[0])) for name, axis in part.varying.items()}
         try:
             pose(conditions)
         except InputError as wrong:
@@ -64,7 +66,10 @@ def _located(
     message = str(first)
     name = next((name for name in points.varying if message.startswith(f"{name}: ")), None)
     if name is None:
-        values = (f"{key} = {axis.values[low]:.4g} {axis.unit or ''}".rstrip() for key, axis in points.varying.items())
+        values = (
+            f"{key} = {'/'.join(f'{value:.4g}' for value in np.ravel(axis.values[low]))} {axis.unit or ''}".rstrip()
+            for key, axis in points.varying.items()
+        )
         return DataError(f"{table.label}, {table.where(numbers[low])} ({', '.join(values)}): {message}")
     if low == 0 and type(table) is Table and fault(len(numbers) - 1, len(numbers), single=True):
         return error  # in memory, and wrong from end to end

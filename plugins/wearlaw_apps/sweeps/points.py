@@ -6,6 +6,7 @@ evaluated.
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 import os
@@ -34,28 +35,42 @@ BLOCK = 100_000
 
 @dataclass(frozen=True, eq=False)
 class Varying:
-    """A condition that varies along one dimension of the operating points.
+    """A condition that varies along a dimension of the operating points, and maybe along inner ones.
 
     Attributes
     ----------
     dim : str
         The dimension.
-    values : ndarray, (size of the dimension,)
+    values : ndarray, (size of the dimension, sizes of the inner ones)
         The values; `OnDisk` if they are too many for memory.
     unit : str or None
         Their unit; None for plain numbers.
     origin : str
         The column and the file from which they come, "" if none.
+    inner : tuple of str
+        Further dimensions, such as the wheels of a row of a table.
     """
 
     dim: str
     values: Array
     unit: str | None
     origin: str = ""
+    inner: tuple[str, ...] = ()
 
-    def __getitem__(self, part: slice) -> Varying:
-        """Return some of the values."""
-        return Varying(self.dim, self.values[part], self.unit, self.origin)
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """All its dimensions."""
+        return (self.dim, *self.inner)
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Number of values along each of its dimensions."""
+        return dict(zip(self.dims, self.values.shape, strict=True))
+
+    def part(self, by_dim: Mapping[str, slice]) -> Varying:
+        """Return some of the values, by the slices along their dimensions."""
+        values = self.values[tuple(by_dim[dim] for dim in self.dims)]
+        return dataclasses.replace(self, values=np.ascontiguousarray(values))
 
     @property
     def on_disk(self) -> bool:
@@ -74,17 +89,19 @@ class OnDisk:
     ----------
     file : binary file
         It holds nothing but the numbers, as float64, at least one.
+    inner : tuple of int
+        Sizes of the inner dimensions.
     """
 
-    def __init__(self, file: IO[bytes]) -> None:
+    def __init__(self, file: IO[bytes], inner: tuple[int, ...] = ()) -> None:
         file.flush()
         self._file = file
         self.size = os.fstat(file.fileno()).st_size // ITEM
-        self.shape = (self.size,)
+        self.shape = (self.size // math.prod(inner), *inner)
 
-    def __getitem__(self, part: slice) -> Array:
+    def __getitem__(self, part: slice | tuple[slice, ...]) -> Array:
         """Return some of the numbers."""
-        return np.array(np.memmap(self._file, np.float64, "r")[part])
+        return np.array(np.memmap(self._file, np.float64, "r", shape=self.shape)[part])
 
 
 @dataclass(frozen=True)
@@ -122,7 +139,8 @@ class Points:
     fixed : mapping of str to object
         Conditions that are the same at all points, as given.
     varying : mapping of str to Varying
-        Other conditions. Those along one dimension vary together; different dimensions are combined.
+        Other conditions. Those along one dimension vary together; different dimensions are combined. The inner
+        dimensions of all conditions have one order.
     rows : mapping of str to object
         Labels of a table's rows, by their dimension.
     kept : mapping of str to Varying
@@ -147,7 +165,9 @@ class Points:
     @cached_property
     def sizes(self) -> dict[str, int]:
         """Number of values along each dimension."""
-        return {axis.dim: axis.values.size for axis in self.varying.values()}
+        return {
+            dim: size for axis in self.varying.values() for dim, size in zip(axis.dims, axis.values.shape, strict=True)
+        }
 
     @property
     def dims(self) -> tuple[str, ...]:
@@ -185,8 +205,8 @@ class Points:
     def part(self, slices: Iterable[slice]) -> Points:
         """Return the points of a block."""
         by_dim = dict(zip(self.dims, slices, strict=True))
-        varying = {name: axis[by_dim[axis.dim]] for name, axis in self.varying.items()}
-        kept = {name: axis[by_dim[axis.dim]] for name, axis in self.kept.items()}
+        varying = {name: axis.part(by_dim) for name, axis in self.varying.items()}
+        kept = {name: axis.part(by_dim) for name, axis in self.kept.items()}
         numbers = None if self.numbers is None else self.numbers[by_dim[self.dims[0]]]
         return Points(self.fixed, varying, kept=kept, file=self.file, numbers=numbers)
 
@@ -200,7 +220,7 @@ class Points:
         return {**self.fixed, **laid_out}
 
     def _laid_out(self, axis: Varying) -> Array:
-        shape = [-1 if dim == axis.dim else 1 for dim in self.dims]
+        shape = [axis.sizes.get(dim, 1) for dim in self.dims]
         return np.broadcast_to(axis.values.reshape(shape), self.shape).reshape(-1)
 
 

@@ -59,15 +59,15 @@ def _text(value: object) -> str:
 
 def _summary(column: Varying) -> str:
     origin = f", {column.origin}" if column.origin else ""
-    return digest(column.values, column.unit, f", along {column.dim}{origin}")
+    return digest(column.values, column.unit, f", along {' and '.join(column.dims)}{origin}")
 
 
 def digest(values: Array, unit: str | None, more: str = "") -> str:
     """Return what tells numbers from others: their count, ends and hash."""
     hashed = hashlib.sha256()
-    for start in range(0, values.size, BLOCK):
+    for start in range(0, values.shape[0], BLOCK):
         hashed.update(values[start : start + BLOCK].data)
-    first, last = (float(values[part][0]) for part in (slice(1), slice(-1, None)))
+    first, last = (float(values[part].flat[place]) for part, place in ((slice(1), 0), (slice(-1, None), -1)))
     ends = f"{first:g} to {last:g} {unit or ''}".rstrip()
     return f"{values.size} values, {ends}{more}, SHA-256 {hashed.hexdigest()[:16]}"
 

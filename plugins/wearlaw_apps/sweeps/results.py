@@ -110,7 +110,7 @@ def dataset(points: Points, variables: Mapping[str, Array], job: Job, attrs: Map
     coordinates: dict[str, Any] = {**points.rows, **labels_of(job)}
     for name, condition in points.coordinates().items():
         if not condition.on_disk:
-            coordinates[name] = (condition.dim, condition.values, described(name, condition.unit))
+            coordinates[name] = (condition.dims, condition.values, described(name, condition.unit))
     fixed = {name: Known.of(value) for name, value in points.fixed.items()}
     coordinates |= {
         name: ((), float(condition.values), described(name, condition.unit))

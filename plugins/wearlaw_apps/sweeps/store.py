@@ -84,8 +84,9 @@ class Store(Target):
         """Write a coordinate that is too large for memory, piece by piece."""
         step = dict(zip(self.points.dims, self.points.block_shape, strict=True))[column.dim]
         group = zarr.open_group(self.store, mode="r+", zarr_format=3)
-        array = _add_array(group, name, column.values.shape, (step,), (column.dim,), described(name, column.unit))
-        for start in range(0, column.values.size, step):
+        shape = column.values.shape
+        array = _add_array(group, name, shape, (step, *shape[1:]), column.dims, described(name, column.unit))
+        for start in range(0, shape[0], step):
             array[start : start + step] = column.values[start : start + step]
         if name != column.dim:  # as xarray tells coordinates from variables
             group.attrs["coordinates"] = f"{group.attrs.get('coordinates', '')} {name}".strip()

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import os
+import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from difflib import get_close_matches
 from pathlib import Path
-from typing import IO, Any, cast
+from typing import IO, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -20,10 +22,13 @@ from wearlaw.units.variables import VARIABLES
 from wearlaw_apps.sweeps.located import advice
 from wearlaw_apps.sweeps.points import OnDisk, Points, Varying, split
 from wearlaw_apps.sweeps.wear_profile import SHARE, check_shares
-from wearlaw_apps.tables import Column, Table, open_table
+from wearlaw_apps.tables import LISTED, Column, Table, named_column, open_table
 
 Columns = Mapping[str, str]
 """The columns of a table by the names that they get, as in {"normal_force": "-Fz [N]"}."""
+
+PLACE = re.compile(r"\{([A-Za-z_]\w*)\}")
+"""A place in the pattern of columns for the label of a wheel or a contact."""
 
 MISSPELT = 0.8
 """Likeness to the name of a condition from which a column is taken for a misspelt condition, by difflib's ratio."""
@@ -68,12 +73,18 @@ def operating_points(
     for name in arrays:
         raise DataError(f"{name}: beside a table it must be one value; add it to the table as a column")
     table = open_table(source, **as_csv)
+    patterns, labels = _patterns(table, {**(keep or {}), **(columns or {})})
+    if labels and summed:
+        raise DataError(f"{table.label}: the rows are summed, so that a column must have one name, without {{...}}")
+    first = {name: pattern.texts[0] for name, pattern in patterns.items()}
+    keep, columns = (some and {name: first.get(name, text) for name, text in some.items()} for some in (keep, columns))
     kept, varying = _chosen(table, columns, keep, predict.rig if ignoring else None)
     for name in varying:
         if name in fixed or name in kept:
             raise DataError(f"{table.label}: {name} is given twice; keep one")
     if not varying:
-        raise DataError(f"{table.label}: none of its columns is a condition; name them in columns={{...}}")
+        advice = f"name them in columns={{...}}. {table.as_read()}".rstrip(". ")
+        raise DataError(f"{table.label}: none of its columns is a condition; {advice}")
     try:
         predict.rig.check_names({**fixed, **varying})
     except ConditionsError as error:
@@ -83,28 +94,82 @@ def operating_points(
         raise ConditionsError(f"{table.label}, column '{varying[name].head}': {error}") from None
     file = isinstance(source, str | os.PathLike)
     origin = f" of {Path(source).name}" if file else ""
-    every = [*kept.values(), *varying.values()]
+    every = {name: [column] for name, column in {**kept, **varying}.items()}
+    for name, pattern in patterns.items():
+        every[name] = [table.select({name: text})[name] for text in pattern.texts]
+        if len(units := {column.unit for column in every[name]}) > 1:
+            raise DataError(f"{table.label}: {name}: the columns '{pattern.text}' have the units {units}; keep one")
     with ExitStack() as stack:
         beside = Path(tempfile.gettempdir()) if store is None else Path(store).parent
         on_disk = file and (summed or store is not None)
-        collected = _read(table, every, kept, _files(beside, len(every), stack) if on_disk else None)
-        axes = {
-            column.name: Varying(
-                table.dim, values, column.unit, file * f"{'-' * (column.sign < 0)}{column.head}{origin}"
-            )
-            for column, values in zip(every, collected, strict=True)
-        }
+        inner = {name: patterns[name].dims if name in patterns else () for name in every}
+        shapes = [tuple(len(labels[dim]) for dim in dims) for dims in inner.values()]
+        collected = _read(table, every, shapes, kept, _files(beside, len(every), stack) if on_disk else None)
+        axes = {}
+        for (name, (column, *_)), values in zip(every.items(), collected, strict=True):
+            text = patterns[name].text if name in patterns else "-" * (column.sign < 0) + column.head
+            axes[name] = Varying(table.dim, values, column.unit, file * f"{text}{origin}", inner[name])
         points = Points(
             fixed,
             {name: axes[name] for name in varying},
-            {dim: labels for dim, labels in table.labels.items() if dim == table.dim},
+            {dim: rows for dim, rows in table.labels.items() if dim == table.dim}
+            | {dim: (dim, np.array(some, dtype=object)) for dim, some in labels.items()},
             kept={name: axes[name] for name in kept},
             file=table if file else Table(table.label),
-            numbers=range(axes[next(iter(varying))].values.size),
+            numbers=range(axes[next(iter(varying))].values.shape[0]),
         )
         if summed and keep is not None:
             check_shares(points, keep[SHARE])
         yield points
+
+
+class Pattern(NamedTuple):
+    """Columns that differ by the wheel or the contact: their pattern, its dimensions, and the column of each label."""
+
+    text: str
+    dims: tuple[str, ...]
+    texts: list[str]
+
+
+def _patterns(table: Table, columns: Columns) -> tuple[dict[str, Pattern], dict[str, list[str]]]:
+    """Return the patterns among columns, such as "W{wheel} N [N]", and the labels of their dimensions.
+
+    Raises
+    ------
+    DataError
+        If no column fits a pattern, or one is missing.
+    """
+    fits: dict[str, dict[tuple[str, ...], str]] = {}
+    labels: dict[str, dict[str, None]] = {}
+    dims: dict[str, list[str]] = {}
+    for name, text in columns.items():
+        dims[name] = PLACE.findall(text)
+        if not dims[name]:
+            continue
+        parts = PLACE.split(named_column(text.removeprefix("-").strip(), 0).name)
+        expression = "".join(rf"(?P<{part}>\S+?)" if odd % 2 else re.escape(part) for odd, part in enumerate(parts))
+        fits[name] = {}
+        for column in table.heads:
+            if match := re.fullmatch(expression, column.name):
+                fits[name][tuple(match[dim] for dim in dims[name])] = PLACE.sub(lambda place: match[place[1]], text)
+                for dim in dims[name]:
+                    labels.setdefault(dim, {})[match[dim]] = None
+        if not fits[name]:
+            heads = ", ".join(f"'{column.head}'" for column in table.heads[:LISTED])
+            raise DataError(f"{table.label}: {name}: no column fits '{text}'. The columns are {heads}")
+    patterns = {}
+    for name, texts in fits.items():
+        order = [dim for dim in labels if dim in dims[name]]
+        patterns[name] = Pattern(columns[name], tuple(order), [])
+        for values in itertools.product(*(labels[dim] for dim in order)):
+            by_dim = dict(zip(order, values, strict=True))
+            if (key := tuple(by_dim[dim] for dim in dims[name])) not in texts:
+                missing = PLACE.sub(lambda place: by_dim[place[1]], columns[name])  # noqa: B023
+                raise DataError(
+                    f"{table.label}: {name}: there is no column '{missing}'; every {' and '.join(order)} needs one"
+                )
+            patterns[name].texts.append(texts[key])
+    return patterns, {dim: list(some) for dim, some in labels.items()}
 
 
 def _chosen(
@@ -155,20 +220,30 @@ def _files(folder: Path, count: int, stack: ExitStack) -> list[IO[bytes]]:
 
 
 def _read(
-    table: Table, columns: Sequence[Column], gaps: Mapping[str, Column], into: list[IO[bytes]] | None
+    table: Table,
+    columns: Mapping[str, Sequence[Column]],
+    shapes: Sequence[tuple[int, ...]],
+    gaps: Mapping[str, Column],
+    into: list[IO[bytes]] | None,
 ) -> list[Array]:
-    """Return the numbers of columns."""
+    """Return the numbers of columns by name; those of a pattern have the shape of its inner dimensions at each row."""
     pieces: list[list[Array]] = []
     rows = 0
-    for values in table.pieces(columns, gaps):
+    counts = np.cumsum([0, *map(len, columns.values())])
+    for values in table.pieces([column for some in columns.values() for column in some], gaps):
         rows += values[0].size
+        joined = [
+            np.stack(values[low:high], axis=-1).reshape(-1, *shape)
+            for low, high, shape in zip(counts, counts[1:], shapes, strict=False)
+        ]
         if into is None:
-            pieces.append(values)
+            pieces.append(joined)
         else:
-            for file, numbers in zip(into, values, strict=True):
+            for file, numbers in zip(into, joined, strict=True):
                 file.write(np.ascontiguousarray(numbers).data)
     if rows == 0:
         raise DataError(f"{table.label}: has no rows")
     if into is None:
         return [np.concatenate(some) for some in zip(*pieces, strict=True)]
-    return [cast(Array, OnDisk(file)) for file in into]  # in the place of arrays, of which it has what is used
+    # In the place of arrays, of which it has what is used.
+    return [cast(Array, OnDisk(file, shape)) for file, shape in zip(into, shapes, strict=True)]

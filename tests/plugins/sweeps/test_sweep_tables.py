@@ -289,3 +289,57 @@ def test_a_file_that_is_no_table_is_named(tmp_path: Path) -> None:
     csv.write_text("normal_force [N]\n5000\n")
     with pytest.raises(wl.ConditionsError, match=r"^crepage: unknown condition; did you mean 'creepage'"):
         wl.sweep(predictor(), csv, crepage="1 %", **FRICTION)
+
+
+WHEELS, CONTACTS = ("1L", "1R"), ("1", "2")
+BY_PATTERN = {"normal_force": "W{wheel}.{contact} N", "creepage": "-c{contact} xi of {wheel}"}
+
+
+def wheels(folder: Path, **changes: Any) -> Path:
+    """Write a file with two wheels and two contacts in a row, and a row of units."""
+    values = {"Time": TIME}
+    for number, (wheel, contact) in enumerate((wheel, contact) for wheel in WHEELS for contact in CONTACTS):
+        values[f"W{wheel}.{contact} N"] = (1.0 + 0.1 * number) * LOAD
+        values[f"c{contact} xi of {wheel}"] = -CREEPAGE / (1.0 + number)
+    table = pd.DataFrame(values | changes)
+    units = {name: "N" if name.endswith("N") else "s" if name == "Time" else "-" for name in table}
+    pd.concat([pd.DataFrame([units]), table.map("{:.17g}".format)]).to_csv(folder / "wheels.csv", index=False)
+    return folder / "wheels.csv"
+
+
+@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("where", ["memory", "store"])
+def test_a_pattern_names_the_columns_of_all_wheels_and_contacts(tmp_path: Path, where: str) -> None:
+    given = {"columns": BY_PATTERN, "keep": KEEP, **FRICTION, "outputs": ["wear_rate"]}
+    more = {"store": tmp_path / "wheels.zarr", "workers": 2} if where == "store" else {}
+    found = wl.sweep(predictor(), wheels(tmp_path), **given, **more)
+    assert dict(found.sizes) == {"row": ROWS, "wheel": 2, "contact": 2}
+    assert found.time.dims == ("row",)
+    for number, (wheel, contact) in enumerate((wheel, contact) for wheel in WHEELS for contact in CONTACTS):
+        at = {"normal_force": Q((1.0 + 0.1 * number) * LOAD, "N"), "creepage": Q(CREEPAGE / (1.0 + number), "")}
+        here = found.sel(wheel=wheel, contact=contact)
+        assert here.normal_force.values == pytest.approx(at["normal_force"].magnitude, rel=1e-15)
+        assert here.wear_rate.values == pytest.approx(expected(**at).wear_rate.m_as(here.wear_rate.units), rel=1e-12)
+    assert list(found.wheel.values) == list(WHEELS)
+
+
+@pytest.mark.parametrize(
+    ("changes", "columns", "message"),
+    [
+        ({}, {"normal_force": "V{wheel} N"}, r"normal_force: no column fits 'V\{wheel\} N'"),
+        ({"W1L.3 N": 1.0}, {}, "there is no column 'W1R.3 N'; every wheel and contact needs one"),
+        ({"W1R.2 N": -LOAD}, {}, r"line 3, column 'W\{wheel\}\.\{contact\} N': normal_force: "),
+        ({}, {"creepage": "c1 xi of 1L [%]"}, "creepage: column 'c1 xi of 1L .*has the units '%' and"),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_a_pattern_is_named(tmp_path: Path, changes: Any, columns: Any, message: str) -> None:
+    with pytest.raises(wl.InputError, match=message):
+        wl.sweep(predictor(), wheels(tmp_path, **changes), columns=BY_PATTERN | columns, **FRICTION)
+
+
+def test_a_file_that_is_no_table_shows_how_it_was_read(tmp_path: Path) -> None:
+    (tmp_path / "run.out").write_text("own run\nMon Jan 1 2024\n1 2 3\n")
+    with pytest.raises(
+        wl.DataError, match=r"none of its columns is a condition; .* it begins: own run; Mon Jan 1 2024; 1 2"
+    ):
+        wl.sweep(predictor(), tmp_path / "run.out", keep={"own": "own run"}, **FRICTION)
