@@ -95,13 +95,14 @@ class Wheel:
         normal = turned(0.0, np.sin(self.angle(s)), -np.cos(self.angle(s)))
         low, high = self.radius.x[[0, -1]]
         gap = over = np.zeros((x.size, s.size))
-        before = gap + np.inf
-        while np.abs(gap - before).max() > 1e-10:
+        for _ in range(50):
             along, across, down = (at + gap * way for at, way in zip(place, normal, strict=True))
             radius, across = np.hypot(along, down), np.clip(across, low, high)
             rise = (along * normal[0] + down * normal[2]) / radius - self.slope(across) * normal[1]
             over = radius - self.radius(across)
             before, gap = gap, np.clip(gap - over / np.minimum(rise, -1e-3), -FAR, FAR)
+            if np.abs(gap - before).max() < 1e-10:
+                break
         return np.where(np.abs(over) < 1e-9, gap, FAR)
 
     def pressed(self, load: float, elements: int = 120) -> Pressed:
