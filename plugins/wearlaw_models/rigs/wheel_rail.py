@@ -37,7 +37,7 @@ class WheelRailConditions(TypedDict, total=False):
     lateral_creepage: wl.Creepage
     """Lateral creepage, η [-], of magnitude at most 1; zero if not given."""
     spin: Annotated[wl.QuantityLike, wl.Unit("1/m", positive=False, usual=(-100.0, 100.0))]
-    """Spin, φ [1/m]; that of the contact angle, sin δ / r, if not given."""
+    """Spin, φ [1/m]; that of the contact angle, sin δ / r, with a roller sin δ (1/r + 1/R), if not given."""
     contact_angle: Annotated[wl.QuantityLike, wl.Unit("deg", positive=False)]
     """Contact angle, δ [rad], between -90 and 90 deg; that of the rig if not given."""
     rolled_distance: Annotated[wl.QuantityLike, wl.Unit("km", positive=False, negative=False)]
@@ -71,7 +71,8 @@ class WheelRail(wl.Rig):
     lateral radii are those of the profiles, in a plane upright and across the rail. On a surface at the contact angle
     δ, a wheel of the rolling radius r has the radius of curvature r/cos δ in the plane of the rolling direction and the
     normal. It still rolls 2πr in a revolution. The normal force, the pressure and the lateral creepage and force are
-    normal and tangential to that surface.
+    normal and tangential to that surface. On a roller rig, a roller whose axis is parallel to the axle stands for the
+    rail; both roll at V.
 
     Materials may differ. The rig then takes E* and Kalker's means of G and ν.
     """
@@ -104,6 +105,8 @@ class WheelRail(wl.Rig):
     contact_angle: Angle = Field(default="0 deg", validate_default=True)
     """Contact angle, δ [rad], between -90 and 90 deg, positive where the surface falls towards y; the condition of the
     same name replaces it."""
+    roller_radius: Annotated[wl.Quantity, wl.Unit("mm")] | None = None
+    """Rolling radius of the roller in place of the rail at the contact point, from its axis, R [m]; None for a rail."""
     material: wl.MaterialField
     """Material of wheel and rail; a file may also give the name of an installed material."""
     rail_material: wl.MaterialField | None = None
@@ -120,6 +123,7 @@ class WheelRail(wl.Rig):
             rail_head_radius: wl.QuantityLike,
             wheel_profile_radius: wl.QuantityLike = "inf mm",
             contact_angle: wl.QuantityLike = "0 deg",
+            roller_radius: wl.QuantityLike | None = None,
             material: wl.Material,
             rail_material: wl.Material | None = None,
             rolling_speed: wl.QuantityLike,
@@ -154,7 +158,7 @@ class WheelRail(wl.Rig):
     def _bodies(self) -> dict[str, wl.Body]:
         return {
             "wheel": wl.Body(self.material, wl.scalar_si(self.wheel_radius, "m")),
-            "rail": wl.Body(self.rail_material or self.material, np.inf),
+            "rail": wl.Body(self.rail_material or self.material, self._roller),
         }
 
     @np.errstate(all="ignore")  # `checked` rejects what overflows
@@ -197,6 +201,11 @@ class WheelRail(wl.Rig):
             same |= {"exists": loaded, "unloaded": ~loaded}
         return wl.Problem.ellipse_from_si(a=a, b=b, bodies=self._bodies, **arrays, **same).checked()
 
+    @property
+    def _roller(self) -> float:
+        """The rolling radius of the roller [m], infinite for a rail."""
+        return np.inf if self.roller_radius is None else wl.scalar_si(self.roller_radius, "m")
+
     @cached_property
     def _angle(self) -> Array:
         """The contact angle of the rig [rad]."""
@@ -212,13 +221,14 @@ class WheelRail(wl.Rig):
         modulus = wl.hertz.effective_modulus(*(value for pair in self._elastic for value in pair))
         radii = (self.wheel_radius, self.wheel_profile_radius, self.rail_head_radius)
         wheel, profile, head = (np.asarray(wl.scalar_si(radius, "m")) for radius in radii)
-        load, straight = np.asarray(1.0), np.asarray(np.inf)
+        load, roller = np.asarray(1.0), np.asarray(self._roller)
         curvatures = (
-            wl.hertz_ellipse.curvature(wheel / np.cos(angle), straight),
+            wl.hertz_ellipse.curvature(wheel / np.cos(angle), roller / np.cos(angle)),
             wl.hertz_ellipse.curvature(profile, head),
         )
         a, b = wl.hertz_ellipse.semi_axes(load, *curvatures, modulus)
-        return _Patch(a, b, wl.hertz_ellipse.max_pressure(load, a, b), np.sin(angle) / wheel)
+        spin = np.sin(angle) * (1.0 / wheel + 1.0 / roller)
+        return _Patch(a, b, wl.hertz_ellipse.max_pressure(load, a, b), spin)
 
     @cached_property
     def _constants(self) -> _Constants:
