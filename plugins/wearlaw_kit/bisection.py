@@ -6,7 +6,8 @@ slope of a smooth one. A jump remains, and so does the change of slope at a kink
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -22,14 +23,17 @@ JUMP = 1e-6
 """Share of the function's value that counts as a jump. A square root, the steepest onset in theories of contact,
 changes by √(2^-46) = 1.2e-7 over the last interval."""
 
-FIRST_HALVINGS = 8
-"""Halvings after which an interval without a visible change is given up: within the remaining 1/256 of it, the function
-would have to undo its own jump."""
+FIRST_HALVINGS = 3
+"""Halvings after which an interval is given up whose two halves change alike: a jump lies in one of them. To hide it, a
+curved function would have to undo it to a share of `jump`, in this half as in those before."""
 
 HALVINGS_OF_KINKS = 24
 """From 1/128 to h = 4.7e-10. There the slope of a smooth function whose logarithm has the slope n changes by the share
 n² h/2 of its value, which is below 1e-4 up to n = 600, and rounding of the values by 16 EPS, as many as `SAME` has,
 changes it by 8 · 16 EPS/h = 6e-5."""
+
+FIRST_HALVINGS_OF_KINKS = 6
+"""Halvings after which a part is given up whose change of slope is a quarter of what counts."""
 
 STEEP = 1e-4
 """Change of the slope, as a share, that counts as a kink. Over the last part, the slope of a smooth function whose
@@ -45,30 +49,60 @@ Function: TypeAlias = Callable[[Indices, Array], Array]
 """From indices of functions and their arguments in [0, 1], both of shape (n,), to values."""
 
 
-def find_jumps(function: Function, count: int, intervals: int = 32) -> list[tuple[int, float, float, float]]:
+def find_jumps(
+    function: Function, count: int, intervals: int = 32, jump: float = JUMP, least: Array | float = 0.0
+) -> list[tuple[int, float, float, float]]:
     """Return the jumps of functions of one number: index, argument, and the values on both sides.
 
     Each of `intervals` equal parts of [0, 1] is halved repeatedly, keeping the half with the larger relative change. A
     jump is found if it exceeds the change by curvature in an interval.
+
+    Parameters
+    ----------
+    function : callable
+        The functions.
+    count : int
+        Their number.
+    jump : float
+        The share of the function's value that counts as a jump.
+    least : ndarray, (count,), or float
+        For each function, a change that counts as none.
     """
     edges = np.linspace(0.0, 1.0, intervals + 1)
     index = np.repeat(np.arange(count), intervals)
     low, high = np.tile(edges[:-1], count), np.tile(edges[1:], count)
     at_low, at_high = function(index, low), function(index, high)
-    size = np.maximum(np.abs(at_low), np.abs(at_high))
+    size = np.maximum(jump * np.maximum(np.abs(at_low), np.abs(at_high)), np.broadcast_to(least, count)[index])
     for halving in range(HALVINGS):
         middle = 0.5 * (low + high)
         at_middle = function(index, middle)
+        uneven = np.abs(at_low - 2.0 * at_middle + at_high)
         left = _change(at_low, at_middle) >= _change(at_middle, at_high)
         low, at_low = np.where(left, low, middle), np.where(left, at_low, at_middle)
         high, at_high = np.where(left, middle, high), np.where(left, at_middle, at_high)
         if halving >= FIRST_HALVINGS:
-            kept = np.flatnonzero(np.abs(at_high - at_low) > JUMP * size)
+            kept = np.flatnonzero((uneven > size) & (np.abs(at_high - at_low) > size))
             index, size = index[kept], size[kept]
             low, high, at_low, at_high = low[kept], high[kept], at_low[kept], at_high[kept]
         if not index.size:
             break
     return list(zip(index.tolist(), high.tolist(), at_low.tolist(), at_high.tolist(), strict=True))
+
+
+def each_once(functions: Callable[[Indices, Array], Mapping[str, Array]]) -> Callable[[str], Function]:
+    """Return the function with a name, of functions that are evaluated together and once at each place."""
+    values: dict[tuple[int, float], dict[str, float]] = {}
+
+    def evaluated(name: str, index: Indices, share: Array) -> Array:
+        places = list(zip(index.tolist(), share.tolist(), strict=True))
+        if new := list({place: None for place in places if place not in values}):
+            at, shares = (np.array(column) for column in zip(*new, strict=True))
+            columns = {of: array.tolist() for of, array in functions(at, shares).items()}
+            for number, place in enumerate(new):
+                values[place] = {of: column[number] for of, column in columns.items()}
+        return np.array([values[place][name] for place in places])
+
+    return lambda name: partial(evaluated, name)
 
 
 def _change(before: Array, behind: Array) -> Array:
@@ -94,18 +128,26 @@ def find_kinks(function: Function, threshold: Array, intervals: int = 128) -> li
     """
     starts, width = np.arange(2 * intervals - 1) / (2.0 * intervals), 1.0 / intervals
     index, low = np.repeat(np.arange(threshold.size), starts.size), np.tile(starts, threshold.size)
-    each = np.arange(low.size)
     values = np.stack([function(index, low + 0.25 * quarter * width) for quarter in range(5)])
     size = np.abs(values).max(axis=0)
-    for _ in range(HALVINGS_OF_KINKS):
+    change = least = np.zeros_like(low)
+    for halving in range(HALVINGS_OF_KINKS):
+        each = np.arange(low.size)
         chosen = np.abs(values[:-2] - 2.0 * values[1:-1] + values[2:]).argmax(axis=0)
         low, width = low + 0.25 * width * chosen, 0.5 * width
         kept = [values[chosen + quarter, each] for quarter in range(3)]
         between = [function(index, low + quarter * width) for quarter in (0.25, 0.75)]
         values = np.stack([kept[0], between[0], kept[1], between[1], kept[2]])
-    change = 2.0 / width * np.abs(values[0] - 2.0 * values[2] + values[4])
-    slope = np.abs(values[4] - values[0]) / width
-    kinks = np.flatnonzero((change > threshold[index] * size) & (change > STEEP * slope) & (size > UNDERFLOW))
+        change = 2.0 / width * np.abs(values[0] - 2.0 * values[2] + values[4])
+        slope = np.abs(values[4] - values[0]) / width
+        least = np.maximum(threshold[index] * size, STEEP * slope)
+        if halving >= FIRST_HALVINGS_OF_KINKS:  # a kink shows as much in each part, what is smooth half as much
+            remain = change > 0.25 * least
+            index, low, size, change, least = (array[remain] for array in (index, low, size, change, least))
+            values = values[:, remain]
+        if not index.size:
+            return []
+    kinks = np.flatnonzero((change > least) & (size > UNDERFLOW))
     return [(int(index[i]), float(low[i]), float(low[i] + width), float(change[i] / size[i])) for i in kinks]
 
 

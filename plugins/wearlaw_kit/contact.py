@@ -43,6 +43,9 @@ from wearlaw_kit.shapes import (
 POINTS = 32
 """Number of patches checked at once."""
 
+POINTS_OF_STEPS = 16
+"""Number of patches that are solved again at each of some 30 steps; single precision shows at nearly all."""
+
 MANY = 512
 """Lines to average an error over."""
 
@@ -213,7 +216,7 @@ def batch_equals_loop(model: ContactModel, shape: Shape) -> None:
 @on_shapes(*SHAPES)
 def solution_is_in_double_precision(model: ContactModel, shape: Shape) -> None:
     """The force is exact to rounding, in steps of 1e-8 of creepage, friction and half-length."""
-    problem = shape.draw(64)
+    problem = shape.draw(POINTS_OF_STEPS)
     # An iteration that ends at 1e-10 moves a change of 1e-8 by a fiftieth; single precision, by six of it.
     assert_digits(model, problem, min(error_of_force(model, problem), 1e-10))
 

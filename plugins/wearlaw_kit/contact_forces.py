@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
-from wearlaw_kit.bisection import Indices, find_jumps
-from wearlaw_kit.contact import has_nodes, mixed_batch
+from wearlaw_kit.bisection import Indices, each_once, find_jumps
+from wearlaw_kit.contact import POINTS_OF_STEPS, has_nodes, mixed_batch
 from wearlaw_kit.examples import SAME, SUM, assert_close, for_each
 from wearlaw_kit.reduced import (
+    STRIP_AT,
     at_magnitude,
     at_reduced,
     creeping,
     friction_limit,
+    in_strips,
     lever,
     parts_of_power,
     sliding_power,
@@ -51,6 +51,9 @@ FULL = 1e4
 
 SMALL = 0.1
 """Reduced spin at which theories are still close to linear theory."""
+
+JUMP = 1e-4
+"""Share of a force that counts as a jump, a tenth of what `forces_are_continuous` claims to find."""
 
 SLOPE = 1e-3
 """Error of initial slopes on an ellipse: half of the last digit of Kalker's coefficients."""
@@ -174,21 +177,14 @@ def forces_are_continuous(model: ContactModel, shape: Shape) -> None:
     allowed = {"mean_slip": error * translation(at_magnitude(problem, high))}
     allowed |= dict.fromkeys(("force_x",) if shape is LINE else ("force_x", "force_y"), of_forces)
 
-    values: dict[tuple[int, float], dict[str, float]] = {}  # each place is solved once, for all names
+    def solved(index: Indices, share: Array) -> dict[str, Array]:
+        contact = model.solve(at_magnitude(problem[index], low * (high / low) ** share))
+        return {name: getattr(contact, name) for name in allowed}
 
-    def solved(name: str, index: Indices, share: Array) -> Array:
-        places = list(zip(index.tolist(), share.tolist(), strict=True))
-        if new := list({place: None for place in places if place not in values}):
-            at, shares = (np.array(one) for one in zip(*new, strict=True))
-            contact = model.solve(at_magnitude(problem[at], low * (high / low) ** shares))
-            columns = [getattr(contact, one).tolist() for one in allowed]
-            values.update(
-                (place, dict(zip(allowed, row, strict=True))) for place, *row in zip(new, *columns, strict=True)
-            )
-        return np.array([values[place][name] for place in places])
-
+    function = each_once(solved)
     for name, step in allowed.items():
-        for point, share, before, behind in find_jumps(partial(solved, name), problem.size, intervals):
+        jumps = find_jumps(function(name), problem.size, intervals, JUMP, 0.5 * step)
+        for point, share, before, behind in jumps:
             where = f"at the reduced creepage {low * (high / low) ** share:g}"
             assert abs(behind - before) <= step[point], f"{name} jumps from {before:.9g} to {behind:.9g} {where}"
 
@@ -232,13 +228,13 @@ def full_slip_is_met_from_both_sides(model: ContactModel, shape: Shape) -> None:
 
     The difference between the sides falls with the distance from full slip at least as its square root.
     """
-    problem = without_spin(shape.draw(POINTS))
+    problem = without_spin(shape.draw(POINTS_OF_STEPS))
 
     def solved(reduced: Array) -> Contact:
         return model.solve(at_magnitude(problem, reduced))
 
-    full = np.full(POINTS, FAR)  # the least creepages, to rounding, with the force of full slip and no stick
-    low, limit = np.zeros(POINTS), solved(full).tangential_force * (1.0 - SAME)
+    full = np.full(problem.size, FAR)  # the least creepages, to rounding, with the force of full slip and no stick
+    low, limit = np.zeros(problem.size), solved(full).tangential_force * (1.0 - SAME)
     for _ in range(60):
         middle = 0.5 * (low + full)
         contact = solved(middle)
@@ -306,23 +302,28 @@ def _slope_error(model: ContactModel, shape: Shape) -> float:
 def contacts_are_similar(model: ContactModel, shape: Shape) -> None:
     """T/(μN) of a line depends on ξR/(μa) alone.
 
-    On an ellipse forces over μN and the moment over μN a depend on a/b, ν and Gξ/(μp0), Gη/(μp0), Gφa/(μp0) alone.
+    On an ellipse forces over μN and the moment over μN a depend on a/b, ν and Gξ/(μp0), Gη/(μp0), Gφa/(μp0) alone. So
+    they do for contacts of the same creepages under other loads, in one batch.
     """
-    problem, other = shape.problems, shape.cut(_scaled(shape.wide))
-    forces, ratio = forces_alone(model, problem), friction_limit(other) / friction_limit(problem)
-    due = CreepForces(
-        longitudinal=ratio * forces.longitudinal,
-        lateral=ratio * forces.lateral,
-        spin_moment=ratio * other.a / problem.a * forces.spin_moment,
-    )
-    assert_same_forces(other, forces_alone(model, other), due, "of a similar contact", SUM)
+    twice = np.tile(np.arange(shape.wide.size), 2)
+    for cases, same in ((shape.wide, False), (shape.wide[twice], True)):
+        problem, other = shape.cut(cases), shape.cut(_scaled(cases, same))
+        forces, ratio = forces_alone(model, problem), friction_limit(other) / friction_limit(problem)
+        due = CreepForces(
+            longitudinal=ratio * forces.longitudinal,
+            lateral=ratio * forces.lateral,
+            spin_moment=ratio * other.a / problem.a * forces.spin_moment,
+        )
+        assert_same_forces(other, forces_alone(model, other), due, "of a similar contact", SUM)
 
 
-def _scaled(problem: Problem) -> Problem:
-    """Return similar problems of other lengths, moduli, frictions, creepages and speeds."""
+def _scaled(problem: Problem, same: bool) -> Problem:
+    """Return similar problems of other moduli, frictions, speeds and, unless `same`, sizes and creepages."""
     random, shape = np.random.default_rng(8), problem.batch_shape
     length, modulus, friction, speed = 10.0 ** random.uniform(-1.0, 1.0, (4, *shape))
     creepage = 10.0 ** random.uniform(-1.0, 0.0, shape)  # it may not grow above 1
+    if same:
+        length = creepage = np.ones(shape)
     pressure = creepage * modulus / friction
     other = problem.replaced(
         a=length * problem.a,
@@ -334,6 +335,17 @@ def _scaled(problem: Problem) -> Problem:
         rolling_speed=speed * problem.rolling_speed,
     )
     return creeping(other, creepage, creepage, creepage / length)
+
+
+@on_shapes(ELLIPSE, applies=lambda model: "strips" in model.geometries())
+def strips_of_an_ellipse_have_its_forces(model: ContactModel, shape: Shape) -> None:
+    """An ellipse, long or wide, and the strips that it is cut into transmit the same forces."""
+    problem = shape.draw(POINTS)
+    strips = in_strips(problem, lean=0.0)
+    # A sum over n strips of equal width misses a parabola by the share 1/(2n²).
+    error = error_of_sums(model, problem) + 0.5 / STRIP_AT.size**2
+    forces, due = forces_alone(model, strips), forces_alone(model, problem)
+    assert_same_forces(problem, forces, due, "of the strips of the ellipse", error)
 
 
 @on_shapes(ELLIPSE, PATCH, claims=("spin",))

@@ -19,6 +19,7 @@ from wearlaw_kit import (  # each registers its rules  # noqa: F401
     law,
     law_branches,
     rig,
+    rig_inputs,
     stage,
     units,
 )

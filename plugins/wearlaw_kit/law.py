@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
+import pint
 
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
@@ -149,6 +150,45 @@ def _with_slip_across(contact: Contact, share: float) -> Contact:
         slip_y=share * contact.slip,
         slip=contact.slip * np.hypot(1.0, share),
     )
+
+
+@rule(Law, applies=lambda law: has_rates_at_nodes(law) and law.follows_pressure_times_slip)
+def pressure_times_slip_is_followed(law: Law) -> None:
+    """A law that declares it depends on p·s: not on the traction, nor on how p and s share their product.
+
+    A small change of both is tried, so that no border of the law is passed.
+    """
+    contact = random_contacts(256, law=law)
+    rate = law.rate(contact, law.numbers)
+    for share in (0.5, 0.9):
+        other = law.rate(retotalled(contact, traction=share * contact.traction), law.numbers)
+        assert_close(other, rate, f"the rate with {share} times the traction, at the same p·s")
+    step = 1.0 + 1e-6
+    other = law.rate(retotalled(contact, pressure=contact.pressure * step, slip=contact.slip / step), law.numbers)
+    assert_close(other, rate, "the rate with the pressure a little higher and the slip lower, at the same p·s")
+
+
+@rule(Law)
+def numbers_are_fields(law: Law) -> None:
+    """`rate`, `breakpoints` and `ramps` read the law's numbers from `p`, and no other number of its class."""
+    read: set[str] = set()
+
+    def noted(self: Any, name: str) -> Any:
+        read.add(name)
+        return object.__getattribute__(self, name)
+
+    watched = type("Watched", (type(law),), {"__getattribute__": noted, "__module__": __name__, "__doc__": ""})
+    fields = {name: getattr(law, name) for name in type(law).model_fields}
+    copy, contact = watched(**fields), random_contacts(4, law=law)
+    rate, declared = copy.rate, (copy.breakpoints, copy.ramps)
+    read.clear()
+    rate(contact, law.numbers)
+    for method in declared:
+        method(law.numbers)
+    for name in read - {*type(law).model_fields, *dir(Law)}:
+        value = getattr(law, name)
+        number = isinstance(value, int | float | pint.Quantity | np.ndarray) and not isinstance(value, bool)
+        assert not number, f"a method reads the number `{name}` of the class, which is no field, so no fit can vary it"
 
 
 @rule(Law)

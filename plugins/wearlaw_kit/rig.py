@@ -90,7 +90,7 @@ def values_of(problem: Any) -> dict[str, Any]:
     return {**there, "exists": exists.astype(np.float64)}
 
 
-def _problem(rig: Rig, **changed: Any) -> Any:
+def problem_of(rig: Rig, **changed: Any) -> Any:
     """Return the problem of the example with some conditions changed."""
     return rig.checked_problem({**rig.example, **changed})
 
@@ -103,7 +103,7 @@ def _assert_same(problem: Any, expected: dict[str, Array], what: str) -> None:
 def _has_one_creepage(rig: Rig) -> bool:
     """Return whether one condition gives the creepage; several patches have creepages of their own."""
     try:
-        return rig.creepage in varied(rig) and not _problem(rig).dims
+        return rig.creepage in varied(rig) and not problem_of(rig).dims
     except WearlawError:
         return rig.creepage in varied(rig)
 
@@ -111,13 +111,15 @@ def _has_one_creepage(rig: Rig) -> bool:
 @rule(Rig, always=True)
 def problem_is_finite_and_positive(rig: Rig) -> None:
     """The example gives a problem of finite numbers, with a load, a patch, friction and a density above zero."""
-    assert _problem(rig).existing().size, "the bodies of the example touch nowhere"  # `checked_problem` tries the rest
+    assert problem_of(rig).existing().size, (
+        "the bodies of the example touch nowhere"
+    )  # `checked_problem` tries the rest
 
 
 @rule(Rig)
 def pressure_carries_the_load(rig: Rig) -> None:
     """Load, pressure and patch agree: N is π/4 p0 A on a line, 2/3 p0 A on an ellipse, and the sum of strips."""
-    problem = _problem(rig).existing()
+    problem = problem_of(rig).existing()
     if problem.strips is not None:
         carried = problem.strips.normal_force.sum(axis=-1)
     else:
@@ -132,7 +134,7 @@ def problem_has_the_shape_of_the_conditions(rig: Rig) -> None:
     The rig's own axes follow, as `dims` names them, and an axis of strips.
     """
     for shape in ((), (1,), (2, 3)):
-        problem = _problem(rig, **{name: times(value, np.ones(shape)) for name, value in varied(rig).items()})
+        problem = problem_of(rig, **{name: times(value, np.ones(shape)) for name, value in varied(rig).items()})
         for name, value in values_of(problem).items():
             kind = getattr(value, "dtype", type(value))
             assert kind == np.float64, f"{name} of the problem is of type {kind}, not float64"
@@ -146,18 +148,18 @@ def arrays_equal_single_calls(rig: Rig) -> None:
     """Arrays give the same as a call for each of their values, and broadcast if they lie on different axes."""
     values = varied(rig)
     for name, value in values.items():
-        singles = [values_of(_problem(rig, **{name: times(value, factor)})) for factor in FACTORS]
+        singles = [values_of(problem_of(rig, **{name: times(value, factor)})) for factor in FACTORS]
         expected = {field: np.stack([np.asarray(single[field]) for single in singles]) for field in singles[0]}
-        _assert_same(_problem(rig, **{name: times(value, FACTORS)}), expected, f"an array of {name}")
+        _assert_same(problem_of(rig, **{name: times(value, FACTORS)}), expected, f"an array of {name}")
     first, *rest = values
 
     def changed(leading: Array | float, others: Array | float) -> Conditions:
         return {name: times(values[name], leading if name == first else others) for name in (first, *rest)}
 
-    rows = [[values_of(_problem(rig, **changed(i, j))) for j in FACTORS] for i in FACTORS[:2]]
+    rows = [[values_of(problem_of(rig, **changed(i, j))) for j in FACTORS] for i in FACTORS[:2]]
     expected = {field: np.array([[single[field] for single in row] for row in rows]) for field in rows[0][0]}
     expected = expected if rest else {field: value[:, :1] for field, value in expected.items()}
-    _assert_same(_problem(rig, **changed(FACTORS[:2, None], FACTORS)), expected, f"{first} on an axis of its own")
+    _assert_same(problem_of(rig, **changed(FACTORS[:2, None], FACTORS)), expected, f"{first} on an axis of its own")
 
 
 @rule(Rig)
@@ -227,7 +229,7 @@ def _assert_refused(
 @rule(Rig)
 def geometry_is_that_of_the_problem(rig: Rig) -> None:
     """`patch_geometry` is the shape of the patch of the problem, or None."""
-    made = _problem(rig).geometry
+    made = problem_of(rig).geometry
     assert rig.patch_geometry in (None, made), (
         f"`patch_geometry` is '{rig.patch_geometry}', but the patch of the problem is '{made}'"
     )
@@ -237,28 +239,52 @@ def geometry_is_that_of_the_problem(rig: Rig) -> None:
 def bodies_are_those_of_the_problem(rig: Rig) -> None:
     """Each of `bodies` has a name and a radius, and the problem has the density of the first of them.
 
-    It still has if the materials in the fields of the rig are denser.
+    It still has if the materials in the fields of the rig are others. The bodies of a problem that brings its own are
+    the same, in the same order.
     """
     for name, body in rig.bodies.items():
         assert name.isidentifier(), f"the name of a body must be an identifier, got {name!r}"
         radius = body.rolling_radius
         assert np.all(np.asarray(radius) > 0.0), f"the rolling radius of {name} is {radius!r} m, not above zero"
-    for tried, which in ((rig, ""), (_denser(rig), " of the rig with denser materials")):
+    for tried, which in ((rig, ""), (of_other_materials(rig), " of the rig with other materials")):
+        problem = problem_of(tried)
         for name, body in [*tried.bodies.items()][:1]:
             expected = np.asarray(scalar_si(body.material.density, "kg/m^3"))
             message = f"the density of the problem{which}, with {name} as the first body"
-            assert_close(_problem(tried).existing().density, expected, message)
+            assert_close(problem.existing().density, expected, message)
+        names = [name for name in problem.bodies if name in tried.bodies]
+        assert names == [name for name in tried.bodies if name in names], (
+            f"`bodies` has the order {', '.join(tried.bodies)}, the problem {', '.join(problem.bodies)}"
+        )
+        for (name, body), other in zip(tried.bodies.items(), problem.bodies.values(), strict=False):
+            radii = body.rolling_radius, other.rolling_radius  # of several points they may differ from the nominal one
+            same = np.ndim(radii[1]) > 0 or radii[0] == radii[1]
+            assert same, f"the radius of {name} in `bodies` is not that of the body of the problem{which}"
+            assert body.material == other.material, (
+                f"the material of {name} in `bodies` is not that of the body of the problem{which}"
+            )
 
 
-def _denser(record: Any) -> Any:
-    """Return a record with each material in its fields a quarter denser than the one before."""
+def fields_of(record: Configuration) -> dict[str, Any]:
+    """Return the fields of a record, without its cached values."""
+    return {name: getattr(record, name) for name in type(record).model_fields}
+
+
+def of_other_materials(record: Any) -> Any:
+    """Return a record whose materials are denser, stiffer and more compressible, each more than the one before."""
     changed: dict[str, Any] = {}
-    for name, value in record:
+    for name, value in fields_of(record).items():
         if isinstance(value, Material):
-            changed[name] = value.model_copy(update={"density": value.density * 1.25 ** (len(changed) + 1)})
+            changed[name] = other_material(value, 1.25 ** (len(changed) + 1))
         elif isinstance(value, Configuration):
-            changed[name] = _denser(value)
+            changed[name] = of_other_materials(value)
     return record.model_copy(update=changed) if changed else record
+
+
+def other_material(material: Material, factor: float) -> Material:
+    """Return a material that is denser, stiffer and more compressible."""
+    values = {"density": material.density * factor, "youngs_modulus": material.youngs_modulus * factor}
+    return material.model_copy(update={**values, "poisson_ratio": material.poisson_ratio / factor})
 
 
 @rule(Rig)
@@ -267,7 +293,7 @@ def problem_is_in_double_precision(rig: Rig) -> None:
     for name, value in varied(rig).items():
 
         def changed(factor: float, name: str = name, value: Any = value) -> Array:
-            values = values_of(_problem(rig, **{name: times(value, factor)}))
+            values = values_of(problem_of(rig, **{name: times(value, factor)}))
             return np.concatenate([np.ravel(values[field]) for field in PRECISE])
 
         lost_digits(changed, f"the problem loses digits of {name}", ROUNDING)
@@ -276,7 +302,7 @@ def problem_is_in_double_precision(rig: Rig) -> None:
 def _crept(rig: Rig, share: float) -> Any:
     """Return the problem of the example with a share of the condition that `creepage` names."""
     assert rig.creepage is not None
-    return _problem(rig, **{rig.creepage: times(varied(rig)[rig.creepage], share)})
+    return problem_of(rig, **{rig.creepage: times(varied(rig)[rig.creepage], share)})
 
 
 @rule(Rig, applies=_has_one_creepage)

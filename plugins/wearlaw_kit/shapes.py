@@ -21,7 +21,8 @@ import numpy as np
 from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import CreepForces, Geometry, Problem
+from wearlaw.contact.material import steel
+from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import join
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel, Stage
 from wearlaw.numerics.staged import staged
@@ -137,10 +138,21 @@ def of_model(model: ContactModel, points: int) -> list[tuple[ContactModel, Probl
     return [(model, shape.draw(points)) for shape in SHAPES if shape.geometry in model.geometries()]
 
 
+INSIDE: dict[Geometry, str] = {"line": "exact", "ellipse": "fastsim", "strips": "fastsim"}
+"""The contact model inside a stage, by the shape of the patch."""
+
+
 def of_stage(stage: Stage, points: int) -> list[tuple[ContactModel, Problem]]:
     """Return a stage around contact models of wearlaw, each with random problems of a shape that the model solves."""
-    models = {"line": "exact", "ellipse": "fastsim", "strips": "fastsim"}
-    return [(staged(loader.contact_model(models[shape.geometry]), (stage,)), shape.draw(points)) for shape in SHAPES]
+    inside = {shape: loader.contact_model(INSIDE[shape.geometry]) for shape in SHAPES}
+    return [(staged(inside[shape], (stage,)), with_bodies(shape.draw(points))) for shape in SHAPES]
+
+
+def with_bodies(problem: Problem) -> Problem:
+    """Return the problem with two bodies, an inclined surface and a distance rolled, as that of a rig."""
+    share = np.linspace(0.1, 1.0, problem.size)
+    bodies = {"body_1": Body(steel(), 0.25 * share), "body_2": Body(steel(density="7200 kg/m^3"), np.inf)}
+    return problem.replaced(bodies=bodies, contact_angle=share, rolled_distance=1e3 * share)
 
 
 def on_shapes(

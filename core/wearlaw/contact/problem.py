@@ -50,6 +50,10 @@ MOST_FRICTION = 1.0 / LEAST_FRICTION
 """The largest coefficient of friction or traction; above it tractions and energies soon overflow."""
 
 
+OF_BODY = ("rolling_radius", "surface_radius", "profile_position", "profile_direction")
+"""Values of a body that may be arrays of the batch shape."""
+
+
 @dataclass(frozen=True)
 class Body:
     """One of the two bodies in contact.
@@ -61,6 +65,9 @@ class Body:
     rolling_radius : float or ndarray
         Radius of the rolling surface [m], one for all operating points or an array of the batch shape; infinite for a
         flat or straight body, such as a rail.
+    surface_radius : float, ndarray or None
+        Radius of curvature of the surface along the rolling direction [m], if it is not the rolling radius: infinite
+        for a disc that turns about the normal of its flat side.
     profile_position : ndarray, float or None
         Arc length along the body's profile at y = 0 of the patch [m]; None if it is not known. A rig may give an array
         that broadcasts to the batch shape.
@@ -73,10 +80,11 @@ class Body:
     rolling_radius: float | Array
     profile_position: Array | float | None = None
     profile_direction: float | Array = 1.0
+    surface_radius: float | Array | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, ("rolling_radius", "profile_position", "profile_direction"))
+        freeze(self, OF_BODY)
 
     @cached_property
     def strength(self) -> tuple[float, float] | None:
@@ -91,10 +99,9 @@ class Body:
 
     def mapped(self, function: Callable[[Array], Array]) -> Body:
         """Return the body with a function applied to those of its values that are arrays."""
-        if not isinstance(self.rolling_radius, np.ndarray) and self.profile_position is None:
+        if not any(isinstance(getattr(self, name), np.ndarray) for name in OF_BODY):
             return self
-        names = ("rolling_radius", "profile_position", "profile_direction")
-        values: dict[str, Any] = {name: getattr(self, name) for name in names}
+        values: dict[str, Any] = {name: getattr(self, name) for name in OF_BODY}
         values |= {name: function(value) for name, value in values.items() if isinstance(value, np.ndarray)}
         return Body(self.material, **values)
 

@@ -33,11 +33,11 @@ WRONG: dict[Any, str] = {
 
 
 RIGHT_LAWS: list[Any] = [wrong_laws.Ramps(), wl.wear_law("brr"), wl.wear_law("kth")]
-RIGHT_RIGS: list[Any] = [wrong_rigs.Weight()]
+RIGHT_RIGS: list[Any] = [wrong_rigs.Weight(), wl.TwinDisc.suros()]
 RIGHT_STAGES: list[Any] = [wrong_stages.Lubricated()]
 RIGHT_ON: dict[str, list[Any]] = {
     "line": [wl.contact_model("exact"), cells.Cells()],
-    "ellipse": [strips.Strips()],
+    "ellipse": [strips.Strips(), wrong_contacts.Both()],
     "strips": [strips.on_strips(strips.Strips)()],
 }
 """Right contact models by the shape that they solve.

@@ -35,6 +35,13 @@ class OwnSlope(Strips):
         return {"initial_slope": "for the tests"}
 
 
+class Both(OwnSlope):
+    """Solves an ellipse and given strips; a right one."""
+
+    def solve_strips(self, problem: wl.Problem) -> wl.Contact:
+        return self.at(problem)
+
+
 LINE, ELLIPSE = Wrapped, Strips
 NODES = (Wrapped, Cells, OwnSlope)
 """A right model of each kind: in closed form, on cells of a line, and on the strips of an ellipse."""
@@ -457,6 +464,26 @@ class SlipWithoutSpin(OwnSlope):
         still = problem.with_creepages(problem.longitudinal_creepage, problem.lateral_creepage, 0.0 * problem.spin)
         contact, straight = (super(SlipWithoutSpin, self).at(given, shares, widths) for given in (problem, still))
         return contact.replaced(slip=straight.slip, slip_x=straight.slip_x, slip_y=straight.slip_y)
+
+
+@wrong("strips_of_an_ellipse_have_its_forces")
+class StiffnessOfAnotherEllipse(Both):
+    """On given strips, takes the coefficients of the ellipse with its axes exchanged."""
+
+    def solve_strips(self, problem: wl.Problem) -> wl.Contact:
+        other = super().solve_strips(problem.replaced(a=problem.b, b=problem.a))
+        return other.replaced(problem=problem)
+
+
+@wrong("contacts_are_similar")
+class OncePerCreepage(Both):
+    """Solves one contact of each creepage in a batch."""
+
+    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
+        forces = super().creep_forces(problem)
+        _, first, places = np.unique(problem.creepage, return_index=True, return_inverse=True)
+        parts = {name: getattr(forces, name) for name in ("longitudinal", "lateral", "spin_moment")}
+        return wl.CreepForces(**{name: part.flat[first][places.reshape(part.shape)] for name, part in parts.items()})
 
 
 ON_GIVEN_STRIPS = {"strips_have_their_widths", "spin_has_its_force_and_moment", "slip_turns_with_the_spin"}

@@ -206,6 +206,29 @@ class BandUpsideDown(Linear):
         return low, middle, high
 
 
+class OfTheEnergy(Linear):
+    """Says that it goes with p·s, and goes with q·s."""
+
+    follows_pressure_times_slip: ClassVar[bool] = True
+
+
+class NumberOfTheClass(Linear):
+    """Has a number that is no field."""
+
+    factor: ClassVar[float] = 1.5
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        return self.factor * super().rate(contact, p)
+
+
+class Driven(Linear):
+    """Wears more where the slip points along the rolling direction."""
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
+        slip = contact.slip_x if contact.on_strips else contact.slip
+        return np.where(slip > 0.0, 1.0, 1.5) * super().rate(contact, p)
+
+
 class UnknownClaim(Linear):
     """Exempt from a check that is misspelt."""
 
@@ -240,6 +263,9 @@ CAUGHT: dict[Any, str] = {
     RampIsTooSteep: "ramps_sum_to_the_rate",
     UnknownVariable: "declared_names_are_variables",
     BandUpsideDown: "band_is_ordered",
+    OfTheEnergy: "pressure_times_slip_is_followed",
+    NumberOfTheClass: "numbers_are_fields",
+    Driven: "rate_does_not_jump_with_direction",
     UnknownClaim: "exemptions_are_claims",
     NoReason: "exemptions_are_claims",
     NoSource: "source_is_stated",

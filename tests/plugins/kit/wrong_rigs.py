@@ -87,6 +87,11 @@ CHANGES: dict[str, tuple[str, str, Callable[[wl.Problem], Any]]] = {
         "friction_coefficient",
         lambda problem: np.full(problem.batch_shape, np.mean(problem.friction_coefficient)),
     ),
+    "HalfAsStiff": ("stiffness_is_that_of_the_bodies", "effective_modulus", lambda p: 0.5 * p.effective_modulus),
+    "DiameterForRadius": ("curvature_is_that_of_the_bodies", "a", lambda p: np.sqrt(2.0) * p.a),
+    "FrictionOfItsOwn": ("each_condition_matters", "friction_coefficient", lambda p: 0.0 * p.creepage + 0.4),
+    "HalfTheCreepage": ("namesakes_are_the_same", "longitudinal_creepage", lambda p: 0.5 * p.creepage),
+    "MillimetresForMetres": ("example_has_sizes_of_a_test", "b", lambda p: 1e3 * p.b),
     "CreepageFromZero": ("creepage_is_proportional_to_its_condition", "rolling_speed", divided_by_creepage),
     "MagnitudeOfCreepage": (
         "creepage_is_proportional_to_its_condition",
@@ -130,6 +135,32 @@ class DensityOfSteel(Weight):
         return {"disc_1": wl.Body(self.material, 0.05)}
 
 
+class BodiesInReverse(Weight):
+    """The bodies of the problem in another order."""
+
+    @property
+    def bodies(self) -> Mapping[str, wl.Body]:
+        return dict(reversed([*DISCS.bodies.items()]))
+
+
+class InKilometresPerHour(Weight):
+    """Takes the kilometres an hour of its motor for metres a second."""
+
+    motor: Annotated[wl.Quantity, wl.Unit("km/h")] = Field(default="4 km/h", validate_default=True)
+    """Speed of both discs [m/s]."""
+
+    def problem(self, *, mass: Any, creepage: wl.QuantityLike, friction_coefficient: ArrayLike) -> wl.Problem:
+        problem = super().problem(mass=mass, creepage=creepage, friction_coefficient=friction_coefficient)
+        return problem.replaced(rolling_speed=problem.rolling_speed * 0.0 + self.motor.m_as("km/h"))
+
+
+class HasAnIdleField(Weight):
+    """Has a field that it does not read."""
+
+    radius: wl.Length = Field(default="3 cm", validate_default=True)
+    """Radius of the discs [m]."""
+
+
 class OtherCreepage(Weight):
     """Names a condition that there is not."""
 
@@ -151,6 +182,19 @@ class WeightConditions(TypedDict):
     creepage: wl.Creepage
     friction_coefficient: wl.Coefficient
     preload: NotRequired[Annotated[wl.QuantityLike, wl.Unit("N")]]
+
+
+class FrictionAtRest(Weight):
+    """Takes a law of friction at rest for that of any speed."""
+
+    def problem(self, *, mass: Any, creepage: wl.QuantityLike, friction_coefficient: wl.Friction) -> wl.Problem:
+        law = getattr(friction_coefficient, "coefficient", None)
+        friction: Any = friction_coefficient if law is None else law(np.zeros(()))
+        return super().problem(mass=mass, creepage=creepage, friction_coefficient=friction)
+
+    @classmethod
+    def conditions(cls) -> Mapping[str, wl.Condition]:
+        return {name: wl.TwinDisc.conditions().get(name, condition) for name, condition in Weight.conditions().items()}
 
 
 class TakesBarePreloads(Weight):
@@ -239,6 +283,10 @@ CAUGHT: dict[Any, str] = {
     **{changed(name, field, number): check for name, (check, field, number) in CHANGES.items()},
     ArmInOtherUnits: "units_of_parameters_do_not_matter",
     DensityOfSteel: "bodies_are_those_of_the_problem",
+    BodiesInReverse: "bodies_are_those_of_the_problem",
+    InKilometresPerHour: "speed_is_among_those_of_the_rig",
+    HasAnIdleField: "each_field_matters",
+    FrictionAtRest: "friction_laws_are_taken",
     OtherCreepage: "conditions_are_declared",
     TakesBareNumbers: "units_of_conditions_are_checked",
     TakesBarePreloads: "units_of_conditions_are_checked",

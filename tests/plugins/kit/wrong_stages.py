@@ -56,6 +56,39 @@ def of_friction(name: str, friction: Callable[[wl.Problem], Any]) -> Any:
     return type(name, (Lubricated,), {"altered": altered, "__module__": __name__, "__doc__": "Wrong."})
 
 
+WRONG_PROBLEMS: dict[str, tuple[str, Callable[[wl.Problem], wl.Problem]]] = {
+    "Denser": ("stages_keep_what_is_not_theirs", lambda problem: problem.replaced(density=1.1 * problem.density)),
+    "WithoutBodies": ("stages_keep_what_is_not_theirs", lambda problem: problem.replaced(bodies={})),
+    "OnLinesAlone": (
+        "stages_act_on_each_shape",
+        lambda problem: Lubricated().altered(problem, None) if problem.geometry == "line" else problem,  # type: ignore[arg-type]
+    ),
+    "FallsAtACreepage": (
+        "stages_do_not_jump",
+        lambda problem: problem.replaced(
+            friction_coefficient=np.where(problem.rigid_slip > 3e-3, 0.97, 1.0) * problem.friction_coefficient
+        ),
+    ),
+}
+"""Problems after wrong stages by their names, each with the check that must catch it."""
+
+
+def of_problem(name: str, change: Callable[[wl.Problem], wl.Problem]) -> Any:
+    """Return the class of a stage that gives the contact model another problem."""
+    methods = {"altered": lambda _, problem, __: change(problem), "__module__": __name__, "__doc__": "Wrong."}
+    return type(name, (Lubricated,), methods)
+
+
+class SinglePressure(Lubricated):
+    """Returns the pressure in single precision."""
+
+    name: ClassVar[str] = "single_pressure"
+
+    def solve(self, problem: wl.Problem, inner: wl.Solve) -> wl.Contact:
+        contact = super().solve(problem, inner)
+        return contact.replaced(pressure=contact.pressure.astype(np.float32).astype(np.float64))
+
+
 class Reversed(Lubricated):
     """Turns the creepages, so that forces drive the creep."""
 
@@ -215,6 +248,8 @@ RIGHT: list[Any] = [
 
 CAUGHT: dict[Any, str] = {
     **{of_friction(name, friction): check for name, (check, friction) in WRONG_FRICTIONS.items()},
+    **{of_problem(name, change): check for name, (check, change) in WRONG_PROBLEMS.items()},
+    SinglePressure: "contact_is_in_double_precision",
     Reversed: "contact_does_not_gain_energy",
     Forgets: "pipelines_take_the_contact",
     Film: "units_of_parameters_do_not_matter",
