@@ -15,7 +15,7 @@ from tests.cases import POINT, case
 from tests.plugins.fits import cli_data
 from wearlaw_apps.studies.case import case_schema  # private: a case without its files
 from wearlaw_apps.studies.study import Study, run  # private: a case run without its files
-from wearlaw_apps.sweeps import points  # private: small blocks
+from wearlaw_apps.sweeps import plan, points  # private: small blocks
 
 
 @pytest.fixture
@@ -40,8 +40,10 @@ def blank_figures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def small_blocks(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Blocks of 24 points: 10 of them; without numba, which would be loaded in each worker."""
+    """Blocks of 24 points: 10 of them, however fast; without numba, which would be loaded in each worker."""
     monkeypatch.setattr(points, "BLOCK", 30)
+    monkeypatch.setattr(plan, "LARGEST", 0)
+    monkeypatch.setattr(plan, "START_S", 0.0)
     wl.accelerate(False)
     yield
     wl.accelerate(None)

@@ -44,6 +44,7 @@ from wearlaw_apps.studies.figures import figures_of, wrong_figures
 from wearlaw_apps.studies.results import LIMITS, PATCH_AXES, Results, pairs_of
 from wearlaw_apps.studies.sections import Section
 from wearlaw_apps.sweeps.evaluation import Job
+from wearlaw_apps.sweeps.plan import planned
 from wearlaw_apps.sweeps.points import Points
 from wearlaw_apps.sweeps.provenance import parts
 from wearlaw_apps.sweeps.sweep import check_importable, kept, target_of
@@ -235,15 +236,14 @@ class _Evaluator:
         units = {**UNITS, **outcome_units(pipeline.laws)}
         job = Job(pipeline, {name: units[name] for name in outputs}, first.dims)
         points = replace(points, weight=job.weight(first))
-        blocks = len(points.blocks())
-        workers = min(self.workers, blocks)
-        check_importable(pipeline, workers)
-        store = self.store / f"{key}.zarr" if self.store is not None and blocks > 1 else None
+        check_importable(pipeline, self.workers)
+        store = self.store / f"{key}.zarr" if self.store is not None and points.size > points.room else None
+        points, several = planned(job, points, self.workers, store is not None)
         with closing(target_of(job, points, store, self.resume)) as target:
             if store is not None:
                 self.kept += len(target.done)
-                self.blocks += blocks
-            for warning in run_sweep(target, self.on_block, workers):
+                self.blocks += len(target.points.blocks())
+            for warning in run_sweep(target, self.on_block, self.workers if several else 1):
                 warnings.warn(warning, stacklevel=2)
             arrays = target.arrays()
         data = {v: ((*points.dims, *first.dims), arrays[v], {"units": units[v]}) for v in outputs}

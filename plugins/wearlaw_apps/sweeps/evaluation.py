@@ -24,6 +24,7 @@ from wearlaw.pipeline.ranges import RangeWatch, Seen
 from wearlaw.pipeline.solution import Solution
 from wearlaw.units.registry import magnitude
 from wearlaw.units.usual import OneWarning, remark
+from wearlaw.units.variables import is_text
 from wearlaw_apps.output.labels import long_name
 from wearlaw_apps.output.notes import caught_warnings
 from wearlaw_apps.sweeps.located import posed
@@ -46,12 +47,15 @@ class Job:
         The rig's own axes with their labels, as in `Problem.dims`.
     accelerate : bool or None
         The setting of `wearlaw.accelerate`, to apply in every process.
+    summed : bool
+        Whether the points are weighted by their shares and summed.
     """
 
     pipeline: Pipeline[...]
     units: Mapping[str, str]
     dims: Mapping[str, tuple[str | int, ...]] = field(default_factory=dict)
     accelerate: bool | None = field(default_factory=kernels.chosen)
+    summed: bool = False
 
     def labels(self, name: str) -> Mapping[str, Sequence[str | int | float]]:  # noqa: ARG002
         """Return the axes of an output at one operating point, with their labels."""
@@ -122,22 +126,35 @@ class BlockRecord:
 
 
 @steady
-def evaluate(job: Job, part: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, BlockRecord]:
+def evaluate(job: Job, block: Points, on_block: Callable[[int], None] | None = None) -> tuple[Outputs, BlockRecord]:
     """Return the outputs of a block of operating points, and its record.
 
     `on_block` is called with the number of points just done, several times for a long block.
     """
     kernels.accelerate(job.accelerate)
-    with caught_warnings() as caught, OneWarning() as seen:
-        problem = posed(part, job.posed)
-        unusual = dict(seen)
-        seen.clear()
-    remarks = dict.fromkeys(map(str, caught))
-    if job.dims or problem.dims:
-        _check_axes(job, problem, part)
-        on_block = on_block and _in_points(on_block, part.size, problem.size)
-    watch = RangeWatch(*job.pipeline.laws, on_block=on_block)
-    outputs = job.outputs(job.pipeline.watched(problem, watch), part)
+    watch = RangeWatch(*job.pipeline.laws)
+    remarks: dict[str, None] = {}
+    unusual: dict[str, str] = {}
+    outputs: Outputs = {}
+    for piece in block.blocks():
+        part = block.part(piece.slices)
+        with caught_warnings() as caught, OneWarning() as seen:
+            problem = posed(part, job.posed)
+            unusual = {**seen, **unusual}
+            seen.clear()
+        remarks |= dict.fromkeys(map(str, caught))
+        watch.on_block = on_block
+        if job.dims or problem.dims:
+            _check_axes(job, problem, part)
+            watch.on_block = on_block and _in_points(on_block, part.size, problem.size)
+        for name, values in job.outputs(job.pipeline.watched(problem, watch), part).items():
+            if piece.size == block.size:
+                outputs[name] = values
+                continue
+            axes = values.shape[1:]
+            if name not in outputs:
+                outputs[name] = np.empty((block.size, *axes), object if is_text(name) else np.float64)
+            outputs[name].reshape(block.shape + axes)[piece.slices] = values.reshape(piece.shape + axes)
     return outputs, BlockRecord(watch.points, watch.overload, watch.seen, tuple(remarks), unusual, watch.ratios)
 
 

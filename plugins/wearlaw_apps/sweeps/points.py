@@ -11,7 +11,7 @@ import itertools
 import math
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import IO, TYPE_CHECKING, Any, cast
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 ITEM = np.dtype(np.float64).itemsize
 
 BLOCK = 100_000
-"""Most operating points in a block; most blocks have more than half as many."""
+"""Most operating points that are evaluated at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,8 +150,13 @@ class Points:
     numbers : range or None
         The numbers of the points among the rows of the table.
     weight : float
-        Size of an operating point compared with a single line or ellipse, such as the number of its patches. Blocks
-        have fewer points in proportion.
+        Size of an operating point compared with a single line or ellipse, such as the number of its patches. Fewer are
+        evaluated at once in proportion.
+    divided : tuple of int
+        The shape of a block. Default: as many points as are evaluated at once.
+    piece : tuple of int
+        The shape of what is evaluated at once, if a block has several. It does not depend on the blocks, and so do no
+        results.
     """
 
     fixed: Mapping[str, Any]
@@ -161,6 +166,8 @@ class Points:
     kept: Mapping[str, Varying] = field(default_factory=dict)
     file: Table | None = None
     numbers: range | None = None
+    divided: tuple[int, ...] = ()
+    piece: tuple[int, ...] = ()
 
     @cached_property
     def sizes(self) -> dict[str, int]:
@@ -184,15 +191,23 @@ class Points:
         """Number of operating points."""
         return math.prod(self.shape)
 
+    @property
+    def room(self) -> int:
+        """Most points that are evaluated at once."""
+        return max(int(BLOCK / self.weight), 1)
+
     @cached_property
     def block_shape(self) -> tuple[int, ...]:
-        """The shape of a block: last dimensions in full, the one before in even parts, single values of the others."""
-        shape, room = [], max(int(BLOCK / self.weight), 1)
-        for size in reversed(self.shape):
-            parts = math.ceil(size / max(room, 1))
-            shape.append(math.ceil(size / parts))
-            room = room // size if parts == 1 else 0
-        return tuple(reversed(shape))
+        """The shape of a block."""
+        return self.divided or rectangle(self.shape, self.room)
+
+    def divided_by(self, room: float) -> Points:
+        """Return the points in blocks of at most so many, if more, each of several that are evaluated at once."""
+        piece = rectangle(self.shape, self.room)
+        counts = tuple(math.ceil(size / step) for size, step in zip(self.shape, piece, strict=True))
+        together = rectangle(counts, room / math.prod(piece))
+        divided = tuple(step * count for step, count in zip(piece, together, strict=True))
+        return replace(self, divided=divided, piece=piece)
 
     def blocks(self) -> list[Block]:
         """Return all blocks, in the order of the results."""
@@ -208,7 +223,7 @@ class Points:
         varying = {name: axis.part(by_dim) for name, axis in self.varying.items()}
         kept = {name: axis.part(by_dim) for name, axis in self.kept.items()}
         numbers = None if self.numbers is None else self.numbers[by_dim[self.dims[0]]]
-        return Points(self.fixed, varying, kept=kept, file=self.file, numbers=numbers)
+        return Points(self.fixed, varying, kept=kept, file=self.file, numbers=numbers, divided=self.piece)
 
     def coordinates(self) -> dict[str, Varying]:
         """Return the conditions and kept columns that vary, by name."""
@@ -222,6 +237,16 @@ class Points:
     def _laid_out(self, axis: Varying) -> Array:
         shape = [axis.sizes.get(dim, 1) for dim in self.dims]
         return np.broadcast_to(axis.values.reshape(shape), self.shape).reshape(-1)
+
+
+def rectangle(shape: tuple[int, ...], room: float) -> tuple[int, ...]:
+    """Return a small shape: last dimensions in full, the one before in even parts, single values of the others."""
+    sides = []
+    for size in reversed(shape):
+        parts = math.ceil(size / max(int(room), 1))
+        sides.append(math.ceil(size / parts))
+        room = room / size if parts == 1 else 0
+    return tuple(reversed(sides))
 
 
 def split(conditions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Varying]]:

@@ -26,7 +26,7 @@ Provenance = dict[str, Any]
 
 
 def provenance_of(job: Job, points: Points) -> Provenance:
-    """Return versions, pipeline, conditions, outputs and blocks of a sweep; columns of numbers by their digest."""
+    """Return versions, pipeline, conditions and outputs of a sweep; columns of numbers by their digest."""
     installed = loader.discovered()
     provided = {
         f"{part.kind} {part.name}": installed[part.kind].distribution(part.name, type(part))
@@ -34,15 +34,16 @@ def provenance_of(job: Job, points: Points) -> Provenance:
         if isinstance(part, Model)
     }
     varying = {name: _summary(column) for name, column in points.varying.items()}
-    provenance = {
+    provenance: dict[str, Any] = {
         "wearlaw": __version__,
         "plugins": provided,
         "kernels": "compiled" if accelerated(WORTHWHILE) else "NumPy",
         "predict": job.pipeline.model_dump(mode="json"),
         "conditions": {name: _text(value) for name, value in points.fixed.items()} | varying,
         "outputs": dict(job.units),
-        "blocks": list(points.block_shape),
     }
+    if job.summed:  # in another order a sum is rounded otherwise
+        provenance["blocks"] = list(points.block_shape)
     if points.kept:
         provenance["kept"] = {name: _summary(column) for name, column in points.kept.items()}
     provenance |= job.settings

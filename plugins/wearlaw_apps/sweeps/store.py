@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -51,8 +53,8 @@ class Store(Target):
         self.path, self.store, self.resumed = path, str(path.absolute()), self._folder.resumed
         try:
             self._lay_out()
-            kept = {block.number: self._kept(block) for block in points.blocks()} if self.resumed else {}
-            self.done = {number: record for number, record in kept.items() if record is not None}
+            if self.resumed:
+                self.done = dict(self._kept())
         except BaseException as error:
             self.close()
             if self.resumed and isinstance(error, ValueError | KeyError | TypeError):  # what describes an array
@@ -62,8 +64,11 @@ class Store(Target):
     def _lay_out(self) -> None:
         """Write the coordinates, and the arrays of outputs that are missing."""
         points, job = self.points, self.job
-        group = zarr.open_group(self.store, mode="r+", zarr_format=3)
+        group: Any = zarr.open_group(self.store, mode="r+", zarr_format=3)
         there = set(group) if self.resumed else set()
+        for name in there & {*job.units}:  # blocks stay as they were, however long points take now
+            divided = group[name].chunks[: len(points.dims)]
+            self.points = points = replace(points.divided_by(1), divided=divided)
         for name in job.units:
             if name not in there:
                 shape, chunks = points.shape + job.own_shape(name), points.block_shape + job.own_shape(name)
@@ -91,24 +96,22 @@ class Store(Target):
         if name != column.dim:  # as xarray tells coordinates from variables
             group.attrs["coordinates"] = f"{group.attrs.get('coordinates', '')} {name}".strip()
 
-    def _kept(self, block: Block) -> BlockRecord | None:
-        """Return the record of a block if it and all chunks of the block decode, else None."""
-        try:
-            text = zarr.open_array(self.store, path=RECORDS, mode="r")[block.number]
-            record = TypeAdapter(BlockRecord).validate_json(str(text))
-            for name in self.job.units:
-                array: Any = zarr.open_array(self.store, path=name, mode="r")
-                if not self._chunk(name, array, block).is_file():  # zarr would read it as NaN
-                    return None
-                array[(*block.slices, ...)]
-        except (OSError, ValueError):
-            return None
-        return record
+    def _kept(self) -> Iterator[tuple[int, BlockRecord]]:
+        """Give the numbers and records of the blocks whose records and chunks are there and decode."""
+        group: Any = zarr.open_group(self.store, mode="r")
+        arrays = [group[name] for name in self.job.units]
+        for block in self.points.blocks():
+            with suppress(OSError, ValueError):
+                record = TypeAdapter(BlockRecord).validate_json(str(group[RECORDS][block.number]))
+                if all(self._chunk(array, block).is_file() for array in arrays):  # zarr would read it as NaN
+                    for array in arrays:
+                        array[(*block.slices, ...)]
+                    yield block.number, record
 
-    def _chunk(self, name: str, array: Any, block: Block) -> Path:
+    def _chunk(self, array: Any, block: Block) -> Path:
         """Return the file of a block in the array of an output."""
         which = [span.start // size for span, size in zip(block.slices, self.points.block_shape, strict=True)]
-        key = array.metadata.encode_chunk_key((*which, *(0 for _ in self.job.labels(name))))
+        key = array.metadata.encode_chunk_key((*which, *(0 for _ in array.shape[len(which) :])))
         return self.path / str(array.path) / str(key)
 
     def add(self, block: Block, outputs: Outputs, record: BlockRecord) -> None:  # noqa: ARG002

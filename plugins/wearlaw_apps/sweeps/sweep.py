@@ -25,13 +25,14 @@ from wearlaw_apps.output.labels import unit_of
 from wearlaw_apps.output.notes import caught_warnings
 from wearlaw_apps.sweeps.evaluation import Job, expect_pipeline, range_warnings, unsolved
 from wearlaw_apps.sweeps.located import posed
+from wearlaw_apps.sweeps.plan import planned
 from wearlaw_apps.sweeps.points import BLOCK, Points
 from wearlaw_apps.sweeps.progress import Bar
 from wearlaw_apps.sweeps.provenance import parts
 from wearlaw_apps.sweeps.results import Memory, Target
 from wearlaw_apps.sweeps.room import writing_to
 from wearlaw_apps.sweeps.tables import operating_points
-from wearlaw_apps.sweeps.wear_profile import WEAR_PROFILE, ProfileJob, Sum
+from wearlaw_apps.sweeps.wear_profile import WEAR_PROFILE, Sum
 from wearlaw_apps.sweeps.workers import here, in_processes, on_cluster
 
 if TYPE_CHECKING:
@@ -84,7 +85,8 @@ def sweep(
         Default: the variables of `Prediction.to_dataset`, as long as they are no more than 2²⁴ numbers (128 MiB), and
         in a larger sweep the outcomes of all laws alone; `attrs["notes"]` then says so.
     workers : int
-        Number of processes on this machine; they are kept for later sweeps.
+        Number of processes on this machine; they are kept for later sweeps. A sweep that takes no longer than they need
+        to start is evaluated here.
     client : distributed.Client, optional
         A cluster of dask.distributed, instead of `workers`.
     store : path, optional
@@ -174,12 +176,16 @@ def computed(
         first = _checked_conditions(predict, points, not_given)
         check_importable(predict, workers, client)
         job, notes = job_of(first, points)
-        points = dataclasses.replace(points, weight=job.weight(first))
         if store is None and resume:
             raise InputError("resume: needs the store that an interrupted sweep has left; give store=...")
         folder = None if store is None else Path(store)
+        points = dataclasses.replace(points, weight=job.weight(first))
+        processes = workers if client is None else max(2, sum(client.nthreads().values()))
+        points, several = planned(job, points, processes, store is not None)
+        if not several:
+            workers, client = 1, None
         target = target_of(job, points, folder, resume)
-        blocks = len(points.blocks())
+        blocks = len(target.points.blocks())
         if folder is not None and target.resumed and len(target.done) < blocks:
             warn(kept(len(target.done), blocks, folder), ResumeWarning)
         with closing(target), Bar(points.size, progress) as bar:
@@ -191,7 +197,7 @@ def computed(
 
 def target_of(job: Job, points: Points, store: Path | None, resume: bool) -> Target:
     """Return where the results of a sweep go: to a sum, to memory, or to a store."""
-    if isinstance(job, ProfileJob) and job.summed:
+    if job.summed:
         return Sum(job, points, store, resume)
     if store is None:
         return Memory(job, points)
@@ -307,7 +313,7 @@ def run(target: Target, on_block: Callable[[int], None], workers: int = 1, clien
     points = target.points
     left = [block for block in points.blocks() if block.number not in target.done]
     on_block(points.size - sum(block.size for block in left))
-    several = client is not None or workers > 1
+    several = client is not None or (workers > 1 and len(left) > 1)
     job = pickle.dumps(target.job) if several else b""
     if client is not None:
         evaluated = on_cluster(client, job, target.store, points, left)

@@ -50,7 +50,7 @@ UNITS = (
 
 @dataclass(frozen=True, kw_only=True)
 class ProfileJob(Job):
-    """The wear across the profile of a body, at each point or summed over all of them.
+    """The wear across the profile of a body, at each point or summed over all of them, then with the mass.
 
     Attributes
     ----------
@@ -58,15 +58,12 @@ class ProfileJob(Job):
         Its name in the rig.
     at : ndarray, (positions,)
         Arc lengths of its profile [m].
-    summed : bool
-        Whether the points are weighted by their shares and summed. The sum has the mass too.
     others : mapping of str to str
         The units of other outputs, by their names.
     """
 
     body: str
     at: Array
-    summed: bool
     others: Mapping[str, str]
 
     @classmethod

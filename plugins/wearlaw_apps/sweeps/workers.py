@@ -28,7 +28,7 @@ Evaluated: TypeAlias = Generator[tuple[Block, Outputs, BlockRecord], None, None]
 RECORDS = "blocks/record"
 """Array with the record of each finished block. It is in a group of its own, which xarray leaves alone."""
 
-AHEAD = 4
+AHEAD = 2
 """Blocks submitted for each worker, so that none waits for work."""
 
 IDLE_S = 300

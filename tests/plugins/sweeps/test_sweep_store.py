@@ -203,10 +203,10 @@ import signal
 
 import numpy as np
 import wearlaw as wl
-from wearlaw_apps.sweeps import points
+from wearlaw_apps.sweeps import plan, points
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # tests in the background of a shell have it ignored
-points.BLOCK = 100
+points.BLOCK, plan.LARGEST, plan.START_S = 100, 0, 0.0
 wl.accelerate(False)
 predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth")
 given = dict(

@@ -79,9 +79,9 @@ def test_compiled_kernels_are_turned_off_in_workers_where_they_are_here() -> Non
 SCRIPT = """
 import numpy as np
 import wearlaw as wl
-from wearlaw_apps.sweeps import points
+from wearlaw_apps.sweeps import plan, points
 
-points.BLOCK = 3
+points.BLOCK, plan.START_S = 3, 0.0
 wl.accelerate(False)
 
 class Mine(wl.WearLaw):
@@ -119,7 +119,9 @@ def test_workers_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
 import os, signal
 from pathlib import Path
 import wearlaw as wl
+from wearlaw_apps.sweeps import plan, points
 
+points.BLOCK, plan.START_S = 1, 0.0
 predict = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
 wl.sweep(predict, max_pressure="1500 MPa", creepage=wl.Q([1.0, 2.0], "%"), friction_coefficient=[0.3, 0.4], workers=2)
 print(len([child for task in Path("/proc/self/task").iterdir() for child in (task / "children").read_text().split()]))

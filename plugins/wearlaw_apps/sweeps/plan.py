@@ -1,0 +1,69 @@
+"""How a sweep is divided: blocks by the time that its points take, and other processes where they are worth it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import Counter
+
+from wearlaw_apps.sweeps.evaluation import Job, evaluate
+from wearlaw_apps.sweeps.points import Points, rectangle
+
+START_S = 1.5
+"""Time that a sweep must save to be worth other processes [s]: they need about one second to start."""
+
+BLOCK_S = 1.0
+"""Time that a block takes [s], as far as its size lies within the bounds."""
+
+EACH = 4
+"""Blocks for each of several processes, so that all end at about the same time."""
+
+LARGEST = 2_000_000
+"""Most operating points in a block, a file of 16 MB for each output; of a table most numbers in its rows."""
+
+SAMPLE_S = 0.1
+"""Time of a sample of points that tells the time of all [s]."""
+
+FIRST = 100
+"""Most points of the first sample."""
+
+
+def planned(job: Job, points: Points, workers: int, stored: bool) -> tuple[Points, bool]:
+    """Return the points in blocks for a sweep, and whether it is worth other processes.
+
+    Parameters
+    ----------
+    job : Job
+    points : Points
+    workers : int
+        Number of processes that may evaluate the blocks.
+    stored : bool
+        Whether each block becomes a file.
+    """
+    if points.size <= points.room or not (stored or workers > 1):
+        return points, False
+    pace = seconds_per_point(job, points)
+    several = workers > 1 and pace * points.size * (1.0 - 1.0 / workers) > START_S
+    if job.summed:
+        return points, several
+    columns = max(Counter(column.dim for column in points.coordinates().values()).values(), default=1)
+    room = min(BLOCK_S / pace, LARGEST / points.weight / columns)
+    return points.divided_by(min(room, points.size / (EACH * workers)) if several else room), several
+
+
+def seconds_per_point(job: Job, points: Points) -> float:
+    """Return the time of an operating point [s], measured at the first ones."""
+    count = max(min(FIRST, points.size // FIRST), 1)
+    while True:
+        block = rectangle(points.shape, count)
+        part = points.part(slice(0, length) for length in block)
+        took = min(_time(job, part) for _ in range(2))  # the first time may load kernels
+        if took > SAMPLE_S or count >= min(points.size, points.room):
+            return took / math.prod(block)
+        count = min(10 * count, points.room)
+
+
+def _time(job: Job, part: Points) -> float:
+    start = time.perf_counter()
+    evaluate(job, part)
+    return time.perf_counter() - start
