@@ -6,7 +6,7 @@ import inspect
 import json
 import textwrap
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, TypeGuard
 
@@ -15,6 +15,7 @@ import pint
 
 from wearlaw import loader
 from wearlaw.configuration import Configuration, field_docstrings
+from wearlaw.contact.conditions import Condition, of_table
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import PATCHES
 from wearlaw.errors import InputError, PluginWarning, UnknownModelError
@@ -147,8 +148,10 @@ def describe(model: type[Model], head: str | None = None, law: Law | None = None
         "fields:",
         *fields_of(model, default),
     ]
+    if isinstance(model.conditions, type):
+        lines += ["", "conditions beside those of the rig:", *_conditions(of_table(model.conditions))]
     if issubclass(model, Rig):
-        lines += ["", "conditions:", *_conditions(model), *_example(model)]
+        lines += ["", "conditions:", *_conditions(model.conditions(), model.choices), *_example(model)]
     declared = list(_declared(model, default))
     if declared:
         lines += ["", "declares:", *(f"  {text}" for text in declared)]
@@ -184,13 +187,13 @@ def _is_table(part: Any) -> TypeGuard[type[Configuration]]:
     return field_docstrings(part).keys() <= written.keys()
 
 
-def _conditions(rig: type[Rig]) -> Iterator[str]:
+def _conditions(conditions: Mapping[str, Condition], choices: Iterable[Sequence[str]] = ()) -> Iterator[str]:
     """Yield lines about each condition."""
-    for name, condition in rig.conditions().items():
+    for name, condition in conditions.items():
         unit = condition.unit and (symbol(Q(1.0, condition.unit.unit).units, "~P") or "-")
         yield f"  {name}{f' [{unit}]' if unit else ''}{' (must be given)' if condition.required else ''}"
         yield from wrapped("      ", condition.meaning)
-    yield from (f"  exactly one of {', '.join(names)} must be given" for names in rig.choices)
+    yield from (f"  exactly one of {', '.join(names)} must be given" for names in choices)
 
 
 def _example(rig: type[Rig]) -> Iterator[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, TypedDict
 
 import numpy as np
 import pytest
@@ -366,15 +366,22 @@ def test_cells_are_split_where_the_bodies_stick_if_the_value_is_not_zero_there()
 # --- Memory: the distance rolled -------------------------------------------------------------------------------
 
 
+class Distance(TypedDict):
+    """The distance rolled, which rigs have as a condition of their own."""
+
+    rolled_distance: Annotated[wl.QuantityLike, wl.Unit("m", positive=False, negative=False)]
+
+
 class RunningIn(wl.WearLaw):
     """Wear that falls from an initial to a final rate with the distance rolled."""
 
     name: ClassVar[str] = "running_in"
     source: ClassVar[str] = "test"
+    conditions: ClassVar = Distance
     distance: wl.Length = Q(2.0, "km")
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        share = np.exp(-contact.per_node(contact.rolled_distance) / p["distance"])
+        share = np.exp(-contact.per_node(contact.conditions["rolled_distance"]) / p["distance"])
         return 1e-9 * (1.0 + 3.0 * share) * contact.wear_index_density
 
 
@@ -386,7 +393,7 @@ def test_a_law_reads_the_distance_rolled(rig: Any, conditions: dict[str, Any]) -
     swept = wl.sweep(predict, **conditions, rolled_distance=Q([0.0, 1.0, 2.0], "km"))
     rates = swept.wear_rate.values.ravel()
     assert rates / rates[0] == pytest.approx((1.0 + 3.0 * np.exp([0.0, -0.5, -1.0])) / 4.0, rel=64 * EPS)
-    with pytest.raises(wl.CompositionError, match="rolled_distance: a law needs it, but the conditions do not give it"):
+    with pytest.raises(wl.ConditionsError, match="rolled_distance: is missing; wear law 'running_in' needs it"):
         predicted(predict, **conditions)
     with pytest.raises(wl.UnitError, match=r"rolled_distance: .*must not be negative"):
         predicted(predict, **conditions, rolled_distance=Q([1.0, -1.0], "km"))

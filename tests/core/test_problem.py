@@ -77,10 +77,10 @@ def test_every_array_of_a_problem_takes_part_in_its_batch() -> None:
         normal_force="80 kN",
         longitudinal_creepage=Q([0.1, 0.2, 0.3], "%"),
         friction_coefficient=0.3,
-        rolled_distance="5 km",
     )
     given = found.replaced(
         traction_coefficient=np.array([0.1, 0.2, 0.3]),
+        conditions={"humidity": np.array([0.4, 0.5, 0.6])},
         exists=np.array([True, True, False]),
         dims={"patch": (1, 2, 3)},
         unloaded=np.array([False, False, True]),
@@ -91,6 +91,8 @@ def test_every_array_of_a_problem_takes_part_in_its_batch() -> None:
     for name, value in fields.items():
         if isinstance(value, np.ndarray):
             np.testing.assert_array_equal(getattr(second, name), value[1:], err_msg=name)
+        elif name == "conditions":
+            np.testing.assert_array_equal(second.conditions["humidity"], [0.5, 0.6])
         elif name != "strips":
             assert getattr(second, name) == value, name
 

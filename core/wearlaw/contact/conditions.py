@@ -1,10 +1,10 @@
-"""The conditions of a rig: read from their declaration, checked, and broadcast against each other."""
+"""The conditions of rigs and models: read from their declaration, checked, and broadcast against each other."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import cache
 from types import SimpleNamespace
 from typing import (
@@ -28,7 +28,7 @@ from pydantic import Field
 
 from wearlaw.arrays import Array, extremes, read_only
 from wearlaw.configuration import Configuration, item_docstrings
-from wearlaw.errors import ConditionsError, ModelError, UnitError, WearlawError, described
+from wearlaw.errors import CompositionError, ConditionsError, ModelError, UnitError, WearlawError, described
 from wearlaw.units.quantities import (
     Quantity,
     QuantityLike,
@@ -36,7 +36,8 @@ from wearlaw.units.quantities import (
     coefficient,
     scalar_si,
 )
-from wearlaw.units.variables import meaning_of
+from wearlaw.units.registry import unit_in_si
+from wearlaw.units.variables import alike, meaning_of
 
 Arrays: TypeAlias = dict[str, Array]
 """SI arrays of the conditions, by name."""
@@ -62,7 +63,7 @@ Creepage: TypeAlias = Annotated[QuantityLike, Unit("", positive=False, limit=1.0
 
 @dataclass(frozen=True)
 class Condition:
-    """A condition that a rig takes.
+    """A condition that a rig takes, or that a contact model, a stage or a law declares.
 
     Attributes
     ----------
@@ -78,6 +79,8 @@ class Condition:
         Whether it may be a friction law.
     table : type or None
         The `TypedDict` that declares it.
+    of : str
+        What declares it in words, such as "wear law 'humid'"; "" for the rig.
     """
 
     name: str
@@ -86,6 +89,40 @@ class Condition:
     check: Callable[[object, str], Array] | None = None
     law: bool = False
     table: type | None = None
+    of: str = ""
+
+    @property
+    def example(self) -> str | float:
+        """A value, such as "50 %": the middle of what is usual if that is known."""
+        middle = 1.0 if self.unit is None or self.unit.usual is None else 0.5 * sum(self.unit.usual)
+        return middle if self.unit is None else f"{middle:.6g} {self.unit.unit or 'dimensionless'}"
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The range in SI that is both possible and usual."""
+        unit = self.unit or Unit("", positive=self.check is not None)
+        low = 0.0 if unit.positive or not unit.negative else -unit.limit
+        factor, (least, most) = unit_in_si(unit.unit), unit.usual or (-np.inf, np.inf)
+        return max(low, least) * factor, min(unit.limit, most) * factor
+
+    def __str__(self) -> str:
+        unit = self.unit or Unit("")
+        usual = "" if unit.usual is None else ", usually {:g} to {:g}".format(*unit.usual)
+        return f"{self.of or 'the rig'} in [{unit.unit or '-'}]{usual}"
+
+    def in_si(self, value: object) -> Array:
+        """Return its value in SI, checked."""
+        assert self.check is not None  # as the class of a model that declares conditions ensures
+        return self.check(value, self.name)
+
+    def agrees(self, other: Condition) -> bool:
+        """Return whether a value can be both this condition and another one of the same name."""
+        if None in (self.check, other.check):  # the rig does not declare it
+            return True
+        if not alike(*(one.unit.unit if one.unit else "" for one in (self, other))):
+            return False
+        (low, high), (least, most) = self.range, other.range
+        return low <= most and least <= high
 
     @property
     def meaning(self) -> str:
@@ -108,11 +145,12 @@ def declared(problem: Callable[..., object]) -> Mapping[str, Condition]:
         return {one.name: Condition(one.name, one.default is one.empty) for one in parameters}
     of = SimpleNamespace(__annotations__={"conditions": any_name[0].annotation})
     hint = hints_of(of, getattr(inspect.unwrap(problem), "__globals__", {}), include_extras=True)["conditions"]
-    return _of_table(get_args(hint)[0]) if get_origin(hint) is Unpack else {}
+    return of_table(get_args(hint)[0]) if get_origin(hint) is Unpack else {}
 
 
-def _of_table(table: Any) -> Mapping[str, Condition]:
-    """Return the conditions of a `TypedDict`."""
+@cache
+def of_table(table: Any, of: str = "") -> Mapping[str, Condition]:
+    """Return the conditions of a `TypedDict`; `of` says in words what declares them."""
     found = {}
     for name, hint in hints_of(table, include_extras=True).items():
         # `__required_keys__` does not see `Required` and `NotRequired` in postponed annotations before Python 3.13.
@@ -122,8 +160,31 @@ def _of_table(table: Any) -> Mapping[str, Condition]:
         checks = getattr(value, "__metadata__", ())
         unit = next((one for one in checks if isinstance(one, Unit)), None)
         check = coefficient if coefficient in checks else None if unit is None else unit.si
-        found[name] = Condition(name, required, unit, check, value == Friction, table)
+        found[name] = Condition(name, required, unit, check, value == Friction, table, of)
     return found
+
+
+def together(tables: Iterable[Mapping[str, Condition]]) -> dict[str, Condition]:
+    """Return the conditions of several tables by name; one is required if any table requires it.
+
+    Raises
+    ------
+    CompositionError
+        If a condition has several dimensions, or ranges that exclude each other.
+    """
+    every: dict[str, list[Condition]] = {}
+    for table in tables:
+        for name, condition in table.items():
+            for other in (others := every.setdefault(name, [])):
+                if not condition.agrees(other):
+                    raise CompositionError(
+                        f"{name}: no value suits both {other} and {condition}; rename the condition of one of them"
+                    )
+            others.append(condition)
+    return {
+        name: replace(first, required=first.required or any(other.required for other in others))
+        for name, (first, *others) in every.items()
+    }
 
 
 def friction_at(law: FrictionLaw, name: str, creep_speed: Array) -> Array:

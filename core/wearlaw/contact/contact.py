@@ -8,18 +8,20 @@ batch are the *nodes* of the patch. An ellipse has two of them, along a strip an
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal, Self, TypeAlias, get_args
 
 import numpy as np
+import pint
 
 from wearlaw.arrays import Array, freeze
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.conditions import broadcast
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import CompositionError, InputError
-from wearlaw.units.quantities import QuantityLike
+from wearlaw.errors import InputError
+from wearlaw.units.quantities import Q, QuantityLike, parse, real_array, with_units
+from wearlaw.units.registry import with_magnitude
 from wearlaw.units.variables import expected
 
 NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density")
@@ -128,6 +130,9 @@ class Contact:
         Width of the patch that a strip of an ellipse represents [m]; a line has no strips.
     problem : Problem or None
         The solved problem; None for a contact solved elsewhere.
+    conditions : mapping of str to ndarray, (batch)
+        Further conditions in SI by name, which the models of the pipeline declare. Those of a contact solved elsewhere
+        are quantities until a law reads them.
     """
 
     pressure: Array
@@ -151,14 +156,17 @@ class Contact:
     moment_z: Array = _DERIVED
     strip_width: Array = _DERIVED
     problem: Problem | None = None
+    conditions: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Make the arrays read-only, and fill in the vector components of a contact without strips."""
         freeze(self, self.__slots__)
+        fill = object.__setattr__  # the record is frozen
+        if self.problem is not None and self.problem.conditions:
+            fill(self, "conditions", {**self.conditions, **self.problem.conditions})
         if self.on_strips:
             return
         nothing, none = np.zeros(np.shape(self.traction)), np.zeros(np.shape(self.tangential_force))
-        fill = object.__setattr__  # the record is frozen
         fill(self, "traction_x", self.traction)
         fill(self, "slip_x", self.slip)
         fill(self, "force_x", self.tangential_force)
@@ -267,7 +275,7 @@ class Contact:
         `wear_index_density` is Tγ/A.
         """
         area = problem.patch_area
-        nodes = {
+        nodes: dict[str, Any] = {
             "pressure": problem.normal_force / area,
             "traction": forces.tangential / area,
             "slip": problem.rigid_slip,
@@ -297,6 +305,7 @@ class Contact:
         area: QuantityLike,
         rolling_speed: QuantityLike,
         density: QuantityLike = "7850 kg/m^3",
+        **conditions: Any,
     ) -> Self:
         """Return a contact solved elsewhere, such as by a multibody or boundary-element program.
 
@@ -308,6 +317,8 @@ class Contact:
             the same sign, or are magnitudes. There can be several axes of nodes.
         rolling_speed, density : Quantity, (batch)
             Rolling speed [m/s] and mass density of the body whose wear is predicted [kg/m³].
+        **conditions : Quantity, str or array_like, (batch)
+            Further conditions that laws declare, such as ``relative_humidity="40 %"``.
 
         Raises
         ------
@@ -358,7 +369,31 @@ class Contact:
             tangential_force=force,
             wear_index=(q * s * a).sum(axis=axes),
             density=np.broadcast_to(units["density"].si(density, "density"), speed.shape),
-        )
+        ).at(**conditions)
+
+    def at(self, **conditions: Any) -> Self:
+        """Return the contact with further conditions, each one value or of the batch shape; a law checks their units.
+
+        Raises
+        ------
+        UnitError
+            If a value is no number with or without a unit.
+        InputError
+            If its shape is not that of the batch.
+        """
+        added = {}
+        for name, value in conditions.items():
+            given: Any = parse(value) if isinstance(value, str) or with_units(value) else value
+            if not isinstance(given, pint.Quantity):
+                given = Q(real_array(given), "")
+            try:
+                added[name] = with_magnitude(given, np.broadcast_to(given.magnitude, self.rolling_speed.shape))
+            except ValueError:
+                raise InputError(
+                    f"{name}: must be one value or of the shape of the contacts, {self.rolling_speed.shape}, got"
+                    f" {np.shape(given.magnitude)}"
+                ) from None
+        return self.replaced(conditions={**self.conditions, **added})
 
     @property
     def half_width(self) -> Array:
@@ -435,23 +470,6 @@ class Contact:
     def frictional_power_density(self) -> Array:
         """Frictional power over area, qsV [W/m²], of shape (batch, nodes)."""
         return self.wear_index_density * self.per_node(self.rolling_speed)
-
-    @property
-    def rolled_distance(self) -> Array:
-        """Distance that the bodies have rolled since they were new [m], of the batch shape.
-
-        Raises
-        ------
-        CompositionError
-            If the conditions do not give it.
-        """
-        distance = self._solved_problem("rolled_distance").rolled_distance
-        if distance is None:
-            raise CompositionError(
-                'rolled_distance: a law needs it, but the conditions do not give it; add rolled_distance="5 km", for'
-                " example"
-            )
-        return distance
 
     @property
     def patch_area(self) -> Array:
@@ -539,8 +557,15 @@ class Contact:
 
     def mapped(self, function: Callable[[Array], Array], problem: Problem | None = None) -> Self:
         """Return the contact with a function applied to each of its arrays and, if none is given, of its problem."""
-        fields = {name: function(getattr(self, name)) for name in self.__slots__ if name != "problem"}
-        return type(self)(**fields, problem=problem or (self.problem and self.problem.mapped(function)))
+        arrays = {name: function(getattr(self, name)) for name in self.__slots__ if name not in OTHERS}
+        conditions = {
+            name: with_magnitude(value, function(value.magnitude))
+            if isinstance(value, pint.Quantity)
+            else function(value)
+            for name, value in self.conditions.items()
+        }
+        problem = problem or (self.problem and self.problem.mapped(function))
+        return type(self)(**arrays, problem=problem, conditions=conditions)
 
     def replaced(self, **fields: Any) -> Self:
         """Return the contact with some of its fields replaced."""
@@ -577,8 +602,12 @@ class Contact:
             across = {"strip_width": self.strip_width.sum(axis=-1)[..., None]}
         totals = {name: getattr(self, name) for name in TOTALS}
         axes = (..., *[None] * (2 if across else 1))
-        return Contact(**{name: value[axes] for name, value in nodes.items()}, **across, problem=self.problem, **totals)
+        arrays = {name: value[axes] for name, value in nodes.items()} | across | totals
+        return Contact(**arrays, problem=self.problem, conditions=self.conditions)
 
+
+OTHERS = ("problem", "conditions")
+"""The fields of a `Contact` that are no arrays."""
 
 TOTALS = (
     "rolling_speed", "normal_force", "tangential_force", "wear_index", "density", "force_x", "force_y", "moment_z",
@@ -604,7 +633,7 @@ def _given_pressure(problem: Problem, x: Array, y: Array) -> Array:
     return pressure
 
 
-def _totals(problem: Problem, forces: CreepForces) -> dict[str, Array]:
+def _totals(problem: Problem, forces: CreepForces) -> dict[str, Any]:
     return {
         "rolling_speed": problem.rolling_speed,
         "normal_force": problem.normal_force,

@@ -261,8 +261,8 @@ class Problem:
         Measured tangential over normal force, T/N [-], if the test gave one.
     contact_angle : ndarray or None
         Contact angle, δ [rad], of the surface to the axle; None if the surface is level at all operating points.
-    rolled_distance : ndarray or None
-        Distance that the bodies have rolled since they were new [m], for laws of running-in; None if it is not given.
+    conditions : mapping of str to ndarray
+        Further conditions by name, which the models of the pipeline declare.
     strips : Strips or None
         The strips and their pressure, if the patch is neither a line nor an ellipse.
     bodies : mapping of str to Body
@@ -292,7 +292,7 @@ class Problem:
     density: Array
     traction_coefficient: Array | None = None
     contact_angle: Array | None = None
-    rolled_distance: Array | None = None
+    conditions: Mapping[str, Array] = field(default_factory=dict)
     strips: Strips | None = None
     bodies: Mapping[str, Body] = field(default_factory=dict)
     dims: Mapping[str, tuple[str | int, ...]] = field(default_factory=dict)
@@ -723,10 +723,11 @@ class Problem:
         if self.strips is not None:
             fields["strips"] = self.strips.mapped(function, of_strips)
         fields["bodies"] = {name: body.mapped(function) for name, body in self.bodies.items()}
+        fields["conditions"] = {name: function(array) for name, array in self.conditions.items()}
         return type(self)(**fields)
 
 
-ARRAYS = tuple(one.name for one in dataclasses.fields(Problem) if "Array" in str(one.type))
+ARRAYS = tuple(one.name for one in dataclasses.fields(Problem) if "Array" in str(one.type).partition("[")[0])
 """The fields of a `Problem` that are arrays, some of them None if they do not apply."""
 
 

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
 
 import numpy as np
+import pint
 from pydantic import Field, model_validator
 
 from wearlaw.arrays import Array, extremes, type_name
@@ -316,6 +317,8 @@ class Law(Model):
         ------
         CompositionError
             If the law is stated for the whole patch, and the contact has more than one node.
+        InputError
+            If the contact lacks a condition of the law.
         """
         if not isinstance(contact, Contact):
             raise CompositionError(f"a {self.kind} takes a contact, not {shown(contact)}; a pipeline begins with a rig")
@@ -325,9 +328,36 @@ class Law(Model):
                 f"{self.kind} '{self.name}' is stated for the means of the whole patch; use contact.patch_mean() | law"
             )
         self._warn_of_calibration(contact, scale)
+        contact = self.under_conditions(contact)
         rate = self.checked_rate(contact)
         self.check_not_negative(rate)
         return LocalOutcome(contact, rate, self.outcome)
+
+    def under_conditions(self, contact: Contact) -> Contact:
+        """Return a contact solved elsewhere with the conditions of this law in SI.
+
+        Raises
+        ------
+        InputError
+            If one is missing.
+        UnitError
+            If one has the wrong unit, or is out of bounds.
+        """
+        found = dict(contact.conditions)
+        for name, condition in self.own_conditions().items():
+            value = found.get(name)
+            if isinstance(value, pint.Quantity):
+                found[name] = condition.in_si(value)
+            elif value is None and condition.required:
+                raise InputError(
+                    f"{name}: is missing; {condition.of} needs it. Give it with the contact, as in"
+                    f" contact.at({name}={condition.example!r})"
+                )
+        if not self.own_conditions():
+            return contact
+        in_si = {name: value for name, value in found.items() if not isinstance(value, pint.Quantity)}
+        problem = contact.problem and contact.problem.replaced(conditions=in_si)
+        return contact.replaced(conditions=found, problem=problem)
 
     def check_not_negative(self, value: Array, error: Callable[[], Array] = lambda: np.zeros(())) -> None:
         """Raise a `ModelError` if an outcome without sign is negative by more than its numerical error, in SI.

@@ -6,11 +6,12 @@ A model is its configuration: a frozen pydantic record. Its fields carry units, 
 import inspect
 from abc import ABC
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, cast, is_typeddict
 
 import numpy as np
 
 from wearlaw.configuration import Configuration
+from wearlaw.contact.conditions import Condition, of_table
 from wearlaw.errors import CompositionError, InputError, ModelError, WearlawError, described, did_you_mean
 from wearlaw.late import method
 
@@ -23,6 +24,9 @@ have several checks, such as "energy_balance" or "spin".
 
 ORDER = 'the order is rig | wl.contact_model("exact") | stages such as wl.patch_mean() | wl.wear_law("usfd")'
 """Hint for models that do not make a pipeline."""
+
+CONDITIONS: set[str] = set()
+"""Names of the conditions that classes of contact models, stages and laws declare."""
 
 OF_ARRAYS = (
     "\nIn a fit or an uncertainty, its numbers are arrays of shape (points, 1), one value for each operating point."
@@ -49,6 +53,11 @@ class Model(Configuration, ABC):
     source: ClassVar[str]
     """Literature source of the model."""
 
+    conditions: ClassVar = cast(Any, None)  # Any: a rig has a method of this name, and a subclass may have a property
+    """A `TypedDict` of conditions that a contact model, a stage or a law needs beside those of rigs, each with its unit
+    and a docstring. They are conditions of every pipeline with the model, which reads them from `conditions` of the
+    problem or the contact. A rig with a condition of this name provides it."""
+
     _provided_by: ClassVar[Callable[..., str]]
     """Where a class of models comes from, in words; set by the look-up of plugins."""
 
@@ -66,9 +75,28 @@ class Model(Configuration, ABC):
             super().__init__(**fields)
 
     @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Raise an error for conditions without units, and list the others."""
+        super().__pydantic_init_subclass__(**options)
+        table = vars(cls).get("conditions")
+        if is_typeddict(table):
+            CONDITIONS.update(of_table(table))
+            if bare := [name for name, condition in of_table(table).items() if condition.check is None]:
+                raise ModelError(
+                    f"{cls.__name__}.conditions: {bare[0]} has no unit; write {bare[0]}: Annotated[wl.QuantityLike,"
+                    ' wl.Unit("%")], or wl.Coefficient for a plain number'
+                )
+        elif isinstance(table, type):
+            raise ModelError(f"{cls.__name__}.conditions: must be a TypedDict, got {table.__name__}")
+
+    @classmethod
     def subject(cls) -> str:
         """Return the name of this model in messages."""
         return cls.name
+
+    def own_conditions(self) -> Mapping[str, Condition]:
+        """Return the conditions that a contact model, a stage or a law declares, by name."""
+        return {} if self.conditions is None else of_table(self.conditions, f"{self.kind} '{self.name}'")
 
     def _repr_html_(self) -> str:
         """Return the model for a notebook: its fields, with a drawing of a rig or the curve of a law."""

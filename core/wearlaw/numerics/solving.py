@@ -62,7 +62,7 @@ POSED = {name: 0.0 if name in ABOVE_ZERO else -math.inf for name in ARRAYS if na
 
 _posed, _above_zero = attrgetter(*POSED), attrgetter(*ABOVE_ZERO)
 
-IF_KNOWN = ("traction_coefficient", "contact_angle", "rolled_distance")
+IF_KNOWN = ("traction_coefficient", "contact_angle")
 """Numbers of a problem that may be missing."""
 
 ONE_POINT = {np.float64, NoneType}
@@ -186,6 +186,8 @@ def check_problem(maker: Model, problem: Problem) -> None:
                 maker, f"posed a problem with {_words(name)} of shape {values.shape}; it must be {problem.batch_shape}"
             )
         _check_posed(maker, problem, name, values, least)
+    for name, values in problem.conditions.items():
+        _check_posed(maker, problem, name, values, -math.inf)
     for name in Strips.__slots__ if problem.strips is not None else ():
         if (values := getattr(problem.strips, name)) is not None:
             _check_posed(maker, problem, f"{name} of strips", values, -math.inf)

@@ -13,16 +13,25 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Generic, ParamSpec, 
 
 import numpy as np
 import pint
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from wearlaw.arrays import Array, read_only, steadily, steady
 from wearlaw.configuration import LINE, Configuration
-from wearlaw.contact.conditions import Condition, FrictionLaw, broadcast, declared, friction_at, is_friction_law
+from wearlaw.contact.conditions import (
+    Condition,
+    FrictionLaw,
+    broadcast,
+    declared,
+    friction_at,
+    is_friction_law,
+    together,
+)
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import (
     CompositionError,
     ConditionsError,
     ModelError,
+    UnitError,
     did_you_mean,
     shown,
 )
@@ -48,6 +57,7 @@ from wearlaw.pipeline.composition import (
 )
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch
+from wearlaw.units.quantities import parse, real_array, with_units
 from wearlaw.units.registry import with_magnitude
 from wearlaw.units.usual import OneWarning
 
@@ -189,8 +199,15 @@ class Rig(Model):
         """
         return {}
 
-    def checked_problem(self, conditions: Mapping[str, Any]) -> Problem:
+    def checked_problem(self, conditions: Mapping[str, Any], models: Iterable[Model] = ()) -> Problem:
         """Return `problem` of the conditions, or raise an error that says whether the conditions or the rig are wrong.
+
+        Parameters
+        ----------
+        conditions : mapping
+            The conditions of the rig and of the models.
+        models : iterable of Model
+            Contact models, stages and laws, whose conditions the problem gets.
 
         Raises
         ------
@@ -199,17 +216,25 @@ class Rig(Model):
         ModelError
             If the rig fails or does not return a problem.
         """
+        declared = [condition for model in models for condition in model.own_conditions().values()]
+        given, arrays = _parted(self, conditions, declared) if declared else (conditions, {})
         try:
             with Blame(self):
-                problem = _in_batch(_posed(self, conditions))
-        except ModelError:
-            self.check_names(conditions)
+                problem = _in_batch(_posed(self, given))
+                if declared:
+                    problem = _with_conditions(problem, arrays)
+        except (ModelError, ConditionsError) as error:
+            if declared or isinstance(error, ModelError):
+                self.check_names(conditions, models)
             raise
+        for condition in declared:
+            if condition.required and condition.name not in problem.conditions:
+                raise ConditionsError(_missing(condition))
         check_problem(self, problem)
         return problem if problem.bodies else problem.replaced(bodies=self.bodies)
 
     @classmethod
-    def check_names(cls, conditions: Mapping[str, object]) -> None:
+    def check_names(cls, conditions: Mapping[str, object], models: Iterable[Model] = ()) -> None:
         """Check the names of conditions; a rig whose `conditions` are not known takes any name.
 
         Raises
@@ -217,7 +242,8 @@ class Rig(Model):
         ConditionsError
             If a condition is missing or unknown, or several of one choice are given.
         """
-        cls._check_names(cls.conditions(), conditions)
+        if cls.conditions():
+            cls._check_names(together([cls.conditions(), *(model.own_conditions() for model in models)]), conditions)
 
     @classmethod
     def _check_names(cls, known: Mapping[str, Condition], conditions: Mapping[str, object]) -> None:
@@ -234,7 +260,9 @@ class Rig(Model):
                 )
         for name, condition in known.items():
             if condition.required and conditions.get(name) is None:
-                raise ConditionsError(f"{name}: is missing; {cls._fix(name, known)}")
+                raise ConditionsError(
+                    _missing(condition) if condition.of else f"{name}: is missing; {cls._fix(name, known)}"
+                )
 
     @classmethod
     def _fix(cls, name: str, known: Iterable[str]) -> str:
@@ -259,6 +287,11 @@ class Rig(Model):
         if not isinstance(model, ContactModel):
             raise CompositionError(f"a rig is followed by a contact model, not by {shown(model)}; {ORDER}")
         return Pipeline(rig=self, contact_model=model)
+
+
+def _missing(condition: Condition) -> str:
+    """Return what to do about a missing condition of a model."""
+    return f"{condition.name}: is missing; {condition.of} needs it. Give {condition.name}={condition.example!r}"
 
 
 def unknown_condition(name: str, known: Iterable[str], rig: type[Rig]) -> str:
@@ -288,6 +321,41 @@ def _posed(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
     if not isinstance(problem, Problem):
         raise fault(rig, f"returned {shown(problem)}, not a wearlaw.Problem")
     return problem
+
+
+def _parted(
+    rig: Rig, conditions: Mapping[str, Any], declared: Iterable[Condition]
+) -> tuple[Mapping[str, Any], dict[str, Array]]:
+    """Return the conditions of a rig, and those that models declare as SI arrays.
+
+    One condition of the rig gets the axes of those of models, so that the rig makes a batch with room for them.
+    """
+    arrays: dict[str, Array] = {}
+    for condition in declared:  # each checks its own bounds
+        if (value := conditions.get(condition.name)) is not None:
+            arrays[condition.name] = read_only(condition.in_si(value)) if np.ndim(value) else condition.in_si(value)
+    names, known = {condition.name for condition in declared}, rig.conditions()
+    given = {name: value for name, value in conditions.items() if name in known or name not in names}
+    shape = broadcast(arrays)[next(iter(arrays))].shape if arrays else ()
+    for name, value in given.items() if shape else ():
+        try:
+            quantity = parse(value) if isinstance(value, str) or with_units(value) else value
+            plain = not isinstance(quantity, pint.Quantity)
+            numbers = real_array(quantity if plain else quantity.magnitude)
+        except UnitError:  # no number, such as a law of friction
+            continue
+        wide = np.broadcast_to(numbers, broadcast({name: numbers, **arrays})[name].shape)
+        return {**given, name: wide if plain else with_magnitude(quantity, wide)}, arrays
+    return given, arrays
+
+
+def _with_conditions(problem: Problem, arrays: Mapping[str, Array]) -> Problem:
+    """Return a rig's problem with conditions of models in the shape of its batch; the rig's own values stay."""
+    batch, within = problem.batch_shape, (..., *[None] * len(problem.dims))
+    wide = {
+        name: array if array.shape == batch else np.broadcast_to(array[within], batch) for name, array in arrays.items()
+    }
+    return problem.replaced(conditions={**wide, **problem.conditions})
 
 
 def _in_batch(problem: Problem) -> Problem:
@@ -364,9 +432,13 @@ class Pipeline(Configuration, Generic[P]):
     """Stages around the contact model, the first of them next to the model."""
     laws: tuple[LawField, ...] = ()
     """The laws, of different outcomes or for different bodies; empty if the pipeline predicts the contact alone."""
+    compared_with: tuple[Any, ...] = Field(default=(), exclude=True, repr=False)
+    """Models of other pipelines of the same comparison, whose conditions are taken, too."""
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
+        if self.models:
+            self.conditions  # noqa: B018  raises if those of two models contradict each other
         check_geometry(self.rig, self.contact_model, self.rig.patch_geometry)
         for law in self.laws:
             check_scale(self.scale, self.contact_model, law)
@@ -380,6 +452,22 @@ class Pipeline(Configuration, Generic[P]):
         """The contact model with the stages around it, as one contact model."""
         return staged(self.contact_model, self.stages)
 
+    @cached_property
+    def models(self) -> tuple[Model, ...]:
+        """The models that declare conditions, among the pipeline's own and those that it is compared with."""
+        every = (self.contact_model, *self.stages, *self.laws, *self.compared_with)
+        return tuple(model for model in every if model.conditions is not None)
+
+    def among(self, models: Iterable[Model]) -> Pipeline[P]:
+        """Return the pipeline with the models that it is compared with, whose conditions its predictions take, too."""
+        declaring = tuple(model for model in models if model.conditions is not None)
+        return self.model_copy(update={"compared_with": declaring}) if declaring else self
+
+    @cached_property
+    def conditions(self) -> Mapping[str, Condition]:
+        """The conditions that a prediction takes, by name: those of the rig and those that its models declare."""
+        return together([self.rig.conditions(), *(model.own_conditions() for model in self.models)])
+
     @property
     def scale(self) -> Scale:
         """Whether a law sees the means of the patch or its cells."""
@@ -388,7 +476,7 @@ class Pipeline(Configuration, Generic[P]):
 
     def without_law(self) -> Pipeline[P]:
         """Return the pipeline that predicts the contact alone."""
-        return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages) if self.laws else self
+        return self.with_law() if self.laws else self
 
     @property
     def wear_law(self) -> Law:
@@ -403,7 +491,13 @@ class Pipeline(Configuration, Generic[P]):
 
     def with_law(self, *laws: Law) -> Pipeline[P]:
         """Return the pipeline with these laws in place of its own, without the warnings about their calibration."""
-        return Pipeline(rig=self.rig, contact_model=self.contact_model, stages=self.stages, laws=laws)
+        return Pipeline(
+            rig=self.rig,
+            contact_model=self.contact_model,
+            stages=self.stages,
+            laws=laws,
+            compared_with=self.compared_with,
+        )
 
     def __repr__(self) -> str:
         parts = [repr(part) for part in (self.rig, self.contact_model, *self.stages, *self.laws)]
@@ -453,7 +547,7 @@ class Pipeline(Configuration, Generic[P]):
         CompositionError
             If the application needs one patch and the rig makes several.
         """
-        rig, problem = self.rig, self.rig.checked_problem(conditions)
+        rig, problem = self.rig, self.rig.checked_problem(conditions, self.models)
         if of_one_patch and (several := several_patches(problem, rig)):
             raise CompositionError(f"{of_one_patch}: {several}")
         if type(rig).balanced is Rig.balanced:
@@ -462,6 +556,8 @@ class Pipeline(Configuration, Generic[P]):
             balanced = rig.balanced(problem, Forces(self.staged_model))
             if not isinstance(balanced, Problem) or _axes(balanced) != _axes(problem):
                 raise ValueError("`balanced` must return a problem like the one given, as from `Problem.replaced`")
+            if problem.conditions and not balanced.conditions:
+                balanced = balanced.replaced(conditions=problem.conditions)
             if balanced.exists is not None and balanced.exists is not problem.exists:
                 balanced = _masked(balanced)
         check_problem(rig, balanced)

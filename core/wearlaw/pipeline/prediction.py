@@ -105,6 +105,9 @@ class Prediction:
                 "contact: has no problem, so its bodies and creepages are not known; use contact | law for its wear"
                 " rate, or give it one with contact.replaced(problem=...)"
             )
+        for one in laws:
+            contact = one.under_conditions(contact)
+        problem = contact.problem or problem
         model = Solved(contact=flat(contact, problem))
         for one in laws:
             check_scale(model.scale, model, one, "take the means first, contact.patch_mean() or --patch-mean")

@@ -16,7 +16,7 @@ from wearlaw.arrays import Array
 from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import ARRAYS, Body, Problem, Strips
 from wearlaw.errors import DataError, InputError, ModelError, UnknownModelError, did_you_mean, shown
-from wearlaw.models.model import Blame, fault
+from wearlaw.models.model import CONDITIONS, Blame, fault
 from wearlaw.models.reader import Reader, Solved, flat
 from wearlaw.numerics.solving import Solver
 
@@ -27,7 +27,7 @@ HEAD = 4096
 """Bytes by which a reader recognises a file."""
 
 
-def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, **options: Any) -> Contact:
+def read_contact(paths: File | Sequence[File], /, *, reader: str | Reader | None = None, **options: Any) -> Contact:
     """Return the contact that another program has solved and written to a file, or a batch of contacts.
 
     `Prediction.of` predicts the wear of the contact.
@@ -37,11 +37,12 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
     paths : str, path, or sequence of these
         The file of one contact. Several files make a batch in their order, padded with nodes of no area to the most
         nodes of a file; their bodies must be of the same materials.
-    reader : str, optional
+    reader : str or Reader, optional
         Name of the reader, such as "contact_mat"; ``installed("reader")`` lists all. By default it is the one that
-        recognises the file.
+        recognises the file. Or a reader itself.
     **options
-        The reader's fields, for what the file does not hold; ``wearlaw show NAME`` lists them.
+        The reader's fields, for what the file does not hold; ``wearlaw show NAME`` lists them. And conditions that laws
+        declare, such as ``relative_humidity="40 %"``, each one value or one for each file.
 
     Raises
     ------
@@ -54,18 +55,26 @@ def read_contact(paths: File | Sequence[File], /, *, reader: str | None = None, 
     ModelError
         If the reader fails, or returns a contact with impossible values.
     """
+    loader.discovered()  # so that the conditions of installed laws are known
+    conditions = {name: value for name, value in options.items() if name in CONDITIONS}
+    fields = {name: value for name, value in options.items() if name not in conditions}
     if isinstance(paths, str | os.PathLike):
-        return _read(Path(paths), reader, options)
+        contact = _read(Path(paths), reader, fields)
+        return contact.at(**conditions)
     files = [Path(path) for path in paths]
     if not files:
         raise InputError("paths: give at least one file")
-    return _stacked(files, [_read(path, reader, options) for path in files])
+    return _stacked(files, [_read(path, reader, fields) for path in files]).at(**conditions)
 
 
-def _read(path: Path, name: str | None, options: dict[str, Any]) -> Contact:
+def _read(path: Path, chosen: str | Reader | None, options: dict[str, Any]) -> Contact:
     """Return the contact in a file, checked."""
     head = _head(path)
-    reader = (_recognised(path, head) if name is None else loader.discovered().find("reader", name))(**options)
+    if isinstance(chosen, Reader):
+        reader: Reader = chosen.model_copy(update=options) if options else chosen
+    else:
+        found = _recognised(path, head) if chosen is None else loader.discovered().find("reader", chosen)
+        reader = found(**options)
     with Blame(reader):
         contact = reader.read(path)
     if not isinstance(contact, Contact) or contact.problem is None:

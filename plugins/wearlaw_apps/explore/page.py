@@ -94,15 +94,20 @@ def numbers(patches: Mapping[str, Mapping[str, wl.Prediction]]) -> str:
     return str(pd.DataFrame(columns).map(repr).to_html(border=0, header=len(columns) > 1))
 
 
-def slider(rig: Any, name: str, value: object) -> Any:
-    """Return a slider in a `unit` that starts at a condition; None for no number, such as a law of friction."""
-    number, bounds = Known.of(value), getattr(rig.conditions().get(name), "unit", None)
+def slider(condition: Any, name: str, value: object) -> Any:
+    """Return a slider in a `unit` that starts at a value; None for no number, such as a law of friction.
+
+    One of a condition that a model declares covers what is usual.
+    """
+    number, bounds = Known.of(value), getattr(condition, "unit", None)
     if number is None or np.ndim(number.values):
         return None
     unit = VARIABLES[name].unit if name in VARIABLES else number.unit or ""
     start = float(wl.Q(number.values, number.unit or "").m_as(unit))
     high = 2.0 * abs(start) or 1.0
     low = -high if bounds is not None and bounds.negative and not bounds.positive else 0.01 * high
+    if condition is not None and condition.of and bounds is not None and bounds.usual:
+        low, high = (float(wl.Q(end, bounds.unit).m_as(unit)) for end in bounds.usual)
     text = label(name, units={name: unit}).removesuffix(" [-]")
     ends = {"start": low, "end": high, "step": (high - low) / 200.0, "format": "0.[0000]"}
     made: Any = pn.widgets.EditableFloatSlider(label=text, value=start, **ends, **STRETCHED)
@@ -115,8 +120,10 @@ class Page:
 
     def __init__(self, subject: Subject, conditions: Mapping[str, Any]) -> None:
         self.subject, self.start = subject, subject.conditions(conditions)
-        subject.rig.checked_problem(self.start)  # an error of what is given, before there is a page with notes
-        sliders = {name: slider(subject.rig, name, value) for name, value in self.start.items()}
+        own = {name: value for name, value in self.start.items() if name not in subject.declared}
+        subject.rig.checked_problem(own)  # an error of what is given, before there is a page with notes
+        every = {**subject.declared, **subject.rig.conditions()}
+        sliders = {name: slider(every.get(name), name, value) for name, value in self.start.items()}
         self.sliders = {name: control for name, control in sliders.items() if control is not None}
         self.model = pn.widgets.Select(label="Contact model", options=[*subject.models], **STRETCHED)
         self.laws = pn.widgets.CheckBoxGroup(options=[*subject.laws], value=subject.first_laws, inline=True)

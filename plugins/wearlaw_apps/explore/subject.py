@@ -45,9 +45,18 @@ class Subject:
         self.first_laws = [*self.laws][: len(wear_laws)] or ["usfd"]
 
     def conditions(self, conditions: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the example conditions of the rig and the given ones, which replace those that they exclude."""
+        """Return example conditions of the rig and the user's models, and the given ones, which replace those."""
         replaced = [name for names in self.rig.choices if {*names} & {*conditions} for name in names]
-        return {name: value for name, value in self.rig.example.items() if name not in replaced} | dict(conditions)
+        of_models = {name: condition.example for name, condition in self.declared.items() if condition.required}
+        of_rig = {name: value for name, value in self.rig.example.items() if name not in replaced}
+        return {**of_models, **of_rig, **conditions}
+
+    @property
+    def declared(self) -> dict[str, Any]:
+        """The conditions of all models in the menus beside those of the rig, by name."""
+        own = self.rig.conditions()
+        every = {name: condition for model in self.codes for name, condition in model.own_conditions().items()}
+        return {name: condition for name, condition in every.items() if name not in own}
 
     def pipeline(self, model: str, law: str) -> Any:
         """Return the pipeline of a contact model and a law, by their labels; a law of patch means gets them."""
@@ -55,6 +64,11 @@ class Subject:
             return composed(self.rig, self.models[model], [*self.stages], self.laws[law])
         except wl.CompositionError:
             return composed(self.rig, self.models[model], [*self.stages, MEANS], self.laws[law])
+
+    def taken(self, pipeline: Any, conditions: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the conditions without those that only other models of the page take."""
+        others = self.declared.keys() - pipeline.conditions.keys()
+        return {name: value for name, value in conditions.items() if name not in others}
 
     def predict(
         self, model: str, laws: Sequence[str], conditions: Mapping[str, Any], notes: Notes
@@ -64,18 +78,22 @@ class Subject:
         for law in laws:
             try:
                 with notes.of(law):
-                    predictions[law] = self.pipeline(model, law)(**conditions)
+                    pipeline = self.pipeline(model, law)
+                    predictions[law] = pipeline(**self.taken(pipeline, conditions))
             except wl.WearlawError as error:
                 notes.add(f"{law}: {error}")
         return predictions
 
     def python(self, model: str, laws: Sequence[str], conditions: Mapping[str, Any]) -> str:
         """Return the Python that predicts the same."""
-        arguments = ", ".join(f"{name}={value!r}" for name, value in conditions.items())
-        lines = ["import wearlaw as wl", "", self.setup, f"conditions = dict({arguments})"]
+        every = {name: f"{name}={value!r}" for name, value in conditions.items()}
+        of_rig = ", ".join(text for name, text in every.items() if name not in self.declared)
+        lines = ["import wearlaw as wl", "", self.setup, f"conditions = dict({of_rig})"]
         for pipeline in (self.pipeline(model, law) for law in laws):
             parts = (pipeline.contact_model, *pipeline.stages, *pipeline.laws)
-            lines.append(f"print(({' | '.join([self.code, *(self.codes[part] for part in parts)])})(**conditions))")
+            declared = [every[name] for name in self.taken(pipeline, conditions) if name in self.declared]
+            composed_of = " | ".join([self.code, *(self.codes[part] for part in parts)])
+            lines.append(f"print(({composed_of})({', '.join(['**conditions', *declared])}))")
         return "\n".join(lines)
 
 

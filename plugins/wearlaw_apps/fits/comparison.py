@@ -339,7 +339,7 @@ def compare_named(
     if not there.all():
         notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out", FitWarning)
     for predictor in predictors:
-        for column, text in tests.unusual(_pipeline(predictor).rig).items():
+        for column, text in tests.unusual(_pipeline(predictor)).items():
             notes.add(f"{column}: {text}", UnusualWarning)
     task = _Task(tests[there], outcome, unit, measured[there], friction_coefficient, notes)
     compared = [task.compared(*pair) for pair in named]
@@ -512,7 +512,7 @@ class _Task:
 
     def _conditions(self, predictor: Predictor, tests: WearTests, friction: Any) -> dict[str, Any]:
         pipeline = _pipeline(predictor)
-        return tests.conditions(pipeline.contact_model, friction, pipeline.rig)
+        return tests.conditions(pipeline.contact_model, friction, pipeline)
 
     def _predicted(self, name: str, predictor: Predictor, tests: WearTests, friction: Any, notes: Notes) -> Array:
         """Return the predicted outcomes of tests in SI."""

@@ -155,7 +155,7 @@ def fit(
         "confidence": confidence,
     }
     if isinstance(predict, Pipeline):
-        remark(tests.unusual(predict.rig))
+        remark(tests.unusual(predict))
     with steadily(), OneWarning() as unusual:
         task = _Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
         best = task.solve(starts, seed)

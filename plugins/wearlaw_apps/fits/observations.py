@@ -137,7 +137,7 @@ def observe(
         if not (needed or (of_contact and there.any())):
             continue
         selected, measured = tests[there], values[there]
-        conditions = selected.conditions(pipeline.contact_model, friction, pipeline.rig)
+        conditions = selected.conditions(pipeline.contact_model, friction, pipeline)
         if FRICTION in free.names:
             conditions[FRICTION] = friction
         if of_contact:  # else the measured traction would replace the one that follows from the parameters

@@ -57,7 +57,8 @@ def compose(
                     pipeline = composed(rig, model, stages, law, geometry, remedy)
                     if problem is not None:
                         pipeline.warn_of_problem(problem)
-                    pairs.append(Pair(contact_label, law_label, pipeline))
+                    every = (*contact_models.values(), *stages, *laws.values())
+                    pairs.append(Pair(contact_label, law_label, pipeline.among(every)))
             except CompositionError as error:
                 notes.add(f"{law_label} on {contact_label} is left out: {error}")
     if not pairs:

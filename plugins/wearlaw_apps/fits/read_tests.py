@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import wearlaw as wl
 from wearlaw import loader
 from wearlaw.errors import DataError, InputError, UnitError, did_you_mean, shown
+from wearlaw.models.model import CONDITIONS
 from wearlaw.text_files import read_text
 from wearlaw_apps.fits.wear_tests import COLUMNS, Values, WearTests
 from wearlaw_apps.output.datasets import names_in
@@ -90,7 +91,7 @@ def parse_tests(
 def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     """Return the tests of a table."""
     table.label = f"the tests {shown(Path(name))}"
-    conditions = {name for rig in loader.installed("rig").values() for name in rig.conditions()}
+    conditions = {name for rig in loader.installed("rig").values() for name in rig.conditions()} | CONDITIONS
     measured = {*outcomes, *(law.outcome.name for law in loader.installed("law").values())}
     wrong = list(_unknown(table, {*conditions, *measured}))
     if wrong:

@@ -15,7 +15,10 @@ import numpy as np
 import pint
 
 from wearlaw.arrays import Array
+from wearlaw.contact.conditions import Condition
 from wearlaw.errors import ConditionsError, DataError, InputError, UnitError, did_you_mean, shown
+from wearlaw.models.model import CONDITIONS
+from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, Unit, from_si, parse, real_array
 from wearlaw.units.registry import si_factor, symbol
 from wearlaw.units.variables import VARIABLES
@@ -251,10 +254,9 @@ class WearTests:
         except UnitError as error:
             raise DataError(f"{name}: {error}") from None
 
-    def unusual(self, rig: Rig) -> dict[str, str]:
+    def unusual(self, predict: Pipeline[...]) -> dict[str, str]:
         """Return the columns with an unusual median, each with what a warning says of it."""
-        conditions = rig.conditions()
-        units = {name: condition.unit for name, condition in conditions.items() if condition.unit is not None}
+        units = {name: condition.unit for name, condition in predict.conditions.items() if condition.unit is not None}
         columns: dict[str, Quantity] = {
             name: from_si(values, self.units.get(name, COLUMNS[name].unit)) for name, values in self.columns.items()
         }
@@ -284,9 +286,9 @@ class WearTests:
         return tuple(hashlib.sha256(text.encode()).hexdigest()[:DIGEST] for text in texts)
 
     def conditions(
-        self, model: ContactModel, friction_coefficient: ArrayLike | None = None, rig: Rig | None = None
+        self, model: ContactModel, friction_coefficient: ArrayLike | None = None, rig: Rig | Pipeline[...] | None = None
     ) -> dict[str, Any]:
-        """Return the conditions of the tests as arguments of ``rig.problem(**conditions)``.
+        """Return the conditions of the tests as arguments of ``rig.problem(**conditions)`` or of a pipeline.
 
         Parameters
         ----------
@@ -294,15 +296,24 @@ class WearTests:
             The contact model. If it can use a measured traction and all tests have one, the conditions include it.
         friction_coefficient : array_like of float, optional
             μ [-] for tests without a friction coefficient.
-        rig : Rig, optional
-            The rig for the conditions. If it takes no `traction_coefficient`, they leave the measured traction out.
+        rig : Rig or Pipeline, optional
+            The rig for the conditions, or the pipeline. If it takes no `traction_coefficient`, they leave the measured
+            traction out, and conditions that only other models declare.
 
         Raises
         ------
+        DataError
+            If the tests lack a condition that a model of the pipeline declares.
         ConditionsError
             If the friction coefficient is unknown, and there are only conditions of discs.
         """
-        taken = () if rig is None else rig.conditions()
+        taken: Mapping[str, Condition] = {}
+        if rig is not None:
+            taken = rig.conditions() if isinstance(rig, Rig) else rig.conditions
+        for name, condition in taken.items():
+            if condition.of and condition.required and name not in self.other_conditions:
+                unit = f" [{condition.unit.unit}]" if condition.unit else ""
+                raise DataError(f"the tests have no column '{name}{unit}', which {condition.of} needs")
         friction = friction_coefficient if self.friction_coefficient is None else self.friction_coefficient
         if friction is None and not self.other_conditions and (not taken or "friction_coefficient" in taken):
             raise ConditionsError(
@@ -314,7 +325,11 @@ class WearTests:
         }
         if friction is not None:
             conditions["friction_coefficient"] = friction
-        conditions |= self.other_conditions
+        conditions |= {
+            name: values
+            for name, values in self.other_conditions.items()
+            if not taken or name in taken or name not in CONDITIONS
+        }
         traction = self.columns.get("traction_coefficient")
         useful = model.uses_measured_traction and (not taken or "traction_coefficient" in taken)
         if useful and traction is not None and not np.isnan(traction).any():

@@ -46,7 +46,9 @@ class Line:
         self, predict: wl.Pipeline[...], points: Points, body: str, at: Array, workers: int, client: Any
     ) -> None:
         with caught_warnings():  # the first step gives them
-            first = posed(points.part([slice(0, 1)]), predict.rig.checked_problem)
+            first = posed(
+                points.part([slice(0, 1)]), lambda conditions: predict.rig.checked_problem(conditions, predict.models)
+            )
         check_importable(predict, workers, client)
         self.job = ProfileJob.of(predict, first, body, wl.Q(1e3 * at, "mm"), True)
         self.sides = len(self.job.dims.get("side", "-"))

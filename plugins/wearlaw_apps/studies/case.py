@@ -28,6 +28,7 @@ from pydantic import (
 
 from wearlaw import loader
 from wearlaw.configuration import Configuration, known_as
+from wearlaw.contact.conditions import of_table
 from wearlaw.errors import (
     CaseError,
     ConfigurationError,
@@ -60,6 +61,10 @@ ModelT = TypeVar("ModelT", bound=Model)
 
 CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 """Names of the files that a run writes: its case, and its measured tests if they came from a file."""
+
+
+MODELS = ("contact_models", "stages", "laws", "wear_laws")
+"""The lists of models of a case."""
 
 
 def _some(models: tuple[ContactModel, ...]) -> tuple[ContactModel, ...]:
@@ -188,14 +193,20 @@ class Case(Configuration):
     def _fit_the_rig(cls, tables: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
         """Let the rig check conditions when the case is read, not when it runs; a wrong rig checks none."""
         rig, wrong = info.data.get("rig"), []
+        models = [model for kind in MODELS for model in info.data.get(kind, ())]
         for name, point in tables.items():
             if info.field_name == "profiles" and point.axes():
                 wrong.append(Fault((name,), "a profile is at one operating point; give each condition one value"))
             if rig is not None:
-                wrong += [Fault((name, *fault.path), fault.message) for fault in point.faults(rig)]
+                wrong += [Fault((name, *fault.path), fault.message) for fault in point.faults(rig, models)]
         if wrong:
             raise ConfigurationError(cls.subject(), wrong)
         return tables if rig is None else {name: point.ordered(rig) for name, point in tables.items()}
+
+    @property
+    def models(self) -> list[Model]:
+        """The contact models, stages and laws."""
+        return [model for kind in MODELS for model in getattr(self, kind)]
 
     @cached_property
     def units(self) -> dict[str, str]:
@@ -258,7 +269,7 @@ class Case(Configuration):
             for fault in point.wrong_laws(self.laws_by_label):
                 yield Fault(("uncertainty", name, *fault.path), fault.message)
         if self.measured:
-            several = several_patches(next(iter(self.sweeps.values())).problem(self.rig), self.rig)
+            several = several_patches(next(iter(self.sweeps.values())).problem(self.rig, self.models), self.rig)
             if several:
                 yield Fault(("measured",), f"{several}; leave [measured] out")
             else:
@@ -299,7 +310,7 @@ def case_schema() -> dict[str, Any]:
     plugins = loader.discovered()
     schema = Case.model_json_schema(by_alias=True)
     properties, definitions = schema["properties"], schema["$defs"]
-    for field in ("contact_models", "stages", "laws", "wear_laws"):
+    for field in MODELS:
         shelf = plugins[field.replace("_", " ").removesuffix("s")]
         properties[field]["items"] = {"anyOf": [{"enum": list(shelf.items())}, *_tables(shelf, definitions)]}
     sets = plugins["parameter set"]
@@ -370,13 +381,20 @@ def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
 def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
     """Return the schemas of the tables of a case that hold a rig's conditions."""
     schemas, conditions = {}, rig.conditions()
+    declared: dict[str, Any] = {}
+    for kind in ("contact model", "stage", "law", "wear law"):
+        for model in loader.installed(kind).values():
+            if isinstance(model.conditions, type):
+                declared |= of_table(model.conditions)
     needed = [name for name, condition in conditions.items() if condition.required]
     rules = [{"required": needed}, *({"oneOf": [{"required": [name]} for name in names]} for names in rig.choices)]
     kinds: dict[str, Any] = {"sweeps": Condition, "profiles": Condition, "uncertainty": UncertainCondition}
     for field, annotation in kinds.items():
         schema = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
         definitions.update(schema.pop("$defs", {}))
-        properties = {name: {**schema, "description": condition.meaning} for name, condition in conditions.items()}
+        properties = {
+            name: {**schema, "description": condition.meaning} for name, condition in {**declared, **conditions}.items()
+        }
         if field == "uncertainty":
             properties["laws"] = definitions["UncertainPoint"]["properties"]["laws"]
         table = {"properties": properties, "allOf": rules, "additionalProperties": False}

@@ -217,7 +217,7 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
             more = f" {left_out} more are left out; choose among them with pairs, contact_models or patches."
     else:
         if spec.profile and "y" not in data and not patch_axes(data):  # a level line
-            level = 100.0 * float(np.ravel(grid.problem(case.rig).longitudinal_creepage)[0])
+            level = 100.0 * float(np.ravel(grid.problem(case.rig, case.models).longitudinal_creepage)[0])
             data = data.assign(creepage=("x", np.full(data.sizes["x"], level)))
         if spec.sweep:
             axis = _axis_along(data, spec.x, case.rig.creepage)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import Annotated, Any, Literal, Self
 
@@ -13,13 +13,16 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
+from wearlaw.contact.conditions import together
 from wearlaw.errors import (
+    CompositionError,
     Fault,
     InputError,
     UnitError,
     WearlawError,
     shown,
 )
+from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Rig, unknown_condition
 from wearlaw.units.quantities import Q, parse
 from wearlaw.units.registry import symbol
@@ -104,7 +107,7 @@ class Conditions(Configuration, extra="allow"):
         return self.__pydantic_extra__ or {}
 
     def ordered(self, rig: Rig) -> Self:
-        """Return the conditions in the order in which the rig names them."""
+        """Return the conditions in the order in which the rig names them, and then those of models."""
         order = [*rig.conditions(), *self.given]
         return type(self)(**dict(sorted(self, key=lambda item: order.index(item[0]) if item[0] in order else -1)))
 
@@ -146,12 +149,12 @@ class Grid(Conditions):
         points = {name: (f"{value!r} {unit}" if unit else value,) for name, (value, unit) in first.items()}
         return Grid(**{**self.given, **points})
 
-    def faults(self, rig: Rig) -> list[Fault]:
-        """Return what a rig finds wrong at the ends of the axes, one fault for each condition."""
+    def faults(self, rig: Rig, models: Iterable[Model] = ()) -> list[Fault]:
+        """Return what a rig and models find wrong at the ends of the axes, one fault for each condition."""
         faults: dict[tuple[str, ...], Fault] = {}
         for end in (np.min, np.max):
             ends = {name: axis.given(float(end(axis.values))) for name, axis in self._axes.items()}
-            for fault in wrong_conditions(rig, {**self.given, **ends}):
+            for fault in wrong_conditions(rig, {**self.given, **ends}, models):
                 faults.setdefault(fault.path, fault)
         return list(faults.values())
 
@@ -209,33 +212,39 @@ class Grid(Conditions):
         middle = np.ravel(condition.values)[condition.values.size // 2]
         return float(_converted(name, middle, condition.unit or "", units[name])[0])
 
-    def problem(self, rig: Rig) -> Any:
-        """Return the contact problem of the first operating point."""
+    def problem(self, rig: Rig, models: Iterable[Model] = ()) -> Any:
+        """Return the contact problem of the first operating point, for a rig and the models of a case."""
         first = {name: axis.given(float(axis.values[0])) for name, axis in self._axes.items()}
-        return _quietly(rig, {**self.given, **first})
+        return _quietly(rig, {**self.given, **first}, models)
 
 
-def wrong_conditions(rig: Rig, point: Mapping[str, Any]) -> Iterator[Fault]:
-    """Yield the unknown and missing conditions of an operating point, or else the first one that the rig refuses."""
-    conditions = rig.conditions()
-    unknown = [name for name in point if conditions and name not in conditions]
+def wrong_conditions(rig: Rig, point: Mapping[str, Any], models: Iterable[Model] = ()) -> Iterator[Fault]:
+    """Yield the unknown and missing conditions of an operating point, or else the first one that is refused."""
+    try:
+        conditions = together([rig.conditions(), *(model.own_conditions() for model in models)])
+    except CompositionError as error:
+        yield Fault((), str(error))
+        return
+    unknown = [name for name in point if rig.conditions() and name not in conditions]
     missing = [name for name, condition in conditions.items() if condition.required and name not in point]
     yield from (Fault((name,), unknown_condition(name, conditions, type(rig))) for name in unknown)
-    yield from (Fault((name,), "is missing") for name in missing)
+    for name in missing:
+        of = conditions[name].of
+        yield Fault((name,), f"is missing; {of} needs it" if of else "is missing")
     if unknown or missing:
         return
     try:
-        _quietly(rig, point)
+        _quietly(rig, point, models)
     except WearlawError as error:
         text = str(error)
         about = next((name for name in point if text.startswith(f"{name}: ")), None)
         yield Fault((about,), text.removeprefix(f"{about}: ")) if about else Fault((), text)
 
 
-def _quietly(rig: Rig, conditions: Mapping[str, Any]) -> Any:
+def _quietly(rig: Rig, conditions: Mapping[str, Any], models: Iterable[Model]) -> Any:
     """Return the rig's problem without its warnings, which running the case repeats."""
     with caught_warnings():
-        return rig.checked_problem(conditions)
+        return rig.checked_problem(conditions, models)
 
 
 def shown_unit(name: str, written: str | None) -> str:

@@ -89,7 +89,7 @@ def _found(kind: str, name: str, every: Mapping[str, T]) -> T:
 
 def pairs_of(case: Case, notes: Notes) -> list[Pair]:
     """Compose all pairs of a case, for the first operating point of its first sweep."""
-    problem = next(iter(case.sweeps.values())).problem(case.rig)
+    problem = next(iter(case.sweeps.values())).problem(case.rig, case.models)
     models, laws = case.contact_models_by_label, case.laws_by_label
     return compose(case.rig, models, laws, notes, problem, case.stages, TAKE_MEANS_IN_A_CASE)
 

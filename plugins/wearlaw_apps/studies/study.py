@@ -252,7 +252,7 @@ class _Evaluator:
 
 def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, evaluator: _Evaluator) -> xarray.Dataset:
     """Evaluate all pairs on a grid; the dimensions are those of the grid, the pairs and the contact models."""
-    first, units = grid.problem(case.rig), case.result_units
+    first, units = grid.problem(case.rig, case.models), case.result_units
     points = grid.points(case.units)
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
     levels = {v: grid.level(v, case.units) for v in grid.given}
@@ -365,7 +365,7 @@ def _band_ends(pipeline: Pipeline[...]) -> list[Pipeline[...]]:
 
 def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes) -> xarray.Dataset:
     """Return the profile of the patch: fields of each contact model, and the outcomes of each pair."""
-    problem = grid.problem(case.rig)
+    problem = grid.problem(case.rig, case.models)
     contacts: dict[str, xarray.Dataset] = {}
     of_pairs: dict[str, xarray.Dataset] = {}
     usable = _usable(f"profile '{name}'", grid, pairs, notes)

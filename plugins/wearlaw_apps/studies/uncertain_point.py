@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from wearlaw.configuration import Configuration
 from wearlaw.errors import Fault, InputError, did_you_mean, shown
 from wearlaw.models.law import Law
+from wearlaw.models.model import Model
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw_apps.fits.distributions import (
@@ -78,12 +79,12 @@ class UncertainPoint(Conditions):
     laws: dict[str, dict[str, Parameter]] = Field(default_factory=dict)
     """The distributed parameters of each wear law, by its name in the results."""
 
-    def faults(self, rig: Rig) -> list[Fault]:
+    def faults(self, rig: Rig, models: Iterable[Model] = ()) -> list[Fault]:
         """Return what is wrong with the conditions, tried at the first number of each distribution."""
         conditions = self.conditions()
         middle = {name: value.first for name, value in conditions.items() if isinstance(value, Distribution)}
-        faults = list(wrong_conditions(rig, {**conditions, **middle}))
-        if not faults and (several := several_patches(rig.checked_problem({**conditions, **middle}), rig)):
+        faults = list(wrong_conditions(rig, {**conditions, **middle}, models))
+        if not faults and (several := several_patches(rig.checked_problem({**conditions, **middle}, models), rig)):
             faults = [Fault((), f"{several}; leave it out")]
         return faults
 

@@ -42,7 +42,7 @@ T = TypeVar("T")
 
 def rows_of(case: Case) -> int:
     """Return the most rows that the table of results of a case can have."""
-    patches = math.prod(map(len, next(iter(case.sweeps.values())).problem(case.rig).dims.values()))
+    patches = math.prod(map(len, next(iter(case.sweeps.values())).problem(case.rig, case.models).dims.values()))
     points = sum(grid.size for grid in case.sweeps.values())
     return points * patches * len(case.contact_models) * len(case.laws_by_label)
 

@@ -60,6 +60,8 @@ class Pipelines(Generic[P]):
                     self.pipelines[model_label, law_label] = composed(rig, model, stages, law)
                 except CompositionError as error:
                     impossible[f"{law_label} on {model_label}".removeprefix(" on ")] = str(error)
+        every = [*models, *stages, *laws]
+        self.pipelines = {labels: pipeline.among(every) for labels, pipeline in self.pipelines.items()}
         if not self.pipelines:
             raise CompositionError("; ".join(dict.fromkeys(impossible.values())))
         if impossible:

@@ -277,7 +277,7 @@ def _checked_conditions(pipeline: Pipeline[...], points: Points, not_given: Mapp
     def along(dim: str, values: slice) -> Problem:
         line = points.part(values if other == dim else slice(0, 1) for other in points.dims)
         with caught_warnings():  # the blocks record them
-            return posed(line, lambda arrays: pipeline.rig.checked_problem({**not_given, **arrays}))
+            return posed(line, lambda arrays: pipeline.rig.checked_problem({**not_given, **arrays}, pipeline.models))
 
     first = along(points.dims[0], slice(0, SAMPLE))
     slipperiest, there = first, first if first.size or first.unloaded is not None else None

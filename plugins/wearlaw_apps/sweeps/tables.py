@@ -16,7 +16,7 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.errors import ConditionsError, DataError, InputError, UnitError, WearlawWarning, warn
-from wearlaw.pipeline.pipeline import Pipeline, Rig
+from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import Q
 from wearlaw.units.variables import VARIABLES
 from wearlaw_apps.sweeps.located import advice
@@ -78,7 +78,7 @@ def operating_points(
         raise DataError(f"{table.label}: the rows are summed, so that a column must have one name, without {{...}}")
     first = {name: pattern.texts[0] for name, pattern in patterns.items()}
     keep, columns = (some and {name: first.get(name, text) for name, text in some.items()} for some in (keep, columns))
-    kept, varying = _chosen(table, columns, keep, predict.rig if ignoring else None)
+    kept, varying = _chosen(table, columns, keep, predict if ignoring else None)
     for name in varying:
         if name in fixed or name in kept:
             raise DataError(f"{table.label}: {name} is given twice; keep one")
@@ -86,7 +86,7 @@ def operating_points(
         advice = f"name them in columns={{...}}. {table.as_read()}".rstrip(". ")
         raise DataError(f"{table.label}: none of its columns is a condition; {advice}")
     try:
-        predict.rig.check_names({**fixed, **varying})
+        predict.rig.check_names({**fixed, **varying}, predict.models)
     except ConditionsError as error:
         name = str(error).partition(": ")[0]
         if name not in varying:
@@ -173,9 +173,9 @@ def _patterns(table: Table, columns: Columns) -> tuple[dict[str, Pattern], dict[
 
 
 def _chosen(
-    table: Table, columns: Columns | None, keep: Columns | None, rig: Rig | None
+    table: Table, columns: Columns | None, keep: Columns | None, predict: Pipeline[...] | None
 ) -> tuple[dict[str, Column], dict[str, Column]]:
-    """Return the columns to keep and those of conditions, by name; of a rig, without those that it does not know."""
+    """Return the columns to keep and those of conditions, by name; of a pipeline, only those that it takes."""
     wrong: list[str] = []
     kept: dict[str, Column] = {}
     conditions: dict[str, Column] = {}
@@ -189,9 +189,10 @@ def _chosen(
     if columns is None:
         places = {column.place for column in kept.values()}
         conditions = {name: column for name, column in conditions.items() if column.place not in places}
-        if rig is not None and (unknown := _unknown(conditions, rig)):
+        if predict is not None and (unknown := _unknown(conditions, predict)):
             heads = ", ".join(f"'{conditions.pop(name).head}'" for name in unknown)
-            warn(f"{table.label}: ignored columns {heads}; rig '{rig.name}' has no such conditions", WearlawWarning)
+            of_rig = f"rig '{predict.rig.name}' has no such conditions"
+            warn(f"{table.label}: ignored columns {heads}; {of_rig}", WearlawWarning)
     for name, column in conditions.items():
         try:
             if column.unit is None and columns is not None and name in VARIABLES and VARIABLES[name].unit:
@@ -204,10 +205,10 @@ def _chosen(
     return kept, conditions
 
 
-def _unknown(names: Iterable[str], rig: Rig) -> list[str]:
-    """Return the names that are neither conditions nor fields of a rig, nor misspelt conditions."""
-    conditions = list(rig.conditions())
-    near = (name for name in names if name not in conditions and name not in type(rig).model_fields)
+def _unknown(names: Iterable[str], predict: Pipeline[...]) -> list[str]:
+    """Return the names that are neither conditions nor fields of the rig, nor misspelt conditions."""
+    conditions = list(predict.conditions)
+    near = (name for name in names if name not in conditions and name not in type(predict.rig).model_fields)
     return [
         name for name in near if conditions and not get_close_matches(name.lower(), conditions, n=1, cutoff=MISSPELT)
     ]

@@ -195,7 +195,6 @@ class TwinDisc(wl.Rig):
             friction_coefficient=arrays["friction_coefficient"],
             longitudinal_creepage=creepage,
             traction_coefficient=arrays.get("traction_coefficient"),
-            rolled_distance=arrays.get("rolled_distance"),
             bodies=self._bodies,
             **loaded,
             **self._same_at(shape),

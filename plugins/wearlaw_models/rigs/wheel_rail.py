@@ -179,6 +179,7 @@ class WheelRail(wl.Rig):
             lateral_creepage=0.0,
             spin=0.0,
         )
+        arrays.pop("rolled_distance", None)  # for laws that declare it
         shape = arrays["longitudinal_creepage"].shape
         patch, angle = self._patch, arrays.get("contact_angle")
         if angle is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, TypedDict
 
 import numpy as np
 from pydantic import Field
@@ -214,14 +214,21 @@ class Power(wl.Law):
         return contact.frictional_power_density
 
 
+class Distance(TypedDict):
+    """The distance rolled."""
+
+    rolled_distance: Annotated[wl.QuantityLike, wl.Unit("km", positive=False, negative=False)]
+
+
 class RunningIn(wl.WearLaw):
     """Wear that falls with the distance rolled."""
 
     name: ClassVar[str] = "running_in"
     source: ClassVar[str] = "test"
+    conditions: ClassVar = Distance
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        share = np.exp(-contact.per_node(contact.rolled_distance) / 2e3)
+        share = np.exp(-contact.per_node(contact.conditions["rolled_distance"]) / 2e3)
         return 1e-9 * (1.0 + share) * contact.wear_index_density
 
 

@@ -236,7 +236,6 @@ class Flash(Fatigue):
         if not isinstance(material, RailSteel):
             raise wl.InputError("material: must be a RailSteel")
         assert_type(contact.half_width, wl.Array)
-        assert_type(contact.rolled_distance, wl.Array)
         return contact.wear_index * wl.scalar_si(material.hardness, "Pa") * contact.half_width
 
 

@@ -494,12 +494,11 @@ class Wheelset(wl.Rig):
         if task.torque.any():
             balance.check_torque()
         status = np.full(balance.roll.shape, BALANCE, dtype=object)  # as soon as there are creep forces
-        return self._whole(balance, status, shape, flat.get("rolled_distance"))
+        return self._whole(balance, status, shape)
 
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, WheelsetProblem)
-        distance = problem.rolled_distance
         if problem.balance.task.lateral_force is None:
             balance = problem.balance.solved(forces)
             status = balance.status
@@ -509,8 +508,7 @@ class Wheelset(wl.Rig):
         self._warn_of_missing(balance, status)
         self._warn_of_humps(balance)
         self._warn_of_grids(balance)
-        distance = None if distance is None else distance[..., 0, 0].reshape(-1)
-        whole = self._whole(balance, status, problem.shape, distance)
+        whole = self._whole(balance, status, problem.shape)
         self._warn_of_points(whole)
         return whole
 
@@ -576,9 +574,7 @@ class Wheelset(wl.Rig):
             )
         return balance, status
 
-    def _whole(
-        self, balance: Balance, status: NDArray[np.object_], shape: tuple[int, ...], distance: Array | None
-    ) -> wl.Problem:
+    def _whole(self, balance: Balance, status: NDArray[np.object_], shape: tuple[int, ...]) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
         candidates = balance.found
         flat, patch = balance.posed()
@@ -608,12 +604,12 @@ class Wheelset(wl.Rig):
                 profile_direction=side,
             ),
         }
-        fields: dict[str, Any] = {}
-        if distance is not None:
-            fields["rolled_distance"] = np.broadcast_to(distance[:, None, None], exists.shape).reshape(
-                *shape, 2, PATCHES
-            )
-        fields |= {"bodies": bodies, "dims": DIMS, "exists": exists.reshape(*shape, 2, PATCHES), "unloaded": unloaded}
+        fields: dict[str, Any] = {
+            "bodies": bodies,
+            "dims": DIMS,
+            "exists": exists.reshape(*shape, 2, PATCHES),
+            "unloaded": unloaded,
+        }
         fields |= {
             "roll": wide(balance.roll[candidates.point]),
             "penetration": wide(balance.penetration[candidates.wheel] - candidates.gap),
