@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from wearlaw_apps.fits.uncertainty import uncertainty
     from wearlaw_apps.fits.wear_tests import WearTests
     from wearlaw_apps.life.over_distance import wear_out
-    from wearlaw_apps.output.curves import Curve, FigureData, Panel, PlotAxis
+    from wearlaw_apps.output.curves import Curve, FigureData, Limit, Panel, PlotAxis
     from wearlaw_apps.output.datasets import to_dataframe
     from wearlaw_apps.studies.case import load_case
     from wearlaw_apps.studies.sections import CheckedClaim, Section, Verdict
@@ -43,6 +43,7 @@ __all__ = [
     "Curve",
     "Disc",
     "FigureData",
+    "Limit",
     "Panel",
     "PlotAxis",
     "Profile",
@@ -88,7 +89,7 @@ PUBLIC = {
     "wearlaw_apps.fits.uncertainty": ("uncertainty",),
     "wearlaw_apps.fits.wear_tests": ("WearTests",),
     "wearlaw_apps.life.over_distance": ("wear_out",),
-    "wearlaw_apps.output.curves": ("Curve", "FigureData", "Panel", "PlotAxis"),
+    "wearlaw_apps.output.curves": ("Curve", "FigureData", "Limit", "Panel", "PlotAxis"),
     "wearlaw_apps.output.datasets": ("to_dataframe",),
     "wearlaw_apps.studies.case": ("load_case",),
     "wearlaw_apps.studies.sections": ("CheckedClaim", "Section", "Verdict"),

@@ -282,7 +282,7 @@ class Prediction:
         One condition with several values gives curves, one for each patch. Two give a curve for each value of the
         shorter axis, or a map if it is long. At one operating point with several patches there is a bar for each; with
         one patch, the picture shows the fields of the patch. Where a point lies outside the range of the law, a curve
-        is pale and a map is hatched. The title states the conditions that are the same at all points.
+        is dashed and a map is hatched. The title states the conditions that are the same at all points.
 
         Parameters
         ----------

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,8 +32,8 @@ SEEN = 10.0
 PLACES = 601
 """Places along a profile in `Life.profiles`."""
 
-CURVES = {"flange": "change of the flange [mm]", "equivalent_conicity": "equivalent conicity", "mass": "mass [kg]"}
-"""Beginnings of the columns that are drawn over the distance, with the labels of their axes."""
+NOT_DRAWN = ("depth", "worn_area", "factor")
+"""Measures that are drawn over the distance only if they have a limit."""
 
 
 def name_and_unit(column: str) -> tuple[str, str]:
@@ -64,6 +65,8 @@ class Life:
         "_left" and "_right".
     notes : tuple of tuple of str
         Notes on each step, such as how many patches lie outside the range of the law.
+    limits : dict of str to float
+        The limits of `until`, in the units of the table, by column.
     """
 
     pipeline: wl.Pipeline[...]
@@ -72,6 +75,7 @@ class Life:
     worn_profiles: tuple[tuple[Profile, ...], ...]
     table: pd.DataFrame
     notes: tuple[tuple[str, ...], ...]
+    limits: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def profile(self) -> Profile:
@@ -135,21 +139,31 @@ class Life:
                 )
                 x, y = wl.PlotAxis("y, outwards [mm]"), wl.PlotAxis(label, inverted=True)
                 panels.append(wl.Panel(x, y, curves, f"{title}, {what}", equal=name == "z"))
-        for beginning, label in CURVES.items():
-            measures = self.table.filter(regex=f"^{beginning}").dropna(axis=1, how="all")
-            if beginning == "flange":
-                measures = measures - measures.iloc[0]
-            if len(self.worn_profiles[0]) == 1:
-                measures = measures.drop(columns=measures.filter(regex="_left|_right"))
-            several = measures.shape[1] > 1  # the label of the axis names one alone
-            curves = tuple(
-                wl.Curve(_words(str(name)) if several else "", distances, values.to_numpy(), colour=number * several)
-                for number, (name, values) in enumerate(measures.items(), MOST_CURVES)
-            )
-            if curves:
-                panels.append(wl.Panel(wl.PlotAxis(column), wl.PlotAxis(label), curves))
+        panels += self._measures(column)
         caption = f"The {self.body} after {last} steps. It follows from the given line and wear law alone."
         return wl.FigureData("life", f"Life of a {self.body}", tuple(panels), caption)
+
+    def _measures(self, along: str) -> Iterator[wl.Panel]:
+        """Yield a panel of each measure over the distance, with its limit, and with a curve for each side."""
+        table, ends = self.table, SIDES[len(self.worn_profiles[0])]
+        heads = (str(column).replace("_left", "").replace("_right", "") for column in table.columns[1:])
+        for head in dict.fromkeys(heads):
+            (measure, unit), tail = name_and_unit(head), head.partition(" [")
+            of_sides = [f"{measure}{end}{''.join(tail[1:])}" for end in ends]
+            columns = [
+                column for column in (of_sides if of_sides[0] in table else [head]) if table[column].notna().any()
+            ]
+            curves = tuple(
+                wl.Curve(f"{side} {self.body}" if len(columns) > 1 else "", table[along].to_numpy(),
+                         table[column].to_numpy(), colour=number + MOST_CURVES)
+                for number, (side, column) in enumerate(zip(("left", "right"), columns, strict=False))
+            )  # fmt: skip
+            unit = readable(unit)
+            limits = sorted({self.limits[column] for column in columns if column in self.limits})
+            if not curves or (measure in NOT_DRAWN and not limits):
+                continue
+            lines = tuple(wl.Limit(f"limit {limit:g} {unit}".rstrip(), limit) for limit in limits)
+            yield wl.Panel(wl.PlotAxis(along), wl.PlotAxis(f"{_words(measure)} [{unit or '-'}]"), curves, limits=lines)
 
     def plot(self) -> Figure:
         """Draw profiles over the distance, the wear along their normals, and the measures, as a matplotlib figure."""
@@ -162,7 +176,8 @@ class Life:
         steps = "1 step" if len(self.table) == 2 else f"{len(self.table) - 1} steps"
         lines = [f"Life of a {self.body}: {_number(last.iloc[0])} {unit or along}, {steps}{why}"]
         for column in map(str, self.table.columns[1:]):
-            if not column.startswith("factor") and np.isfinite(last[column]):
+            of_side = len(self.worn_profiles[0]) == 1 and column.partition(" ")[0].endswith(("_left", "_right"))
+            if not (column.startswith("factor") or of_side) and np.isfinite(last[column]):
                 unit = readable(name_and_unit(column)[1])
                 lines.append(
                     f"  {_words(column):<26}{_number(first[column])} to {_number(last[column])} {unit}".rstrip()

@@ -157,7 +157,8 @@ def wear_out(
         bar.stage(along)
 
         def life(ended: str = "") -> Life:
-            return Life(now.predict, body, ended, tuple(profiles), pd.DataFrame(rows), tuple(notes))
+            ends = dict(end for name, end in limits.ends.items() if name != "over")
+            return Life(now.predict, body, ended, tuple(profiles), pd.DataFrame(rows), tuple(notes), ends)
 
         try:
             while not (ended := limits.reached(now.row)):

@@ -39,12 +39,14 @@ def section(study: wl.Study) -> wl.Section:
     with caught_warnings():  # the sweep of the study has said them
         life = wear_out(predict, states, over=OVER, **conditions)
         figures = (life.figure(), _states(predict, name, values, conditions))
+    head, *rows = repr(life).splitlines()
     return wl.Section(
         title="The life of a wheel",
         text=f"An example, not a service rate: {OVER:~P} with equal shares of the {values.size} states of the sweep"
         f" '{LINE}'. Real lines have curves, in which flanges wear.",
         tables={"life": life.table},
         figures=figures,
+        summary=f"{head}: {'; '.join(' '.join(row.split()) for row in rows)}.",
     )
 
 

@@ -37,7 +37,9 @@ class Curve:
     hollow : bool
         Whether the markers of points are hollow: predictions that no line can join.
     outside : ndarray of bool, (points,), or None
-        Where it lies outside the range of its wear law; drawn thin and pale.
+        Where a line lies outside the range of its law, and is dashed; such a line is told by markers, not by dashes.
+    computed : bool
+        Whether its points were computed: a line of few such points has a marker at each.
     """
 
     label: str
@@ -50,6 +52,7 @@ class Curve:
     points: bool = False
     outside: NDArray[np.bool_] | None = None
     hollow: bool = False
+    computed: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +101,25 @@ class Shade:
     strip: bool = False
 
 
+@dataclass(frozen=True)
+class Limit:
+    """A limit in a panel: a thin line with its name.
+
+    Attributes
+    ----------
+    label : str
+        Its name, which stands at the line.
+    at : float
+        Its value.
+    axis : {"x", "y"}
+        The axis that it is a value of.
+    """
+
+    label: str
+    at: float
+    axis: Literal["x", "y"] = "y"
+
+
 STRIP = 0.025
 """Height of a strip along the x axis, as a share of the panel."""
 
@@ -131,7 +153,7 @@ class PlotAxis:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """A pair of axes with its curves and shades.
+    """A pair of axes with its curves, shades and limits.
 
     With `equal`, a length in x is as long as in y, as for the shape of a body. A map lies below the curves.
     """
@@ -143,6 +165,7 @@ class Panel:
     shades: tuple[Shade, ...] = ()
     equal: bool = False
     map: Map | None = None
+    limits: tuple[Limit, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +194,13 @@ class FigureData:
 
 
 OUTSIDE = "outside the range of the law"
-"""Legend of the thin and pale parts of curves."""
+"""Legend of the dashed parts of lines."""
+
+FEW = 25
+"""Most points of a line that all have a marker."""
+
+MARKS = 7
+"""Markers along a line of more points, which tell it from others in a print without colours."""
 
 
 def head_of_legend(figure: FigureData) -> str:
@@ -184,9 +213,9 @@ def head_of_legend(figure: FigureData) -> str:
 
 
 def shows_outside(figure: FigureData) -> bool:
-    """Return whether a figure shows any part of a curve outside the range of its law."""
+    """Return whether a figure shows any part of a line outside the range of its law."""
     return any(
-        curve.outside is not None and (curve.outside & np.isfinite(curve.y) & panel.x.shows(curve.x)).any()
+        (out := in_parts(curve)[1]) is not None and (np.isfinite(out) & panel.x.shows(curve.x)).any()
         for panel in figure.panels
         for curve in panel.curves
     )
@@ -198,20 +227,37 @@ def in_parts(curve: Curve) -> tuple[Array, Array | None]:
     Values of the other part are NaN. The part outside begins and ends at the nearest point inside.
     """
     outside = curve.outside
-    if outside is None or not outside.any():
+    if outside is None or curve.points or not outside.any():
         return curve.y, None
     near = outside.copy()
-    if not curve.points:
-        near[1:] |= outside[:-1]
-        near[:-1] |= outside[1:]
+    near[1:] |= outside[:-1]
+    near[:-1] |= outside[1:]
     return np.where(outside, np.nan, curve.y), np.where(near, curve.y, np.nan)
 
 
-def lone_points(curve: Curve) -> list[int]:
-    """Return the indices of the points of a line without a neighbour to join them to; only a marker shows them."""
-    seen = np.concatenate([[False], np.isfinite(curve.x) & np.isfinite(curve.y), [False]])
-    lone: list[int] = np.flatnonzero(seen[1:-1] & ~seen[:-2] & ~seen[2:]).tolist()
-    return lone
+def marked_points(curve: Curve, style: int, panel: Panel | None = None) -> list[int]:
+    """Return the indices of the points of a line that have a marker, in a panel or on linear axes.
+
+    These are all points of a line of few, and those without a neighbour to join them to. Lines of laws but the first
+    have some more at equal lengths along the line.
+    """
+    axes = (panel.x, panel.y) if panel else (PlotAxis(""), PlotAxis(""))
+    seen, places = np.ones(curve.x.shape, bool), []
+    for axis, values in zip(axes, (curve.x, curve.y), strict=True):
+        log = axis.scale == "log"
+        seen &= np.isfinite(values) & axis.shows(values) & ((values > 0.0) | (not log))
+        places.append(np.log10(values, where=values > 0.0, out=np.zeros(values.shape)) if log else values)
+    around = np.pad(seen, 1)
+    chosen = seen & ~around[:-2] & ~around[2:]
+    if curve.computed and seen.sum() <= FEW:
+        chosen = seen
+    elif curve.outside is not None and style:
+        there = np.flatnonzero(seen)
+        steps = np.hypot(*(np.diff(place[there]) / (np.ptp(place[there]) or 1.0) for place in places))
+        length = np.concatenate([[0.0], np.cumsum(steps)])
+        at = (np.arange(MARKS) + style / 7.0) / MARKS * length[-1]  # marks of lines that coincide stand apart
+        chosen[there[np.searchsorted(length, at)]] = True
+    return list(map(int, np.flatnonzero(chosen)))
 
 
 def map_range(figure: FigureData) -> tuple[float, float]:

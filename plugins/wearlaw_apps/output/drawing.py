@@ -1,8 +1,8 @@
-"""Figures drawn with matplotlib in one style, for print.
+"""Figures drawn with matplotlib in the style of `wearlaw.mplstyle`, for print.
 
-The palette is safe for colour-blind readers (Okabe and Ito, 2008). Lines that would differ only in colour get a line
-style each, for prints in grey. Only measurements have filled markers. The legend stands below the panels, where it
-covers no curve.
+Lines of laws are solid, and dashed outside the range of their law; markers tell them apart in prints without colours.
+Other lines that would differ only in colour get a line style each. The legend stands below the panels, where it covers
+no curve.
 """
 
 from __future__ import annotations
@@ -25,75 +25,61 @@ from wearlaw_apps.output.curves import (
     borders_of,
     head_of_legend,
     in_parts,
-    lone_points,
     map_range,
+    marked_points,
     shows_outside,
+)
+from wearlaw_apps.output.labels import raised
+from wearlaw_apps.output.style import (
+    BAND,
+    COLOURS,
+    COLUMN,
+    EDGE,
+    LIMIT_GREY,
+    LIMIT_LINE,
+    LINES,
+    MARKERS,
+    OUTSIDE_LINE,
+    PAGE,
+    PALETTE,
+    SHADE,
+    STRIP_GREY,
+    STYLE,
+    THIN,
 )
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
 
-    from wearlaw_apps.output.curves import Curve, FigureData, Map, Panel, Shade
+    from wearlaw_apps.output.curves import Curve, FigureData, Limit, Map, Panel, Shade
 
-PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-LINES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (9, 3)), (0, (6, 1.5, 1, 1.5, 1, 1.5)), (0, (3, 3, 1, 3, 1, 3)))
-"""Line styles, as many as colours: names of matplotlib, or an offset with lengths of dashes and gaps in line widths."""
-MARKERS = ("s", "^", "D", "v", "P", "X", "o")
-"""One for the measurements of each colour."""
-STYLE: Any = {
-    "axes.grid": True,
-    "grid.alpha": 0.3,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.titlesize": "medium",
-    "axes.xmargin": 0.02,
-    "figure.titlesize": "large",
-    "legend.frameon": False,
-    "legend.fontsize": "small",
-    "legend.title_fontsize": "small",
-    "font.size": 10,
-    "lines.linewidth": 1.6,
-}
-WIDTH, ROW_HEIGHT = 7.4, 3.6
-"""Width of a figure and height of a row of panels, in inches."""
-AROUND = 0.9
+ROW_HEIGHT = 2.2
+"""Height of a row of panels, in inches."""
+AROUND = 0.6
 """Height and width that the labels of a panel take, in inches."""
-TITLE, LINE = 0.26, 0.17
+TITLE, LINE = 0.17, 0.13
 """Height of a line of the title, and of the conditions below it, in inches."""
-TITLE_LETTERS, LETTERS = 72, 105
-"""Letters of the title, and of the conditions, that fit across a figure."""
-PANEL_LETTERS = 76
-"""Letters of the title of a panel that fit across a figure."""
-SHADE, STRIP_GREY = "#ececec", "#8c8c8c"
-"""Greys of a shade as high as a panel, and of a strip along its x axis."""
-BAND, EDGE = 0.07, 0.4
-"""Opacity of a band and of its edges."""
-THIN, PALE = 0.8, 0.6
-"""Width in points and opacity of a line outside the range of its law."""
-LEGEND_WIDTH = 100
-"""Characters that fit below a figure."""
-COLOURS = "viridis"
-"""Colour map of maps."""
+TITLE_LETTERS, LETTERS, SAMPLE = 12, 20, 8
+"""Letters of the title of a figure, and of smaller texts, that fit in an inch, and that the sample of a line takes."""
 TICKS = 3
 """Fewest labelled ticks on a logarithmic axis."""
 
 
 def draw(figure: FigureData) -> Figure:
-    """Draw a figure: panels in rows of two, an odd first panel over a whole row."""
+    """Draw a figure as wide as a column, or as a page: panels in rows of two, an odd first panel over a whole row."""
     count = len(figure.panels)
+    width = COLUMN if count == 1 else PAGE
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
-    widths = {cell: WIDTH / len(set(row)) for row in rows for cell in row}
+    widths = {cell: width / len(set(row)) for row in rows for cell in row}
     heights = [max(panel_height(figure.panels[cell], widths[cell]) for cell in row) for row in rows]
-    title = textwrap.wrap(figure.title, TITLE_LETTERS)
-    conditions = textwrap.wrap(figure.conditions, LETTERS)
-    head = TITLE * len(title) + LINE * len(conditions) + 0.08
-    height = 0.9 + head + sum(heights)
+    title = textwrap.wrap(figure.title, round(TITLE_LETTERS * width))
+    conditions, heading = (
+        textwrap.wrap(text, round(LETTERS * width)) for text in (figure.conditions, head_of_legend(figure))
+    )
     with mpl.rc_context(STYLE):
-        drawn = Figure(figsize=(WIDTH, height), layout="constrained")
-        engine: Any = drawn.get_layout_engine()
-        engine.set(rect=(0.0, 0.0, 1.0, 1.0 - head / height))
+        drawn = Figure(layout="constrained")
         axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
         styles, maps = line_styles(figure), [panel.map for panel in figure.panels if panel.map is not None]
         norm: Any = None
@@ -101,15 +87,30 @@ def draw(figure: FigureData) -> Figure:
             low, high = map_range(figure)
             norm = LogNorm(low, high) if maps[0].scale == "log" and low < high else Normalize(low, high)
         for number, panel in enumerate(figure.panels):
-            _fill(axes[number], panel, styles, norm, round(PANEL_LETTERS * widths[number] / WIDTH))
+            _fill(axes[number], panel, styles, norm, round(LETTERS * 0.9 * widths[number]))
         if maps:
             bar = drawn.colorbar(ScalarMappable(norm, COLOURS), ax=list(axes.values()), label=_literal(maps[0].label))
             if isinstance(norm, LogNorm):
                 _label_ticks(bar.ax.yaxis)
-        drawn.suptitle(_literal("\n".join(title)), y=1.0 - 0.05 / height, va="top")
-        below = 1.0 - (0.05 + TITLE * len(title)) / height
+        entries = _entries(figure, list(axes.values()))
+        widths_of = [len(name) + SAMPLE for name in entries] or [1]
+        room = round(LETTERS * width)
+        columns = len(widths_of) if sum(widths_of) <= room else max(1, room // max(widths_of))
+        head = TITLE * len(title) + LINE * len(conditions) + 0.06
+        height = head + sum(heights) + LINE * (len(heading) - (-len(entries) // columns)) + 0.1
+        drawn.set_size_inches(width, height)
+        engine: Any = drawn.get_layout_engine()
+        engine.set(rect=(0.0, 0.0, 1.0, 1.0 - head / height))
+        drawn.suptitle(_literal("\n".join(title)), y=1.0 - 0.04 / height, va="top")
+        below = 1.0 - (0.04 + TITLE * len(title)) / height
         drawn.text(0.5, below, _literal("\n".join(conditions)), ha="center", va="top", fontsize="small", color="0.35")
-        _legend(drawn, figure, list(axes.values()))
+        if entries or heading:
+            look: Any = {"handlelength": 2.8, "columnspacing": 1.2}  # a whole period of every line style
+            below_heading = _literal("\n".join(heading)) or None
+            drawn.legend(
+                list(entries.values()), list(entries), loc="outside lower center", ncols=columns, title=below_heading,
+                **look,
+            )  # fmt: skip
     return drawn
 
 
@@ -128,7 +129,7 @@ def panel_height(panel: Panel, width: float) -> float:
 
 
 def line_styles(figure: FigureData) -> dict[tuple[int, int], int]:
-    """Return the index in `LINES` for each colour and dash of the lines of a figure.
+    """Return the index in `LINES` and `MARKERS` for each colour and dash of the lines of a figure.
 
     It is that of the dash, unless two lines of a panel would then differ only in colour: every line then has its own.
     """
@@ -137,8 +138,9 @@ def line_styles(figure: FigureData) -> dict[tuple[int, int], int]:
         for panel in figure.panels
     ]
     alike = any(len(of_panel) > len({dash for _, dash in of_panel}) for of_panel in kinds)
-    every = dict.fromkeys(kind for of_panel in kinds for kind in of_panel)
-    return {kind: (number if alike else kind[1]) % len(LINES) for number, kind in enumerate(every)}
+    several = dict.fromkeys(kind for of_panel in kinds if len(of_panel) > 1 for kind in of_panel)
+    numbers = {kind: number for number, kind in enumerate(several)} if alike else {}
+    return {kind: numbers.get(kind, kind[1]) % len(LINES) for of_panel in kinds for kind in of_panel}
 
 
 def _fill(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: Any, letters: int) -> None:
@@ -148,7 +150,7 @@ def _fill(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: An
         for low, high in shade.spans:
             axes.axvspan(low, high, 0.0, STRIP if shade.strip else 1.0, color=_grey(shade), lw=0, zorder=0)
     for curve in panel.curves:
-        plot_curve(axes, curve, styles.get((curve.colour, curve.dash), 0))
+        plot_curve(axes, curve, styles.get((curve.colour, curve.dash), 0), panel)
     axes.set_title(_literal("\n".join(textwrap.wrap(panel.title, letters))))
     axes.set(xlabel=_literal(panel.x.label), ylabel=_literal(panel.y.label))
     axes.set(xscale=panel.x.scale, yscale=panel.y.scale)
@@ -158,8 +160,26 @@ def _fill(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: An
             drawn.set_inverted(True)
         if axis.scale == "log":
             _label_ticks(drawn)
+    for limit in panel.limits:
+        _draw_limit(axes, limit)
     if panel.equal:
         axes.set_aspect("equal", adjustable="box")
+
+
+def _draw_limit(axes: Axes, limit: Limit) -> None:
+    """Draw a limit across a panel, with its name at the end of the line."""
+    look: Any = {"color": LIMIT_GREY, "lw": THIN, "ls": LIMIT_LINE, "zorder": 1.5}
+    words: Any = {"color": LIMIT_GREY, "fontsize": 6.5, "ha": "right", "textcoords": "offset points"}
+    if limit.axis == "y":
+        axes.axhline(limit.at, **look)
+        place = axes.get_yaxis_transform()
+        axes.annotate(_literal(limit.label), (1.0, limit.at), (0.0, 1.5), xycoords=place, va="bottom", **words)
+    else:
+        axes.axvline(limit.at, **look)
+        place = axes.get_xaxis_transform()
+        axes.annotate(
+            _literal(limit.label), (limit.at, 1.0), (-1.5, -1.0), xycoords=place, va="top", rotation=90.0, **words
+        )
 
 
 def _grey(shade: Shade) -> str:
@@ -194,29 +214,31 @@ def plain(value: float) -> str:
     if value == 0.0 or 1e-4 <= abs(value) < 1e5:
         return f"{value:.6g}".replace("-", "−")
     digits, power = f"{value:.3e}".split("e")
-    factor = "" if float(digits) == 1.0 else rf"{float(digits):g} \times "
-    return f"${factor}10^{{{int(power)}}}$"
+    return f"{'' if float(digits) == 1.0 else f'{float(digits):g} × '}10{raised(int(power))}"
 
 
-def plot_curve(axes: Axes, curve: Curve, style: int = 0) -> None:
-    """Draw a curve with its band, or points with their error bars."""
+def plot_curve(axes: Axes, curve: Curve, style: int = 0, panel: Panel | None = None) -> None:
+    """Draw a curve with its band, or points with their error bars, in a panel or on linear axes."""
     number = curve.colour % len(PALETTE)
-    colour = PALETTE[number]
-    looks: dict[str, Any] = {"color": colour, "linestyle": LINES[style], "zorder": 2.0 + 0.1 * style}
+    colour, marked = PALETTE[number], marked_points(curve, style, panel)
+    looks: dict[str, Any] = {"color": colour, "linestyle": LINES[style if curve.outside is None else 0],
+                             "marker": MARKERS[style] if marked else "", "markevery": marked,
+                             "zorder": 2.0 + 0.1 * style}  # fmt: skip
     if curve.points:
-        looks = {"color": colour, "marker": MARKERS[number], "linestyle": "", "markersize": 5 if curve.hollow else 4,
-                 "zorder": 3, "markerfacecolor": "none" if curve.hollow else colour}  # fmt: skip
-    elif alone := lone_points(curve):
-        looks |= {"marker": ".", "markevery": alone}
+        looks = {"color": colour, "marker": MARKERS[(number + 1) % len(MARKERS)], "linestyle": "", "zorder": 3,
+                 "markerfacecolor": "none" if curve.hollow else colour}  # fmt: skip
     inside, outside = in_parts(curve)
-    axes.plot(curve.x, inside, label=_literal(curve.label), **looks)
+    name = _literal(curve.label)
     if outside is not None:
-        axes.plot(curve.x, outside, label="_", **{**looks, "linewidth": THIN, "alpha": PALE})
+        (dashed,) = axes.plot(curve.x, outside, **{**looks, "linestyle": OUTSIDE_LINE})
+        dashed.set_label("_" if np.isfinite(inside).any() else name)
+    if outside is None or np.isfinite(inside).any():
+        axes.plot(curve.x, inside, label=name, **looks)
     if curve.low is None or curve.high is None:
         return
     if curve.points:
         bars = curve.y - curve.low, curve.high - curve.y
-        axes.errorbar(curve.x, curve.y, bars, fmt="none", ecolor=colour, elinewidth=1.0, capsize=2.0)
+        axes.errorbar(curve.x, curve.y, bars, fmt="none", ecolor=colour, elinewidth=0.8, capsize=1.5)
     else:
         axes.fill_between(
             curve.x, curve.low, curve.high, facecolor=(colour, BAND), edgecolor=(colour, EDGE), lw=0.5, zorder=1
@@ -230,14 +252,14 @@ def _draw_map(axes: Axes, drawn: Map, norm: Any) -> None:
     axes.set_axisbelow(False)
     axes.grid(visible=False)
     for number, region in borders_of(drawn).values():
-        for width, colour, line in ((2.6, "white", "-"), (1.2, "black", LINES[number])):
+        for width, colour, line in ((2.2, "white", "-"), (1.0, "black", LINES[number])):
             axes.contour(
                 drawn.x, drawn.y, region.astype(float), [0.5], colors=colour, linewidths=width, linestyles=[line]
             )
 
 
-def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
-    """Add one legend for all panels, with each label once."""
+def _entries(figure: FigureData, axes: list[Axes]) -> dict[str, Any]:
+    """Return what the legend of all panels shows, by its label."""
     entries: dict[str, Any] = {}
     for drawn_axes, panel in zip(axes, figure.panels, strict=True):
         labelled = ((artist, str(artist.get_label())) for artist in drawn_axes.get_lines())
@@ -247,18 +269,8 @@ def _legend(drawn: Figure, figure: FigureData, axes: list[Axes]) -> None:
         for label, (number, _) in borders_of(panel.map).items():
             entries[label] = Line2D([], [], color="black", linewidth=1.2, linestyle=LINES[number])
     if shows_outside(figure):
-        entries[OUTSIDE] = Line2D([], [], color="black", linewidth=THIN, alpha=PALE)
-    if not (entries or head_of_legend(figure)):
-        return
-    widths = [len(name) + 10 for name in entries]  # in characters, with the line sample and the gap
-    drawn.legend(
-        list(entries.values()),
-        list(entries),
-        loc="outside lower center",
-        handlelength=3.0,  # a whole period of every line style
-        ncols=len(entries) if sum(widths) <= LEGEND_WIDTH else max(1, LEGEND_WIDTH // max(widths)),
-        title=_literal(head_of_legend(figure)) or None,
-    )
+        entries[OUTSIDE] = Line2D([], [], color="black", linestyle=OUTSIDE_LINE)
+    return entries
 
 
 def _literal(text: str) -> str:

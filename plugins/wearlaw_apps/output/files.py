@@ -15,6 +15,7 @@ from wearlaw_apps.output.commands import verbose
 from wearlaw_apps.output.curves import FigureData, FigureFormat
 from wearlaw_apps.output.drawing import draw
 from wearlaw_apps.output.spreadsheets import write_csv
+from wearlaw_apps.output.style import STYLE
 from wearlaw_apps.output.styled import latex_table
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
@@ -37,8 +38,8 @@ def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[F
     drawn = draw(figure)
     files: dict[FigureFormat, str] = {extension: f"{name}.{extension}" for extension in formats}
     for extension, file in files.items():
-        with mpl.rc_context({"pdf.fonttype": 42, "svg.hashsalt": "wearlaw"}):
-            drawn.savefig(folder / file, dpi=150, metadata=METADATA[extension])
+        with mpl.rc_context(STYLE):
+            drawn.savefig(folder / file, metadata=METADATA[extension])
     return list(files.values())
 
 

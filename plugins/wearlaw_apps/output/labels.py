@@ -65,6 +65,11 @@ def readable(unit: str) -> str:
     return unit.replace("ug", "µg").replace("um", "µm").replace("^2", "²").replace("*", "·")
 
 
+def raised(power: int) -> str:
+    """Return a power as superscript letters, which survive where a text is broken or copied."""
+    return str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
 def in_words(labels: Mapping[str, Label]) -> str:
     """Return the labels of a patch in words, such as "left, patch 1"; a number stands behind the name of its axis."""
     return ", ".join(label if isinstance(label, str) else f"{name_of(axis)} {label}" for axis, label in labels.items())

@@ -10,6 +10,7 @@ import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib import pyplot
 
@@ -24,20 +25,18 @@ from wearlaw.units.variables import name_of
 from wearlaw_apps.output.conditions import Conditions
 from wearlaw_apps.output.curves import OUTSIDE, Curve
 from wearlaw_apps.output.datasets import data_of, dataset, fields, labelled
-from wearlaw_apps.output.drawing import PALE, THIN, plot_curve
+from wearlaw_apps.output.drawing import plot_curve
 from wearlaw_apps.output.labels import in_words, label, readable
+from wearlaw_apps.output.style import MARKERS, OUTSIDE_LINE, STYLE
 
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-SIZE = (6.4, 4.4)
-"""Width and height of a figure, in inches."""
-
 MOST_CURVES = 8
 """Most curves of a prediction over two conditions; with more it is a map."""
 
-TITLE = 70
+TITLE = 60
 """Characters on a line of the title."""
 
 ALONG = ("pressure", "traction", "traction_bound")
@@ -52,7 +51,12 @@ PIXELS = (401, 301)
 
 def draw(prediction: Prediction, solution: Solution, name: str | None, x: str | None, ax: Axes | None) -> Axes:
     """Draw a prediction; see `Prediction.plot`."""
-    problem, conditions = prediction.problem, Conditions.of(solution)
+    with mpl.rc_context(STYLE if ax is None else {}):
+        return _drawn(prediction, Conditions.of(solution), name, x, ax)
+
+
+def _drawn(prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
+    problem = prediction.problem
     points = problem.batch_shape[: len(problem.batch_shape) - len(problem.dims)]
     if math.prod(points) == 1 and x is None:
         several = math.prod(problem.batch_shape) > 1
@@ -118,14 +122,14 @@ def _curves(
             curves.append(Curve(label_here, x[there], y[there], colour=len(curves), outside=outside))
     if not curves:
         raise InputError(f"plot: {variable} has no value at these operating points")
-    drawn: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
-    for curve in curves:
-        plot_curve(drawn, curve)
-    pale = any(curve.outside is not None and curve.outside.any() for curve in curves)
-    if pale:
-        drawn.plot([], [], color="black", linewidth=THIN, alpha=PALE, label=OUTSIDE)
-    if apart or pale:
-        drawn.legend(fontsize="small")
+    drawn: Axes = ax if ax is not None else pyplot.subplots()[1]
+    for number, curve in enumerate(curves):
+        plot_curve(drawn, curve, number % len(MARKERS))
+    dashed = any(curve.outside is not None and curve.outside.any() for curve in curves)
+    if dashed:
+        drawn.plot([], [], color="black", linestyle=OUTSIDE_LINE, label=OUTSIDE)
+    if apart or dashed:
+        drawn.legend()
     drawn.set(xlabel=_label(data[across]), ylabel=_label(data[variable]))
     return drawn
 
@@ -142,7 +146,7 @@ def _map(data: xarray.Dataset, variable: str, along: str, up: str, problem: Prob
         marks = data[OUTSIDE_RANGE].transpose(up, along)
         drawn.contourf(marks[along], marks[up], marks, levels=[0.5, 1.5], colors="none", hatches=["///"])
         drawn.fill_between([], [], facecolor="none", edgecolor="black", hatch="///", label=OUTSIDE)
-        drawn.legend(fontsize="small")
+        drawn.legend()
     drawn.set(xlabel=_label(data[along]), ylabel=_label(data[up]))
     return drawn
 
@@ -158,9 +162,9 @@ def _bars(prediction: Prediction, conditions: Conditions, name: str | None, ax: 
     marks = table[OUTSIDE_RANGE].tolist() if OUTSIDE_RANGE in table else []
     outside = [place for place, mark in enumerate(marks) if mark > 0.0]
     for place in outside:
-        drawn.patches[place].set(alpha=PALE, label=OUTSIDE if place == outside[0] else "_")
+        drawn.patches[place].set(hatch="///", label=OUTSIDE if place == outside[0] else "_")
     if outside:
-        drawn.legend(handles=[drawn.patches[outside[0]]], fontsize="small")
+        drawn.legend(handles=[drawn.patches[outside[0]]])
     drawn.set(xlabel="", ylabel=_label(data[variable]))
     drawn.axhline(0.0, color="black", linewidth=0.8)
     return drawn
@@ -184,7 +188,7 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
         )
     if not line:
         variable = name or FIELDS[0]
-        axes: Axes = ax if ax is not None else pyplot.subplots(figsize=SIZE)[1]
+        axes: Axes = ax if ax is not None else pyplot.subplots()[1]
         mesh = axes.pcolormesh(*raster(prediction, data[variable].values, *PIXELS), rasterized=True)
         axes.figure.colorbar(mesh, ax=axes, shrink=0.8, label=_label(data[variable]))
         axes.set(xlabel=_label(data["x"]), ylabel=_label(data["y"]), aspect="equal")
@@ -272,7 +276,7 @@ def _ends(strips: Array, width: Array) -> tuple[Array, Array]:
 
 
 def _look(ax: Axes | None) -> dict[str, Any]:
-    return {"figsize": SIZE} if ax is None else {"ax": ax}
+    return {} if ax is None else {"ax": ax}
 
 
 def _series(data: xarray.Dataset, place: Mapping[str, int], problem: Problem) -> str:

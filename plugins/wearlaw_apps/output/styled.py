@@ -13,6 +13,8 @@ import numpy as np
 import pandas as pd
 from pandas.io.formats.style import Styler
 
+from wearlaw_apps.output.labels import raised, readable
+
 _MATHS = {
     "−": "-", "·": r"\cdot", "×": r"\times", "±": r"\pm", "≤": r"\le", "≥": r"\ge", "≠": r"\ne", "≈": r"\approx",
     "∞": r"\infty", "√": r"\surd", "∫": r"\int", "∂": r"\partial", "∝": r"\propto", "→": r"\to", "°": r"^{\circ}",
@@ -73,13 +75,19 @@ def html_table(frame: pd.DataFrame, caption: str) -> str:
     """Return a table for the page, with the first column as the heads of its rows, and numbers at the right."""
     rows = list(frame.itertuples(index=False, name=None))
     classes = pd.DataFrame([[_class(value) for value in row] for row in rows])
-    heads = [html.escape(str(head)) for head in frame.columns]
+    heads = [html.escape(_head(str(head))) for head in frame.columns]
     right = [any(is_number(row[number]) for row in rows) for number in range(len(heads))]
     heads = [f'<span class="number">{head}</span>' if at_right else head
              for head, at_right in zip(heads, right, strict=True)]  # fmt: skip
     style = _styled(frame, _html, heads, first_as_index=True).set_td_classes(classes.iloc[:, 1:])
     table: str = style.set_caption(html.escape(caption)).to_html()
     return table[table.index("<table") :].replace(f' id="T_{UUID}"', "")
+
+
+def _head(head: str) -> str:
+    """Return the head of a column for readers: words without underscores, and its unit in the usual spelling."""
+    words = re.sub("(?<=[a-z]{3})_(?=[a-z]{3})", " ", head)  # symbols such as tr_sc keep theirs
+    return re.sub(r"\[[^\]]*\]$", lambda unit: readable(unit[0]), words)
 
 
 def latex_table(frame: pd.DataFrame, footnotes: Iterable[str] = ()) -> str:
@@ -109,11 +117,16 @@ def _class(value: Any) -> str:
     return "number" if is_number(value) else "long" if len(str(value)) > LONG // 2 else ""
 
 
-def _html(value: Any) -> str:
-    text, power, marks = (html.escape(part) for part in cell(value))
+def plain_number(value: Any) -> str:
+    """Return the text of a cell with its power of ten and its marks, as in "4.66 × 10⁻⁵†"."""
+    text, power, marks = cell(value)
     if is_number(value):
-        text, power = text.replace("-", "−"), power.replace("-", "−")
-    return f"{text}{f' × 10<sup>{power}</sup>' if power else ''}{f'<sup>{marks}</sup>' if marks else ''}"
+        text = text.replace("-", "−")
+    return f"{text}{f' × 10{raised(int(power))}' if power else ''}{marks}"
+
+
+def _html(value: Any) -> str:
+    return html.escape(plain_number(value))
 
 
 def _latex(value: Any) -> str:

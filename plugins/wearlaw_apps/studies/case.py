@@ -140,6 +140,9 @@ class Case(Configuration):
     """The sections that plugins add to the report, by name."""
     figures: dict[str, FigureSpec] = Field(default_factory=dict)
     """The figures, each under the name of its file. Default: one of each kind for each sweep and profile."""
+    main: str | None = None
+    """The figure that the report begins with, one of the case or of its sections. Default: the main outcome of the
+    first sweep."""
 
     @model_validator(mode="before")
     @classmethod

@@ -111,6 +111,8 @@ class FigureSpec(Window):
     """A variable to show in colours over two axes of a sweep, `x` and `y`. Each pair or contact model has a panel."""
     measured: bool = False
     """Whether to show the measured tests."""
+    regimes: bool = False
+    """Whether to show where the regimes of the laws change, for laws of patch means."""
     panels: tuple[Window, ...] = ()
     """Several panels, such as the whole and an enlarged part. Default: one."""
 
@@ -125,7 +127,7 @@ class FigureSpec(Window):
         if self.map and (len(self.shown) != 1 or self.shown[0] == self.x):
             wrong.append(Fault(("y",), "a map runs over two axes of the sweep; name the other one as y"))
         if self.map:
-            other = [name for name in ("profile", "panels", "measured", "body") if getattr(self, name)]
+            other = [name for name in ("profile", "panels", "measured", "body", "regimes") if getattr(self, name)]
             wrong += [Fault((name,), "a map does not take it; leave it out") for name in other]
         if self.measured and self.profile:
             wrong.append(Fault(("measured",), "tests are measured over the whole patch; show a sweep"))

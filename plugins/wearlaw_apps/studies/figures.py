@@ -3,7 +3,7 @@
 Line styles stand for contact models. Colours stand for laws in figures of their outcomes, for variables where a panel
 shows several, and otherwise for contact models too. If the rig makes several patches, colours stand for patches, and
 values keep their signs. Bands show the published range of a law's parameters. Parts of curves outside the range of
-their law are thin and pale, and a strip along the x axis shows where the contact is beyond shakedown.
+their law are dashed, and a strip along the x axis shows where the contact is beyond shakedown.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from wearlaw.models.law import WEAR
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.quantities import Q, Unit, from_si
 from wearlaw.units.variables import UNITS, name_of
-from wearlaw_apps.output.curves import BLACK, OUTSIDE, Curve, FigureData, Map, Panel, PlotAxis, Shade
+from wearlaw_apps.output.curves import BLACK, OUTSIDE, Curve, FigureData, Limit, Map, Panel, PlotAxis, Shade
 from wearlaw_apps.output.labels import in_words, label, readable
 from wearlaw_apps.studies.figure_spec import ACROSS, COMMON, OF_PROFILE, FigureSpec, Range, Scale, Window
 from wearlaw_apps.studies.measured import known_variables, measured_points
@@ -31,6 +31,7 @@ from wearlaw_apps.studies.results import (
     along,
     axes_of,
     beyond_limits,
+    borders_of,
     labelled_by,
     main_axis,
     outcomes_of,
@@ -52,6 +53,9 @@ MOST_MAPS = 6
 MOST_CURVES, MOST_MAIN_MAPS = 6, 2
 """Most curves and maps of the main figure; with more pairs it shows those of the first contact model."""
 
+MOST_POINTS, MOST_VALUES = 4000, 300
+"""Most points of a curve, and values of each axis of a map; more are finer than a screen."""
+
 LEAST = 4
 """Fewest values of each axis of a map that is made without being asked for."""
 
@@ -68,8 +72,8 @@ Spans: TypeAlias = list[tuple[float, float]]
 
 
 def figures_of(results: Results) -> tuple[FigureData, ...]:
-    """Return the figures of a study, the main one first."""
-    main = _main_figure(results)
+    """Return the figures of a study, the main one first unless the case names it."""
+    main = None if results.case.main else _main_figure(results)
     asked = results.case.figures or dict(_usual(results))
     every = tuple(_figure(results, name, spec) for name, spec in asked.items())
     if main is None:
@@ -192,7 +196,10 @@ def _title(spec: FigureSpec, results: Results) -> str:
     variables = dict.fromkeys([spec.map] if spec.map else [y for window in spec.windows() for y in window.shown])
     words = f"{' and '.join(name_of(y or '') for y in variables)} over {name_of(spec.x)}"
     words += f" and {name_of(spec.shown[0])}" if spec.map else ""
-    several = f" ({str(spec.sweep).replace('_', ' ')})" if len(results.case.sweeps) > 1 else ""
+    alike = [
+        sweep for sweep in results.sweeps.values() if spec.x in sweep and sweep[spec.x].max() > sweep[spec.x].min()
+    ]
+    several = f" ({str(spec.sweep).replace('_', ' ')})" if len(alike) > 1 else ""
     return words[:1].upper() + words[1:] + several
 
 
@@ -222,6 +229,7 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
         if spec.sweep:
             axis = _axis_along(data, spec.x, case.rig.creepage)
             data, free = along(data, axis), {axis}
+            data = data.isel({axis: _thinned(data.sizes[axis], MOST_POINTS)})
         panels, wrong = [], []
         for number, window in enumerate(spec.windows()):
             try:
@@ -358,6 +366,7 @@ def _panel(results: Results, data: xarray.Dataset, spec: FigureSpec, window: Win
         fault = Fault(("y",), f"one axis has one unit, but these are in {each}; give each a panel of its own")
         raise ConfigurationError("figure", [fault])
     curves: list[Curve] = []
+    limits: list[Limit] = []
     spans: Spans = []
     for patch in patches_of(data, window.patches):
         of_patch = []
@@ -372,6 +381,8 @@ def _panel(results: Results, data: xarray.Dataset, spec: FigureSpec, window: Win
                     continue
                 of_patch.append(replace(curve, colour=colour, dash=dash))
                 spans += _beyond(series, curve, spec, window)
+                if spec.regimes and "pair" in data[name].dims:
+                    limits += _regimes(results, series, curve)
         if patch:
             number = possible_patches(data).index(patch)
             of_patch = [replace(curve, label=labelled_by(patch, curve.label), colour=number, dash=dash)
@@ -384,7 +395,9 @@ def _panel(results: Results, data: xarray.Dataset, spec: FigureSpec, window: Win
     low, high = x_axis.ends or (-np.inf, np.inf)
     seen = tuple(dict.fromkeys((start, end) for start, end in spans if start < high and end > low))
     shades = (Shade(LIMITS[SHAKEDOWN], seen, strip=True),) if seen else ()
-    return Panel(x_axis, _y_axis(x_axis, window, curves, units), tuple(curves), window.title, shades)
+    seen_limits = tuple(limit for limit in limits if low < limit.at < high)
+    y_axis = _y_axis(x_axis, window, curves, units)
+    return Panel(x_axis, y_axis, tuple(curves), window.title, shades, limits=seen_limits)
 
 
 def _check_names(data: xarray.Dataset, spec: FigureSpec, window: Window, head: str) -> None:
@@ -451,6 +464,23 @@ def _beyond(series: _Series, curve: Curve, spec: FigureSpec, window: Window) -> 
     return [(float(edges[first]), float(edges[after])) for first, after in zip(steps[::2], steps[1::2], strict=True)]
 
 
+def _regimes(results: Results, series: _Series, curve: Curve) -> Iterator[Limit]:
+    """Yield where the regimes of a law of patch means change along a curve."""
+    pair = results.pair(series.of)
+    if pair.pipeline.scale == "cells":
+        return
+    for name, (symbol, borders, unit) in borders_of(pair.pipeline.laws[0]).items():
+        if name not in series.data:
+            continue
+        values = np.broadcast_to(series.data[name].values, curve.x.shape)
+        for border in borders:
+            below = values < border
+            for at in np.flatnonzero(below[1:] != below[:-1]):
+                share = (border - values[at]) / (values[at + 1] - values[at])
+                x = float(curve.x[at] + share * np.diff(curve.x)[at])
+                yield Limit(f"{pair.law}: {symbol} = {border:.4g} {unit}".rstrip(), x, "x")
+
+
 def _converted(values: Array, unit: str, wanted: str) -> Array:
     """Return values of a unit in the unit in which a figure shows them."""
     converted: Array = values if unit == wanted else Q(values, unit).to(wanted).magnitude
@@ -485,6 +515,7 @@ def _maps(
     for path, axis in (("x", x), ("y", y)):
         _choose(path, [axis], axes_of(sweep), "is not an axis of the sweep")
     plane = sweep.isel({axis: sweep.sizes[axis] // 2 for axis in axes_of(sweep) if axis not in (x, y)})
+    plane = plane.isel({axis: _thinned(plane.sizes[axis], MOST_VALUES) for axis in (x, y)})
     all_series = [
         (patch, series)
         for patch in patches_of(plane, spec.patches)
@@ -512,6 +543,11 @@ def _maps(
         shown_here = Map(label(variable, units=units), places[0], places[1], drawn, scale, regions)
         panels.append(Panel(axes[0], axes[1], (), title, map=shown_here))
     return panels, len(all_series) - len(panels)
+
+
+def _thinned(count: int, most: int) -> NDArray[np.intp]:
+    """Return places, the first and the last among them, of at most so many of a count of values."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
 
 
 # Axes

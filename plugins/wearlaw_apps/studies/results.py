@@ -5,17 +5,19 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import xarray
 
 from wearlaw.errors import InputError, did_you_mean, shown
-from wearlaw.models.law import WEAR, Outcome
+from wearlaw.models.law import WEAR, Law, Outcome
+from wearlaw.models.model import Blame
 from wearlaw.pipeline.composition import fitted_to_other_body
 from wearlaw.pipeline.variables import MASS
-from wearlaw.units.variables import UNITS
+from wearlaw.units.quantities import from_si
+from wearlaw.units.variables import UNITS, VARIABLES
 from wearlaw_apps.fits.pairs import Pair, compose
-from wearlaw_apps.output.labels import in_words
+from wearlaw_apps.output.labels import in_words, readable
 from wearlaw_apps.output.notes import Notes
 from wearlaw_apps.studies.case import Case
 
@@ -103,6 +105,26 @@ def predicting(results: Results, outcome: str, labels: Sequence[str]) -> list[st
 def outcomes_of(results: Results, sweep: xarray.Dataset) -> list[Outcome]:
     """Return the outcomes in the results of a sweep, wear first."""
     return [outcome for name, outcome in results.case.outcomes.items() if name in sweep]
+
+
+class Borders(NamedTuple):
+    """Where the regimes of a law change: the symbol of a variable, the values, and their unit for readers."""
+
+    symbol: str
+    values: list[float]
+    unit: str
+
+
+def borders_of(law: Law) -> dict[str, Borders]:
+    """Return the borders of the regimes of a law by variable; {} if it declares none."""
+    with Blame(law):
+        borders = law.breakpoints(law.numbers) or {}
+    named = {}
+    for name, values in borders.items():
+        variable = law.variables[name] if name in law.variables else VARIABLES[name]
+        numbers = [float(from_si(value, variable.unit).magnitude) for value in values]
+        named[name] = Borders(variable.symbol or variable.long_name, numbers, readable(variable.unit))
+    return named
 
 
 def axes_of(sweep: xarray.Dataset) -> list[str]:

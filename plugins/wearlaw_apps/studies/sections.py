@@ -67,6 +67,8 @@ class Section:
     tables : mapping of str to DataFrame
         By file name, an identifier. The heads of the columns hold the units.
     figures : tuple of FigureData
+    summary : str
+        A sentence with its main numbers, for the top of the report.
     """
 
     title: str
@@ -74,3 +76,4 @@ class Section:
     claims: tuple[CheckedClaim, ...] = ()
     tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
     figures: tuple[FigureData, ...] = ()
+    summary: str = ""

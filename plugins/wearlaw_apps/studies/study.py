@@ -41,7 +41,7 @@ from wearlaw_apps.fits.pairs import Pair
 from wearlaw_apps.output.notes import Notes, caught_warnings
 from wearlaw_apps.studies.case import Case
 from wearlaw_apps.studies.figures import figures_of, wrong_figures
-from wearlaw_apps.studies.results import LIMITS, PATCH_AXES, Results, pairs_of
+from wearlaw_apps.studies.results import LIMITS, PATCH_AXES, Results, axes_of, pairs_of
 from wearlaw_apps.studies.sections import Section
 from wearlaw_apps.sweeps.evaluation import Job
 from wearlaw_apps.sweeps.plan import planned
@@ -84,6 +84,14 @@ class Study(Results):
     def figures(self) -> tuple[FigureData, ...]:
         """The data of the figures, the main one first; a first sweep of one operating point has no main one."""
         return figures_of(self)
+
+    @property
+    def main(self) -> FigureData | None:
+        """The figure that the report begins with: the one that the case names, or the main outcome of its sweep."""
+        every = (*self.figures, *(figure for section in self.sections for figure in section.figures))
+        if self.case.main is not None:
+            return next((figure for figure in every if figure.name == self.case.main), None)
+        return self.figures[0] if axes_of(next(iter(self.sweeps.values()))) else None
 
     def __repr__(self) -> str:
         pairs = [pair.label for pair in self.pairs]
@@ -138,7 +146,10 @@ def run(
             variable.attrs.setdefault("long_name", words.get(str(name)) or name_of(str(name)))
     study = Study(case, tuple(pairs), sweeps, profiles, tuple(notes.texts))
     sections = tuple(_section(name, study, notes) for name in case.sections)
-    return replace(study, notes=tuple(notes.texts), sections=sections)
+    study = replace(study, sections=sections)
+    if case.main is not None and study.main is None:
+        notes.add(f"main: the report has no figure {shown(case.main)}")
+    return replace(study, notes=tuple(notes.texts))
 
 
 def _check_figures(case: Case, pairs: list[Pair], profiles: dict[str, xarray.Dataset]) -> None:

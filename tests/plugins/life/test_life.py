@@ -228,6 +228,8 @@ def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
 
 def test_life_ends_at_a_limit() -> None:
     found = wl.wear_out(pipeline(), line(3), over="10000 km", until={"depth": "0.02 mm"}, **GIVEN)
+    (limited,) = (panel for panel in found.figure().panels if panel.limits)
+    assert (limited.y.label, limited.limits) == ("depth [mm]", (wl.Limit("limit 0.02 mm", 0.02),))
     assert found.ended == "depth"
     assert last(found, "depth [mm]") == pytest.approx(0.02, rel=1e-5)
 

@@ -15,14 +15,11 @@ from matplotlib.figure import Figure
 
 from tests.plugins.studies import report_data as data
 from tests.plugins.studies.report_data import ONE, THREE
-from wearlaw import Curve, FigureData, Panel, PlotAxis
+from wearlaw import Curve, FigureData, Limit, Panel, PlotAxis
 from wearlaw_apps.output.curves import OUTSIDE, STRIP, Map, Shade, in_parts  # private: rarer parts of the description
-from wearlaw_apps.output.drawing import (  # private: the drawer, with the looks that both drawers share
+from wearlaw_apps.output.drawing import draw, line_styles  # private: the drawer
+from wearlaw_apps.output.style import (  # private: the looks that both drawers share
     BAND,
-    PALE,
-    THIN,
-    draw,
-    line_styles,
 )
 from wearlaw_apps.studies.report.interactive import plotly_figure  # private: the drawer for the page
 
@@ -94,13 +91,41 @@ def test_where_only_colour_would_tell_lines_apart_each_line_of_the_figure_has_a_
     assert line_styles(apart) == {(0, 2): 2, (1, 1): 1, (3, 0): 0}
 
 
+def marks(*curves: Curve, **changes: Any) -> list[list[int]]:
+    """Return the points with a marker of each curve, the same by both drawers."""
+    drawn, shown = both(panel(*curves, **changes))
+    lines, on_page = drawn.axes[0].get_lines(), shown["data"]
+    found: list[Any] = [line.get_markevery() if line.get_marker() else [] for line in lines]
+    for indices, trace in zip(found, on_page, strict=True):
+        every = [*range(np.isfinite(np.array(trace["y"], float)).sum())]
+        assert (trace["mode"] == "lines+markers") == bool(indices)
+        assert trace.get("selectedpoints", every if indices else []) == indices
+    return found
+
+
 def test_a_point_of_a_line_without_neighbours_has_a_marker_and_gaps_stay_open() -> None:
-    gaps = curve(x=np.arange(6.0), y=np.array([1.0, np.nan, 1.0, 1.0, np.nan, 1.0]))
-    (line,) = axes_of(gaps).lines
-    assert (line.get_marker(), line.get_markevery()) == (".", [0, 5])
-    (trace,) = traces(FigureData("f", "", (panel(gaps),))).values()
-    assert (trace["mode"], trace["selectedpoints"]) == ("lines+markers", [0, 5])
-    assert trace["unselected"] == {"marker": {"opacity": 0}}
+    gaps = curve(x=np.arange(6.0), y=np.array([1.0, np.nan, 1.0, 1.0, np.nan, 1.0]), computed=False)
+    assert marks(gaps) == [[0, 5]]
+    _, shown = both(panel(gaps))
+    assert shown["data"][0]["unselected"] == {"marker": {"opacity": 0}}
+
+
+def test_few_computed_points_have_a_marker_each_and_a_formula_has_none() -> None:
+    assert marks(curve(), curve("b", computed=False)) == [[0, 1, 2], []]
+    many = np.linspace(0.0, 1.0, 1001)
+    assert marks(curve(x=many, y=many)) == [[]]
+
+
+def test_lines_of_laws_have_marks_at_equal_lengths_along_them_on_the_scales_of_the_panel() -> None:
+    x = np.geomspace(1.0, 1000.0, 1000)
+    laws = [curve(str(number), x=x, y=x**2, colour=number, outside=np.zeros(1000, bool)) for number in range(2)]
+    first, second = marks(*laws, x=PlotAxis("x", "log"), y=PlotAxis("y", "log"))
+    assert first == []
+    steps = np.diff(np.log(x[second]))
+    assert len(second) == 7
+    assert steps == pytest.approx(np.log(1000.0) / 7.0, abs=2.0 * np.log(x[1] / x[0]))  # the nearest points
+    drawn, _ = both(panel(*laws))
+    assert [line.get_linestyle() for line in drawn.axes[0].get_lines()] == ["-", "-"]
 
 
 def test_a_band_is_light_with_edges_between_its_ends() -> None:
@@ -145,22 +170,58 @@ MARKED = panel(
 )
 
 
-def test_parts_outside_are_thin_and_pale_and_shades_lie_below_in_both() -> None:
+def test_parts_outside_are_dashed_at_full_colour_and_shades_lie_below_in_both() -> None:
     inside, outside = in_parts(MARKED.curves[0])
     np.testing.assert_array_equal(inside, [10.0, 20.0, np.nan])
     np.testing.assert_array_equal(outside, [np.nan, 20.0, 40.0])
     drawn, shown = both(MARKED)
     (axes,) = drawn.axes
-    whole, part, _ = axes.get_lines()
-    assert (part.get_linewidth(), part.get_alpha(), part.get_color()) == (THIN, PALE, whole.get_color())
+    part, whole, _ = axes.get_lines()
+    assert (part.get_linewidth(), part.get_alpha(), part.get_color()) == (
+        whole.get_linewidth(),
+        None,
+        whole.get_color(),
+    )
+    assert (part.get_linestyle(), whole.get_linestyle()) == ("--", "-")
     spans = [(patch.get_x(), patch.get_x() + patch.get_width(), patch.get_height()) for patch in axes.patches]  # type: ignore[attr-defined]
     assert spans == [(1.5, 2.0, 1.0), (2.5, 4.0, 1.0), (3.0, 4.0, STRIP)]
     assert [(s["x0"], s["x1"], s["y1"]) for s in shown["layout"]["shapes"]] == spans
     assert {shape["layer"] for shape in shown["layout"]["shapes"]} == {"below"}
-    _, thin, *_ = shown["data"]
-    assert (thin["y"], thin["line"]["width"], thin["opacity"]) == ([None, 20.0, 40.0], THIN, PALE)
+    whole, dashed, *_ = shown["data"]
+    assert dashed["y"] == [None, 20.0, 40.0]
+    assert "opacity" not in dashed
+    assert dashed["line"] == {**whole["line"], "dash": "6px,3.2px"}
     assert names(drawn) == ["a", "b", "most of the samples", "beyond", OUTSIDE]
     assert [trace["name"] for trace in shown["data"] if trace["showlegend"]] == names(drawn)
+
+
+def test_a_law_that_is_outside_everywhere_is_dashed_in_the_legend_too() -> None:
+    drawn, shown = both(panel(curve("a", outside=np.ones(3, bool)), curve("b", y=X)))
+    samples = drawn.legends[0].get_lines()
+    assert [line.get_linestyle() for line in samples] == ["--", "-", "--"]
+    assert names(drawn) == ["a", "b", OUTSIDE]
+    listed = {trace["name"]: trace["line"]["dash"] for trace in shown["data"] if trace["showlegend"]}
+    assert listed == {"a": "6px,3.2px", "b": "solid", OUTSIDE: "6px,3.2px"}
+
+
+@pytest.mark.parametrize(("axis", "at"), [("x", 2.0), ("y", 25.0)])
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_a_limit_is_a_line_with_its_name(axis: Any, at: float, scale: Any) -> None:
+    here = {axis: PlotAxis("load [N]", scale)}
+    drawn, shown = both(panel(curve("a"), limits=(Limit("limit 25 mm", at, axis),), **here))
+    (axes,) = drawn.axes
+    *_, line = axes.get_lines()
+    assert {*np.ravel(line.get_xdata() if axis == "x" else line.get_ydata())} == {at}
+    assert [text.get_text() for text in axes.texts] == ["limit 25 mm"]
+    assert names(drawn) == ["a"], "it has its name at the line"
+    (shape,), (note,) = shown["layout"]["shapes"], shown["layout"]["annotations"]
+    assert (shape[f"{axis}0"], shape[f"{axis}1"]) == (at, at)
+    assert (note["text"], note[axis]) == ("limit 25 mm", np.log10(at) if scale == "log" else at)
+
+
+def test_a_figure_is_as_wide_as_a_column_or_a_page_of_a_journal() -> None:
+    sizes = [both(*[panel()] * count)[0].get_size_inches()[0] * 25.4 for count in (1, 2, 3)]
+    assert sizes == pytest.approx([90.0, 190.0, 190.0], abs=0.1)
 
 
 # Maps
@@ -228,8 +289,8 @@ def test_axes_can_be_equal() -> None:
         (8.0, 70.0, ["10", "20", "50"]),
         (500.0, 1500.0, ["500", "600", "800", "1000", "1500"]),
         (61.0, 64.0, ["61", "61.5", "62", "62.5", "63", "63.5", "64"]),
-        (1e-6, 1e6, ["$10^{-6}$", "$10^{-5}$", *["0.0001", "0.001", "0.01", "0.1", "1", "10", "100", "1000", "10000"],
-                     "$10^{5}$", "$10^{6}$"]),
+        (1e-6, 1e6, ["10⁻⁶", "10⁻⁵", *["0.0001", "0.001", "0.01", "0.1", "1", "10", "100", "1000", "10000"],
+                     "10⁵", "10⁶"]),
     ],
 )  # fmt: skip
 def test_a_logarithmic_axis_has_plain_numbers(low: float, high: float, ticks: list[str]) -> None:

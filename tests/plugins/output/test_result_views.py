@@ -286,14 +286,15 @@ def test_conditions_that_vary_together_are_named_above() -> None:
     assert EXACT.predict(problem).plot().get_xlabel() == "operating point [-]"
 
 
-def test_what_lies_outside_the_range_of_a_law_is_pale() -> None:
+def test_what_lies_outside_the_range_of_a_law_is_dashed() -> None:
     found = GLOBAL(**ON_LINE)
     outside = found.outside_range.magnitude == 1.0
     assert outside.any()
     assert not outside.all()
     axes = found.plot()
-    inside, whole, _ = axes.get_lines()
-    assert whole.get_alpha() < 1.0
+    dashed, inside, _ = axes.get_lines()
+    assert (dashed.get_linestyle(), inside.get_linestyle()) == ("--", "-")
+    assert (dashed.get_color(), dashed.get_alpha()) == (inside.get_color(), None)
     np.testing.assert_array_equal(np.isnan(inside.get_ydata()), outside)
     assert legend(axes) == ["outside the range of the law"]
     assert legend(found.plot("tangential_force")) == []  # no outcome of the law
@@ -308,7 +309,7 @@ def test_there_is_a_curve_or_a_bar_for_each_patch() -> None:
     bars = found[2].plot()
     assert [text.get_text() for text in bars.get_xticklabels()] == ["left, patch 1", "right, patch 1", "right, patch 2"]
     assert [bar.get_height() for bar in bars.patches] == found[2].wear_rate.magnitude[EXISTS[2]].tolist()
-    marked = [bar.get_alpha() is not None for bar in bars.patches]
+    marked = [bar.get_hatch() is not None for bar in bars.patches]
     assert marked == (found[2].outside_range.magnitude[EXISTS[2]] == 1.0).tolist()
     of_side = found[2].sel(side="right").plot("max_pressure")
     assert [text.get_text() for text in of_side.get_xticklabels()] == ["patch 1", "patch 2"]

@@ -96,19 +96,6 @@ def test_figures_and_tables_are_written_in_the_formats_that_are_asked_for(folder
     assert sorted(path.stem for path in (results / "tables").glob("*.tex")) == sorted(tables)
 
 
-def test_the_main_table_has_the_most_wear_as_mass_and_as_depth(study: wl.Study, results: Path) -> None:
-    rows = pd.read_csv(results / "tables" / "main.csv").set_index("pair")
-    assert list(rows.index) == [pair.label for pair in study.pairs]
-    row = rows.loc["kth on global"]
-    assert row["most at"] == "10 %"
-    rate = study.sweeps["creepage"].wear_rate.sel(pair="kth on global").max().item()
-    assert row["most [µg/m/mm²]"] == rate
-    # On a patch of 2a × 10 mm with a = 2 p0 R / E*, once in each π 47 mm, at 7.85 mg/mm³; 1 µg/m is 1 mg/km.
-    width = 4 * 1500 * 11.75 / 112021.2
-    mass, depth = rate * width * 10.0, 1e6 * 1e-3 * rate / 7.85 * width / (np.pi * 47.0)
-    assert row["that is"] == f"{1e-3 * mass:.4g} g/km; disc_1 {depth:.4g} mm in 1000 km"
-
-
 @pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize(
     ("most", "option", "left_out"), [(4, [], True), (4, ["--csv"], False), (5, ["--no-csv"], True)]

@@ -36,11 +36,11 @@ def study() -> wl.Study:
 
 def test_a_case_that_asks_for_no_figures_has_one_of_each_kind_with_title_and_conditions(study: wl.Study) -> None:
     assert [(figure.name, figure.title) for figure in study.figures] == [
-        ("creepage_wear_rate_over_creepage", "Wear rate over creepage (creepage)"),
+        ("creepage_wear_rate_over_creepage", "Wear rate over creepage"),
         ("creepage_wear_rate_over_wear_index", "Wear rate over wear index Tγ (creepage)"),
-        ("creepage_traction_over_creepage", "Traction coefficient T/N over creepage (creepage)"),
+        ("creepage_traction_over_creepage", "Traction coefficient T/N over creepage"),
         ("load_wear_rate_over_wear_index", "Wear rate over wear index Tγ (load)"),
-        ("load_wear_rate_over_max_pressure", "Wear rate over maximum pressure (load)"),
+        ("load_wear_rate_over_max_pressure", "Wear rate over maximum pressure"),
         ("partial_slip_along_the_patch", "Stresses and slip along the patch: partial slip"),
     ]
     over_load = by_name(study)["load_wear_rate_over_wear_index"]
@@ -257,6 +257,36 @@ def test_the_y_axis_shows_all_that_is_in_the_window_bands_too() -> None:
     inside = [end[(curve.x >= 0.0) & (curve.x <= 30.0)] for curve in panel.curves
               for end in (curve.y, curve.high) if end is not None]  # fmt: skip
     assert panel.y.ends == pytest.approx((0.0, 1.05 * np.concatenate(inside).max()))
+
+
+def test_the_regimes_of_a_law_of_patch_means_are_lines_where_they_change() -> None:
+    spec = {"sweep": "creepage", "x": "wear_index", "y": "wear_rate", "regimes": True}
+    panel = one_panel(shown(spec, sweeps={"creepage": {**cases.SWEEP, "max_pressure": "1500 MPa"}}))
+    area = 4 * 1500 * 11.75 / 112021.2 * 10.0  # 2a × 10 mm with a = 2 p0 R / E*
+    usfd = {limit.label: limit.at for limit in panel.limits if limit.label.startswith("usfd")}
+    # q_s/m_m of Table 4 of Tassini et al.; Tγ is proportional to Tγ/A, so nothing is lost between points
+    assert usfd["usfd: Tγ/A = 10.38 N/mm²"] == pytest.approx(55.0 / 5.3 * area, rel=1e-5)
+    assert {limit.axis for limit in panel.limits} == {"x"}
+    assert not shown({**spec, "pairs": ["usfd on exact"]}).panels[0].limits, "cells change at different points"
+
+
+def test_a_case_names_the_figure_that_its_report_begins_with() -> None:
+    spec = {"sweep": "creepage", "x": "wear_index", "y": "wear_rate"}
+    study = wl.run(case(figures={"first": spec, "second": {**spec, "x": "creepage"}}, main="second"))
+    assert [figure.name for figure in study.figures] == ["first", "second"]
+    assert study.main is study.figures[1]
+    assert wl.run(case(main="third")).notes[-1] == "main: the report has no figure 'third'"
+
+
+@pytest.mark.parametrize("count", [4, 299, 301, 1200])
+def test_a_map_has_at_most_as_many_values_as_a_screen_shows(count: int) -> None:
+    spec = {"sweep": "load", "x": "max_pressure", "y": "friction_coefficient", "map": "wear_index",
+            "contact_models": ["global"]}  # fmt: skip
+    plane = {**cases.POINT, "max_pressure": {**LOADS, "points": count}, "friction_coefficient": [0.3, 0.4]}
+    drawn = one_panel(shown(spec, sweeps={"load": plane})).map
+    assert drawn is not None
+    assert drawn.x.size == min(count, 300)
+    assert (drawn.x[0], drawn.x[-1]) == (500.0, 1500.0)
 
 
 @pytest.mark.parametrize("x", ["max_pressure", "normal_force", "friction_coefficient", "creepage", "half_width"])

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import os
 import re
 import subprocess
 import sys
+from base64 import b64decode
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import plotly
 import pytest
 
@@ -17,9 +20,14 @@ import wearlaw as wl
 from tests import cases
 from tests.plugins.studies.report_data import EVIL, ODD, ONE, THREE, page_of, small_study
 from wearlaw_apps.studies.report.interactive import plotly_figure  # private: the numbers that the page holds
+from wearlaw_apps.studies.report.tables import headline, main_table  # private: what the page begins with
 
 VOID = {"meta"}
 """Elements of the page that are never closed."""
+
+
+def unpacked(text: str) -> str:
+    return gzip.decompress(b64decode(text)).decode()
 
 
 class Page(HTMLParser):
@@ -79,10 +87,25 @@ def page(written: str) -> Page:
 def test_the_page_begins_with_title_main_figure_and_a_table(study: wl.Study, page: Page) -> None:
     tags = [tag for tag, _ in page.elements]
     assert tags.index("h1") < tags.index("figure") < tags.index("table") < tags.index("nav") < tags.index("main")
-    assert page.within("header/div/div/table/caption") == [
-        "Least and most over the sweep 'creepage', with the creepage there"
-    ]
-    assert page.within("header/div/div/table/tbody/tr/th") == [pair.label for pair in study.pairs]
+    assert page.within("header/div/div/table/caption") == ["Sweep 'creepage'"]
+    labels = page.within("header/div/div/table/tbody/tr/th")
+    assert [label for label in labels if not label.endswith(" end")] == [pair.label for pair in study.pairs]
+    key = page.within("header/p")[0]
+    rates = study.sweeps["creepage"].wear_rate.sel(pair=study.pairs[0].label)
+    assert f"{study.pairs[0].label} {rates.min():.4g} to {rates.max():.4g} µg/m/mm²" in key
+    row = next(row for row in main_table(study).frame.itertuples(index=False) if row[0] == "usfd on global")
+    assert row[-1] == "Tγ/A = 10.38 and 77.26 N/mm²"  # q_s/m_m and tr_sc of Table 4
+
+
+def test_wear_at_one_point_is_told_as_mass_and_as_a_depth_that_a_disc_has() -> None:
+    study = wl.run(cases.case(wear_laws=["kth"], sweeps={"point": {**cases.SWEEP, "creepage": "10 %"}}, profiles={}))
+    rate = study.sweeps["point"].wear_rate.sel(pair="kth on global").item()
+    # On a patch of 2a × 10 mm with a = 2 p0 R / E*, once in each π 47 mm, at 7.85 mg/mm³; 1 µg/m is 1 mg/km.
+    width = 4 * 1500 * 11.75 / 112021.2
+    mass, depth = rate * width * 10.0, rate / 7.85 * width / (np.pi * 47.0)  # in mg/km and mm/km
+    assert 10.0 * depth < 2.35 < 100.0 * depth, "a tenth of the radius is gone within 100 km"
+    parts = f"{rate:.4g} µg/m/mm², {1e-3 * mass:.4g} g/km, disc_1 {10.0 * depth:.4g} mm in 10 km"
+    assert headline(study).startswith(f"Wear rate: kth on global {parts}; ")
 
 
 def test_the_contents_lead_to_every_part(page: Page) -> None:
@@ -90,7 +113,7 @@ def test_the_contents_lead_to_every_part(page: Page) -> None:
     assert len(set(identifiers)) == len(identifiers)
     targets = {link.removeprefix("#") for link in page.attributes("href")}
     assert {target for target in targets if not target.endswith(".csv")} <= set(identifiers)
-    parts = ["figures", "claims", "results", "section-1", "parameters", "notes", "case", "provenance"]
+    parts = ["figures", "claims", "section-1", "parameters", "notes", "case", "provenance"]
     assert [str(attributes["id"]) for tag, attributes in page.elements if tag == "h2"] == [
         "title-one",
         "contents",
@@ -107,11 +130,14 @@ def test_nothing_is_loaded_and_plotly_stands_in_the_page_once(page: Page, writte
     assert not {"link", "img", "iframe", "object", "base"} & {tag for tag, _ in page.elements}
     (style,) = page.within("style")
     assert not re.search(r"url\(|@import", style)
-    assert len(re.findall(r"plotly\.js v\d", written)) == 1
+    (library,) = (
+        text for path, text in page.texts if path.endswith("body/script") and "DecompressionStream" not in text
+    )
+    assert unpacked(library) == Path(plotly.__file__).parent.joinpath("package_data/plotly.min.js").read_text("utf-8")
     (policy,) = (a["content"] for _, a in page.elements if a.get("http-equiv") == "Content-Security-Policy")
     assert "default-src 'none'" in str(policy)
     assert "http" not in str(policy)
-    ours = written.replace(Path(plotly.__file__).parent.joinpath("package_data/plotly.min.js").read_text("utf-8"), "")
+    ours = written.replace(library, "")
     assert len(ours) < 200_000
     assert not re.search("https?:", ours)
 
@@ -122,14 +148,14 @@ def test_every_text_is_shown_as_it_is_written(page: Page) -> None:
     assert page.text.count(f"Claims {literal}") == 3  # among the contents, above the claims, and above the section
     for where in ("figure/h3", "figcaption", "tr/td", "th"):
         assert EVIL in "".join(page.within(where))
-    # plotly.js, our own, and the numbers of three figures; none from a text.
+    # plotly.js, our code, and the numbers of three figures; none from a text.
     assert sum(tag == "script" for tag, _ in page.elements) == 5
     assert not {"b", "i"} & {tag for tag, _ in page.elements}
     assert "49" not in page.within("h1")[0]
 
 
 def test_the_numbers_of_every_figure_stand_in_the_page(page: Page) -> None:
-    numbers = [json.loads(text) for text in page.within("figure/div/script")]
+    numbers = [json.loads(unpacked(text)) for text in page.within("figure/div/script")]
     assert numbers == [json.loads(json.dumps(plotly_figure(figure))) for figure in (ONE, THREE, ODD)]
 
 
@@ -156,7 +182,7 @@ def test_the_strip_beyond_shakedown_links_to_its_meaning() -> None:
 def test_a_section_has_its_text_tables_and_figures(page: Page) -> None:
     assert "First part." in page.within("section/p")
     assert "Second <i>part</i>,\nwith two lines." in page.within("section/p")
-    assert "Table 4 model <i> m_c [µg/m/N] tests fitted a & b −1.5 × 10−7 3 yes" in page.text
+    assert "Table 4 model <i> m_c [µg/m/N] tests fitted a & b −1.5 × 10⁻⁷ 3 yes" in page.text
     assert f"figure-{ODD.name}" in page.attributes("id")
 
 

@@ -12,6 +12,7 @@ from wearlaw_apps.output.curves import (
     STRIP,
     Curve,
     FigureData,
+    Limit,
     Map,
     Panel,
     PlotAxis,
@@ -19,29 +20,29 @@ from wearlaw_apps.output.curves import (
     borders_of,
     head_of_legend,
     in_parts,
-    lone_points,
     map_range,
+    marked_points,
     shows_outside,
 )
-from wearlaw_apps.output.drawing import (
+from wearlaw_apps.output.drawing import ROW_HEIGHT as PRINTED
+from wearlaw_apps.output.drawing import line_styles, log_ticks, panel_height, plain
+from wearlaw_apps.output.style import (
     BAND,
     COLOURS,
+    COLUMN,
     EDGE,
+    LIMIT_LINE,
     LINES,
     MARKERS,
-    PALE,
+    OUTSIDE_LINE,
+    PAGE,
     PALETTE,
     THIN,
-    WIDTH,
-    line_styles,
-    log_ticks,
-    panel_height,
 )
-from wearlaw_apps.output.drawing import ROW_HEIGHT as PRINTED
 
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
 SYMBOLS = dict(
-    zip("s^DvPXo", ("square", "triangle-up", "diamond", "triangle-down", "cross", "x", "circle"), strict=True)
+    zip("os^DvPX", ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross", "x"), strict=True)
 )
 GAP = 0.14
 """Between two panels, as a share of the figure."""
@@ -69,7 +70,7 @@ def plotly_figure(figure: FigureData) -> Json:
     data = [trace for number, panel in numbered if panel.map for trace in _map(panel.map, number, map_range(figure))]
     for number, panel in numbered:
         for curve in panel.curves:
-            data += _traces(curve, panel, number, _dash(styles.get((curve.colour, curve.dash), 0)))
+            data += _traces(curve, panel, number, styles.get((curve.colour, curve.dash), 0))
     data += _explained(figure)
     listed: set[str] = set()
     for trace in data:
@@ -77,7 +78,7 @@ def plotly_figure(figure: FigureData) -> Json:
             trace["showlegend"] = trace["legendgroup"] not in listed
             listed.add(trace["legendgroup"])
     rows = (len(numbered) + 1) // 2
-    width = WIDTH if len(numbered) == 1 else WIDTH / 2
+    width = COLUMN if len(numbered) == 1 else PAGE / 2
     tall = max(panel_height(panel, width) for panel in figure.panels) / PRINTED
     longest = max((len(curve.label) for panel in figure.panels for curve in panel.curves), default=0)
     below = {"orientation": "h", "y": -0.24 / rows / tall} if len(numbered) > 1 or longest > LONG else {}
@@ -92,7 +93,7 @@ def plotly_figure(figure: FigureData) -> Json:
             **below,
             **({"title": {"text": literal(head), "font": {"size": 12}}} if head else {}),
         },
-        "annotations": [_heading(panel, number) for number, panel in numbered if panel.title],
+        "annotations": [note for number, panel in numbered for note in _notes(panel, number)],
         "shapes": [shape for number, panel in numbered for shape in _shapes(panel, number)],
     }
     for (number, panel), (across, up) in zip(numbered, _places(len(numbered)), strict=True):
@@ -105,17 +106,24 @@ def plotly_figure(figure: FigureData) -> Json:
 
 
 def _shapes(panel: Panel, number: str) -> list[Json]:
-    """Return the shades of a panel as rectangles below its curves.
+    """Return the shades of a panel as rectangles below its curves, and the lines of its limits.
 
-    plotly.js takes the ends of a rectangle on a logarithmic axis as they are, unlike the ends of the axis.
+    plotly.js takes the ends of a shape on a logarithmic axis as they are, unlike the ends of the axis.
     """
     common = {"type": "rect", "xref": f"x{number}", "yref": f"y{number} domain", "y0": 0, "layer": "below"}
-    return [
+    shades = [
         {**common, "y1": STRIP if shade.strip else 1, "x0": low, "x1": high, "fillcolor": _grey(shade),
          "line": {"width": 0}}
         for shade in panel.shades
         for low, high in shade.spans
     ]  # fmt: skip
+    line = {"type": "line", "line": {"color": GREY, "width": 1.5 * THIN, "dash": _dash(LIMIT_LINE)}}
+    for limit in panel.limits:
+        other = "y" if limit.axis == "x" else "x"
+        refs = {f"{limit.axis}ref": f"{limit.axis}{number}", f"{other}ref": f"{other}{number} domain"}
+        ends = {f"{limit.axis}0": limit.at, f"{limit.axis}1": limit.at, f"{other}0": 0, f"{other}1": 1}
+        shades.append({**line, **refs, **ends})
+    return shades
 
 
 def _grey(shade: Shade) -> str:
@@ -124,7 +132,7 @@ def _grey(shade: Shade) -> str:
 
 
 def _explained(figure: FigureData) -> list[Json]:
-    """Return traces without points that explain shades and thin lines in the legend."""
+    """Return traces without points that explain shades and dashed lines in the legend."""
     edge = {"color": GREY, "width": 0.5}  # the lightest grey would not be seen without
     looks: dict[str, Json] = {
         shade.label: {
@@ -135,7 +143,7 @@ def _explained(figure: FigureData) -> list[Json]:
         for shade in panel.shades
     }
     if shows_outside(figure):
-        looks[OUTSIDE] = {"mode": "lines", "line": {"color": GREY, "width": THIN}}
+        looks[OUTSIDE] = {"mode": "lines", "line": {"color": GREY, "dash": _dash(OUTSIDE_LINE), "width": 2}}
     nowhere = {"type": "scatter", "x": [None], "y": [None], "hoverinfo": "skip", "showlegend": True}
     return [{**nowhere, "name": literal(label), "legendgroup": literal(label), **look} for label, look in looks.items()]
 
@@ -148,10 +156,10 @@ def literal(text: str) -> str:
     return html.escape(text, quote=False).replace("%", "&#37;")
 
 
-def _traces(curve: Curve, panel: Panel, number: str, dash: str) -> list[Json]:
+def _traces(curve: Curve, panel: Panel, number: str, style: int) -> list[Json]:
     """Return the traces of a curve: its band, if any, and the line."""
     place = curve.colour % len(PALETTE)
-    colour, lone = PALETTE[place], [] if curve.points else lone_points(curve)
+    colour, marked = PALETTE[place], [] if curve.points else marked_points(curve, style, panel)
     common: Json = {
         "type": "scatter",
         "name": literal(curve.label),
@@ -159,39 +167,41 @@ def _traces(curve: Curve, panel: Panel, number: str, dash: str) -> list[Json]:
         "xaxis": f"x{number}",
         "yaxis": f"y{number}",
     }
-    marker: Json = {"color": colour, "symbol": "circle", "size": 5}
+    marker: Json = {"color": colour, "symbol": SYMBOLS[MARKERS[style]], "size": 6}
     if curve.points:
-        marker |= {"symbol": SYMBOLS[MARKERS[place]] + ("-open" if curve.hollow else ""), "size": 7}
+        symbol = SYMBOLS[MARKERS[(place + 1) % len(MARKERS)]]
+        marker |= {"symbol": symbol + ("-open" if curve.hollow else ""), "size": 7}
     inside, outside = in_parts(curve)
     line: Json = {
         **common,
         "x": _numbers(curve.x),
         "y": _numbers(inside),
-        "mode": "markers" if curve.points else "lines+markers" if lone else "lines",
-        "line": {"color": colour, "dash": dash, "width": 2},
+        "mode": "markers" if curve.points else "lines+markers" if marked else "lines",
+        "line": {"color": colour, "dash": _dash(LINES[style if curve.outside is None else 0]), "width": 2},
         "marker": marker,
         "hovertemplate": _hover(curve, panel),
         "showlegend": curve.label != "",
     }
-    if 0 < len(lone) < np.isfinite(curve.y).sum():
-        line |= {"selectedpoints": lone, "unselected": {"marker": {"opacity": 0}}}
+    if 0 < len(marked) < np.isfinite(curve.y).sum():
+        line |= {"selectedpoints": marked, "unselected": {"marker": {"opacity": 0}}}
     lines = [line]
     if outside is not None:
-        thin = {"line": {**line["line"], "width": THIN}, "opacity": PALE, "showlegend": False}
-        lines.append({**line, "y": _numbers(outside), **thin})
+        dashed = {"line": {**line["line"], "dash": _dash(OUTSIDE_LINE)}, "showlegend": curve.label != ""}
+        beyond = {**line, "y": _numbers(outside), **dashed}
+        lines = [line, {**beyond, "showlegend": False}] if np.isfinite(inside).any() else [beyond]
     if curve.low is None or curve.high is None:
         return lines
-    line["customdata"] = [list(ends) for ends in zip(_numbers(curve.low), _numbers(curve.high), strict=True)]
+    band = [list(ends) for ends in zip(_numbers(curve.low), _numbers(curve.high), strict=True)]
+    lines = [{**one, "customdata": band} for one in lines]
     if not curve.points:
         return [{**common, **_band(curve, panel, colour), "showlegend": False}, *lines]
     ends = {"array": _numbers(curve.high - curve.y), "arrayminus": _numbers(curve.y - curve.low)}
-    line["error_y"] = {"type": "data", "symmetric": False, **ends, "color": colour, "thickness": 1.2}
-    return lines
+    error_bars = {"type": "data", "symmetric": False, **ends, "color": colour, "thickness": 1.2}
+    return [{**line, "customdata": band, "error_y": error_bars}]
 
 
-def _dash(style: int) -> str:
+def _dash(pattern: Any) -> str:
     """Return a line style as plotly.js names it, or its lengths in pixels on a line of two."""
-    pattern = LINES[style]
     return DASHES[pattern] if isinstance(pattern, str) else ",".join(f"{2 * length:g}px" for length in pattern[1])
 
 
@@ -208,7 +218,7 @@ def _map(shown: Map, number: str, ends: Ends) -> list[Json]:
         logarithms = np.log10(values, where=values > 0.0, out=np.full(values.shape, np.nan))
         heat, value = {"z": [_numbers(row) for row in logarithms], "customdata": heat["z"]}, "customdata"
         ticks = log_ticks(low, high) if low < high else []
-        bar |= {"tickvals": _numbers(np.log10(ticks)), "ticktext": [f"{tick:g}" for tick in ticks]} if ticks else {}
+        bar |= {"tickvals": _numbers(np.log10(ticks)), "ticktext": [plain(tick) for tick in ticks]} if ticks else {}
         low, high = np.log10(ends)
     axes: Json = {"xaxis": f"x{number}", "yaxis": f"y{number}", "x": _numbers(shown.x), "y": _numbers(shown.y)}
     heat |= {
@@ -232,7 +242,7 @@ def _map(shown: Map, number: str, ends: Ends) -> list[Json]:
             "legendgroup": literal(label),
             "z": [_numbers(row) for row in region.astype(float)],
             "contours": {"start": 0.5, "end": 0.5, "size": 1.0, "coloring": "none"},
-            "line": {"color": "black", "width": 2, "dash": _dash(place)},
+            "line": {"color": "black", "width": 2, "dash": _dash(LINES[place])},
             "hoverinfo": "skip",
             "showscale": False,
             "showlegend": True,
@@ -257,7 +267,7 @@ def _band(curve: Curve, panel: Panel, colour: str) -> Json:
     seen = np.isfinite(x) & np.isfinite(low) & np.isfinite(high)
     for values, axis in ((x, panel.x), (low, panel.y), (high, panel.y)):
         seen &= (values > 0) | (axis.scale == "linear")
-    edge, face = (f"rgba({', '.join(map(str, bytes.fromhex(colour[1:])))}, {opacity:g})" for opacity in (EDGE, BAND))
+    edge, face = (f"{colour}{round(255 * opacity):02x}" for opacity in (EDGE, BAND))
     return {
         "x": _numbers(np.concatenate([x[seen], x[seen][::-1]])),
         "y": _numbers(np.concatenate([low[seen], high[seen][::-1]])),
@@ -289,9 +299,21 @@ def _axis(axis: PlotAxis) -> Json:
     return described
 
 
-def _heading(panel: Panel, number: str) -> Json:
-    place = {"xref": f"x{number} domain", "yref": f"y{number} domain", "x": 0.5, "y": 1.0, "yanchor": "bottom"}
-    return {**place, "text": literal(panel.title), "showarrow": False}
+def _notes(panel: Panel, number: str) -> list[Json]:
+    """Return the title of a panel, and the names of its limits."""
+    place = {"xref": f"x{number} domain", "yref": f"y{number} domain", "showarrow": False}
+    title = {**place, "x": 0.5, "y": 1.0, "yanchor": "bottom", "text": literal(panel.title)}
+    return [*([title] if panel.title else []), *(_named(limit, panel, place, number) for limit in panel.limits)]
+
+
+def _named(limit: Limit, panel: Panel, place: Json, number: str) -> Json:
+    """Return the name of a limit at the end of its line."""
+    axis = panel.x if limit.axis == "x" else panel.y
+    at = float(np.log10(limit.at)) if axis.scale == "log" else limit.at
+    here = {f"{limit.axis}ref": f"{limit.axis}{number}", "text": literal(limit.label), "font": {"size": 11}}
+    turned = {"x": at, "y": 1.0, "textangle": -90, "xanchor": "right", "yanchor": "top"}
+    level = {"x": 1.0, "y": at, "xanchor": "right", "yanchor": "bottom"}
+    return {**place, **here, **(turned if limit.axis == "x" else level)}
 
 
 def _places(count: int) -> list[tuple[Ends, Ends]]:

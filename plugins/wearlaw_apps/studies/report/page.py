@@ -1,11 +1,13 @@
 """The report of a study: one page that opens offline in any browser.
 
-The page contains plotly.js, nearly all of its 5 MB. It loads nothing, and its security policy forbids requests.
+The page contains plotly.js, nearly all of its 2 MB. It loads nothing, and its security policy forbids requests.
 """
 
 from __future__ import annotations
 
+import gzip
 import re
+from base64 import b64encode
 from collections import Counter
 from collections.abc import Sequence
 from functools import cache
@@ -16,34 +18,56 @@ from plotly.offline import get_plotlyjs
 from wearlaw.version import __version__
 from wearlaw_apps.output.curves import FigureData
 from wearlaw_apps.output.notes import grouped
+from wearlaw_apps.output.style import DARK, PALETTE
 from wearlaw_apps.output.styled import html_table
 from wearlaw_apps.studies.report.interactive import plotly_figure
-from wearlaw_apps.studies.report.tables import main_table, models, of_section, parameters, profiles, summaries
-from wearlaw_apps.studies.results import axes_of
+from wearlaw_apps.studies.report.tables import headline, main_table, models, of_section, parameters, profiles, summaries
 from wearlaw_apps.studies.sections import VERDICTS, CheckedClaim
 from wearlaw_apps.studies.study import Study, used
+
+LONG = 12
+"""Most rows of a table that is not folded."""
 
 
 def report(study: Study, case_text: str) -> str:
     """Return the page of a study with its case as TOML; the same study gives the same bytes."""
-    has_main = bool(axes_of(next(iter(study.sweeps.values()))))
+    main, first = study.main, main_table(study)
     claims = [claim for section in study.sections for claim in section.claims]
+    leading = sorted(study.sections, key=lambda section: main not in section.figures)
+    lines = [section.summary for section in leading]
+    lines.insert(1 if main not in study.figures else 0, headline(study))
     return _template().render(
         study=study,
         notes=grouped(study.notes),
-        case_text=case_text,
+        case_text=_shortened(case_text),
         claims=claims,
         counted=counted,
-        main_table=main_table(study),
-        main_figures=study.figures[:has_main],
-        figures=study.figures[has_main:],
+        key=[line for line in lines if line],
+        main_table=first,
+        main=main,
+        figures=[figure for figure in study.figures if figure is not main],
         beyond_shakedown=any(map(has_strip, study.figures)),
-        summaries=[*summaries(study), *profiles(study)],
+        summaries=[one for one in (*summaries(study), *profiles(study)) if one.title != first.title],
         parameters=parameters(study),
         models=models(study),
         used=[(kind, name, origin) for kind, names in used(study.case).items() for name, origin in names.items()],
         version=__version__,
-        plotlyjs=get_plotlyjs(),
+        long=LONG,
+        on_dark=dict(zip(PALETTE, DARK, strict=True)),
+        plotlyjs=packed(get_plotlyjs()),
+    )
+
+
+def packed(text: str) -> str:
+    """Return a text compressed and in base 64, always the same bytes."""
+    return b64encode(gzip.compress(text.encode(), mtime=0)).decode()
+
+
+def _shortened(case_text: str) -> str:
+    """Return a case without most numbers of long lists, such as the points of a profile."""
+    many = re.compile(r"\[\s*((?:-?[\d.e+-]+,\s*){3})((?:-?[\d.e+-]+,\s*){20,})(-?[\d.e+-]+),?\s*\]")
+    return many.sub(
+        lambda found: f"[{' '.join(found[1].split())} … {found[2].count(',')} more …, {found[3]}]", case_text
     )
 
 
@@ -58,6 +82,7 @@ def _template() -> Template:
         undefined=StrictUndefined,
     )
     environment.filters.update(
+        packed=packed,
         paragraphs=paragraphs,
         plotly=plotly_figure,
         strip=has_strip,

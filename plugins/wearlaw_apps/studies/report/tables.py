@@ -15,28 +15,25 @@ import numpy as np
 import pandas as pd
 import pint
 import xarray
-from numpy.typing import NDArray
 
 from wearlaw.configuration import Configuration, field_docstrings
 from wearlaw.errors import InputError
 from wearlaw.models.law import WEAR, Law
-from wearlaw.models.model import Blame, Model
+from wearlaw.models.model import Model
 from wearlaw.pipeline.variables import MASS
-from wearlaw.units.quantities import Q, from_si
+from wearlaw.units.quantities import Q
 from wearlaw.units.registry import symbol
-from wearlaw.units.variables import VARIABLES, name_of
-from wearlaw_apps.fits.pairs import Pair
+from wearlaw.units.variables import name_of
 from wearlaw_apps.output.labels import label as label_of
 from wearlaw_apps.output.labels import labelled, readable
 from wearlaw_apps.output.notes import caught_warnings
-from wearlaw_apps.output.styled import Marked
+from wearlaw_apps.output.styled import Marked, plain_number
 from wearlaw_apps.studies.figures import main_result
 from wearlaw_apps.studies.results import (
-    LIMITS,
-    SHAKEDOWN,
     along,
     axes_of,
     beyond_limits,
+    borders_of,
     labelled_by,
     main_axis,
     outcomes_of,
@@ -49,6 +46,9 @@ from wearlaw_apps.studies.study import Study, used
 
 COLUMNS = 5
 """Number of values on the main axis at which outcomes are shown."""
+
+MOST_NAMED = 3
+"""Most pairs in the headline."""
 
 FOOTNOTES = {
     "†": "outside the range, the materials or the body that the law was fitted to",
@@ -82,54 +82,74 @@ def of_section(section: Section) -> list[NamedTable]:
 
 
 def main_table(study: Study) -> NamedTable:
-    """Return the least and the most of the main outcome of each pair, what lies outside, and the borders of its law."""
+    """Return the main outcome of each pair at a few values of the main axis, and the borders of its law."""
     results, outcome = main_result(study)
     ((name, sweep),) = results.sweeps.items()
-    what = f"[{readable(sweep[outcome].attrs['units'])}{', which is mg/km' if outcome == MASS else ''}]"
-    limits, axes = beyond_limits(sweep), axes_of(sweep)
-    rows = []
-    for pair in map(study.pair, predicting(study, outcome, sweep.pair.values.tolist())):
-        of_pair, law = sweep.sel(pair=pair.label), pair.pipeline.laws[0]
-        values = of_pair[outcome]
-        row: dict[str, Any] = {"pair": pair.label}
-        predicted, point = bool(values.notnull().any()), {}
-        for word, find in (("least ", values.argmin), ("most ", values.argmax))[0 if axes else 1 :]:
-            indices: Any = find(...) if predicted else {}
-            word = word if axes else ""
-            row[f"{word}{what}"] = values.isel(indices).item() if predicted else None
-            point = {axis: of_pair[axis].isel({axis: indices[axis]}) for axis in axes} if predicted else {}
-            if axes:
-                row[f"{word}at"] = ", ".join(_place(study, name, value) for value in point.values())
-        if outcome == WEAR:
-            row["that is"] = _as_mass_and_depth(study, name, pair, point) if predicted else ""
-        row["outside the range"] = _count(of_pair.outside_range.values > 0.0) if law.valid_range else "not known"
-        beyond = limits[SHAKEDOWN].sel(contact_model=pair.contact_model).values if limits else None
-        row[LIMITS[SHAKEDOWN]] = "not known" if beyond is None else _count(beyond)
-        row["regimes change at"] = _borders(law)
-        rows.append(row)
-    where = f"Least and most over the sweep '{name}', with the {' and '.join(map(name_of, axes))} there"
-    return NamedTable("main", where if axes else f"The operating point '{name}'", pd.DataFrame(rows))
+    pairs = predicting(study, outcome, sweep.pair.values.tolist())
+    frame = summary(sweep, study.case.rig.creepage, outcome, pairs)
+    borders = {label: _borders(study.pair(label).pipeline.laws[0]) for label in pairs}
+    if any(borders.values()):
+        frame["the regime changes at"] = [borders.get(label, "") for label in frame.iloc[:, 0]]
+    return _marked("main", _sweep_in_words(study, name, outcome), frame)
 
 
-def _place(study: Study, name: str, value: xarray.DataArray) -> str:
-    """Return a value of an axis, such as "1 %", in the unit of the case."""
-    unit = study.case.sweeps[name].written_units().get(str(value.name), "")
-    return f"{Q(value.item(), value.attrs['units']).m_as(unit):.4g} {readable(unit)}".rstrip()
+def _sweep_in_words(study: Study, name: str, outcome: str) -> str:
+    """Return the title of the table of a sweep."""
+    together_ = ", all patches together" if outcome == MASS else ""
+    return f"Sweep '{name}'{_fixed(study.sweeps[name], study.case.rig.creepage)}{together_}"
 
 
-def _as_mass_and_depth(study: Study, name: str, pair: Pair, point: Mapping[str, xarray.DataArray]) -> str:
-    """Return the wear at an operating point as mass and as depth, such as "35 mg/km; wheel 12 µm in 1000 km"."""
-    at = {axis: Q(value.item(), value.attrs["units"]) for axis, value in point.items()}
-    pipeline, law = pair.pipeline, pair.pipeline.laws[0]
+def headline(study: Study) -> str:
+    """Return the main outcome of the first sweep in a sentence: its range, or at one operating point all that it means.
+
+    Wear at one point has its mass and its depth too, over a distance that leaves the body in being.
+    """
+    results, outcome = main_result(study)
+    ((name, sweep),) = results.sweeps.items()
+    unit, parts = readable(sweep[outcome].attrs["units"]), []
+    for label in predicting(study, outcome, sweep.pair.values.tolist())[:MOST_NAMED]:
+        values = sweep[outcome].sel(pair=label)
+        if values.isnull().all():
+            continue
+        low, high = float(values.min()), float(values.max())
+        if axes_of(sweep):
+            parts.append(f"{label} {plain_number(low)} to {plain_number(high)} {unit}")
+        else:
+            more = _as_mass_and_depth(study, name, label) if outcome == WEAR else ""
+            parts.append(f"{label} {plain_number(high)} {unit}{more}")
+    if not parts:
+        return ""
+    over = [f"{name_of(axis)} from {_ends(sweep[axis])}" for axis in axes_of(sweep)]
+    head = f"{name_of(outcome)}{' over ' if over else ''}{' and '.join(over)}: "
+    return f"{head[:1].upper()}{head[1:]}{'; '.join(parts)}."
+
+
+def _ends(axis: xarray.DataArray) -> str:
+    """Return the ends of an axis, as in "0.1 to 20 %"."""
+    low, high = (plain_number(end.item()) for end in (axis.min(), axis.max()))
+    return f"{low} to {high} {readable(axis.attrs['units'])}".rstrip()
+
+
+def _as_mass_and_depth(study: Study, name: str, label: str) -> str:
+    """Return the wear at the only operating point of a sweep as mass and depth, as in ", 35 mg/km, wheel 1 mm in 9 km".
+
+    The depth is that of 1000 km, or of the power of ten of it in which a body loses at most a tenth of its radius.
+    """
+    pipeline = study.pair(label).pipeline
+    parts = []
     with caught_warnings():  # the study has them
-        prediction = pipeline.predict(pipeline.posed({**study.case.sweeps[name].given, **at}))
-        parts = [f"{_compact(Q(float(prediction.mass_per_distance.m_as('g/km')), 'g'))}/km"]
-        body = law.body or next(iter(study.case.rig.bodies), None)
+        prediction = pipeline.predict(pipeline.posed(study.case.sweeps[name].given))
+        parts.append(f"{_compact(Q(float(prediction.mass_per_distance.m_as('g/km')), 'g'))}/km")
+        body = pipeline.laws[0].body or next(iter(study.case.rig.bodies), None)
         if body is not None:
             with suppress(InputError):  # a rail does not turn
-                depth = Q(float(prediction.depth_per_distance(body).m_as("mm/km")), "m")
-                parts.append(f"{body} {_compact(depth)} in 1000 km")
-    return "; ".join(parts)
+                depth = float(prediction.depth_per_distance(body).m_as("m/km"))
+                most = 0.1 * float(np.ravel(prediction.problem.body(body).rolling_radius)[0])
+                distance = 1000.0
+                while depth * distance > most:
+                    distance /= 10.0
+                parts.append(f"{body} {_compact(Q(depth * distance, 'm'))} in {distance:g} km")
+    return "".join(f", {part}" for part in parts)
 
 
 def _compact(quantity: Any) -> str:
@@ -139,24 +159,11 @@ def _compact(quantity: Any) -> str:
 
 
 def _borders(law: Law) -> str:
-    """Return the borders of the regimes of a law in words."""
-    with Blame(law):
-        borders = law.breakpoints(law.numbers)
-    if borders is None:
-        return "not known"
-    shown = []
-    for name, values in borders.items():
-        variable = law.variables[name] if name in law.variables else VARIABLES[name]
-        numbers = ", ".join(f"{from_si(value, variable.unit).magnitude:.4g}" for value in values)
-        shown.append(f"{variable.symbol or variable.long_name} {numbers} {readable(variable.unit)}".rstrip())
-    return "; ".join(shown) or "none"
-
-
-def _count(mask: NDArray[np.bool_]) -> str:
-    """Return in how many points of a sweep something is so."""
-    if mask.all() or not mask.any():
-        return "everywhere" if mask.all() else "nowhere"
-    return f"{mask.sum()} of {mask.size}"
+    """Return the borders of the regimes of a law in words, "" if there are none."""
+    return "; ".join(
+        f"{symbol} = {' and '.join(f'{value:.4g}' for value in values)} {unit}".rstrip()
+        for symbol, values, unit in borders_of(law).values()
+    )
 
 
 def summaries(study: Study) -> list[NamedTable]:
@@ -165,7 +172,7 @@ def summaries(study: Study) -> list[NamedTable]:
     return [
         _marked(
             f"{outcome}_{name}",
-            f"Sweep '{name}'{_fixed(sweep, creepage)}{', all patches together' if outcome == MASS else ''}",
+            _sweep_in_words(study, name, outcome),
             summary(sweep, creepage, outcome, predicting(study, outcome, sweep.pair.values.tolist())),
         )
         for name, sweep in study.sweeps.items()
