@@ -217,12 +217,14 @@ def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
     z = np.interp(y[tread], 1e3 * curve.y[there], 1e3 * curve.z[there])
     assert worn["z"].values[tread] == pytest.approx(z, abs=3e-5)  # 0.025²/(2 R) mm between points, with R = 13 mm
     assert "1500 km" in repr(short)
-    drawn, normal, flange, *_ = short.figure().panels
+    drawn, normal, *measures = short.figure().panels
     assert normal.title == "wheel, wear along the normal"
     assert drawn.equal
     for line in drawn.curves:  # each runs across the whole profile
         assert (line.x.min(), line.x.max()) == pytest.approx((-70.0, 60.0), abs=0.1)
-    assert (flange.y.label, {line.y[0] for line in flange.curves}) == ("change of the flange [mm]", {0.0})
+    labels = ["mass [kg]", *(f"flange {name} [mm]" for name in ("height", "thickness", "gradient qR")), "hollow [mm]"]
+    assert [panel.y.label for panel in measures] == [*labels, "equivalent conicity [-]"]
+    assert all([curve.label for curve in panel.curves] == [""] for panel in measures), "one profile for both sides"
     assert len(short.plot().axes) == len(short.figure().panels)
 
 
