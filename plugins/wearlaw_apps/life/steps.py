@@ -53,6 +53,8 @@ TOWARDS = {
     "flange_thickness": -1.0,
     "flange_gradient": -1.0,
     "hollow": 1.0,
+    "vertical_wear": 1.0,
+    "side_wear": 1.0,
 }
 """The sign of the change of each measure on its way to a limit; others, such as the conicity, have limits both ways."""
 
@@ -224,7 +226,7 @@ class Steps:
             depth = new.depth_to(profile, wl.Q(1e3 * new.curve.s, "mm")).magnitude.max()
             row[f"depth{side} [mm]"] = float(depth) if done else 0.0
             row[f"worn_area{side} [mm^2]"] = 1e6 * swept(new, profile) if done else 0.0
-            measures = profile.measures(getattr(rig, "flange_back_position", "-70 mm"))
+            measures = profile.measures(getattr(rig, "flange_back_position", "-70 mm"), new=new)
             row |= {f"{name}{side} [mm]": value.m_as("mm") for name, value in measures.items()}
         try:
             row[CONICITY] = float(rig.equivalent_conicity(amplitude="3 mm").m_as(""))

@@ -30,7 +30,7 @@ def test_wheel_with_its_origin_elsewhere_has_the_same_measures() -> None:
         assert there[name].m_as("mm") == pytest.approx(value.m_as("mm"), abs=1e-9)
 
 
-def test_wheel_without_a_flange_has_no_flange_measures_and_a_rail_none_at_all() -> None:
+def test_wheel_without_a_flange_has_no_flange_measures_and_a_rail_none_alone() -> None:
     *flange, hollow = (value.magnitude for value in cone(0.05).measures().values())
     assert np.isnan(flange).all()
     assert hollow == 0.0
@@ -52,3 +52,35 @@ def test_depth_along_the_normal_is_that_removed(profile: wl.Profile) -> None:
     inner = slice(100, -100, 50)
     found = profile.depth_to(worn, Q(1e3 * s[inner], "mm"))
     assert found.m_as("mm") == pytest.approx(depth[inner], abs=1e-6)
+
+
+def cut_rail(vertical: float, side: float) -> tuple[wl.Profile, wl.Profile]:
+    """Return a rail, and the same one cut by a level plane and by an upright one on its gauge side [m]."""
+    new = wl.Profile.uic60()
+    y, z = new.curve.y, new.curve.z
+    gauge = np.interp(z.min() + 14e-3, z[y < -20e-3][::-1], y[y < -20e-3][::-1])
+    worn = np.maximum(y, gauge + side if side else -np.inf), np.maximum(z, z.min() + vertical)
+    moved = np.append(True, np.hypot(np.diff(worn[0]), np.diff(worn[1])) > 1e-9)
+    return new, through(worn[0][moved], worn[1][moved], "rail")
+
+
+@pytest.mark.parametrize(("vertical", "side"), [(0.0, 0.0), (1.5, 0.0), (0.8, 3.0)])
+def test_vertical_and_side_wear_of_a_rail_are_what_was_cut_off(vertical: float, side: float) -> None:
+    new, worn = cut_rail(1e-3 * vertical, 1e-3 * side)
+    found = worn.measures(new=new)
+    # The corners of the cuts lie more than 100 points of the spline away, which halves its ripple at each.
+    assert found["vertical_wear"].m_as("mm") == pytest.approx(vertical, abs=1e-6)
+    # The level lies between places 0.05 mm apart, where the side has a radius of 13 mm: 0.05²/(8*13) mm.
+    assert found["side_wear"].m_as("mm") == pytest.approx(side, abs=2.5e-5)
+    lower = worn.shifted(z="0.5 mm").measures(new=new.shifted(z="0.5 mm"))
+    assert lower["side_wear"].m_as("mm") == pytest.approx(side, abs=2.5e-5)
+
+
+def test_the_plot_has_the_measures_and_the_depth_beside_a_new_profile() -> None:
+    new, worn = cut_rail(1.5e-3, 0.0)
+    upper, lower = worn.plot(new=new).get_figure().axes
+    assert "vertical wear 1.50 mm" in upper.texts[0].get_text()
+    y, depth = lower.get_lines()[0].get_data()
+    assert np.interp(0.0, y, depth) == pytest.approx(1.5, abs=1e-6)
+    assert "flange height 28.00 mm" in wl.Profile.s1002().plot().texts[0].get_text()
+    assert len(worn.plot(upper, new=new).get_figure().axes) == 2

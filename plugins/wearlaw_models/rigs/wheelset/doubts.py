@@ -12,7 +12,7 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.curve import Curve, through_points
 from wearlaw_models.rigs.wheelset.files import Kind
-from wearlaw_models.rigs.wheelset.measures import flange, side
+from wearlaw_models.rigs.wheelset.measures import SIDE_DEPTH, flange, side
 from wearlaw_models.rigs.wheelset.reach import LOST, STEEPEST, reach
 
 CROWN, WIDEST_HEAD = 12e-3, 92e-3
@@ -27,15 +27,12 @@ TILTED = np.radians(4.0)
 FAR = 20e-3
 """Height of a wheel at its taping line that no wear explains [m]."""
 
-GAUGE_DEPTH = 14e-3
-"""Depth below its top at which the side of a rail is compared [m]."""
-
 FLANGE_BACK = -70e-3
 """Place of the back of a flange for measures that are compared [m]."""
 
 MEASURES: Mapping[Kind, tuple[str, ...]] = {
     "wheel": ("the flange height", "the flange thickness", "the flange gradient"),
-    "rail": (f"the gauge side {1e3 * GAUGE_DEPTH:g} mm below the top",),
+    "rail": (f"the gauge side {1e3 * SIDE_DEPTH:g} mm below the top",),
 }
 """Names of the measures that are compared."""
 
@@ -155,7 +152,7 @@ def _measures(curve: Curve) -> tuple[float, ...]:
     """Return the measures that smoothing must not move [m]."""
     if curve.sign < 0.0:
         return flange(curve.y, curve.z, FLANGE_BACK)
-    return (side(curve.y, curve.z, GAUGE_DEPTH),)
+    return (side(curve.y, curve.z, SIDE_DEPTH),)
 
 
 def of_back(curve: Curve, position: float) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Measures of a worn profile: flange height, thickness and gradient, the hollow of the tread, and the depth worn."""
+"""Measures of worn profiles: of flange and tread of a wheel, of top and side of a rail, and the depth worn."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ from wearlaw_models.rigs.wheelset.curve import Curve
 BELOW_TOP, DATUM, ABOVE_TREAD = 2e-3, 70e-3, 10e-3
 """Where a flange is measured [m]: L1, L2 and L3 of "Wheel wear" in MiniProf's standard calculations, which state these
 defaults (Greenwood Engineering, greenwood.dk/miniprofstandardcalc.php)."""
+
+SIDE_DEPTH = 14e-3
+"""Depth below its top at which the gauge side of a rail is measured, where the gauge is measured too [m]."""
 
 NEWTON = 4
 """Steps of Newton's method to where a normal meets a worn profile; the error squares in each."""
@@ -57,6 +60,15 @@ def side(y: Array, z: Array, depth: float) -> float:
     if z[up].max() <= z[top] + depth:
         return np.nan
     return _first_below(y[up], -z[up], -z[top] - depth)
+
+
+def rail_wear(new: Curve, worn: Curve) -> tuple[float, float]:
+    """Return the vertical wear of a rail at y = 0, and its side wear at one level below the top of the new one [m]."""
+    reaches = max(new.y[0], worn.y[0]) < 0.0 < min(new.y[-1], worn.y[-1])
+    vertical = worn.at(0.0)[1] - new.at(0.0)[1] if reaches else np.nan
+    lower = float(worn.z.min() - new.z.min())
+    sides = side(new.y, new.z, SIDE_DEPTH), side(worn.y, worn.z, SIDE_DEPTH - lower)
+    return float(vertical), sides[1] - sides[0]
 
 
 def hollow(z: Array) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from difflib import get_close_matches
@@ -28,7 +29,7 @@ from wearlaw_models.rigs.wheelset import doubts
 from wearlaw_models.rigs.wheelset.curve import Curve, joined, through_points
 from wearlaw_models.rigs.wheelset.files import Kind, points_of, write_points
 from wearlaw_models.rigs.wheelset.formulas import FORMULAS
-from wearlaw_models.rigs.wheelset.measures import depth_between, flange, hollow
+from wearlaw_models.rigs.wheelset.measures import depth_between, flange, hollow, rail_wear
 from wearlaw_models.rigs.wheelset.points import check_orientation, check_points, filled, point
 from wearlaw_models.rigs.wheelset.reach import without_spots
 from wearlaw_models.rigs.wheelset.repairs import repaired
@@ -462,13 +463,17 @@ class Profile(wl.Configuration):
         place = wl.Unit("mm", positive=False).si(s, "s")
         return wl.Q(1e3 * depth_between(self.curve, worn.curve, place), "mm")
 
-    def measures(self, flange_back_position: wl.QuantityLike = "-70 mm") -> dict[str, wl.Quantity]:
-        """Return the measures of a wheel that say how far it is worn; a rail has none.
+    def measures(
+        self, flange_back_position: wl.QuantityLike = "-70 mm", *, new: Profile | None = None
+    ) -> dict[str, wl.Quantity]:
+        """Return the measures that say how far a wheel is worn, or a rail compared with a new one.
 
         Parameters
         ----------
         flange_back_position : Quantity or str
-            Place of the back of the flange in the profile, y [m].
+            Place of the back of a wheel's flange in the profile, y [m].
+        new : Profile, optional
+            The new rail, in the same position; a rail has no measures without it.
 
         Returns
         -------
@@ -478,16 +483,21 @@ class Profile(wl.Configuration):
             axle, between the flank 10 mm above the datum and 2 mm below the top; and the hollow of the tread [m]. Those
             of the flange are NaN without a flange, or if the profile does not reach the datum. Height and gradient are
             also NaN, with a warning, if the profile ends before the top of the flange.
+            Of a rail, the vertical wear, on the axis of the new rail (y = 0), and the side wear, along y on the gauge
+            side, 14 mm below the top of the new rail [m]. NaN where a profile does not reach.
 
         Notes
         -----
         The tread datum lies 70 mm from the back. The quantities are those of MiniProf's calculation "Wheel wear"; the
         text of EN 15313 was not read. The definition of the hollow is wearlaw's: a place of the tread is hollow if
         places further out have a larger radius. It is the largest rise of the radius on the way outwards, and zero for
-        a tread whose radius falls from the flange to the field side, as that of a new wheel does.
+        a tread whose radius falls from the flange to the field side, as that of a new wheel does. The measures of a
+        rail are wearlaw's too, of the kind of W1 and W2 of MiniProf's "Rail wear", whose text does not say where it
+        takes them.
         """
         if self.kind == "rail":
-            return {}
+            wear = rail_wear(new.curve, self.curve) if new is not None else ()
+            return {name: wl.Q(1e3 * of, "mm") for name, of in zip(("vertical_wear", "side_wear"), wear, strict=False)}
         y, z = self.curve.y, self.curve.z
         back = float(wl.Unit("mm", positive=False).si(flange_back_position, "flange_back_position"))
         height, thickness, gradient = flange(y, z, back)
@@ -500,16 +510,38 @@ class Profile(wl.Configuration):
         values = (height, thickness, gradient, hollow(z))
         return {name: wl.Q(1e3 * length, "mm") for name, length in zip(names, values, strict=True)}
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the profile as it lies, with z down, and return matplotlib's axes."""
+    def plot(self, ax: Axes | None = None, *, new: Profile | None = None) -> Axes:
+        """Draw the profile as it lies, with z down and its measures, and return matplotlib's axes.
+
+        With a `new` profile, draw both, and below them, unless `ax` is given, the depth between them along the normals
+        of the new one.
+        """
+        below: Axes | None = None
         if ax is None:
             from matplotlib.figure import Figure
 
-            ax = Figure(figsize=(7.4, 3.6), layout="constrained").add_subplot()
-            ax.spines[["top", "right"]].set_visible(False)
-            ax.grid(alpha=0.3)
+            figure = Figure(figsize=(7.4, 3.6 if new is None else 5.4), layout="constrained")
+            several: list[Axes] = list(figure.subplots(1 if new is None else 2, squeeze=False)[:, 0])
+            for axes in several:
+                axes.spines[["top", "right"]].set_visible(False)
+                axes.grid(alpha=0.3)
+            ax, below = several[0], None if new is None else several[1]
         curve = self.curve
         ax.plot(1e3 * curve.y, 1e3 * curve.z, color="#0072B2", linewidth=1.6, label=repr(self))
+        if new is not None:
+            ax.plot(1e3 * new.curve.y, 1e3 * new.curve.z, color="0.4", linestyle="--", linewidth=1.2, label="new")
+            ax.legend(frameon=False, fontsize="small")
+        if new is not None and below is not None:
+            there = (new.curve.y >= curve.y.min()) & (new.curve.y <= curve.y.max())
+            depth = new.depth_to(self, wl.Q(1e3 * new.curve.s[there], "mm")).magnitude
+            below.plot(1e3 * new.curve.y[there], depth, color="#0072B2", linewidth=1.6)
+            below.set(xlabel="y of the new profile [mm], outwards", ylabel="depth along the normal [mm]")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wl.UnusualWarning)
+            measures = self.measures(new=new)
+        lines = (f"{name.replace('_', ' ')} {value.m_as('mm'):.2f} mm" for name, value in measures.items())
+        place = (0.85, 0.3) if self.kind == "wheel" else (0.5, 0.5)
+        ax.text(*place, "\n".join(lines), transform=ax.transAxes, ha="center", va="center", fontsize="small")
         if self.smoothing.magnitude:
             y, z = (value.magnitude for value in self.points)
             ax.plot(y, z, ".", color="#D55E00", markersize=2.0, zorder=3, label="points")
