@@ -6,7 +6,7 @@ import functools
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from wearlaw.errors import InputError, WearlawWarning, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Stage
@@ -24,6 +24,7 @@ from wearlaw_kit import (  # each registers its rules  # noqa: F401
     units,
 )
 from wearlaw_kit.examples import failing
+from wearlaw_kit.reduced import CHECKED
 from wearlaw_kit.rules import RULES, rule
 
 TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
@@ -113,7 +114,16 @@ def checks(model: Model) -> Iterator[Check]:
     ]
 
     for kit_rule in rules:
-        yield Check(kit_rule.name, kit_rule.doc, functools.partial(kit_rule.check, model.model_copy()))
+        yield Check(kit_rule.name, kit_rule.doc, functools.partial(_checked, kit_rule.check, model.model_copy()))
+
+
+def _checked(check: Callable[[Any], None], model: Any) -> None:
+    """Check a model on problems that have the conditions that it declares."""
+    token = CHECKED.set({} if isinstance(model, Rig) else model.own_conditions())
+    try:
+        check(model)
+    finally:
+        CHECKED.reset(token)
 
 
 def conformance(

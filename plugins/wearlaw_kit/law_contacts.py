@@ -18,11 +18,8 @@ from wearlaw.contact.contact import LAW_VARIABLES, Contact, variable_at_nodes
 from wearlaw.contact.material import steel
 from wearlaw.contact.problem import Body
 from wearlaw.models.law import Law
-from wearlaw.models.model import Model
-from wearlaw.units.quantities import Unit
-from wearlaw.units.registry import unit_in_si
 from wearlaw_kit.examples import failing, for_each
-from wearlaw_kit.reduced import random_lines, wide_ellipses, without_spin
+from wearlaw_kit.reduced import drawn, random_lines, wide_ellipses, without_spin
 from wearlaw_kit.rules import rule
 
 NODE_FIELDS = (
@@ -261,21 +258,10 @@ def with_problem(contact: Contact, law: Law | None = None) -> Contact:
     problem = without_spin((wide_ellipses if contact.on_strips else random_lines)(speed.size)).replaced(
         rolling_speed=speed,
         density=contact.density,
-        conditions={} if law is None else drawn(law, speed.shape),
+        conditions={} if law is None else drawn(law.own_conditions(), speed.shape),
         bodies={name: Body(material, 0.25) for name in [*names][:2]},
     )
     return contact.replaced(problem=problem)
-
-
-def drawn(model: Model, shape: tuple[int, ...]) -> dict[str, Array]:
-    """Return values of the conditions that a model declares, over the usual range or by a factor of two about 1."""
-    random = np.random.default_rng(0)
-    values = {}
-    for name, condition in model.own_conditions().items():
-        unit = condition.unit or Unit("")
-        low, high = unit.usual or (0.5, 2.0)
-        values[name] = random.uniform(low, high, shape) * unit_in_si(unit.unit)
-    return values
 
 
 def at_nodes(contact: Contact, variable: str) -> Array:

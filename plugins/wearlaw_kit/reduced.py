@@ -8,12 +8,18 @@ bound, where ξ/L1 is the steepest slope of the bound, 4μN/(πa²b).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from contextvars import ContextVar
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from wearlaw.arrays import Array
 from wearlaw.contact import kalker
+from wearlaw.contact.conditions import Condition
 from wearlaw.contact.problem import CreepForces, Problem, Strips
+from wearlaw.units.quantities import Unit
+from wearlaw.units.registry import unit_in_si
 
 SATURATION = (3.0, 32.0 / (3.0 * np.pi))
 """Reduced creepages at which a theory of ellipses may saturate."""
@@ -130,6 +136,27 @@ def at_magnitude(problem: Problem, reduced: Array | float) -> Problem:
         problem.longitudinal_creepage / along, np.divide(lateral, across, out=np.zeros_like(across), where=across > 0.0)
     )
     return creeping(problem, reduced / size, reduced / size, 1.0)
+
+
+CHECKED: ContextVar[Mapping[str, Condition]] = ContextVar("conditions of the model that is checked", default={})  # noqa: B039
+"""The conditions that the model being checked declares, which every problem of the kit has then."""
+
+
+def drawn(conditions: Mapping[str, Condition], shape: tuple[int, ...]) -> dict[str, Array]:
+    """Return random values of conditions in SI, over what is usual or else by a factor of two about 1."""
+    random = np.random.default_rng(0)
+    values = {}
+    for name, condition in conditions.items():
+        unit = condition.unit or Unit("")
+        low, high = unit.usual or (0.5, 2.0)
+        values[name] = random.uniform(low, high, shape) * unit_in_si(unit.unit)
+    return values
+
+
+def under_conditions(problem: Problem) -> Problem:
+    """Return the problem with values of the conditions that the model being checked declares."""
+    values = drawn(CHECKED.get(), problem.batch_shape)
+    return problem.replaced(conditions={**values, **problem.conditions}) if values else problem
 
 
 def random_lines(points: int, seed: int = 5) -> Problem:

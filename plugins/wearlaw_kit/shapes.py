@@ -27,7 +27,15 @@ from wearlaw.contact.quadrature import join
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel, Stage
 from wearlaw.numerics.staged import staged
 from wearlaw_kit.examples import SAME, assert_close, failing, for_each
-from wearlaw_kit.reduced import friction_limit, in_strips, lever, random_ellipses, random_lines, wide_ellipses
+from wearlaw_kit.reduced import (
+    friction_limit,
+    in_strips,
+    lever,
+    random_ellipses,
+    random_lines,
+    under_conditions,
+    wide_ellipses,
+)
 from wearlaw_kit.rules import Applies, rule
 
 PANELS = 64
@@ -61,11 +69,15 @@ class Shape:
 
     def draw(self, points: int) -> Problem:
         """Return a number of problems, from partial to full slip."""
-        return self.cut(self.uncut(points))
+        return under_conditions(self.cut(self.uncut(points)))
 
-    @cached_property
+    @property
     def problems(self) -> Problem:
         """Many operating points, from nearly full stick to full slip."""
+        return under_conditions(self._cut)
+
+    @cached_property
+    def _cut(self) -> Problem:
         return self.cut(self.wide)
 
 
@@ -149,10 +161,11 @@ def of_stage(stage: Stage, points: int) -> list[tuple[ContactModel, Problem]]:
 
 
 def with_bodies(problem: Problem) -> Problem:
-    """Return the problem with two bodies, an inclined surface and a distance rolled, as that of a rig."""
+    """Return the problem with two bodies, an inclined surface and conditions, as that of a rig."""
     share = np.linspace(0.1, 1.0, problem.size)
     bodies = {"body_1": Body(steel(), 0.25 * share), "body_2": Body(steel(density="7200 kg/m^3"), np.inf)}
-    return problem.replaced(bodies=bodies, contact_angle=share, rolled_distance=1e3 * share)
+    problem = under_conditions(problem.replaced(bodies=bodies, contact_angle=share))
+    return problem.replaced(conditions={"rolled_distance": 1e3 * share, **problem.conditions})
 
 
 def on_shapes(

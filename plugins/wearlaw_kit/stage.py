@@ -151,8 +151,10 @@ def stages_keep_what_is_not_theirs(stage: Stage) -> None:
             assert [*after.bodies.items()] == [*problem.bodies.items()] or _same_bodies(after, problem), (
                 f"{shape.where}the problem after the stage has other bodies, or in another order"
             )
-            for name in ("density", "rolling_speed", "contact_angle", "rolled_distance"):
-                value, due = getattr(after, name), getattr(problem, name)
+            names = ("density", "rolling_speed", "contact_angle")
+            kept = {name: (getattr(after, name), getattr(problem, name)) for name in names}
+            kept |= {name: (after.conditions.get(name), due) for name, due in problem.conditions.items()}
+            for name, (value, due) in kept.items():
                 assert value is not None, f"{shape.where}the problem after the stage lacks the {name}"
                 assert_close(value, due, f"{shape.where}the {name} of the problem after the stage")
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+import wearlaw_kit
 from tests.strategies import EPS
 from wearlaw import Array, Q
 
@@ -285,3 +286,9 @@ def test_what_a_model_declares_is_checked_with_its_class() -> None:
         }  # fmt: skip
         with pytest.raises(wl.ModelError, match=message):
             type("Wrong", (Humid,), dict(namespace))
+
+
+@pytest.mark.parametrize("model", [Humid(), Wet()], ids=["law", "stage"])
+def test_the_kit_tries_models_under_their_conditions(model: Any) -> None:
+    for check in wearlaw_kit.checks(model):
+        check()
