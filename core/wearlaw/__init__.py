@@ -69,7 +69,7 @@ from wearlaw.models.contact_model import (
     Stage,
 )
 from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome, WearLaw
-from wearlaw.models.model import Claim
+from wearlaw.models.model import Claim, Exempt
 from wearlaw.models.reader import Reader
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
@@ -114,6 +114,7 @@ __all__ = [
     "Creepage",
     "DataError",
     "Density",
+    "Exempt",
     "FallingFriction",
     "FieldVariable",
     "FitError",

@@ -10,7 +10,7 @@ from wearlaw.contact.problem import CreepForces, Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw_kit.bisection import Indices, each_once, find_jumps
 from wearlaw_kit.contact import POINTS_OF_STEPS, has_nodes, mixed_batch
-from wearlaw_kit.examples import SAME, SUM, assert_close, for_each
+from wearlaw_kit.examples import SAME, SUM, assert_close, for_each, leeway, left_out, part
 from wearlaw_kit.reduced import (
     STRIP_AT,
     at_magnitude,
@@ -22,6 +22,7 @@ from wearlaw_kit.reduced import (
     parts_of_power,
     sliding_power,
     translation,
+    under_conditions,
     without_spin,
 )
 from wearlaw_kit.shapes import (
@@ -58,6 +59,9 @@ JUMP = 1e-4
 SLOPE = 1e-3
 """Error of initial slopes on an ellipse: half of the last digit of Kalker's coefficients."""
 
+
+CAUSES = {"longitudinal": (1.0, 0.0), "lateral": (0.0, 1.0), "spin": (0.0, 1.0)}
+"""The creepages, and the reduced Fx and Fy of linear theory for a reduced one."""
 
 FALL = 0.02
 """Share to which the difference between partial and full slip falls, from 1e-4 to 1e-8 away from full slip: a hundredth
@@ -123,7 +127,7 @@ def force_grows_with_creepage(model: ContactModel, problem: Problem) -> None:
     creepage = translation(problem)[:, None] * growing
     batch = problem[:, None].broadcast_to(creepage.shape).with_creepages(creepage, 0.0 * creepage, 0.0 * creepage)
     force = forces_alone(model, batch).longitudinal
-    fell = np.diff(force) < -SUM * force[:, :-1]
+    fell = np.diff(force) < -max(SUM, leeway()) * force[:, :-1]
     assert not fell.any(), f"the force falls as the creepage grows: {force!r}"
     assert (force[:, 0] > 0).all(), f"the force is {force[:, 0].min()!r} at a positive creepage"
 
@@ -146,7 +150,7 @@ def what_sticks_does_not_slip(model: ContactModel, shape: Shape) -> None:
     sums slip times the distance of the traction from its bound, as a share of the power in full slip; and it leaves out
     creepages at which no more than such cells slip.
     """
-    allowed = 0.0 if shape is LINE else model.elliptic_accuracy
+    allowed = leeway() if shape is LINE else max(model.elliptic_accuracy, leeway())
 
     def examine(problem: Problem) -> None:
         for contact in solutions(model, problem):
@@ -173,7 +177,7 @@ def forces_are_continuous(model: ContactModel, shape: Shape) -> None:
     low, high, intervals = (1e-2, 10.0, 512) if shape is LINE else (0.6, 6.0, 64)
     problem = shape.draw(2)
     error = error_of_sums(model, problem)
-    of_forces = error * (problem.spin != 0) * friction_limit(problem)
+    of_forces = np.maximum(error * (problem.spin != 0), leeway()) * friction_limit(problem)
     allowed = {"mean_slip": error * translation(at_magnitude(problem, high))}
     allowed |= dict.fromkeys(("force_x",) if shape is LINE else ("force_x", "force_y"), of_forces)
 
@@ -206,7 +210,7 @@ def full_slip_is_reached(model: ContactModel, shape: Shape) -> None:
     # At a node on the very edge the bound is rounding of that in the centre.
     edge = SAME * contact.per_node(bound.max(axis=tuple(range(2, bound.ndim))))
     assert_close(contact.traction, bound, "the traction in full slip", error_of_traction(model, problem), edge)
-    sticks = (contact.slip == 0.0) & (contact.area > 0.0)
+    sticks = contact.stick_ratio > max(SUM, leeway())
     assert not sticks.any(), f"{contact.stick_ratio.max():.3g} of the patch sticks in full slip"
     assert_close(contact.mean_slip, slip, "the mean slip in full slip", error_of_sums(model, problem))
     creepage = np.array([problem.longitudinal_creepage, problem.lateral_creepage]) / slip
@@ -238,7 +242,7 @@ def full_slip_is_met_from_both_sides(model: ContactModel, shape: Shape) -> None:
     for _ in range(60):
         middle = 0.5 * (low + full)
         contact = solved(middle)
-        reached = (contact.tangential_force >= limit) & (contact.stick_ratio <= SUM)
+        reached = (contact.tangential_force >= limit) & (contact.stick_ratio <= max(SUM, leeway()))
         low, full = np.where(reached, low, middle), np.where(reached, middle, full)
 
     def step(gap: float) -> dict[str, Array]:
@@ -249,7 +253,7 @@ def full_slip_is_met_from_both_sides(model: ContactModel, shape: Shape) -> None:
 
     far, near = step(1e-4), step(1e-8)
     error = max(SUM, error_of_sums(model, problem))
-    for name, rounding in (("force", SUM), ("mean slip", error)):
+    for name, rounding in (("force", max(SUM, leeway())), ("mean slip", error)):
         wrong = ~(near[name] <= FALL * far[name] + 2.0 * rounding)
         assert not wrong.any(), (
             f"the {name} jumps by {near[name][wrong].max():.2g} of its value into full slip, at the reduced creepage"
@@ -279,23 +283,27 @@ def initial_slopes_are_kalkers(model: ContactModel, shape: Shape) -> None:
     than `SLOPE`. A march over coarse cells ends the traction up to a cell too soon. That error is within its accuracy,
     and of first order: at least 1.5 times smaller on nodes twice as fine.
     """
-    error = _slope_error(model, shape)
-    if error <= SLOPE:
-        return
-    finer = model.refined()
-    assert finer is not None and error <= model.elliptic_accuracy, f"a slope is off by {error:.2g} of Kalker's"  # noqa: PT018
-    left = _slope_error(finer, shape)
-    assert left <= max(error / 1.5, SLOPE), f"a slope is off by {error:.2g}, and still by {left:.2g} on finer nodes"
+    for cause in CAUSES:
+        if left_out(cause):
+            continue
+        with part(cause):
+            error, enough = _slope_error(model, shape, cause), max(SLOPE, leeway())
+        if error <= enough:
+            continue
+        finer, slope = model.refined(), f"a slope with the {cause} creepage" if cause != "spin" else "a slope with spin"
+        assert finer is not None, f"{slope} is off by {error:.2g} of Kalker's"
+        assert error <= model.elliptic_accuracy, f"{slope} is off by {error:.2g} of Kalker's"
+        left = _slope_error(finer, shape, cause)
+        assert left <= max(error / 1.5, enough), f"{slope} is off by {error:.2g}, and by {left:.2g} on finer nodes"
 
 
-def _slope_error(model: ContactModel, shape: Shape) -> float:
+def _slope_error(model: ContactModel, shape: Shape, cause: str) -> float:
     """Return the largest error of the initial slopes, relative to Kalker's slope for the same creepage."""
-    small, errors = 1e-6, []
-    for cause, (along, across) in enumerate([(1.0, 0.0), (0.0, 1.0), (0.0, 1.0)]):
-        problem = at_reduced(shape.draw(POINTS), *(small * np.eye(3)[cause]))
-        forces, unit = model.creep_forces(problem), small * friction_limit(problem)
-        errors += [np.abs(forces.longitudinal / unit - along).max(), np.abs(forces.lateral / unit - across).max()]
-    return float(max(errors))
+    small, (along, across) = 1e-6, CAUSES[cause]
+    creepages = {name: small * (name == cause) for name in CAUSES}
+    problem = at_reduced(shape.draw(POINTS), *creepages.values())
+    forces, unit = model.creep_forces(problem), small * friction_limit(problem)
+    return float(max(np.abs(forces.longitudinal / unit - along).max(), np.abs(forces.lateral / unit - across).max()))
 
 
 @on_shapes(*SHAPES, claims=("similarity",))
@@ -307,7 +315,7 @@ def contacts_are_similar(model: ContactModel, shape: Shape) -> None:
     """
     twice = np.tile(np.arange(shape.wide.size), 2)
     for cases, same in ((shape.wide, False), (shape.wide[twice], True)):
-        problem, other = shape.cut(cases), shape.cut(_scaled(cases, same))
+        problem, other = (under_conditions(shape.cut(case)) for case in (cases, _scaled(cases, same)))
         forces, ratio = forces_alone(model, problem), friction_limit(other) / friction_limit(problem)
         due = CreepForces(
             longitudinal=ratio * forces.longitudinal,
@@ -341,7 +349,7 @@ def _scaled(problem: Problem, same: bool) -> Problem:
 def strips_of_an_ellipse_have_its_forces(model: ContactModel, shape: Shape) -> None:
     """An ellipse, long or wide, and the strips that it is cut into transmit the same forces."""
     problem = shape.draw(POINTS)
-    strips = in_strips(problem, lean=0.0)
+    strips = under_conditions(in_strips(problem, lean=0.0))
     # A sum over n strips of equal width misses a parabola by the share 1/(2n²).
     error = error_of_sums(model, problem) + 0.5 / STRIP_AT.size**2
     forces, due = forces_alone(model, strips), forces_alone(model, problem)
@@ -356,6 +364,8 @@ def spin_has_its_force_and_moment(model: ContactModel, shape: Shape) -> None:
     in full slip between rigid bodies, spin gives a moment alone. The simplified theory and Polach's have at least half
     of the linear Fy at a/b from 1/20 to 20.
     """
+    if left_out("spin"):
+        return
     problem = at_reduced(shape.draw(POINTS), 0.0, 0.0, SMALL)
     forces, linear = forces_alone(model, problem), SMALL * friction_limit(problem)
     shares = {"Fy": forces.lateral / linear, "Mz": forces.spin_moment / (linear * lever(problem))}
@@ -364,7 +374,9 @@ def spin_has_its_force_and_moment(model: ContactModel, shape: Shape) -> None:
             f"a positive spin alone gives a negative {name}, of {share.min():.3g} times the size of linear theory"
         )
     least = np.maximum(*shares.values()).min()
-    assert least >= 0.25, f"a spin alone gives only {least:.3g} of the Fy of linear theory, and no Mz of that size"
+    assert least >= 0.25 * (1.0 - leeway()), (
+        f"a spin alone gives only {least:.3g} of the Fy of linear theory, and no Mz of that size"
+    )
 
 
 @on_shapes(ELLIPSE, PATCH, claims=("spin",), applies=has_nodes)
@@ -375,6 +387,8 @@ def slip_turns_with_the_spin(model: ContactModel, shape: Shape) -> None:
     the simplified theory at 1 to 3.9 times that, at a/b from 1/20 to 20. The check compares ∫ y s_x dA and ∫ x s_y dA.
     Half the difference between both signs of the spin leaves out the slip of elastic bodies without spin.
     """
+    if left_out("spin"):
+        return
     problem = at_magnitude(without_spin(shape.draw(POINTS)), FULL)
     spin = 0.5 * translation(problem) / np.maximum(problem.a, problem.b)
     more, less = (

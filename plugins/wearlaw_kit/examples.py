@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TypeVar
 
 import numpy as np
@@ -12,6 +13,7 @@ from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ModelError, described
+from wearlaw.models.model import Exempt
 
 T = TypeVar("T", Contact, Problem)
 
@@ -22,6 +24,50 @@ SAME = 16.0 * EPS
 
 SUM = 64.0 * EPS
 """Error of a sum over nodes, relative to the sum of magnitudes."""
+
+
+_EXEMPTION: ContextVar[Exempt | None] = ContextVar("exemption", default=None)
+_PARTS: ContextVar[tuple[str, ...]] = ContextVar("parts", default=())
+
+
+@contextmanager
+def exempt(exemption: Exempt | None) -> Iterator[None]:
+    """Check a model with an exemption from a part of the claim, or up to a bound."""
+    token = _EXEMPTION.set(exemption)
+    try:
+        yield
+    finally:
+        _EXEMPTION.reset(token)
+
+
+@contextmanager
+def part(*names: str) -> Iterator[None]:
+    """Check these parts of a claim, by which an exemption can name them."""
+    token = _PARTS.set((*_PARTS.get(), *names))
+    try:
+        yield
+    finally:
+        _PARTS.reset(token)
+
+
+def left_out(name: str) -> bool:
+    """Return whether the model is exempt from a part."""
+    exemption = _EXEMPTION.get()
+    return exemption is not None and exemption.upto is None and name in exemption.parts
+
+
+def bounded(name: str) -> bool:
+    """Return whether the model is exempt from a part up to a bound."""
+    exemption = _EXEMPTION.get()
+    return exemption is not None and exemption.upto is not None and name in exemption.parts
+
+
+def leeway() -> float:
+    """Return the relative deviation that the exemption allows in the part being checked."""
+    exemption = _EXEMPTION.get()
+    if exemption is None or exemption.upto is None or (exemption.only and not {*exemption.parts} & {*_PARTS.get()}):
+        return 0.0
+    return exemption.upto
 
 
 def for_each(examples: T, examine: Callable[[T], None]) -> None:
@@ -61,6 +107,7 @@ def assert_close(
 ) -> None:
     """Assert that two arrays agree, and name the worst entry if they do not."""
     actual, expected = np.broadcast_arrays(actual, expected)
+    relative = np.maximum(relative, leeway())
     allowed = np.broadcast_to(relative * np.abs(expected) + absolute, expected.shape)
     wrong = ~(np.abs(actual - expected) <= allowed)
     if wrong.any():

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from wearlaw.errors import InputError, WearlawWarning, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
-from wearlaw.models.model import Model
+from wearlaw.models.model import Exempt, Model
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw_kit import (  # each registers its rules  # noqa: F401
     contact,
@@ -23,9 +23,10 @@ from wearlaw_kit import (  # each registers its rules  # noqa: F401
     stage,
     units,
 )
-from wearlaw_kit.examples import failing
+from wearlaw_kit.examples import exempt, failing
+from wearlaw_kit.law_contacts import CONTACTS
 from wearlaw_kit.reduced import CHECKED
-from wearlaw_kit.rules import RULES, rule
+from wearlaw_kit.rules import RULES, Rule, rule
 
 TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
 
@@ -39,7 +40,30 @@ def exemptions_are_claims(model: Model) -> None:
         held = any(kit_rule.name == claim and not kit_rule.claims for kit_rule in rules)
         assert not held, f"`exemptions` names {claim}, which must hold for any {model.kind}; correct the model instead"
         assert claim in claims, f"`exemptions`: no claim is called '{claim}'{did_you_mean(claim, claims)}"
-        assert str(reason or "").strip(), f"the exemption from '{claim}' has no reason"
+        exemption = as_exempt(reason)
+        assert exemption.reason.strip(), f"the exemption from '{claim}' has no reason"
+        for name in exemption.parts:
+            known = parts_of(model)
+            assert name in known, (
+                f"the exemption from '{claim}' names no part of it: '{name}'{did_you_mean(name, known)}"
+            )
+        assert exemption.upto is None or exemption.upto > 0.0, (
+            f"`upto` of the exemption from '{claim}' is not above zero"
+        )
+
+
+def as_exempt(reason: str | Exempt) -> Exempt:
+    """Return an exemption with its scope, that of a reason alone from the whole claim."""
+    return reason if isinstance(reason, Exempt) else Exempt(str(reason or ""))
+
+
+def parts_of(model: Model) -> tuple[str, ...]:
+    """Return the names by which an exemption can name a part of a claim."""
+    if isinstance(model, Rig):
+        return (*model.conditions(), *type(model).model_fields)
+    if isinstance(model, Law):
+        return (*CONTACTS, *model.numbers, *model.monotone_in)
+    return ("line", "ellipse", "strips", "longitudinal", "lateral", "spin", "spin_moment")
 
 
 @rule(Model, always=True)
@@ -83,7 +107,8 @@ class Check:
 def checks(model: Model) -> Iterator[Check]:
     """Yield the checks of a model, each on a new instance with the fields of the model.
 
-    Checks that do not apply to the model are left out: those of claims in `Model.exemptions`, of nodes for a law of the
+    Checks that do not apply to the model are left out: those of claims in `Model.exemptions`, unless it is an `Exempt`
+    for a part of the claim or up to a bound, of nodes for a law of the
     whole patch, of geometries that a contact model does not solve, and of optional methods that are missing.
 
     Parameters
@@ -106,22 +131,21 @@ def checks(model: Model) -> Iterator[Check]:
             f"checks: rig '{model.name}' has no conditions to try it with; write the conditions of one test into the"
             f' class {type(model).__name__}, with units as text such as "1 %":\n  example = {{{conditions}}}'
         )
-    exempt = {*model.exemptions}
-    rules = [
-        kit_rule
-        for kit_rule in RULES
-        if isinstance(model, kit_rule.kind) and not exempt & {*kit_rule.claims} and kit_rule.applies(model)
-    ]
-
-    for kit_rule in rules:
-        yield Check(kit_rule.name, kit_rule.doc, functools.partial(_checked, kit_rule.check, model.model_copy()))
+    for kit_rule in RULES:
+        if not isinstance(model, kit_rule.kind):
+            continue
+        exemptions = [as_exempt(model.exemptions[claim]) for claim in kit_rule.claims if claim in model.exemptions]
+        if not any(exemption.whole for exemption in exemptions) and kit_rule.applies(model):
+            run = functools.partial(_run, kit_rule, model.model_copy(), *exemptions[:1])
+            yield Check(kit_rule.name, kit_rule.doc, run)
 
 
-def _checked(check: Callable[[Any], None], model: Any) -> None:
+def _run(kit_rule: Rule, model: Any, exemption: Exempt | None = None) -> None:
     """Check a model on problems that have the conditions that it declares."""
     token = CHECKED.set({} if isinstance(model, Rig) else model.own_conditions())
     try:
-        check(model)
+        with exempt(exemption):
+            kit_rule.check(model)
     finally:
         CHECKED.reset(token)
 
@@ -145,7 +169,7 @@ def conformance(
 
     Notes
     -----
-    A claim in `Model.exemptions` becomes a skipped test with its reason.
+    A whole claim in `Model.exemptions` becomes a skipped test with its reason.
     """
     import pytest
 
@@ -157,11 +181,12 @@ def conformance(
         marks = [pytest.mark.xfail(strict=True, reason=expected[check.name])] if check.name in expected else []
         return pytest.param(check, id=check.name, marks=marks)
 
-    exempt = [
+    skipped = [
         pytest.param(None, id=claim, marks=pytest.mark.skip(reason=f"not claimed: {reason}"))
         for claim, reason in model.exemptions.items()
+        if as_exempt(reason).whole
     ]
-    return pytest.mark.parametrize("check", [*map(parameter, model_checks), *exempt])
+    return pytest.mark.parametrize("check", [*map(parameter, model_checks), *skipped])
 
 
 def validate_expected(subject: str, model: Model, model_checks: Iterable[Check], expected: Mapping[str, str]) -> None:

@@ -18,7 +18,7 @@ from wearlaw.contact.contact import LAW_VARIABLES, Contact, variable_at_nodes
 from wearlaw.contact.material import steel
 from wearlaw.contact.problem import Body
 from wearlaw.models.law import Law
-from wearlaw_kit.examples import failing, for_each
+from wearlaw_kit.examples import failing, for_each, left_out, part
 from wearlaw_kit.reduced import drawn, random_lines, wide_ellipses, without_spin
 from wearlaw_kit.rules import rule
 
@@ -55,6 +55,10 @@ LINES, AXES = (1, 3, 8), ((3, 1), (4, 3), (5, 4))
 """Numbers of nodes on a line, and along a strip and of strips."""
 
 
+CONTACTS = {"line": "", "strips": "on strips: ", "means": "on the means of an ellipse: "}
+"""The kinds of contact, by the name of the part in an exemption, and how messages begin."""
+
+
 def has_rates_at_nodes(law: Law) -> bool:
     """Return whether a law has a rate for each node, and no single value for the patch."""
     return bool(law.outcome.of != "patch")
@@ -82,15 +86,16 @@ def for_each_contact(law: Law, examine: Callable[[Contact], None], several: bool
     """
     of_law = () if several and law.outcome.of == "patch" else borders(law)
     if law.scale == "patch":
-        contacts = [("", on_line(of_law, 0, POINTS, 1))]
+        contacts = [("line", on_line(of_law, 0, POINTS, 1))]
     else:
-        contacts = [("", on_line(of_law, seed, POINTS, nodes)) for seed, nodes in enumerate(LINES)]
-        contacts += [("on strips: ", on_strips(of_law, seed, POINTS, axes)) for seed, axes in enumerate(AXES)]
+        contacts = [("line", on_line(of_law, seed, POINTS, nodes)) for seed, nodes in enumerate(LINES)]
+        contacts += [("strips", on_strips(of_law, seed, POINTS, axes)) for seed, axes in enumerate(AXES)]
     if not several:
-        contacts.append(("on the means of an ellipse: ", means_of(of_law, 0, POINTS)))
-    for where, contact in contacts:
-        with failing(where):
-            for_each(with_problem(contact, law), examine)
+        contacts.append(("means", means_of(of_law, 0, POINTS)))
+    for of_contacts, contact in contacts:
+        if not left_out(of_contacts):
+            with part(of_contacts), failing(CONTACTS[of_contacts]):
+                for_each(with_problem(contact, law), examine)
 
 
 def on_contacts(

@@ -73,7 +73,7 @@ def times(value: Quantity | float, factors: Array | float) -> Any:
 
 def values_of(problem: Any) -> dict[str, Any]:
     """Return the numbers that a problem holds, by name; zero for missing patches, and 1 or 0 for `exists`."""
-    fields = {field.name: getattr(problem, field.name) for field in dataclasses.fields(problem)}
+    fields = {field.name: getattr(problem, field.name) for field in dataclasses.fields(problem)} | problem.conditions
     if problem.strips is not None:
         fields |= {name: getattr(problem.strips, name.removesuffix(" of strips")) for name in OF_STRIPS}
     values = {

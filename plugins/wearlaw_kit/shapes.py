@@ -26,7 +26,7 @@ from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
 from wearlaw.contact.quadrature import join
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel, Stage
 from wearlaw.numerics.staged import staged
-from wearlaw_kit.examples import SAME, assert_close, failing, for_each
+from wearlaw_kit.examples import SAME, assert_close, bounded, failing, for_each, leeway, left_out, part
 from wearlaw_kit.reduced import (
     friction_limit,
     in_strips,
@@ -35,6 +35,7 @@ from wearlaw_kit.reduced import (
     random_lines,
     under_conditions,
     wide_ellipses,
+    without_spin,
 )
 from wearlaw_kit.rules import Applies, rule
 
@@ -71,6 +72,10 @@ class Shape:
         """Return a number of problems, from partial to full slip."""
         return under_conditions(self.cut(self.uncut(points)))
 
+    def without_spin(self) -> Shape:
+        """Return the shape of problems without spin."""
+        return replace(self, cut=lambda problem: without_spin(self.cut(problem)))
+
     @property
     def problems(self) -> Problem:
         """Many operating points, from nearly full stick to full slip."""
@@ -101,10 +106,13 @@ def forces_alone(model: ContactModel, problem: Problem) -> CreepForces:
 
 
 def error_of_sums(model: ContactModel, problem: Problem) -> float:
-    """Return the accuracy that the model declares, or rounding if one node holds the means of an ellipse."""
+    """Return the accuracy that the model declares, or rounding if one node holds the means of an ellipse.
+
+    An exemption may allow more.
+    """
     if problem.geometry == "line":
-        return model.accuracy
-    return SAME if model.scale == "patch" else model.elliptic_accuracy
+        return max(model.accuracy, leeway())
+    return max(SAME if model.scale == "patch" else model.elliptic_accuracy, leeway())
 
 
 def error_of_force(model: ContactModel, problem: Problem) -> float:
@@ -115,7 +123,7 @@ def error_of_force(model: ContactModel, problem: Problem) -> float:
 
 def error_of_traction(model: ContactModel, problem: Problem) -> float:
     """Return rounding, or the error of the force of which the traction is the mean."""
-    return error_of_force(model, problem) if model.scale == "patch" else SAME
+    return error_of_force(model, problem) if model.scale == "patch" else max(SAME, leeway())
 
 
 def solutions(model: ContactModel, problem: Problem) -> list[Contact]:
@@ -142,7 +150,10 @@ def sizes(problem: Problem, forces: CreepForces) -> dict[str, Array]:
 def assert_same_forces(problem: Problem, actual: CreepForces, due: CreepForces, message: str, error: float) -> None:
     """Assert that forces and moment agree to a share of their sizes."""
     for name, size in sizes(problem, due).items():
-        assert_close(getattr(actual, name), getattr(due, name), f"{WORDS[name]} {message}", 0.0, error * size)
+        if not left_out(name):
+            with part(name):
+                allowed = max(error, leeway()) * size
+                assert_close(getattr(actual, name), getattr(due, name), f"{WORDS[name]} {message}", 0.0, allowed)
 
 
 def of_model(model: ContactModel, points: int) -> list[tuple[ContactModel, Problem]]:
@@ -157,7 +168,12 @@ INSIDE: dict[Geometry, str] = {"line": "exact", "ellipse": "fastsim", "strips": 
 def of_stage(stage: Stage, points: int) -> list[tuple[ContactModel, Problem]]:
     """Return a stage around contact models of wearlaw, each with random problems of a shape that the model solves."""
     inside = {shape: loader.contact_model(INSIDE[shape.geometry]) for shape in SHAPES}
-    return [(staged(inside[shape], (stage,)), with_bodies(shape.draw(points))) for shape in SHAPES]
+    return [(staged(inside[shape], (stage,)), with_bodies(shape.draw(points))) for shape in kept_shapes()]
+
+
+def kept_shapes() -> list[Shape]:
+    """Return the shapes from which the model is not exempt."""
+    return [shape for shape in SHAPES if not left_out(shape.geometry)]
 
 
 def with_bodies(problem: Problem) -> Problem:
@@ -183,8 +199,14 @@ def on_shapes(
         @functools.wraps(check)
         def on_all(model: ContactModel) -> None:
             for shape in solved(model):
-                with failing(shape.where):
-                    check(model, shape)
+                if left_out(shape.geometry):
+                    continue
+                with part(shape.geometry), failing(shape.where):
+                    if shape is not LINE and (left_out("spin") or bounded("spin")):
+                        check(model, shape.without_spin())
+                    if shape is LINE or not left_out("spin"):
+                        with part("spin"):
+                            check(model, shape)
 
         def applicable(model: ContactModel) -> bool:
             return bool(solved(model)) and applies(model)

@@ -6,6 +6,7 @@ A model is its configuration: a frozen pydantic record. Its fields carry units, 
 import inspect
 from abc import ABC
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, cast, is_typeddict
 
 import numpy as np
@@ -39,6 +40,40 @@ OF_READ_ONLY = (
     " mpa = pressure / 1e6 instead of mpa = pressure; mpa /= 1e6, or begin with pressure.copy()"
 )
 """Hint for a model that fails because it writes into an array that it was given."""
+
+
+@dataclass(frozen=True)
+class Exempt:
+    """An exemption from a part of a claim, or from a claim up to a bound; see `Model.exemptions`.
+
+    Attributes
+    ----------
+    reason : str
+        Why the model does not keep it.
+    only : str or tuple of str
+        The parts that it does not keep, such as "spin"; the check of the others stays. () for all of them.
+    upto : float or None
+        The largest relative deviation there, such as 0.1, which the check then allows. None for any.
+    """
+
+    reason: str
+    only: str | tuple[str, ...] = ()
+    upto: float | None = None
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The parts as a tuple."""
+        return (self.only,) if isinstance(self.only, str) else self.only
+
+    @property
+    def whole(self) -> bool:
+        """Whether the check of the claim is left out altogether."""
+        return not self.parts and self.upto is None
+
+    def __str__(self) -> str:
+        bound = "" if self.upto is None else f"up to {self.upto:.2g}"
+        scope = ", ".join(filter(None, (" and ".join(self.parts), bound)))
+        return f"{self.reason} ({scope})" if scope else self.reason
 
 
 class Model(Configuration, ABC):
@@ -104,8 +139,8 @@ class Model(Configuration, ABC):
         return shown
 
     @property
-    def exemptions(self) -> Mapping[Claim, str]:
-        """The invariants that this model does not keep, each with the reason."""
+    def exemptions(self) -> Mapping[Claim, str | Exempt]:
+        """The invariants that this model does not keep, each with the reason, or with an `Exempt` for a part of it."""
         return {}
 
     if not TYPE_CHECKING:  # checkers reject both by themselves

@@ -10,7 +10,7 @@ from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError
 from wearlaw.models.contact_model import ContactModel, Forces, Scale, Solve, Stage
-from wearlaw.models.model import Blame, Claim, fault
+from wearlaw.models.model import Blame, Claim, Exempt, fault
 from wearlaw.numerics.solving import Solver, check_problem
 
 
@@ -52,7 +52,7 @@ class Staged(ContactModel):
         return self.model.elliptic_accuracy
 
     @property
-    def exemptions(self) -> Mapping[Claim, str]:
+    def exemptions(self) -> Mapping[Claim, str | Exempt]:
         """Those of the model inside."""
         return self.model.exemptions
 

@@ -38,7 +38,7 @@ class Global(wl.ContactModel):
         return self.total_from.accuracy
 
     @property
-    def exemptions(self) -> Mapping[wl.Claim, str]:
+    def exemptions(self) -> Mapping[wl.Claim, str | wl.Exempt]:
         """The one cell slips at any creepage; other exemptions are those of the model that gives T."""
         stick = "the one cell slips as a whole, with a traction below its bound"
         kept = ("saturation", "initial_slope")

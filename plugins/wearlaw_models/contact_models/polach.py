@@ -70,15 +70,19 @@ class Polach(wl.CreepForceModel):
         return self
 
     @property
-    def exemptions(self) -> Mapping[wl.Claim, str]:
+    def exemptions(self) -> Mapping[wl.Claim, str | wl.Exempt]:
         """The force tends to μN without reaching it; reduction factors change the initial slope."""
-        exempt: dict[wl.Claim, str] = {
+        exempt: dict[wl.Claim, str | wl.Exempt] = {
             "stick": "the one node slips as a whole, with a traction below its bound",
-            "saturation": "the force tends to μN without reaching it",
+            # At 100 times the creepage of linear theory for μN, ε is 25π, and T/(μN) is 1 - 2/(π k_S ε) at the least.
+            "saturation": wl.Exempt("the force tends to μN without reaching it", upto=0.0082 / self.slip_reduction),
         }
         if self.slip_reduction < 1.0:
-            exempt["initial_slope"] = "the reduction factors lower it to (k_A + k_S)/2 of Kalker's"
-            exempt["traction_bound"] = "the part of the spin is not reduced, and can pass μN on a long patch"
+            lower = 1.0 - 0.5 * (self.adhesion_reduction + self.slip_reduction)
+            reason = "the reduction factors lower it to (k_A + k_S)/2 of Kalker's"
+            exempt["initial_slope"] = wl.Exempt(reason, upto=lower + 1e-3)
+            reason = "the part of the spin is not reduced, and can pass μN on a long patch"
+            exempt["traction_bound"] = wl.Exempt(reason, only="spin")
         return exempt
 
     def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:

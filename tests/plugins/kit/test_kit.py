@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
@@ -74,6 +75,45 @@ def test_an_exemption_leaves_out_the_checks_of_a_claim(claim: str) -> None:
     kept, left = ([check.name for check in checks(model)] for model in (Strips(), exempt(Strips, claim)))
     assert set(left) < set(kept)
     assert "no_node_gains_energy" in left
+
+
+class Soft(Strips):
+    """Initial slopes without spin are 20 % too low."""
+
+    exempt: ClassVar[dict[str, str | wl.Exempt]] = {}
+
+    @property
+    def exemptions(self) -> dict[str, str | wl.Exempt]:
+        return self.exempt
+
+    def at(self, problem: wl.Problem, shares: Any = None, widths: Any = None) -> wl.Contact:
+        creepages = 0.8 * problem.longitudinal_creepage, 0.8 * problem.lateral_creepage, problem.spin
+        contact = super().at(problem.with_creepages(*creepages), shares, widths)
+        return contact.replaced(problem=problem)
+
+
+@pytest.mark.parametrize(
+    ("claim", "exemption", "passes"),
+    [
+        ("initial_slopes_are_kalkers", wl.Exempt("soft", upto=0.25), True),
+        ("initial_slopes_are_kalkers", wl.Exempt("soft", upto=0.1), False),
+        ("initial_slopes_are_kalkers", wl.Exempt("soft", only=("longitudinal", "lateral")), True),
+        ("initial_slopes_are_kalkers", wl.Exempt("soft", only="longitudinal"), False),
+        ("initial_slopes_are_kalkers", wl.Exempt("soft", only="spin"), False),
+        ("initial_slopes_are_kalkers", wl.Exempt("soft", only="spin", upto=0.3), False),
+        ("initial_slopes_are_kalkers", wl.Exempt("soft", only="ellipse"), True),
+        ("exemptions_are_claims", wl.Exempt("soft", only="spinn"), False),
+        ("exemptions_are_claims", wl.Exempt("soft", upto=-0.1), False),
+        ("exemptions_are_claims", wl.Exempt(" ", only="spin"), False),
+    ],
+)
+def test_an_exemption_of_a_part_or_up_to_a_bound_leaves_the_rest(
+    claim: str, exemption: wl.Exempt, passes: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Soft, "exempt", {"initial_slope": exemption})
+    check = {check.name: check for check in checks(Soft())}[claim]
+    with contextlib.nullcontext() if passes else pytest.raises(AssertionError):
+        check()
 
 
 @pytest.mark.parametrize(

@@ -78,15 +78,15 @@ class Fastsim(wl.LineContactModel):
     as the program CONTACT does, for comparisons with it."""
 
     @property
-    def exemptions(self) -> Mapping[wl.Claim, str]:
+    def exemptions(self) -> Mapping[wl.Claim, str | wl.Exempt]:
         """The elliptic bound never saturates; other flexibilities have another initial slope; few strips are coarse."""
-        exempt: dict[wl.Claim, str] = {}
+        exempt: dict[wl.Claim, str | wl.Exempt] = {}
         if self.bound == "elliptic":
             exempt["saturation"] = "the bound rises infinitely steeply at the leading edge, which always sticks"
         if self.flexibility == "kalker":
-            exempt["initial_slope"] = "the flexibility is that of a long ellipse"
-        if self.interpolation == "contact":
-            exempt["initial_slope"] = "between the rows of Kalker's table long patches differ"
+            exempt["initial_slope"] = wl.Exempt("the flexibility is that of a long ellipse", only="line")
+        elif self.interpolation == "contact":
+            exempt["initial_slope"] = wl.Exempt("between the rows of Kalker's table long patches differ", upto=0.17)
         if self.elliptic_accuracy > 0.1:
             exempt["accuracy"] = f"{self.strips} strips give a first idea of an ellipse"
         return exempt

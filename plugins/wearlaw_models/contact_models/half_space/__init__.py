@@ -70,14 +70,14 @@ class HalfSpace(wl.ContactModel):
     """Coefficient of the exponential fall, B [s/m]; Polach's for dry rails by default."""
 
     @property
-    def exemptions(self) -> Mapping[wl.Claim, str]:
+    def exemptions(self) -> Mapping[wl.Claim, str | wl.Exempt]:
         """Elements have edges of their own, errors of first order, and friction may fall with the speed."""
-        exempt: dict[wl.Claim, str] = {
+        exempt: dict[wl.Claim, str | wl.Exempt] = {
             "pressure": "it carries the load on elements that do not follow the edge",
             "strips_have_their_widths": "strips end at whole elements",
             "energy_balance": "a row that sticks to its end loses the slip in a part of its last element",
             "leading_edge": "an element at the jagged edge, with hardly any pressure, slips before others stick",
-            "initial_slope": "on 30 cells forces are up to 4 % too high, and 10 % by spin; the error is of first order",
+            "initial_slope": wl.Exempt("elements have an error of first order", upto=4.0 / self.cells),
         }
         if self.elliptic_accuracy > 0.1:
             exempt["accuracy"] = f"{self.cells} cells give a first idea of an ellipse"

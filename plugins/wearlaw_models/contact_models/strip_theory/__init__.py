@@ -52,9 +52,10 @@ class StripTheory(wl.ContactModel):
     """How the model reads the table of Kalker's coefficients, as in `wl.kalker.coefficients`."""
 
     @property
-    def exemptions(self) -> Mapping[wl.Claim, str]:
+    def exemptions(self) -> Mapping[wl.Claim, str | wl.Exempt]:
         """The slope of Fy with spin is not Kalker's; few strips are coarse."""
-        exempt = {"initial_slope": "strips have stiffnesses for the creepages, and none for the spin"}
+        reason = "strips have stiffnesses for the creepages, and none for the spin"
+        exempt: dict[wl.Claim, str | wl.Exempt] = {"initial_slope": wl.Exempt(reason, only="spin")}
         if self.elliptic_accuracy > 0.1:
             exempt["accuracy"] = f"{self.strips} strips give a first idea of an ellipse"
         return exempt
