@@ -48,16 +48,7 @@ from wearlaw.errors import (
 from wearlaw.fields import ContactModelField, MaterialField, WearLawField, read_law
 from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
 from wearlaw.kernels import accelerate, accelerated, compiled_loop
-from wearlaw.loader import (
-    contact_model,
-    installed,
-    law,
-    material,
-    patch_mean,
-    rig,
-    stage,
-    wear_law,
-)
+from wearlaw.loader import contact_model, installed, law, material, patch_mean, rig, stage, use, wear_law
 from wearlaw.models.contact_model import (
     ContactModel,
     CreepForceModel,
@@ -191,6 +182,7 @@ __all__ = [
     "shown",
     "stage",
     "steel",
+    "use",
     "wear_law",
 ]
 __all__ += _late.__all__

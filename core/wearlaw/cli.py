@@ -29,6 +29,10 @@ def commands() -> dict[str, Command]:
     return dict(sorted((from_plugins | {command.name: command for command in OWN}).items()))
 
 
+PLUGIN = "--plugin"
+"""The option of all commands that uses a file as a plugin."""
+
+
 class Stopped(click.ClickException):
     """The line that an interrupted command prints."""
 
@@ -47,7 +51,9 @@ class _Commands(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         own = {command.name: command for command in OWN}  # which tell what failed to load in their own way
-        asked = own.get(cmd_name) or commands().get(cmd_name)
+        asked = own.get(cmd_name)
+        if asked is None and cmd_name in loader.discovered()["command"]:
+            asked = loader.discovered().find("command", cmd_name)
         if asked is None:
             hint = did_you_mean(cmd_name, commands())
             raise click.UsageError(
@@ -68,6 +74,15 @@ class _Commands(click.Group):
         with formatter.section("Commands"):
             formatter.write_dl([(name, command.help) for name, command in commands().items()])
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Use the files of `--plugin`, which may stand anywhere, before anything is looked up."""
+        for place in [place for place, arg in enumerate(args) if arg == PLUGIN][::-1]:
+            if place + 1 == len(args):
+                raise click.UsageError(f"{PLUGIN} needs a file", ctx)
+            args[:0] = [f"{PLUGIN}={args.pop(place + 1)}"]
+            del args[place + 1]
+        return super().parse_args(ctx, args)
+
     def invoke(self, ctx: click.Context) -> Any:
         before = warnings.formatwarning  # it shows the place in the code, which helps nobody at a prompt
         warnings.formatwarning = lambda message, category, *_, **__: f"{category.__name__}: {message}\n"
@@ -81,8 +96,19 @@ class _Commands(click.Group):
             warnings.formatwarning = before
 
 
+def _use(ctx: click.Context, _: click.Parameter, files: tuple[str, ...]) -> None:
+    """Use files as plugins."""
+    for file in files:
+        try:
+            loader.use(file)
+        except WearlawError as error:
+            raise click.UsageError(str(error), ctx) from None
+
+
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="wearlaw")
+@click.option(PLUGIN, "plugins", multiple=True, metavar="FILE", is_eager=True, callback=_use, expose_value=False,
+              help="Use a Python file as a plugin, as wl.use does; may stand after the command, too.")  # fmt: skip
 def main() -> None:
     """Predict rolling-contact wear of wheels and rails.
 

@@ -65,7 +65,7 @@ def specification(model: Model) -> dict[str, Any]:
     known = known_name(model)
     if known is not None and known in loader.installed("parameter set") and loader.wear_law(known, **fields) == model:
         return {key: known, **fields}
-    return {key: model.name, **fields}
+    return {key: loader.discovered()[model.kind].name_of(model.name, type(model)), **fields}
 
 
 def _maker(look_up: Callable[..., Model]) -> BeforeValidator:

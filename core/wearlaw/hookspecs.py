@@ -22,7 +22,7 @@ INTERFACE_VERSION = 4
 """Version of the interface that a plugin can rely on: these hooks and the public names of `wearlaw`.
 
 It rises when a change could break a working plugin. wearlaw loads a plugin module that sets ``wearlaw_interface = N``
-only if its own version of the interface is N.
+only if its own version of the interface is N, or one of several as in ``wearlaw_interface = (4, 5)``.
 """
 
 hookspec = pluggy.HookspecMarker(PROJECT)

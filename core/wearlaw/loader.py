@@ -1,18 +1,24 @@
 """Discovery of plugins and look-up of models by name.
 
 Each entry point is loaded and called alone. A broken plugin is therefore left out with a warning that names it, and all
-others go on working. If two models have the same name, an error names both distributions.
+others go on working. A name that wearlaw ships means the shipped thing. If two other distributions have a thing of one
+name, ``distribution:name`` tells them apart.
 """
 
 from __future__ import annotations
 
+import hashlib
 import inspect
+import os
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from importlib import import_module
 from importlib.metadata import EntryPoint, distributions
 from itertools import chain
+from pathlib import Path
 from threading import RLock
 from typing import Any, NamedTuple
 
@@ -21,13 +27,16 @@ import pluggy
 from wearlaw import hookspecs
 from wearlaw.configuration import known_as
 from wearlaw.contact.material import Material
-from wearlaw.errors import PluginWarning, UnknownModelError, described, did_you_mean, shown, warn
+from wearlaw.errors import InputError, PluginWarning, UnknownModelError, described, did_you_mean, shown, warn
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law, WearLaw
 from wearlaw.models.model import Model
 
 MODELS = ("rig", "contact model", "stage", "wear law", "law", "reader")
 """The kinds of models."""
+
+SWITCH = "WEARLAW_PLUGINS"
+"""The environment variable that leaves distributions out, as in WEARLAW_PLUGINS=-wearlaw-outside."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +46,11 @@ class Origin:
     entry_point: str
     distribution: str
     version: str
+
+    @property
+    def shipped(self) -> bool:
+        """Whether it comes with wearlaw."""
+        return self.distribution == hookspecs.PROJECT
 
     def __str__(self) -> str:
         return f"{self.distribution} {self.version} (plugin '{self.entry_point}')"
@@ -76,24 +90,38 @@ class Shelf:
             raise TypeError(f"the name of a {self.kind} must be an identifier, got {shown(name)}")
         self.providers.setdefault(name, []).append((item, origin))
 
-    def __contains__(self, name: object) -> bool:
-        """Return whether an item has a name; a file may hold a list in its place."""
-        return isinstance(name, str) and name in self.providers
+    def named(self, name: object) -> list[tuple[Any, Origin]]:
+        """Return what goes by a name, wearlaw's first, or by "distribution:name"; nothing for what is no name."""
+        of, _, bare = name.rpartition(":") if isinstance(name, str) else ("", "", "")
+        found = sorted(self.providers.get(bare, []), key=lambda provided: not provided[1].shipped)
+        return [(item, origin) for item, origin in found if not of or normal(of) == normal(origin.distribution)]
 
-    def origin(self, name: str) -> Origin:
-        """Return the origin of the item with a name."""
-        return self.providers[name][0][1]
+    def __contains__(self, name: object) -> bool:
+        """Return whether an item has a name."""
+        return bool(self.named(name))
+
+    def origin(self, name: str, item: object = None) -> Origin:
+        """Return the origin of the item with a name; if `item` is given, it must be that item."""
+        return next(origin for provided, origin in self.named(name) if item is None or provided is item)
+
+    def name_of(self, name: str, item: object) -> str:
+        """Return the name by which an item is found: its own, or that with its distribution."""
+        found = self.named(name)
+        clear = len(found) < 2 or (found[0][1].shipped and found[0][0] is item)
+        return next((f"{origin.distribution}:{name}" for one, origin in found if one is item and not clear), name)
 
     def distribution(self, name: str, item: object = None) -> str:
         """Return distribution and version of the item with a name; if `item` is given, it must be that item."""
-        for provided, origin in self.providers.get(name, []):
-            if item is None or provided is item:
-                return f"{origin.distribution} {origin.version}"
-        return "not installed"
+        try:
+            origin = self.origin(name, item)
+        except StopIteration:
+            return "not installed"
+        return f"{origin.distribution} {origin.version}"
 
     def items(self) -> dict[str, Any]:
-        """Return all items by name, except items that share a name."""
-        return {name: found[0][0] for name, found in sorted(self.providers.items()) if len(found) == 1}
+        """Return all items by name; of items that share one, that of wearlaw or none."""
+        every = {name: self.named(name) for name in sorted(self.providers)}
+        return {name: found[0][0] for name, found in every.items() if len(found) == 1 or found[0][1].shipped}
 
 
 class Installed:
@@ -124,18 +152,26 @@ class Installed:
         self.explanations: dict[str, str] = {}
         self.plugins: list[Origin] = []
         self.broken: list[Broken] = []
+        self._told: set[tuple[str, str]] = set()
 
     def __getitem__(self, kind: str) -> Shelf:
         return self.shelves[kind]
 
     def find(self, kind: str, name: str) -> Any:
-        """Return the item of a kind with a name, or raise an `UnknownModelError` that lists the installed names."""
-        found = self[kind].providers[name] if name in self[kind] else []
-        if len(found) == 1:
-            return found[0][0]
+        """Return the item of a kind with a name, or raise an `UnknownModelError` that lists the installed names.
+
+        A name that wearlaw shares with another distribution means wearlaw's, with one warning.
+        """
+        found = self[kind].named(name)
+        origins = " and ".join(str(origin) for _, origin in found)
+        apart = " or ".join(shown(f"{origin.distribution}:{name}") for _, origin in found if not origin.shipped)
+        if len(found) > 1 and not found[0][1].shipped:
+            raise UnknownModelError(f"{kind} {shown(name)} is provided more than once, by {origins}; write {apart}")
+        if len(found) > 1 and (kind, name) not in self._told:
+            self._told.add((kind, name))
+            warn(f"{kind} {shown(name)} is that of wearlaw; the other, of {found[1][1]}, is {apart}", PluginWarning)
         if found:
-            origins = " and ".join(str(origin) for _, origin in found)
-            raise UnknownModelError(f"{kind} {shown(name)} is provided more than once, by {origins}; remove one")
+            return found[0][0]
         raise UnknownModelError(self.unknown(kind, name, self[kind].items()))
 
     def unknown(self, kind: str, name: str, known: Iterable[str]) -> str:
@@ -174,7 +210,7 @@ def _discover(found: Installed) -> None:
     for entry_point, origin in _entry_points():
         found.plugins.append(origin)
         with _left_out_if_broken(found, origin):
-            hooks = _hooks(entry_point, origin)
+            hooks = _hooks(entry_point.load(), origin)
             _add_models(hooks, origin, found)
             loaded.append((hooks, origin))
     for hooks, origin in loaded:
@@ -199,22 +235,62 @@ def _left_out_if_broken(found: Installed, origin: Origin) -> Iterator[None]:
 def _entry_points() -> list[tuple[EntryPoint, Origin]]:
     """Return the entry points of all installed distributions; of two copies of one, the first on `sys.path` counts."""
     found: dict[str, list[tuple[EntryPoint, Origin]]] = {}
+    left_out = {normal(name.removeprefix("-")) for name in re.split(r"[\s,]+", os.environ.get(SWITCH, ""))}
     for distribution in distributions():
         if f"[{hookspecs.PROJECT}]" in (distribution.read_text("entry_points.txt") or ""):  # parse only the few plugins
             metadata = distribution.metadata
             name, version = metadata["Name"], metadata["Version"]
             points = distribution.entry_points.select(group=hookspecs.PROJECT)
-            found.setdefault(
-                re.sub(r"[-_.]+", "-", name).lower(), [(point, Origin(point.name, name, version)) for point in points]
-            )
+            if normal(name) not in left_out:
+                found.setdefault(normal(name), [(point, Origin(point.name, name, version)) for point in points])
     return sorted(chain.from_iterable(found.values()), key=lambda pair: (pair[1].distribution, pair[1].entry_point))
 
 
-def _hooks(entry_point: EntryPoint, origin: Origin) -> pluggy.HookRelay:
+def normal(name: str) -> str:
+    """Return the name of a distribution as package indexes compare it."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def use(path: str | os.PathLike[str]) -> None:
+    """Use a Python file as a plugin in this process, as if it were installed.
+
+    Its models are found by their names, and as ``file:name`` such as "my_law.py:my_law". On the command line write
+    ``--plugin my_law.py``.
+
+    Parameters
+    ----------
+    path : str or path-like
+        A module with hooks, such as ``wearlaw_models``. Its folder goes to the end of `sys.path`, so that other
+        processes can import it.
+
+    Raises
+    ------
+    InputError
+        If it is no plugin, or another module of its name is loaded already.
+    """
+    file, found = Path(path).resolve(), discovered()
+    known = sys.modules.get(file.stem)
+    if known is not None and getattr(known, "__file__", None) != str(file):
+        raise InputError(f"plugin {shown(Path(path))}: there is another module called {file.stem!r}; rename the file")
+    if known is not None:
+        return
+    try:
+        origin = Origin(file.stem, file.name, hashlib.sha256(file.read_bytes()).hexdigest()[:8])
+        sys.path.append(str(file.parent))
+        hooks = _hooks(import_module(file.stem), origin)
+        _add_models(hooks, origin, found)
+        _add_kinds(hooks, found)
+        _add_named(hooks, origin, found)
+    except Exception as error:
+        sys.modules.pop(file.stem, None)
+        raise InputError(f"plugin {shown(Path(path))}: cannot be used: {described(error)}") from error
+    found.plugins.append(origin)
+
+
+def _hooks(plugin: Any, origin: Origin) -> pluggy.HookRelay:
     """Return the hooks of a plugin alone, or raise an error if it is broken."""
-    plugin = entry_point.load()
     needed = getattr(plugin, "wearlaw_interface", hookspecs.INTERFACE_VERSION)
-    if needed != hookspecs.INTERFACE_VERSION:
+    if hookspecs.INTERFACE_VERSION not in (needed if isinstance(needed, range | tuple) else (needed,)):
         raise TypeError(
             f"it is built for version {shown(needed)} of the plugin interface, but this wearlaw has version"
             f" {hookspecs.INTERFACE_VERSION}; upgrade the older of the two"

@@ -78,7 +78,7 @@ def explain(name: str) -> str:
         law = read_law(name)
         return describe(type(law), f"{name}: parameters for", law)
     plugins = loader.discovered()
-    kinds = [kind for kind, shelf in plugins.shelves.items() if name in shelf.providers]
+    kinds = [kind for kind, shelf in plugins.shelves.items() if name in shelf]
     if not kinds:
         names = dict.fromkeys(entry for shelf in plugins.shelves.values() for entry in shelf.items())
         raise UnknownModelError(plugins.unknown("model, material, case, test set or section", name, names))
@@ -139,7 +139,7 @@ def describe(model: type[Model], head: str | None = None, law: Law | None = None
     if law is None:
         with suppress(InputError):  # some fields have no default
             default = model()
-    headline = f"{model.name}: a {model.kind} of {loader.discovered()[model.kind].origin(model.name)}"
+    headline = f"{model.name}: a {model.kind} of {loader.discovered()[model.kind].origin(model.name, model)}"
     lines = [*([head] if head else []), headline, "", inspect.getdoc(model) or ""]
     lines += [
         "",

@@ -141,11 +141,11 @@ def _installed(name: str) -> type[Model] | Law:
     installed = loader.discovered()
     kinds = ("wear law", "law", "contact model", "stage", "rig", "reader", "parameter set")
     for kind in kinds:
-        if name in installed[kind].providers:
+        if name in installed[kind]:
             model: type[Model] | Law = installed.find(kind, name)
             return model
     for kind, shelf in installed.shelves.items():
-        if name in shelf.providers:
+        if name in shelf:
             raise UnknownModelError(f"{shown(name)} is a {kind}, which has no checks; wearlaw show {name} explains it")
     raise UnknownModelError(
         installed.unknown("model", name, [model_name for kind in kinds for model_name in installed[kind].items()])

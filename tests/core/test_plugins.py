@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
 import textwrap
 import warnings
@@ -19,6 +20,21 @@ import wearlaw as wl
 from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw.cli import main  # private: the program in this process
+from wearlaw.fields import specification  # private: what case files hold
+from wearlaw_apps.output.commands import law_of  # private: laws on the command line
+
+COMMAND = """
+    import click
+    import wearlaw as wl
+
+    @click.command()
+    def command():
+        click.echo("{word}")
+
+    @wl.hookimpl
+    def wearlaw_commands():
+        return [wl.Command("{name}", __name__ + ":command", "A command of a test.")]
+"""
 
 BROKEN = {
     "import_that_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named"),
@@ -151,10 +167,102 @@ def test_one_name_of_two_distributions_is_an_error_that_names_both(install: Inst
         wl.wear_law("twin")
     assert str(error.value) == (
         "wear law 'twin' is provided more than once, by one_plugin 1.5 (plugin 'one_plugin')"
-        " and other_plugin 2.5 (plugin 'other_plugin'); remove one"
+        " and other_plugin 2.5 (plugin 'other_plugin'); write 'one_plugin:twin' or 'other_plugin:twin'"
     )
+    assert type(wl.wear_law("One-Plugin:twin")).__module__ == "one_plugin"
+    other = wl.wear_law("other_plugin:twin")
+    assert type(other).__module__ == "other_plugin"
+    assert specification(other) == {"model": "other_plugin:twin"}
     assert "twin" not in wl.installed("wear law")
     assert wl.wear_law("usfd").name == "usfd"
+
+
+def test_a_name_that_wearlaw_ships_means_the_shipped_thing_with_one_warning(install: Install) -> None:
+    install("usurper", LAW.format(name="kth"))
+    with pytest.warns(wl.PluginWarning, match=r"'kth' is that of wearlaw; the other, of usurper 1.0 .* 'usurper:kth'"):
+        shipped = wl.wear_law("kth")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert wl.wear_law("kth") == shipped
+        assert type(shipped).__module__ == type(wl.wear_law("wearlaw:kth")).__module__ == "wearlaw_models.laws.kth"
+        other = wl.wear_law("usurper:kth")
+        assert type(other).__module__ == "usurper"
+    for law in (shipped, other):  # the table in a file makes an equal law
+        table = specification(law)
+        assert wl.law(table.pop("model"), **table) == law
+    assert type(law_of("usurper:kth")) is type(other)
+    assert law_of("wearlaw:kth:body=rail") == law_of("kth:body=rail")
+    assert wl.installed("wear law")["kth"] is type(shipped)
+    shown = CliRunner().invoke(main, ["show", "usurper:kth"])
+    assert "kth: a wear law of usurper 1.0 (plugin 'usurper')" in shown.output
+    with pytest.raises(wl.UnknownModelError, match="no wear law is called 'nobody:kth'"):
+        wl.wear_law("nobody:kth")
+
+
+def test_a_command_that_wearlaw_ships_means_the_shipped_one(install: Install) -> None:
+    install("usurper", COMMAND.format(name="run", word="mine"))
+    with pytest.warns(wl.PluginWarning, match="command 'run' is that of wearlaw"):
+        assert "Run a study" in CliRunner().invoke(main, ["run", "--help"]).output
+    assert CliRunner().invoke(main, ["usurper:run"]).output == "mine\n"
+
+
+def test_a_command_of_two_distributions_is_an_error_that_names_both(install: Install) -> None:
+    for name in ("one_plugin", "other_plugin"):
+        install(name, COMMAND.format(name="greet", word=name))
+    refused = CliRunner().invoke(main, ["greet"])
+    assert refused.exit_code == 1
+    assert "command 'greet' is provided more than once" in refused.output
+    assert CliRunner().invoke(main, ["other_plugin:greet"]).output == "other_plugin\n"
+
+
+def test_a_distribution_can_be_left_out(install: Install, monkeypatch: pytest.MonkeyPatch) -> None:
+    install("one_plugin", LAW.format(name="outside"))
+    install("broken_plugin", "raise RuntimeError")
+    monkeypatch.setenv("WEARLAW_PLUGINS", "-One.Plugin, -broken-plugin")
+    assert set(wl.installed("wear law")) == FIRST_PARTY_LAWS
+    assert {origin.distribution for origin in loader.discovered().plugins} == {"wearlaw"}
+
+
+@pytest.mark.parametrize(("stated", "works"), [("4", True), ("(3, 4)", True), ("range(4, 7)", True), ("(5, 6)", False)])
+def test_a_plugin_states_the_interfaces_that_it_works_with(install: Install, stated: str, works: bool) -> None:
+    install("one_plugin", f"wearlaw_interface = {stated}\n" + textwrap.dedent(LAW.format(name="outside")))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", wl.PluginWarning)
+        assert ("outside" in wl.installed("wear law")) is works
+
+
+@pytest.mark.usefixtures("install")
+def test_a_file_is_a_plugin_for_one_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    file = tmp_path / "a_local_law.py"
+    file.write_text(textwrap.dedent(LAW.format(name="local")))
+    wl.use(file)
+    wl.use(str(file))  # a second time changes nothing
+    law = wl.wear_law("local")
+    assert str(loader.discovered()["wear law"].origin("local")).startswith("a_local_law.py ")
+    assert type(wl.wear_law("a_local_law.py:local")) is type(law)
+    assert pickle.loads(pickle.dumps(law)) == law
+    (tmp_path / "no_plugin.py").write_text("x = 1")
+    for wrong, message in (("no_plugin.py", "it implements no hook"), ("gone.py", "No such file")):
+        with pytest.raises(wl.InputError, match=f"plugin '.*{wrong}': cannot be used: .*{message}"):
+            wl.use(tmp_path / wrong)
+    (tmp_path / "textwrap.py").write_text("")
+    with pytest.raises(wl.InputError, match="there is another module called 'textwrap'; rename the file"):
+        wl.use(tmp_path / "textwrap.py")
+
+
+@pytest.mark.usefixtures("install")
+@pytest.mark.parametrize("before", [True, False])
+def test_a_command_uses_a_file_as_a_plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: bool) -> None:
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    file = tmp_path / f"a_command_{before}.py"
+    file.write_text(textwrap.dedent(LAW.format(name="commanded")))
+    option = ["--plugin", str(file)]
+    shown = CliRunner().invoke(main, [*option, "show", "commanded"] if before else ["show", "commanded", *option])
+    assert "commanded: a wear law of a_command_" in shown.output
+    missing = CliRunner().invoke(main, ["show", "usfd", "--plugin"])
+    assert missing.exit_code == 2
+    assert "--plugin needs a file" in missing.output
 
 
 def test_a_plugin_may_implement_a_hook_of_a_later_wearlaw_and_provide_nothing(install: Install) -> None:

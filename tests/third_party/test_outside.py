@@ -235,9 +235,10 @@ def test_beside_broken_distributions_the_others_go_on_working(
     assert_predicted(environment.run("-c", PREDICT, variables=troubles))
 
 
-def test_a_taken_name_is_refused_with_both_distributions(environment: Environment, troubles: dict[str, str]) -> None:
+def test_a_name_that_wearlaw_ships_means_the_shipped_law(environment: Environment, troubles: dict[str, str]) -> None:
     shown = environment.wearlaw("show", "usfd", variables=troubles)
-    assert shown.returncode == 1
-    assert "wear law 'usfd' is provided more than once" in shown.stderr
-    assert "usurper 9.9 (plugin 'usurper')" in shown.stderr
-    assert "wearlaw 0.1.0 (plugin 'usfd')" in shown.stderr
+    assert shown.returncode == 0
+    assert "usfd: a wear law of wearlaw" in shown.stdout
+    assert "wear law 'usfd' is that of wearlaw; the other, of usurper 9.9 (plugin 'usurper'), is 'usurper:usfd'" in (
+        shown.stderr
+    )

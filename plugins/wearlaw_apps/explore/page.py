@@ -15,6 +15,7 @@ import panel as pn
 from bokeh.models import CustomJS
 
 import wearlaw as wl
+from wearlaw import loader
 from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.prediction import SHOWN
@@ -288,8 +289,9 @@ def named(rig: str, chosen: Iterable[str] = ()) -> Subject:
     for name in chosen:
         read = wl.read_law if is_law_file(name) else wl.wear_law
         laws[read(name)] = f"wl.{read.__name__}({name!r})"
-    rig_type = wl.installed("rig").get(rig)
-    if rig_type is not None:
+    installed = loader.discovered()
+    if rig in installed["rig"]:
+        rig_type = installed.find("rig", rig)
         arguments = "".join(f", {name}={text!r}" for name, text in rig_type.example_fields.items())
         return Subject(
             wl.rig(rig, **rig_type.example_fields), "rig", f"rig = wl.rig({rig!r}{arguments})", own_laws=laws

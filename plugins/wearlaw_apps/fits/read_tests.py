@@ -64,7 +64,7 @@ def read_tests(
 def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
     """Return the text of a CSV file, or of shipped tests by their name."""
     plugins = loader.discovered()
-    if path_or_name in plugins["test set"].providers:
+    if path_or_name in plugins["test set"]:
         text: str = plugins.find("test set", str(path_or_name))
         return text
     path = Path(path_or_name)

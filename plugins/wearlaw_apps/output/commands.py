@@ -86,15 +86,23 @@ def value(text: str) -> str | float:
 
 
 def contact_model(text: str) -> ContactModel:
-    """Return the contact model of "NAME" or "NAME:FIELD=VALUE:..."."""
-    name, *settings = text.split(":")
-    return loader.contact_model(name, **values(text, tuple(settings)))
+    """Return the contact model of "NAME" or "NAME:FIELD=VALUE:...", where NAME may be "DISTRIBUTION:NAME"."""
+    name, settings = _parted(text)
+    return loader.contact_model(name, **values(text, settings))
 
 
 def stage(text: str) -> Stage:
     """Return the stage of "NAME" or "NAME:FIELD=VALUE:..."."""
-    name, *settings = text.split(":")
-    return loader.stage(name, **values(text, tuple(settings)))
+    name, settings = _parted(text)
+    return loader.stage(name, **values(text, settings))
+
+
+def _parted(text: str) -> tuple[str, tuple[str, ...]]:
+    """Return the name in a text such as "NAME:FIELD=VALUE", and the parts that set fields, which have a "="."""
+    name, *settings = re.split(r":(?![\\/])", text)  # not within "C:/law.toml"
+    while settings and "=" not in settings[0]:
+        name = f"{name}:{settings.pop(0)}"
+    return name, tuple(settings)
 
 
 def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
@@ -107,8 +115,8 @@ def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
     fixed : mapping of str to str or float, optional
         Further fields.
     """
-    name, *settings = re.split(r":(?![\\/])", text)  # not within "C:/law.toml"
-    fields = {**values(text, tuple(settings)), **(fixed or {})}
+    name, settings = _parted(text)
+    fields = {**values(text, settings), **(fixed or {})}
     if is_law_file(name):
         return read_law(name).model_copy(update=fields)
     try:
@@ -122,7 +130,8 @@ def law_of(text: str, fixed: Mapping[str, str | float] | None = None) -> Law:
 def _form(name: str, fields: Mapping[str, str | float]) -> str:
     """Return a law with its required fields, and those with an example, as it stands on the command line."""
     parts = [name]
-    for field, about in {**loader.installed("wear law"), **loader.installed("law")}[name].model_fields.items():
+    kind = "wear law" if name in loader.discovered()["wear law"] else "law"
+    for field, about in loader.discovered().find(kind, name).model_fields.items():
         if field in fields or about.is_required() or about.examples:
             shown = fields.get(field, (about.examples or ["VALUE"])[0])
             parts.append(f'{field}="{shown}"' if " " in str(shown) else f"{field}={shown}")

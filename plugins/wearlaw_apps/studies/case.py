@@ -294,7 +294,7 @@ def case_text(name_or_path: str) -> str:
     """
     plugins = loader.discovered()
     cases = plugins["case"].items()
-    if name_or_path in plugins["case"].providers:
+    if name_or_path in plugins["case"]:
         text: str = plugins.find("case", name_or_path)
         return text
     try:
@@ -446,7 +446,7 @@ def load_case(name_or_path: str) -> Case:
     except InputError as error:
         raise CaseError(f"case {shown(Path(name_or_path))} {error}") from None
     try:
-        if name_or_path in loader.discovered()["case"].providers:
+        if name_or_path in loader.discovered()["case"]:
             return known_as(name_or_path, Case(**fields))
         with reading(name_or_path):
             return Case(**fields)

@@ -43,7 +43,7 @@ class MeasuredTests(Configuration):
     @field_validator("tests")
     @classmethod
     def _beside(cls, tests: str) -> str:
-        return tests if tests in loader.discovered()["test set"].providers else str(beside(tests))
+        return tests if tests in loader.discovered()["test set"] else str(beside(tests))
 
     @model_validator(mode="after")
     def _readable(self) -> MeasuredTests:
@@ -64,7 +64,7 @@ class MeasuredTests(Configuration):
     @property
     def shipped(self) -> bool:
         """Whether a plugin ships the tests, rather than a file holding them."""
-        return self.tests in loader.discovered()["test set"].providers
+        return self.tests in loader.discovered()["test set"]
 
 
 def known_variables(tests: WearTests) -> tuple[str, ...]:

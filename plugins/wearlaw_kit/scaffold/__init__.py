@@ -85,7 +85,7 @@ def _holders(name: str) -> Iterator[str]:
     """Yield what already has a name, where a look-up or an entry point would confuse the two."""
     installed = loader.discovered()
     for kind in ("wear law", "contact model", "rig", "stage", "law", "parameter set"):
-        if name in installed[kind].providers:
+        if name in installed[kind]:
             yield f"the {kind} of {installed[kind].origin(name)}"
     for origin in installed.plugins:
         if origin.entry_point == name:
