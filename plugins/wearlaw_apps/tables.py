@@ -9,12 +9,13 @@
 from __future__ import annotations
 
 import csv
+import inspect
 import io
 import itertools
 import os
 import re
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +23,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
 
 import numpy as np
 
+from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.errors import PROBLEMS, DataError, UnitError, did_you_mean, shown
 from wearlaw.late import needed_for
@@ -98,7 +100,11 @@ class Table:
         Lines above the header of a CSV file that begin with "#".
     header : int
         The line of the header of a CSV file, from 1.
+    on_disk : bool
+        Whether its values are in a file, and not in memory.
     """
+
+    on_disk = False
 
     def __init__(self, label: str, heads: Iterable[str] = ()) -> None:
         self.label = label
@@ -334,6 +340,8 @@ def open_table(source: Any, *, sep: str | None = None, decimal: str = ".", comme
         path, label = Path(source), f"table {shown(Path(source))}"
         if path.suffix.lower() == ".xlsx":
             return CsvTable(label, sheets.text_of(path, label), "\t", ".", comment)
+        if reader := dict(loader.installed("file reader")).get(path.suffix[1:]):
+            return open_table(reader(path))
         return CsvTable(label, path, sep, decimal, comment)
     if hasattr(source, "read"):
         return CsvTable(f"table '{getattr(source, 'name', 'text')}'", source.read().encode(), sep, decimal, comment)
@@ -343,6 +351,12 @@ def open_table(source: Any, *, sep: str | None = None, decimal: str = ".", comme
     if pandas is not None and isinstance(source, pandas.DataFrame):
         return FrameTable(source)
     raise DataError(f"table: must be a path, a pandas.DataFrame or an xarray.Dataset, got {shown(source)}")
+
+
+def explain_reader(name: str, reader: Callable[..., Any]) -> Iterator[str]:
+    """Yield the lines of `wearlaw show` for a reader of files."""
+    yield inspect.getdoc(reader) or ""
+    yield f"It reads files that end in .{name}, in wl.read_profile or wl.sweep."
 
 
 class FrameTable(Table):
@@ -379,12 +393,13 @@ class CsvTable(Table):
         if decimal not in (".", ","):
             raise DataError(f'decimal: must be "." or ",", got {decimal!r}')
         self._source, self.decimal = source, decimal
+        self.on_disk = isinstance(source, Path)
         self._skip, header, units = 0, "", ""
         with self._opened() as file:
             head = [file.readline() for _ in range(HEAD_LINES)]
             self._of_blocks = _begins_blocks(head)
             if self._of_blocks:
-                self._source, head, sep = _joined(label, [*head, *file]).encode(), [], "\t"
+                self._source, sep, self.on_disk = _joined(label, [*head, *file]).encode(), "\t", False
         with self._opened() as file:
             while header := file.readline():
                 if "".join(header.split()).strip(",;") and not header.lstrip('" ').startswith(comment):

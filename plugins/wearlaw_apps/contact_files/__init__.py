@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -235,6 +235,13 @@ class _Fields:
 def wearlaw_models() -> Iterable[type[wl.Reader]]:
     """Return the reader."""
     return [ContactMat]
+
+
+@wl.hookimpl
+def wearlaw_resources() -> dict[str, dict[str, wl.ResourceKind]]:
+    """Return the kind of readers of profiles and tables, each by the ending of its files."""
+    reader = wl.ResourceKind(Callable, "wearlaw_apps.tables:explain_reader")  # type: ignore[arg-type]
+    return {"kind": {"file reader": reader}}
 
 
 @wl.hookimpl

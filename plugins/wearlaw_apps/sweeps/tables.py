@@ -115,7 +115,7 @@ def operating_points(
             {dim: rows for dim, rows in table.labels.items() if dim == table.dim}
             | {dim: (dim, np.array(some, dtype=object)) for dim, some in labels.items()},
             kept={name: axes[name] for name in kept},
-            file=table if file else Table(table.label),
+            file=table if table.on_disk else Table(table.label),
             numbers=range(axes[next(iter(varying))].values.shape[0]),
         )
         if summed and keep is not None:

@@ -11,6 +11,7 @@ import xarray as xr
 
 import wearlaw as wl
 from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, deadly, ending, predictor
+from tests.plugins.sweeps.test_sweep_tables import BY_PATTERN, FRICTION, wheels
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -38,6 +39,17 @@ def test_a_cluster_whose_worker_is_killed_in_mid_run_gives_the_same_bytes(client
     assert not before <= set(client.nthreads())
     stored = xr.open_zarr(tmp_path / "cluster.zarr", chunks=None, consolidated=False)
     xr.testing.assert_identical(stored.load(), wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
+
+
+def test_a_run_of_several_wheels_is_the_same_after_a_worker_has_died(client: Any, tmp_path: Path) -> None:
+    run: Any = {"table": wheels(tmp_path), "columns": BY_PATTERN, **FRICTION, "outputs": ["wear_rate"]}
+    before = set(client.nthreads())
+    predict = deadly(tmp_path / "marker")
+    wl.sweep(predict, **run, client=client, store=tmp_path / "cluster.zarr")
+    assert not before <= set(client.nthreads())
+    stored = xr.open_zarr(tmp_path / "cluster.zarr", chunks=None, consolidated=False).load()
+    assert stored.wear_rate.dims == ("row", "wheel", "contact")
+    assert stored.wear_rate.values.tobytes() == wl.sweep(predict, **run).wear_rate.values.tobytes()
 
 
 def test_a_cluster_can_also_hand_results_back(client: Any) -> None:

@@ -302,7 +302,7 @@ def wheels(folder: Path, **changes: Any) -> Path:
         values[f"W{wheel}.{contact} N"] = (1.0 + 0.1 * number) * LOAD
         values[f"c{contact} xi of {wheel}"] = -CREEPAGE / (1.0 + number)
     table = pd.DataFrame(values | changes)
-    units = {name: "N" if name.endswith("N") else "s" if name == "Time" else "-" for name in table}
+    units = {name: "N" if str(name).endswith("N") else "s" if name == "Time" else "-" for name in table}
     pd.concat([pd.DataFrame([units]), table.map("{:.17g}".format)]).to_csv(folder / "wheels.csv", index=False)
     return folder / "wheels.csv"
 
@@ -310,8 +310,8 @@ def wheels(folder: Path, **changes: Any) -> Path:
 @pytest.mark.usefixtures("small_blocks")
 @pytest.mark.parametrize("where", ["memory", "store"])
 def test_a_pattern_names_the_columns_of_all_wheels_and_contacts(tmp_path: Path, where: str) -> None:
-    given = {"columns": BY_PATTERN, "keep": KEEP, **FRICTION, "outputs": ["wear_rate"]}
-    more = {"store": tmp_path / "wheels.zarr", "workers": 2} if where == "store" else {}
+    given: Any = {"columns": BY_PATTERN, "keep": KEEP, **FRICTION, "outputs": ["wear_rate"]}
+    more: Any = {"store": tmp_path / "wheels.zarr", "workers": 2} if where == "store" else {}
     found = wl.sweep(predictor(), wheels(tmp_path), **given, **more)
     assert dict(found.sizes) == {"row": ROWS, "wheel": 2, "contact": 2}
     assert found.time.dims == ("row",)

@@ -158,7 +158,7 @@ def test_all_wrong_cells_are_named() -> None:
 
 @pytest.mark.parametrize("inline", [False, True])
 def test_a_spreadsheet_is_a_table_with_the_rows_of_its_sheet(tmp_path: Path, inline: bool) -> None:
-    rows = [["# made up"], ["Fz [kN]", None, "slip"], [7.1, None, 0.5], [], [7.25, "a & b", -1e-3]]
+    rows: list[list[object]] = [["# made up"], ["Fz [kN]", None, "slip"], [7.1, None, 0.5], [], [7.25, "a & b", -1e-3]]
     table = wl.read_table(xlsx(tmp_path / "run.xlsx", rows, [], inline=inline), {"force": "Fz", "slip": "-slip [%]"})
     assert table.numbers("force").tolist() == [7.1, 7.25]
     assert table.numbers("slip").tolist() == [-0.5, 1e-3]

@@ -11,10 +11,10 @@ import math
 import os
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 from uuid import uuid4
 
 import numpy as np
@@ -99,13 +99,16 @@ def points_of(
     """
     ending = path.suffix.lower()
     by_ending: Kind | None = KINDS.get(ending)
-    text = "" if ending == SPREADSHEET else _text_of(path)
+    readers = {} if ending in (*KINDS, *COLUMNS, ".mpt") else dict(wl.installed("file reader"))
+    text = "" if ending == SPREADSHEET or ending[1:] in readers else _text_of(path)
     lines = text.splitlines()
     for number, line in enumerate(lines[:READ], 1):
         for pattern, reason in REFUSED.items():
             if re.match(pattern, line):
                 raise FileError(f"line {number}: {wl.shown(line.strip()[:40])} {reason}")
-    if ending in SIMPACK or any(re.match(r"\s*spline\.begin", line) for line in lines):
+    if ending[1:] in readers:
+        points = _by_reader(readers[ending[1:]], path)
+    elif ending in SIMPACK or any(re.match(r"\s*spline\.begin", line) for line in lines):
         points = _simpack(lines, units)
     elif ending in MINIPROF or _is_miniprof(lines):
         points = _miniprof(lines, by_ending or kind, units, part)
@@ -126,6 +129,18 @@ def points_of(
         says = ", ".join(f"{source} says {value}" for source, value in told.items() if value)
         raise FileError(f"it is not clear whether it is a wheel or a rail: {says}")
     return points, sure
+
+
+def _by_reader(reader: Callable[[Path], Any], path: Path) -> Points:
+    """Return the points of the profile that a reader of a plugin returns."""
+    profile = reader(path)
+    try:
+        y, z = (1e-3 * value.m_as("mm") for value in profile.points)
+        return Points(y, z, None, np.arange(y.size), profile.kind)
+    except AttributeError:
+        raise FileError(
+            f"the reader of '{path.suffix}' returned a {type(profile).__name__}, not a wl.Profile"
+        ) from None
 
 
 def _text_of(path: Path) -> str:
