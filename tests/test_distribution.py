@@ -73,6 +73,16 @@ def test_the_core_and_the_kit_need_no_extra(code: str) -> None:
     assert done.returncode == 0, done.stderr
 
 
+def test_help_of_a_command_needs_no_extra_and_names_it() -> None:
+    code = (
+        f"import sys; sys.modules.update(dict.fromkeys({HEAVY}))\nfrom wearlaw.cli import main; main(['fit', '--help'])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Fit the parameters of a wear law to your tests." in done.stdout
+    assert 'install it with: python -m pip install "wearlaw[fits]"' in " ".join(done.stdout.split())
+
+
 @pytest.mark.parametrize(
     ("code", "needs"),
     [

@@ -63,7 +63,7 @@ class _Commands(click.Group):
         try:
             command: click.Command = load(module, function, f"wearlaw {cmd_name}")
         except MissingPackageError as error:
-            raise click.ClickException(str(error)) from error
+            return _Missing(cmd_name, help=asked.help, epilog=str(error))
         except Exception as error:
             of = loader.discovered()["command"].origin(cmd_name)
             message = f"command {shown(cmd_name)} of {of} cannot be loaded: {described(error)}"
@@ -103,6 +103,15 @@ def _use(ctx: click.Context, _: click.Parameter, files: tuple[str, ...]) -> None
             loader.use(file)
         except WearlawError as error:
             raise click.UsageError(str(error), ctx) from None
+
+
+class _Missing(click.Command):
+    """A command whose packages are not installed: its help says so, and an error if it is called."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        if not {*args} & {*ctx.help_option_names}:
+            raise click.ClickException(str(self.epilog))
+        return super().parse_args(ctx, ["--help"])
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -12,6 +12,7 @@ from typing import Any, TypeGuard
 
 import click
 import pint
+from click.shell_completion import CompletionItem
 
 from wearlaw import loader
 from wearlaw.configuration import Configuration, field_docstrings
@@ -31,6 +32,22 @@ from wearlaw.pipeline.pipeline import Rig
 from wearlaw.units.quantities import Q, from_si, text_of
 from wearlaw.units.registry import symbol
 from wearlaw.units.variables import UNITS
+
+LAWS = ("wear law", "law", "parameter set")
+"""Kinds of plugins that a law is named by."""
+
+
+def completed(*kinds: str, listed: bool = False) -> Callable[..., list[CompletionItem]]:
+    """Return what completes the names of some kinds of plugins in a shell, or paths; `listed` ones after a comma."""
+
+    def complete(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
+        before, comma, last = begun.rpartition(",") if listed else ("", "", begun)
+        plugins = loader.discovered()
+        names = {name for kind in kinds or plugins.shelves for name in plugins[kind].items() if name.startswith(last)}
+        items = [CompletionItem(f"{before}{comma}{name}") for name in sorted(names)]
+        return items or [CompletionItem(begun, type="file")]
+
+    return complete
 
 
 @click.command("plugins")
@@ -54,7 +71,7 @@ def list_plugins() -> None:
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=completed())
 def show(name: str) -> None:
     """Explain anything that `wearlaw plugins` lists, by its name, or a law by its file, such as fit/law.toml.
 

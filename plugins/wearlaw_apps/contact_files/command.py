@@ -13,19 +13,13 @@ from wearlaw.pipeline.prediction import Prediction
 from wearlaw.version import __version__
 from wearlaw_apps.contact_files.reading import read_contact
 from wearlaw_apps.contact_files.worn import POWER_OF_CREEPAGES, POWER_OF_SLIP, profile_tables, worn_figure, worn_table
-from wearlaw_apps.output.commands import (
-    fields,
-    folder_for,
-    law_of,
-    print_notes,
-    print_results,
-    print_table,
-)
+from wearlaw_apps.output.commands import answer, fields, folder_for, law_of, print_table
 from wearlaw_apps.output.curves import FigureFormat
 from wearlaw_apps.output.files import write_files, writes_results
 from wearlaw_apps.output.folder import results_folder
 from wearlaw_apps.output.labels import readable
 from wearlaw_apps.output.notes import Notes
+from wearlaw_apps.show import LAWS, completed
 
 MOST = 12
 """Most contacts that are printed."""
@@ -45,6 +39,7 @@ WEAR = "wear.json"
     required=True,
     multiple=True,
     metavar="LAW",
+    shell_complete=completed(*LAWS),
     help="Law: usfd, NAME:FIELD=VALUE:FIELD=VALUE or a TOML file; repeat it for other outcomes or bodies.",
 )
 @click.option("--reader", metavar="NAME", help="Reader of the files [default: the one that recognises them].")
@@ -101,9 +96,7 @@ def wear(
                 "notes": list(notes.texts),
             }
             names = write_files(fresh, WEAR, record, tables, [figure] if figure else [], figure_formats, latex)
-    print_notes(notes.texts)
-    _print(table)
-    print_results(folder, names)
+    answer(folder, names, notes.texts, lambda: _print(table), {"wear": table})
 
 
 def _labels(files: Sequence[str]) -> list[str]:

@@ -28,6 +28,7 @@ from wearlaw_apps.output.curves import BLACK, Map
 from wearlaw_apps.output.labels import in_words, label
 from wearlaw_apps.output.notes import Notes, caught_warnings
 from wearlaw_apps.output.pictures import fields_of, raster
+from wearlaw_apps.show import LAWS, completed
 from wearlaw_apps.studies.case import load_case
 from wearlaw_apps.studies.report.interactive import plotly_figure
 from wearlaw_apps.sweeps.evaluation import expect_pipeline
@@ -247,8 +248,9 @@ def explore(predict: Any, /, **conditions: Any) -> Any:
 
 
 @click.command("explore")
-@click.argument("rig", default="wheel_rail")
-@click.option("--law", "laws", metavar="LAW", multiple=True, help="Wear law to start with: its name or TOML file.")
+@click.argument("rig", default="wheel_rail", shell_complete=completed("rig", "case"))
+@click.option("--law", "laws", metavar="LAW", multiple=True, shell_complete=completed(*LAWS),
+              help="Wear law to start with: its name or TOML file.")  # fmt: skip
 @click.option("--set", "conditions", metavar="CONDITION=VALUE", multiple=True, help="Start value of a condition.")
 @click.option("--port", type=click.IntRange(0, 65535), default=0, help="Port of the page [default: a free one].")
 @click.option("--browser/--no-browser", default=True, help="Whether to open a browser.")

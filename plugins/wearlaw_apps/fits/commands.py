@@ -22,13 +22,12 @@ from wearlaw_apps.fits.read_tests import read_tests
 from wearlaw_apps.fits.result import Fit
 from wearlaw_apps.fits.wear_tests import WearTests
 from wearlaw_apps.output.commands import (
+    answer,
     contact_model,
     fields,
     folder_for,
     law_of,
     listed,
-    print_notes,
-    print_results,
     read_rig,
     stage,
     value,
@@ -38,6 +37,7 @@ from wearlaw_apps.output.curves import FigureFormat
 from wearlaw_apps.output.files import CommandT, write_files, writes_results
 from wearlaw_apps.output.folder import results_folder
 from wearlaw_apps.output.notes import Notes, caught_warnings
+from wearlaw_apps.show import LAWS, completed
 from wearlaw_apps.sweeps.progress import Bar
 
 FIT, COMPARISON, LAW = "fit.json", "comparison.json", "law.toml"
@@ -78,15 +78,27 @@ stages_option = click.option(
     "stages",
     metavar="STAGE",
     multiple=True,
+    shell_complete=completed("stage"),
     help="Stage around the contact model: patch_mean, or NAME:FIELD=VALUE; may be repeated.",
 )
 
 
 @click.command()
-@click.argument("tests")
-@click.option("--contact", required=True, metavar="MODEL", help="Contact model: exact, or NAME:FIELD=VALUE.")
+@click.argument("tests", shell_complete=completed("test set"))
+@click.option(
+    "--contact",
+    required=True,
+    metavar="MODEL",
+    shell_complete=completed("contact model"),
+    help="Contact model: exact, or NAME:FIELD=VALUE.",
+)
 @stages_option
-@click.option("--law", metavar="LAW", help="Law: usfd, NAME:FIELD=VALUE or a TOML file; none for traction.")
+@click.option(
+    "--law",
+    metavar="LAW",
+    shell_complete=completed(*LAWS),
+    help="Law: usfd, NAME:FIELD=VALUE or a TOML file; none for traction.",
+)
 @click.option(
     "--free",
     required=True,
@@ -156,9 +168,14 @@ def fit(
             fitted = fit_parameters(predict, measured, names, on_progress=bar, **settings)
         with notes.of("figure"):
             files = _write_fit(fitted, notes.texts, fresh, figure_formats, latex)
-    print_notes(notes.texts)
-    click.echo(repr(fitted))
-    print_results(folder, files)
+    record = {
+        "parameters": fitted.parameters,
+        "intervals": fitted.intervals,
+        "rms_residual": fitted.rms,
+        "aic": fitted.aic,
+        "lack_of_fit": [asdict(test) for test in fitted.lack_of_fit],
+    }
+    answer(folder, files, notes.texts, lambda: click.echo(repr(fitted)), record)
 
 
 def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | float]]:
@@ -184,10 +201,22 @@ def _note_fixed(law: Law, free: list[str], notes: Notes) -> None:
 
 
 @click.command()
-@click.argument("tests")
-@click.option("--contacts", required=True, metavar="MODELS", help="Contact models: global,exact or NAME:FIELD=VALUE.")
+@click.argument("tests", shell_complete=completed("test set"))
+@click.option(
+    "--contacts",
+    required=True,
+    metavar="MODELS",
+    shell_complete=completed("contact model", listed=True),
+    help="Contact models: global,exact or NAME:FIELD=VALUE.",
+)
 @stages_option
-@click.option("--laws", required=True, metavar="LAWS", help="Laws: usfd,kth or NAME:FIELD=VALUE, or TOML files.")
+@click.option(
+    "--laws",
+    required=True,
+    metavar="LAWS",
+    shell_complete=completed(*LAWS, listed=True),
+    help="Laws: usfd,kth or NAME:FIELD=VALUE, or TOML files.",
+)
 @click.option(
     "--free", metavar="LAW=FIELDS", multiple=True, help="Also fit this one of the laws, on every contact; repeatable."
 )
@@ -261,9 +290,8 @@ def compare(
             notes.add(note)
         with notes.of("figure"):
             files = _write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
-    print_notes(notes.texts)
-    click.echo(repr(comparison))
-    print_results(folder, files)
+    shown_ranking = {"ranking": comparison.table()}
+    answer(folder, files, notes.texts, lambda: click.echo(repr(comparison)), shown_ranking)
 
 
 def _freed(settings: tuple[str, ...], laws: Mapping[str, Law]) -> dict[str, list[str]]:

@@ -11,11 +11,12 @@ import pandas as pd
 
 import wearlaw as wl
 from wearlaw_apps.life.life import Life
-from wearlaw_apps.output.commands import folder_for, print_notes, print_results, value, values
+from wearlaw_apps.output.commands import answer, folder_for, value, values
 from wearlaw_apps.output.curves import FigureFormat
 from wearlaw_apps.output.files import write_files, writes_results
 from wearlaw_apps.output.folder import results_folder
 from wearlaw_apps.output.notes import Notes, caught_warnings
+from wearlaw_apps.show import completed
 from wearlaw_apps.studies.case import load_case
 
 LIFE = "life.json"
@@ -23,7 +24,7 @@ LIFE = "life.json"
 
 
 @click.command()
-@click.argument("case")
+@click.argument("case", shell_complete=completed("case"))
 @click.argument("line", type=click.Path(path_type=Path))
 @click.option("--over", required=True, metavar="DISTANCE", help='Distance, as in "100000 km"; passages for a rail.')
 @click.option("--sep", help="What separates the cells of LINE [default: semicolon, tab or comma].")
@@ -78,9 +79,8 @@ def life(
                   "notes_of_steps": result.notes}  # fmt: skip
         names = write_files(fresh, LIFE, record, _tables(result), [result.figure()], figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
-    print_notes([*map(str, resumed), *notes.texts])
-    click.echo(repr(result))
-    print_results(folder, names)
+    texts, found = [*map(str, resumed), *notes.texts], {"ended": result.ended, "life": result.table}
+    answer(folder, names, texts, lambda: click.echo(repr(result)), found)
 
 
 def _tables(life: Life) -> dict[str, pd.DataFrame]:

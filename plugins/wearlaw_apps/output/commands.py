@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import shutil
 import sys
@@ -11,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+import numpy as np
 
 from wearlaw import loader
 from wearlaw.configuration import Configuration
@@ -20,6 +23,7 @@ from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.text_files import read_toml
+from wearlaw.units.registry import symbol
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -154,15 +158,54 @@ def print_table(frame: pd.DataFrame) -> None:
     click.echo(frame.to_string(line_width=width, na_rep="", float_format=lambda number: f"{number + 0.0:.4g}") + "\n")
 
 
-def verbose(command: CommandT) -> CommandT:
-    """Add the option that `print_notes` obeys to a command."""
+def printing(command: CommandT) -> CommandT:
+    """Add the options that `answer` obeys to a command."""
 
-    def keep(context: click.Context, _: click.Parameter, value: bool) -> None:
-        context.meta["verbose"] = value
+    def keep(context: click.Context, option: click.Parameter, value: bool) -> None:
+        context.meta[str(option.name)] = value
 
-    return click.option("--verbose", is_flag=True, expose_value=False, callback=keep, help="Print whole notes.")(
-        command
-    )
+    for name, text in (
+        ("--json", "Print the results as JSON, numbers with their units."),
+        ("--quiet", "Print the results alone: no notes, no progress, no names of files."),
+        ("--verbose", "Print whole notes."),
+    ):
+        command = click.option(name, is_flag=True, expose_value=False, callback=keep, help=text)(command)
+    return command
+
+
+def answer(
+    folder: Path, names: Iterable[str], notes: Iterable[str], shown: Callable[[], None], record: Mapping[str, Any]
+) -> None:
+    """Print notes, results as `shown` prints them, and files; or as `--quiet` and `--json` ask, the record as JSON."""
+    asked, names = click.get_current_context().meta, list(names)
+    if asked.get("json"):
+        whole = {**record, "notes": list(notes), "files": [str(folder / name) for name in names]}
+        click.echo(json.dumps(_plain(whole), indent=2, ensure_ascii=False, allow_nan=False))
+        return
+    if not asked.get("quiet"):
+        print_notes(notes)
+    shown()
+    if not asked.get("quiet"):
+        for line in (f"Results in {folder}:", *(f"  {folder / name}" for name in names)):
+            click.echo(line)
+
+
+def _plain(value: Any) -> Any:
+    """Return a value for JSON: numbers with units, tables as columns, and null for what is missing."""
+    if hasattr(value, "columns"):
+        heads = {head: str(head).partition(" [") for head in value.columns}
+        return {name: {**({"unit": unit[:-1]} if unit else {}), "values": _plain(value[head].tolist())}
+                for head, (name, _, unit) in heads.items()}  # fmt: skip
+    if hasattr(value, "magnitude"):
+        return {"value": _plain(value.magnitude), "unit": symbol(value.units, "~C")}
+    if isinstance(value, Mapping):
+        return {str(name): _plain(part) for name, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    if isinstance(value, np.generic | np.ndarray):
+        return _plain(value.tolist())
+    missing = isinstance(value, float) and not math.isfinite(value)
+    return None if missing or type(value).__name__ == "NAType" else value
 
 
 def print_notes(notes: Iterable[str]) -> None:
@@ -176,9 +219,3 @@ def print_notes(notes: Iterable[str]) -> None:
         click.echo(text, err=True)
     if cut:
         click.echo("(--verbose prints whole notes)", err=True)
-
-
-def print_results(folder: Path, names: Iterable[str]) -> None:
-    """Print where the files of a folder of results are."""
-    for line in (f"Results in {folder}:", *(f"  {folder / name}" for name in names)):
-        click.echo(line)

@@ -11,7 +11,7 @@ import click
 import matplotlib as mpl
 import pandas as pd
 
-from wearlaw_apps.output.commands import verbose
+from wearlaw_apps.output.commands import printing
 from wearlaw_apps.output.curves import FigureData, FigureFormat
 from wearlaw_apps.output.drawing import draw
 from wearlaw_apps.output.spreadsheets import write_csv
@@ -67,7 +67,7 @@ def write_files(
 def writes_results(default: str) -> Callable[[CommandT], CommandT]:
     """Return what adds the options of a command that writes results and prints notes; `default` names their folder.
 
-    The arguments are `output`, `overwrite`, `figure_formats` and `latex`; `print_notes` obeys `--verbose`.
+    The arguments are `output`, `overwrite`, `figure_formats` and `latex`; `answer` obeys the others.
     """
     formats = click.option(
         "--figure-format",
@@ -83,4 +83,4 @@ def writes_results(default: str) -> Callable[[CommandT], CommandT]:
     replaced = "Replace the files of this command in that folder; others stay."
     overwrite = click.option("--overwrite", is_flag=True, help=replaced)
     latex = click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
-    return lambda command: output(overwrite(formats(latex(verbose(command)))))
+    return lambda command: output(overwrite(formats(latex(printing(command)))))

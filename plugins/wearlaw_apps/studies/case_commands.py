@@ -7,11 +7,12 @@ import json
 import click
 
 from wearlaw_apps.output.commands import echo_file
+from wearlaw_apps.show import completed
 from wearlaw_apps.studies.case import case_schema, case_text
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", shell_complete=completed("case"))
 def case(name: str) -> None:
     """Print a case file to start from.
 

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 import click
+import pandas as pd
 
 from wearlaw.cli import Stopped
 from wearlaw.errors import OutputError, shown
-from wearlaw_apps.output.commands import folder_for, print_notes, print_results, print_table
+from wearlaw_apps.output.commands import answer, folder_for, print_table
 from wearlaw_apps.output.curves import FigureFormat
 from wearlaw_apps.output.files import write_files, writes_results
 from wearlaw_apps.output.folder import results_folder
 from wearlaw_apps.output.notes import Notes, grouped
+from wearlaw_apps.show import completed
 from wearlaw_apps.studies.case import load_case, written
-from wearlaw_apps.studies.report.tables import summaries
+from wearlaw_apps.studies.report.tables import NamedTable, summaries
 from wearlaw_apps.studies.study import evaluations, provenance
 from wearlaw_apps.studies.study import run as run_case
 from wearlaw_apps.studies.uncertainty import uncertainty_of
@@ -29,7 +32,7 @@ UNCERTAINTY = "uncertainty.json"
 
 
 @click.command()
-@click.argument("case")
+@click.argument("case", shell_complete=completed("case"))
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
 @click.option("--resume", is_flag=True, help="Go on from the finished blocks of an interrupted run, in FOLDER.partial.")
 @click.option(
@@ -75,11 +78,23 @@ def run(
             raise Stopped(f"Stopped; finished blocks are in {shown(partial)}, and --resume goes on") from None
         raise
     _discard(partial)
-    print_notes(grouped([*study.notes, *notes.texts]))
-    for table in summaries(study):
+    tables = summaries(study)
+    record = {"title": loaded.title, "tables": {table.name: _by_column(table.frame) for table in tables}}
+    answer(folder, names, grouped([*study.notes, *notes.texts]), lambda: _print(tables), record)
+
+
+def _print(tables: Sequence[NamedTable]) -> None:
+    for table in tables:
         click.echo(f"{table.title}: {table.frame.columns[0]}")
         print_table(table.frame.set_index(table.frame.columns[0]).rename_axis(None))
-    print_results(folder, names)
+
+
+def _by_column(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return a table of a sweep with its axis in the first column, and a column for each row, with units."""
+    what, _, over = str(frame.columns[0]).partition(" by ")
+    unit, rows = what[what.rindex(" [") :], frame.itertuples(index=False, name=None)
+    columns = {f"{label}{unit}": list(map(float, values)) for label, *values in rows}
+    return pd.DataFrame({over: frame.attrs["at"], **columns})
 
 
 def _partial(folder: Path, resume: bool) -> Path:
@@ -108,7 +123,7 @@ def _discard(partial: Path) -> None:
 
 
 @click.command()
-@click.argument("case")
+@click.argument("case", shell_complete=completed("case"))
 @click.option("--samples", type=int, default=2**14, show_default=True, help="How many, rounded up to a power of two.")
 @click.option("--seed", type=int, default=0, show_default=True, help="The same seed gives the same samples.")
 @writes_results("CASE-uncertainty")
@@ -143,10 +158,12 @@ def uncertainty(
             names = write_files(
                 fresh, UNCERTAINTY, record, tables, result.figures, figure_formats, latex, written(loaded)
             )
-    if result.samples != samples:
+    if result.samples != samples and not click.get_current_context().meta["json"]:
         click.echo(f"Samples: {samples} rounded up to {result.samples}, a power of two, as Sobol sequences need it")
-    print_notes(grouped([*result.notes, *notes.texts]))
-    print_table(result.wear_rates.set_index(["point", "pair"]))
-    if len(result.indices):
-        print_table(result.indices.set_index(["point", "pair"]).round(3))
-    print_results(folder, names)
+
+    def shown() -> None:
+        print_table(result.wear_rates.set_index(["point", "pair"]))
+        if len(result.indices):
+            print_table(result.indices.set_index(["point", "pair"]).round(3))
+
+    answer(folder, names, grouped([*result.notes, *notes.texts]), shown, tables)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import click
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
 from rich.text import Text
@@ -25,7 +26,7 @@ class Bar:
     total : int
         Number of points.
     shown : bool
-        Whether to show the bar.
+        Whether to show the bar, unless a command is run with `--quiet` or `--json`.
     """
 
     def __init__(self, total: int, shown: bool = True) -> None:
@@ -37,7 +38,9 @@ class Bar:
             TimeRemainingColumn(),
         )
         console = Console(stderr=True)
-        visible = shown and (console.is_terminal or console.is_jupyter)
+        context = click.get_current_context(silent=True)
+        quiet = context is not None and (context.meta.get("quiet") or context.meta.get("json"))
+        visible = shown and not quiet and (console.is_terminal or console.is_jupyter)
         self._bar = Progress(*columns, console=console, disable=not visible, transient=True)
         self._task = self._bar.add_task("evaluating", total=total)
 

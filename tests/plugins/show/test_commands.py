@@ -6,11 +6,13 @@ import json
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import wearlaw as wl
 from tests.cases import table, wearlaw, write
 from tests.core.distributions import Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
+from wearlaw.cli import main  # private: the program in this process
 from wearlaw_apps.studies.case import case_schema, case_text  # private: a case without its files
 
 # case, schema, show, help
@@ -104,6 +106,31 @@ def test_a_rig_of_discs_shows_the_fields_of_a_disc_once() -> None:
     assert shown.count("Diameter, D [m]") == 1
     assert "      a table with these fields:\n        diameter (must be given)\n" in shown
     assert "      a table with the fields of disc_1\n" in shown
+
+
+@pytest.mark.parametrize(
+    ("typed", "completed"),
+    [
+        ("ru", {"run"}),
+        ("run two", {"two_discs"}),
+        ("case whee", {"wheel_life", "wheel_on_rail", "wheelset"}),
+        ("show s100", {"s1002"}),
+        ("show my-law", set()),
+        ("fit tests.csv --contact ex", {"exact"}),
+        ("compare tests.csv --laws usfd,kt", {"usfd,kth"}),
+        ("compare tests.csv --contacts glo", {"global"}),
+        ("life wheel_l", {"wheel_life"}),
+        ("explore twin", {"twin_disc"}),
+        ("wear file.mat --law arch", {"archard"}),
+    ],
+)
+def test_a_shell_completes_names(typed: str, completed: set[str]) -> None:
+    words = ["wearlaw", *typed.split()]
+    asked = {"_WEARLAW_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
+    done = CliRunner(env=asked).invoke(main, prog_name="wearlaw")
+    found = {line.partition(",")[2] for line in done.stdout.splitlines() if line.startswith("plain,")}
+    assert found == completed
+    assert bool(found) != (f"file,{words[-1]}" in done.stdout), "paths, where no name fits"
 
 
 def test_a_misspelt_command_suggests_one() -> None:

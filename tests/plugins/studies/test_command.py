@@ -57,6 +57,25 @@ def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> No
 
 
 @pytest.mark.usefixtures("blank_figures")
+def test_json_has_the_numbers_of_the_table_with_units_and_quiet_prints_the_table_alone(folder: Path) -> None:
+    write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["usfd"], profiles={}))
+    asked = wearlaw("run", "c.toml", "--json")
+    assert (asked.exit_code, asked.stderr) == (0, "")
+    record = json.loads(asked.stdout)
+    rates = record["tables"]["wear_rate_creepage"]
+    csv = pd.read_csv("c-results/results.csv")
+    assert rates["creepage"] == {"unit": "%", "values": csv["creepage [%]"].tolist()}
+    assert rates["usfd on exact"]["values"] == csv["wear_rate [ug/m/mm^2]"].tolist()
+    assert wl.Q(1.0, rates["usfd on exact"]["unit"]) == wl.Q(1.0, "ug/m/mm^2")
+    assert any("beyond the shakedown limit" in note for note in record["notes"])
+    assert "c-results/report.html" in record["files"]
+    quiet = wearlaw("run", "c.toml", "--overwrite", "--quiet")
+    assert quiet.stderr == ""
+    assert quiet.stdout.startswith("Sweep 'creepage': wear rate")
+    assert "report.html" not in quiet.stdout
+
+
+@pytest.mark.usefixtures("blank_figures")
 def test_the_short_table_shows_the_rates_and_the_band(folder: Path) -> None:
     write(folder / "c.toml", table(contact_models=["exact"], wear_laws=["usfd", "kth"], profiles={}))
     printed = wearlaw("run", "c.toml").stdout

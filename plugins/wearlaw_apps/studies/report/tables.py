@@ -227,6 +227,7 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
     frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
     what, over = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
     frame.insert(0, f"{what} by {over}", list(rows))
+    frame.attrs["at"] = line[axis].values.tolist()  # which the heads round
     return frame
 
 
