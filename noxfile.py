@@ -1,5 +1,6 @@
 """Sessions beyond `.ci/run`: other versions of Python and dependencies, documentation, benchmarks, a release."""
 
+import re
 import shutil
 from pathlib import Path
 
@@ -12,6 +13,16 @@ PYPROJECT = nox.project.load_toml()
 FOR_SLOW = nox.project.dependency_groups(PYPROJECT, "slow")
 SLOW = "@tests/slow.txt"
 """The files of the slow tests, as pytest takes them from a file."""
+
+
+def declared(*extras: str) -> list[str]:
+    """Return the requirements of the project with extras, and with the extras that these name."""
+    project = PYPROJECT["project"]
+    requirements = list(project["dependencies"])
+    for requirement in (each for extra in extras for each in project["optional-dependencies"][extra]):
+        nested = re.fullmatch(r"wearlaw\[(.+)\]", requirement)
+        requirements += declared(*nested[1].split(",")) if nested else [requirement]
+    return list(dict.fromkeys(requirements))
 
 
 @nox.session(python=["3.11", "3.12", "3.13", "3.14"])
@@ -41,9 +52,8 @@ def deep(session: nox.Session) -> None:
 @nox.session(python="3.11", default=False)
 def minimum(session: nox.Session) -> None:
     """Test with the lowest version of each dependency that is declared to do."""
-    project = PYPROJECT["project"]
-    declared = project["dependencies"] + project["optional-dependencies"]["test"]
-    session.install("--only-binary=:all:", "-e", ".[test]", *(one.replace(">=", "==") for one in declared))
+    lowest = (requirement.replace(">=", "==") for requirement in declared("test", "dask"))
+    session.install("--only-binary=:all:", "-e", ".[test,dask]", *lowest)
     # What these need in turn is the newest, of which they may use what is deprecated by now.
     session.run("pytest", "-W", "ignore::DeprecationWarning", *session.posargs)
 
@@ -57,8 +67,15 @@ def extras(session: nox.Session, extra: str) -> None:
 
 
 @nox.session(python="3.11", default=False)
+def hooks(session: nox.Session) -> None:
+    """Run the hooks of pre-commit on all files."""
+    session.install("pre-commit>=4", "ruff>=0.11")
+    session.run("pre-commit", "run", "--all-files")
+
+
+@nox.session(python="3.11", default=False)
 def docs(session: nox.Session) -> None:
-    session.install("-e", ".[studies]", *nox.project.dependency_groups(PYPROJECT, "docs"))
+    session.install("-e", ".[explore,check]", *nox.project.dependency_groups(PYPROJECT, "docs"))
     session.run("sphinx-build", "-W", "--keep-going", "-b", "html", "docs", "docs/_build/html")
 
 

@@ -1,18 +1,20 @@
-"""Writes the entries of the page about the reference from the public names of wearlaw and of its plugins."""
+"""Writes the pages of the reference from the public names of wearlaw and of its plugins."""
 
 import ast
 import importlib
 import inspect
+import re
 from collections.abc import Iterator
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
+from types import ModuleType
 from typing import NamedTuple
 
 import wearlaw as wl
 
-MARK = "(The build of this page writes the entries of all public names here.)"
-"""Line of the page in whose place the entries stand."""
+MARK = "(The build writes the entries of this page here.)"
+"""Line of a page in whose place its entries stand."""
 
 OTHERS = (
     "wearlaw_apps.fits",
@@ -48,10 +50,10 @@ TITLES = {
     "errors": "Errors and warnings",
     "version": "Version",
 }
-"""Sections of the page in their order, each of the names that come from one package."""
+"""Pages in their order, each of the names that come from one package."""
 
 TOGETHER = {"fields": "loader", "text_files": "configuration", "kernels": "arrays"}
-"""Modules whose names stand in the section of another."""
+"""Modules whose names stand on the page of another."""
 
 
 class Entry(NamedTuple):
@@ -67,7 +69,9 @@ class Entry(NamedTuple):
         found = getattr(importlib.import_module(self.importable), self.name)
         path = f"{self.importable}.{self.name}"
         if inspect.ismodule(found):
-            return f".. automodule:: {found.__name__}\n   :members:"
+            functions = [f".. auto{kind}:: {path}.{name}" for name, kind in members(found)]
+            head = [f".. py:module:: {path}", "", *cleaned(found), "", ".. py:currentmodule:: None", ""]
+            return "\n".join([*head, *functions])
         if inspect.isclass(found) and found.__module__.startswith("wearlaw"):
             inherited = "\n   :inherited-members:" if found is wl.Prediction else ""
             return f".. autoclass:: {path}\n   :members:{inherited}"
@@ -75,6 +79,18 @@ class Entry(NamedTuple):
             return f".. autofunction:: {path}"
         text = "\n".join(f"   {line}".rstrip() for line in alias(self.module, self.name).splitlines())
         return f".. py:data:: {path}\n\n{text}"
+
+
+def members(module: ModuleType) -> Iterator[tuple[str, str]]:
+    """Give the names of the public functions and classes of a module, and which of the two they are."""
+    for name, value in vars(module).items():
+        if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__:
+            yield name, "class" if inspect.isclass(value) else "function"
+
+
+def cleaned(module: ModuleType) -> list[str]:
+    """Return the lines of a module's docstring."""
+    return inspect.cleandoc(module.__doc__ or "").splitlines()
 
 
 @cache
@@ -120,13 +136,18 @@ def entries() -> Iterator[Entry]:
                 yield Entry(plugin, name, plugin, plugin)
 
 
-def page() -> str:
-    """Return the sections, each with the first line of its package's docstring."""
-    found = list(entries())
-    parts = []
+def place(title: str) -> str:
+    """Return the name of a page below `reference/`."""
+    return re.sub("[^a-z]+", "-", title.lower())
+
+
+def pages() -> dict[str, str]:
+    """Return what each page has below its title: the first line of its package's docstring, and the entries."""
+    every = list(entries())
+    written = {}
     for package, title in TITLES.items():
         home = package if package.startswith("wearlaw_") else f"wearlaw.{package}"
-        said = (importlib.import_module(home).__doc__ or "").splitlines()[0]
-        rst = "\n".join(one.rst() for one in found if one.package == package)
-        parts.append(f"## {title}\n\n{said}\n\n```{{eval-rst}}\n{rst}\n```\n")
-    return "\n".join(parts)
+        about = cleaned(importlib.import_module(home))[0]
+        rst = "\n".join(entry.rst() for entry in every if entry.package == package)
+        written[place(title)] = f"{about}\n\n```{{eval-rst}}\n{rst}\n```\n"
+    return written

@@ -1,6 +1,9 @@
 """Sphinx extension: pages that need no network, formulas as MathML, and the command line's own help."""
 
 import re
+import tempfile
+import zlib
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +17,33 @@ from docs import reference
 from wearlaw.cli import main
 from wearlaw.contact.conditions import declared
 
+PAGES = cache(reference.pages)
+
 LOADED = re.compile(r'<(?:script|img|link|iframe)\b[^>]*\b(?:src|href)="(?:https?:)?//[^"]*"')
 """Addresses that a browser loads by itself, unlike the target of a link."""
+
+
+OTHERS = {
+    "numpy": ("https://numpy.org/doc/stable/", "reference/generated/{0}.html#{0}", ("numpy.ndarray",)),
+    "pandas": ("https://pandas.pydata.org/docs/", "reference/api/{0}.html#{0}", ("pandas.DataFrame",)),
+    "pint": ("https://pint.readthedocs.io/en/stable/", "api/base.html#{0}", ("pint.Quantity",)),
+    "pydantic": ("https://docs.pydantic.dev/latest/", "api/base_model/#{0}", ("pydantic.BaseModel",)),
+    "xarray": (
+        "https://docs.xarray.dev/en/stable/", "generated/{0}.html#{0}", ("xarray.DataArray", "xarray.Dataset")
+    ),
+}  # fmt: skip
+"""Documentation of other packages: its address, that of a page there, and the names that pages of wearlaw link to."""
+
+
+def inventories() -> dict[str, tuple[str, str]]:
+    """Return the packages for intersphinx, with inventories of the names above, so that a build needs no network."""
+    folder, mapping = Path(tempfile.mkdtemp()), {}
+    for package, (address, page, names) in OTHERS.items():
+        lines = "".join(f"{name} py:class 1 {page.format(name)} -\n" for name in names)
+        head = f"# Sphinx inventory version 2\n# Project: {package}\n# Version: \n# The rest is compressed with zlib.\n"
+        (folder / package).write_bytes(head.encode() + zlib.compress(lines.encode()))
+        mapping[package] = (address, str(folder / package))
+    return mapping
 
 
 def mathml(translator: Any, node: nodes.math | nodes.math_block) -> None:
@@ -55,9 +83,9 @@ def list_conditions(_: Any, what: str, name: str, method: Any, __: Any, lines: l
 
 
 def write_reference(_: Any, page: str, source: list[str]) -> None:
-    """Put the entries of all public names into the page about the reference."""
-    if page == "reference":
-        source[0] = source[0].replace(reference.MARK, reference.page())
+    """Put the entries of public names into the pages of the reference."""
+    if page.startswith("reference/"):
+        source[0] = source[0].replace(reference.MARK, PAGES()[page.removeprefix("reference/")])
 
 
 def setup(app: Any) -> dict[str, bool]:
