@@ -15,6 +15,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 import pytest
+import scipy
 from matplotlib import pyplot as plt
 
 import wearlaw as wl
@@ -110,7 +111,7 @@ def test_the_bars_are_the_shares_of_the_variance_by_gauss_quadrature(many: float
 @pytest.mark.validates(
     "elliptic-contact",
     "The wear profile of a tread without spin",
-    source="each strip in closed form (Carter), with Kalker's stiffness",
+    source="each strip in closed form (Carter), with Kalker's stiffness, and the energy that strips exchange",
     held_to="`elliptic_accuracy`, what the model declares",
 )
 def test_the_profile_without_spin_has_the_closed_form_of_its_strips() -> None:
@@ -123,8 +124,17 @@ def test_the_profile_without_spin_has_the_closed_form_of_its_strips() -> None:
     stiffness = 2.0 / math.pi**2 * wl.kalker.coefficients(problem.a / problem.b, 0.28).c11 * problem.shear_modulus
     root = np.sqrt(1.0 - (y / (1e3 * b)) ** 2)
     peak, half = 0.3 * 1.5 * load / (math.pi * a * b) * root, a * root
-    share = 1.0 - (1.0 - np.minimum(creepage * stiffness / peak, 1.0)) ** 2
-    dissipated = creepage * 0.5 * math.pi * peak * half * share
+    slips = np.minimum(creepage * stiffness / peak, 1.0)
+    force = 0.5 * math.pi * peak * half * (1.0 - (1.0 - slips) ** 2)
+    # The traction is an ellipse less one on the part that sticks, whose middle lies ahead.
+    moment = slips * half * 0.5 * math.pi * peak * half * (1.0 - slips) ** 2
+    apart, mean = 1e-3 * np.abs(y[:, None] - y), np.hypot(half[:, None], half) / math.sqrt(2.0)
+    m = mean**2 / (mean**2 + apart**2)
+    k, e = scipy.special.ellipkm1(np.where(apart > 0.0, 1.0 - m, 1.0)), scipy.special.ellipe(m)
+    growth = 2.0 * np.sqrt(m) * (k - e - 0.28 * (m * e + (1.0 - m) * (k - e))) / mean**3
+    exchanged = growth * (np.outer(moment, force) - np.outer(force, moment)) * 2.0 * b / y.size
+    gained = 2.0 / (math.pi**2 * float(problem.shear_modulus)) * exchanged.sum(axis=1)
+    dissipated = creepage * force + gained
     expected = 5.3e-9 * dissipated / (7850.0 * 2.0 * math.pi * 0.46) * 1e9  # in µm/km
     accuracy = wl.contact_model("strip_theory").elliptic_accuracy  # of sums over the nodes, as a share of full slip
     assert depth == pytest.approx(expected, abs=accuracy * depth.max())

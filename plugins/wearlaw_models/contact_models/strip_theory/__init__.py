@@ -11,21 +11,24 @@ from pydantic import Field
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.contact_models.strip_theory import fields
-from wearlaw_models.contact_models.strip_theory.interaction import full_slips
+from wearlaw_models.contact_models.strip_theory.interaction import exchanged, full_slips
 
 STICK_NODES, SLIP_NODES = (0.5, 4), (1.2, 8)
 """Nodes along a strip over the number of strips, and the fewest: in stick, and from the first slip on."""
+
+LEAST = 0.1
+"""Least energy of a strip that gives some to others, over what it is fed; it slips still."""
 
 
 class StripTheory(wl.ContactModel):
     """Plane elasticity along each strip with Kalker's stiffness: traction μp, with Hertz's p, where a point slips.
 
-    The model cuts the patch into strips along the rolling direction, which do not feel each other. A strip sticks from
-    its leading edge with the traction of Carter's theory, extended to lateral creepage and spin, in a plane whose
-    stiffnesses meet Kalker's C11 and C22. Behind that it slips: the traction is μp along the slip, and turns with it as
-    in FASTSIM, by a flexibility that dissipates the energy fed into the strip. On given strips the stiffness follows
-    from what all of them displace on half-spaces in full slip. The theory of elliptic contact in the documentation has
-    the formulas.
+    The model cuts the patch into strips along the rolling direction, whose tractions do not feel each other. A strip
+    sticks from its leading edge with the traction of Carter's theory, extended to lateral creepage and spin, in a plane
+    whose stiffnesses meet Kalker's C11 and C22. Behind that it slips: the traction is μp along the slip, and turns with
+    it as in FASTSIM, by a flexibility that dissipates the energy fed into the strip. Strips exchange energy as those of
+    half-spaces do. On given strips the stiffness follows from what all of them displace on half-spaces in full slip.
+    The theory of elliptic contact in the documentation has the formulas.
 
     Notes
     -----
@@ -144,7 +147,7 @@ class StripTheory(wl.ContactModel):
         np.add(nodes.x, layout.x, out=nodes.x)
         for tractions in (nodes.bound, nodes.q_x, nodes.q_y):
             np.multiply(greatest, tractions, out=tractions)
-        slip_x, slip_y = _slips(layout, nodes, flat.power(forces))
+        slip_x, slip_y = _slips(flat, layout, nodes, flat.power(forces))
         x, length, bound, q_x, q_y, s_x, s_y = (
             array.transpose(2, 0, 1)
             for array in (nodes.x, nodes.length, nodes.bound, nodes.q_x, nodes.q_y, slip_x, slip_y)
@@ -188,15 +191,22 @@ def _forces(layout: wl.Strips, greatest: Array, strips: fields.Strips, sums: Arr
     return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment, power=power)
 
 
-def _slips(layout: wl.Strips, nodes: fields.Nodes, power: Array) -> tuple[Array, Array]:
-    """Return the slip along x and along y, times one factor for each patch, so that the nodes dissipate Tγ.
+def _slips(flat: wl.Problem, layout: wl.Strips, nodes: fields.Nodes, power: Array) -> tuple[Array, Array]:
+    """Return the slip along x and along y, times a factor for each strip.
 
-    The factor is one but for what a quadrature on few nodes misses, mostly where strips stick again.
+    A strip dissipates what its slip does and what it gains from the others, at least `LEAST` and at most twice as much.
+    The patch dissipates Tγ: its factor is one but for what a quadrature on few nodes misses, mostly where strips
+    stick again, and those limits.
     """
     over = np.divide(nodes.slip, nodes.bound, out=np.zeros_like(nodes.slip), where=nodes.slip > 0.0)
-    size = np.einsum("kjp,kjp->jp", nodes.length, nodes.slip * nodes.bound)
-    dissipated = (layout.width * size).sum(axis=0)
-    over *= np.divide(power, dissipated, out=np.ones_like(power), where=(dissipated > 0.0) & (power > 0.0))
+    fed = layout.width * np.einsum("kjp,kjp->jp", nodes.length, nodes.slip * nodes.bound)
+    forces = [np.einsum("kjp,kjp->jp", nodes.length, q) for q in (nodes.q_x, nodes.q_y)]
+    moments = [np.einsum("kjp,kjp,kjp->jp", nodes.length, nodes.x, q) for q in (nodes.q_x, nodes.q_y)]
+    gains = exchanged(flat, layout, layout.width * np.stack([*forces, *moments]))
+    lost = fed + np.clip(gains, (LEAST - 1.0) * fed, fed)
+    total = lost.sum(axis=0)
+    lost *= np.divide(power, total, out=np.ones_like(power), where=(total > 0.0) & (power > 0.0))
+    over *= np.divide(lost, fed, out=np.ones_like(fed), where=fed > 0.0)
     return over * nodes.q_x, over * nodes.q_y
 
 

@@ -1,4 +1,4 @@
-"""The slip at which given strips slip all over, from what all of them displace on half-spaces.
+"""What strips displace of each other on half-spaces: the slip at which they slip all over, and energy they exchange.
 
 In full slip the traction of a strip is g √(1-(x/a)²). The displacement by it is even in x, and Cerruti's solution gives
 its curvature at x = 0 in closed form. A narrow strip of the width w at the distance y, with η = y/a, m = 1/(1+η²) and
@@ -11,6 +11,14 @@ G_E = 2 √m (m E + (1-m) (K - E)), from y²/r³. Their integrals over η are P_
 of a strip over its own middle. The sum over all strips, times the half length, is the slip k at which a strip slips all
 over. On an ellipse k is a constant times the half length, but not quite that of Kalker's stiffness for small creepage.
 So it is scaled by the quotient of both on the ellipse with the patch's area and length.
+
+Where one strip sticks further back than another one, or tractions lie along x and y, the strips feed energy to each
+other. With the forces F and the first moments M = ∫ x q dx of both, and kernels as in the middle of a strip, strip i
+gains
+
+    Σ_j 2/(π²G a³) [Σ_x,y G (M_i F_j - M_j F_i) - ν G_K (y_j - y_i) (F_xi F_yj + F_yi F_xj)],  a² = (a_i² + a_j²)/2,
+
+with G for x and for y as above. What one strip gains another one loses: the patch keeps its energy and all forces.
 """
 
 from __future__ import annotations
@@ -55,6 +63,26 @@ def _curvatures(layout: wl.Strips, greatest: Array) -> Array:
             kernel[diagonal, diagonal] = 0.0
             to += (weight * kernel).sum(axis=1)
     return np.asarray(half_length * sums)
+
+
+def exchanged(flat: wl.Problem, layout: wl.Strips, totals: Array) -> Array:
+    """Return the energy that each strip gains from the others per metre rolled [N], (strips, points).
+
+    The totals are F_x, F_y, M_x and M_y of the strips, (4, strips, points).
+    """
+    y, gains, nu = layout.y, np.zeros_like(layout.y), flat.poisson_ratio
+    square = np.where(layout.max_pressure > 0.0, layout.half_length, 1.0) ** 2
+    if wl.accelerated(y.shape[0] * y.size // PAIRS):
+        loops.exchange_loop(y, square, nu + np.zeros(y.shape[1]), totals, _table(), gains)
+    else:
+        for at in range(len(y) - 1):
+            half_length, apart = np.sqrt(0.5 * (square[at] + square[at + 1 :])), y[at + 1 :] - y[at]
+            kernels = loops.between(loops.place(apart, half_length), _table())
+            strip, others = totals[:, at], totals[:, at + 1 :]
+            gained = loops.gained(kernels, nu, half_length, apart, tuple(strip), tuple(others))
+            gains[at] += gained.sum(axis=0)
+            gains[at + 1 :] -= gained
+    return gains * (2.0 / (np.pi**2 * flat.shear_modulus))
 
 
 def _of_ellipse(ratio: Array) -> tuple[Array, ...]:

@@ -6,7 +6,7 @@ the fields of `_strips.Nodes`, in the order there. Tables hold what nodes at the
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -23,6 +23,9 @@ KNOTS = 2048
 """Steps of the tables of `between`, between which they are linear."""
 
 Number = TypeVar("Number", float, Array)
+
+Pair: TypeAlias = tuple[Any, Any]
+Totals: TypeAlias = tuple[Any, Any, Any, Any]
 
 
 def root(value: Number) -> Number:
@@ -104,6 +107,14 @@ def between(place: Number, table: Array) -> tuple[Number, Number]:
     at: Any = np.int32(np.minimum(place, KNOTS - 1))
     share, first, second = place - at, table[0], table[1]
     return first[at] + share * (first[at + 1] - first[at]), second[at] + share * (second[at + 1] - second[at])
+
+
+def gained(kernels: Pair, nu: Number, a: Number, apart: Number, strip: Totals, other: Totals) -> Number:
+    """Return the energy that a strip gains from one at y + `apart`, from G_K, G_E, F_x, F_y, M_x and M_y of both."""
+    (k, e), (x, y, moment_x, moment_y), (to_x, to_y, to_moment_x, to_moment_y) = kernels, strip, other
+    along = (k - nu * e) * (moment_x * to_x - to_moment_x * x)
+    across = ((1.0 - nu) * k + nu * e) * (moment_y * to_y - to_moment_y * y)
+    return (along + across - nu * k * apart * (x * to_y + y * to_x)) / (a * a * a)  # type: ignore[no-any-return]
 
 
 def slipping(strip: tuple[Number, ...], cosine: float, half_x: Number, half_y: Number) -> tuple[Number, ...]:
@@ -233,3 +244,22 @@ def others_loop(y: Array, half_length: Array, weight: Array, table: Array, sums:
                     k, e = between(places[i], table)
                     first[i] += weight[other, i] * k
                     second[i] += weight[other, i] * e
+
+
+@wl.compiled_loop(f"void({ROWS}, {ROWS}, float64[::1], {NODES}, {ROWS}, {ROWS})")
+def exchange_loop(y: Array, square: Array, nu: Array, totals: Array, table: Array, gains: Array) -> None:
+    """Add to the gains of each strip, and take from those of the other one, what each pair exchanges."""
+    half_length, places = np.empty(y.shape[1]), np.empty(y.shape[1])
+    x, across, moment_x, moment_y = totals[0], totals[1], totals[2], totals[3]
+    for at in range(y.shape[0]):
+        for other in range(at + 1, y.shape[0]):
+            for i in range(y.shape[1]):
+                half_length[i] = root(0.5 * (square[at, i] + square[other, i]))
+                places[i] = place(y[other, i] - y[at, i], half_length[i])
+            for i in range(y.shape[1]):
+                strip = x[at, i], across[at, i], moment_x[at, i], moment_y[at, i]
+                beside = x[other, i], across[other, i], moment_x[other, i], moment_y[other, i]
+                apart = y[other, i] - y[at, i]
+                gain = gained(between(places[i], table), nu[i], half_length[i], apart, strip, beside)
+                gains[at, i] += gain
+                gains[other, i] -= gain
