@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -59,6 +61,9 @@ CHANCE = 1.3
 """Scatter of a mean of 512 errors: they scatter by 0.58 of their mean where one step falls anywhere in a
 cell, and those in short slip zones weigh more, as if there were 128. The ratio of two such means scatters by
 0.58 √(2/128) = 0.07; four times that is allowed."""
+
+POSED = 1e-9
+"""Difference between two ways to pose a problem, as a share of the forces: what is left of iterations."""
 
 STRIPS = 200
 """Number of strips of equal width; their sum of a parabola across the patch is off by the share 1/(2 `STRIPS`²)."""
@@ -302,6 +307,47 @@ def strips_have_their_widths(model: ContactModel, problem: Problem) -> None:
     chord = np.where(area > 0.0, 2.0 * a * np.sqrt(np.maximum(1.0 - (y / b) ** 2, 0.0)), 0.0)
     assert_close(length, chord, "the area of a strip over its width", 0.0, error * 2.0 * a + cell)
     assert_close(width.sum(axis=-1), 2.0 * problem.b, "the sum of the widths of strips", error, width.max(axis=-1))
+
+
+@on_shapes(PATCH, always=True)
+def strips_that_fill_up_a_batch_add_nothing(model: ContactModel, shape: Shape) -> None:
+    """Strips without width, length and pressure change no force, no energy and no area, and have no traction and slip.
+
+    Patches of a batch that have fewer strips than others end in such strips.
+    """
+    problem = shape.draw(PATCHES)
+    assert problem.strips is not None
+    strips = problem.strips.mapped(np.asarray, lambda of: np.concatenate([of, 0.0 * of[..., :2]], axis=-1))
+    filled = problem.replaced(strips=strips)
+    _assert_same_contact(model, problem, filled, "with strips that fill up a batch")
+    contact, count = model.solve(filled), problem.strips.y.shape[-1]
+    for name in ("pressure", "traction", "slip", "area"):
+        found = getattr(contact, name)[..., count:]
+        assert (found == 0.0).all(), f"strips that fill up a batch have a {name} of {np.abs(found).max():.3g}"
+
+
+@on_shapes(PATCH)
+def creepages_of_strips_may_be_those_of_the_patch(model: ContactModel, shape: Shape) -> None:
+    """If each strip has the creepages that the patch has there, the solution is that of the patch."""
+    problem = shape.draw(PATCHES)
+    assert problem.strips is not None
+    longitudinal, lateral, spin = problem.creepages_of_strips
+    strips = dataclasses.replace(
+        problem.strips, longitudinal_creepage=longitudinal, lateral_creepage=lateral, spin=spin
+    )
+    _assert_same_contact(model, problem, problem.replaced(strips=strips), "with creepages for each strip")
+
+
+def _assert_same_contact(model: ContactModel, problem: Problem, other: Problem, message: str) -> None:
+    """Assert that another way to pose a problem changes neither forces nor energies nor the area."""
+    due, contact = model.solve(problem), model.solve(other)
+    error = max(SUM, min(error_of_force(model, problem), POSED))
+    for forces in (contact.forces, model.creep_forces(other)):
+        assert_same_forces(problem, forces, due.forces, message, error)
+        allowed = error * sliding_power(problem)
+        assert_close(other.power(forces), due.wear_index, f"the wear index {message}", 0.0, allowed)
+    assert_close(contact.cell_wear_index, due.cell_wear_index, f"the energy of the nodes {message}", 0.0, allowed)
+    assert_close(contact.patch_area, due.patch_area, f"the area {message}", error)
 
 
 @on_problems(*SHAPES)

@@ -15,7 +15,7 @@ import pint
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.contact.material import Material
-from wearlaw.contact.problem import Geometry
+from wearlaw.contact.problem import Geometry, Strips
 from wearlaw.errors import ConditionsError, InputError, UnitError, WearlawError, described
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.units.quantities import Q, Quantity, parse, scalar_si
@@ -31,7 +31,7 @@ FACTORS = np.array([1.0, 0.9375, 0.875])
 LOAD_OVER_PRESSURE: dict[Geometry, float] = {"line": 0.25 * np.pi, "ellipse": 2.0 / 3.0}
 """Hertz's N/(p0 A): the mean of an elliptic pressure over its peak."""
 
-OF_STRIPS = ("y", "width", "half_length", "max_pressure of strips")
+OF_STRIPS = tuple(f"{name} of strips" for name in Strips.__slots__)
 """Names of the numbers with an axis of strips."""
 
 PRECISE = (
@@ -118,13 +118,39 @@ def problem_is_finite_and_positive(rig: Rig) -> None:
 
 @rule(Rig)
 def pressure_carries_the_load(rig: Rig) -> None:
-    """Load, pressure and patch agree: N is π/4 p0 A on a line, 2/3 p0 A on an ellipse, and the sum of strips."""
+    """Load, pressure and patch agree: N is π/4 p0 A on a line, 2/3 p0 A on an ellipse, and the sum of strips.
+
+    No strip has a negative pressure.
+    """
     problem = problem_of(rig).existing()
     if problem.strips is not None:
+        lowest = problem.strips.max_pressure.min()
+        assert lowest >= 0.0, f"a strip has a maximum pressure of {lowest:.3g} Pa"
         carried = problem.strips.normal_force.sum(axis=-1)
     else:
         carried = LOAD_OVER_PRESSURE[problem.geometry] * problem.max_pressure * problem.patch_area
     assert_close(carried, problem.normal_force, "the force that the pressure carries over the patch [N]")
+
+
+def _has_creepages_of_strips(rig: Rig) -> bool:
+    """Return whether the strips of the example have creepages of their own."""
+    try:
+        strips = problem_of(rig).strips
+    except WearlawError:
+        return False
+    return strips is not None and strips.has_creepages
+
+
+@rule(Rig, applies=_has_creepages_of_strips)
+def creepages_of_strips_have_the_mean_of_the_patch(rig: Rig) -> None:
+    """The creepages and the spin of a patch are the means of those of its strips, weighted with the normal force."""
+    problem = problem_of(rig).existing()
+    force = problem.strips.normal_force
+    names = "longitudinal_creepage", "lateral_creepage", "spin"
+    for name, of_strips in zip(names, problem.creepages_of_strips, strict=True):
+        mean = (force * of_strips).sum(axis=-1) / force.sum(axis=-1)
+        allowed = ROUNDING * np.abs(of_strips).max(axis=-1)
+        assert_close(getattr(problem, name), mean, f"the {name} of the patch, over that of its strips", 0.0, allowed)
 
 
 @rule(Rig, always=True)

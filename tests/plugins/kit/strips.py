@@ -68,18 +68,20 @@ class Strips(wl.ContactModel):
             squares = given.max_pressure**2
             load = (4.0 / 3.0 * given.half_length * given.width * squares).sum(axis=-1)
             centre = squares * (problem.normal_force / load)[..., None]
-        x = half_length * ((2.0 * np.arange(self.cells)[:, None] + 1.0) / self.cells - 1.0)
+        share = (2.0 * np.arange(self.cells)[:, None] + 1.0) / self.cells - 1.0
+        x = half_length * share
         step = 2.0 / self.cells * half_length
         across_patch = np.broadcast_to(y[..., None, :], x.shape)
         friction = problem.friction_coefficient[..., None, None]
-        bound = friction * centre[..., None, :] * np.maximum(1.0 - (x / half_length) ** 2, 0.0)
+        bound = friction * centre[..., None, :] * (1.0 - share**2)
         grow = (
             (creep_x / along - spin * across_patch / turning) * step,
             (creep_y / across - spin * (x - 0.5 * step) / turning) * step,
         )
         traction, clipped = self.marched(grow, bound)
         length = np.broadcast_to(step, x.shape)
-        slip = along * clipped[0] / length, across * clipped[1] / length
+        over = np.where(length > 0.0, length, 1.0)  # strips that fill up a batch have no length
+        slip = along * clipped[0] / over, across * clipped[1] / over
         area = length * width[..., None, :]
         return wl.Contact.from_strips(
             problem,

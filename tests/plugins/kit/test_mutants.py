@@ -33,7 +33,7 @@ WRONG: dict[Any, str] = {
 
 
 RIGHT_LAWS: list[Any] = [wrong_laws.Ramps(), wl.wear_law("brr"), wl.wear_law("kth")]
-RIGHT_RIGS: list[Any] = [wrong_rigs.Weight(), wl.TwinDisc.suros()]
+RIGHT_RIGS: list[Any] = [wrong_rigs.Weight(), wl.TwinDisc.suros(), wrong_rigs.OnStrips()]
 RIGHT_STAGES: list[Any] = [wrong_stages.Lubricated()]
 RIGHT_ON: dict[str, list[Any]] = {
     "line": [wl.contact_model("exact"), cells.Cells()],
@@ -128,7 +128,7 @@ def test_a_law_with_a_jump_passes(check: Check) -> None:
     check()
 
 
-RIGHT = (*wrong_stages.RIGHT, *RIGHT_RIGS, Axle(), axles.Cut(), axles.Placed(hertzian=False), wrong_rigs.OnStrips())
+RIGHT = (*wrong_stages.RIGHT, *RIGHT_RIGS, Axle(), axles.Cut(), axles.Placed(hertzian=False))
 
 
 @pytest.mark.parametrize("model", RIGHT, ids=lambda model: type(model).__name__)

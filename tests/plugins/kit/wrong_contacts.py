@@ -10,7 +10,7 @@ import numpy as np
 
 import wearlaw as wl
 from tests.plugins.kit.cells import Cells
-from tests.plugins.kit.strips import Strips
+from tests.plugins.kit.strips import Strips, on_strips
 
 Exact: Any = type(wl.contact_model("exact"))
 ShenHedrickElkins: Any = type(wl.contact_model("shen_hedrick_elkins"))
@@ -484,6 +484,19 @@ class OncePerCreepage(Both):
         _, first, places = np.unique(problem.creepage, return_index=True, return_inverse=True)
         parts = {name: getattr(forces, name) for name in ("longitudinal", "lateral", "spin_moment")}
         return wl.CreepForces(**{name: part.flat[first][places.reshape(part.shape)] for name, part in parts.items()})
+
+
+@wrong("strips_that_fill_up_a_batch_add_nothing", on_strips(OwnSlope))
+def pulled_by_the_number_of_strips(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
+    """The forces grow with the number of strips, of those without width too."""
+    return times(contact, 0.05 * contact.strip_width.shape[-1])
+
+
+@wrong("creepages_of_strips_may_be_those_of_the_patch", on_strips(OwnSlope))
+def creeping_less_by_strips(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+    """With creepages for each strip the forces are a tenth smaller."""
+    assert problem.strips is not None
+    return times(contact, 0.9 if problem.strips.has_creepages else 1.0)
 
 
 ON_GIVEN_STRIPS = {"strips_have_their_widths", "spin_has_its_force_and_moment", "slip_turns_with_the_spin"}

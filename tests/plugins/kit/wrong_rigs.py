@@ -270,13 +270,34 @@ class OnStrips(wl.Rig):
             y=ellipse.b[..., None] * y,
             width=0.2 * ellipse.b[..., None] * np.ones(10),
             half_length=ellipse.a[..., None] * height,
-            max_pressure=ellipse.max_pressure[..., None] * height,
+            max_pressure=ellipse.max_pressure[..., None] * height * self.sides(y),
+            longitudinal_creepage=ellipse.longitudinal_creepage[..., None] * (self.mean + 0.1 * y),
         )
         return self.loaded(ellipse.replaced(geometry="strips", strips=strips))
+
+    mean: ClassVar[float] = 1.0
+    """Mean creepage of the strips, over that of the patch."""
+
+    def sides(self, y: Any) -> Any:
+        """Return the pressure over Hertz's."""
+        return np.ones_like(y)
 
     def loaded(self, problem: wl.Problem) -> wl.Problem:
         assert problem.strips is not None
         return problem.replaced(normal_force=problem.strips.normal_force.sum(axis=-1))
+
+
+class PullsAtTheSides(OnStrips):
+    """A right load, with strips that pull at the sides."""
+
+    def sides(self, y: Any) -> Any:
+        return np.where(np.abs(y) > 0.8, -0.1, 1.0)
+
+
+class CreepsMoreByStrips(OnStrips):
+    """Strips creep a hundredth more than the patch."""
+
+    mean: ClassVar[float] = 1.01
 
 
 CAUGHT: dict[Any, str] = {
@@ -295,5 +316,7 @@ CAUGHT: dict[Any, str] = {
     NaNIsNoLoad: "values_that_are_no_numbers_are_refused",
     WrongGeometry: "geometry_is_that_of_the_problem",
     DensityOfTheOther: "bodies_are_those_of_the_problem",
+    PullsAtTheSides: "pressure_carries_the_load",
+    CreepsMoreByStrips: "creepages_of_strips_have_the_mean_of_the_patch",
 }
 """The check that must catch each."""
