@@ -29,7 +29,7 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.contact_models.strip_theory import loops as loops
-from wearlaw_models.contact_models.strip_theory.loops import BELOW, TINY
+from wearlaw_models.contact_models.strip_theory.loops import TINY
 
 NODES = 4
 """Nodes that take about as long as one operating point in the count of `accelerated`."""
@@ -103,7 +103,7 @@ def solve(strips: Strips, stick_nodes: int, slip_nodes: int) -> Nodes:
     """Return the nodes of strips, those in stick first."""
     rows, stick, slip = _rows(strips), _stick_table(stick_nodes), _slip_table(slip_nodes)
     nodes = np.empty((len(Nodes._fields), stick_nodes + slip_nodes, rows.shape[1]))
-    if _compiled(strips, nodes.shape[1]):
+    if compiled := _compiled(strips, nodes.shape[1]):
         loops.stick_loop(rows, stick, nodes)
         loops.slip_loop(rows, slip, *_steps(rows, slip), stick_nodes, nodes)
     else:
@@ -111,7 +111,7 @@ def solve(strips: Strips, stick_nodes: int, slip_nodes: int) -> Nodes:
         _slip(rows, slip, nodes, stick_nodes)
     again = (nodes[5, stick_nodes:] < 0.0).any(axis=0)
     if again.any():
-        nodes[3:, stick_nodes:, again] = _again(rows[:, again], slip)
+        nodes[3:, stick_nodes:, again] = _again(rows[:, again], slip, compiled)
     return Nodes(*nodes.reshape(*nodes.shape[:2], *strips.k_x.shape))
 
 
@@ -125,7 +125,7 @@ def sums(strips: Strips, stick_nodes: int, slip_nodes: int) -> Array:
     again = slid[3] < 0.0
     if again.any():
         v, cosine, length = rows[5, again], slip[:, :1], slip[:, 2:3]
-        q_x, q_y, _ = _again(rows[:, again], slip)
+        q_x, q_y, _ = _again(rows[:, again], slip, compiled=True)
         slid[:3, again] = _add_up(1.0 - v * (1.0 + cosine), v * length, q_x, q_y)
     return (held + slid[:3]).reshape(3, *strips.k_x.shape)
 
@@ -218,55 +218,19 @@ def _half_angle(x: Array, y: Array) -> Array:
     return np.stack([np.where(ahead, long, y), np.where(ahead, y, long)])
 
 
-def _again(rows: Array, table: Array) -> Array:
+def _again(rows: Array, table: Array, compiled: bool) -> Array:
     """Return the tractions and slips of strips that stick again, (3, nodes, strips), node after node.
 
     A step is divided where s falls below zero, and where a strip that sticks meets its bound, both by linear
     interpolation. So tractions are continuous functions of the creepages, without which loads would not balance.
     """
-    along, across, turning, k_x, k_y, v, n_x, n_y = rows
-    k, p = loops.shape(k_x, k_y, turning, n_x, n_y)
-    fields = np.empty((3, len(table), v.size))
-    q, sticks, rate = np.stack([n_x, n_y]), np.zeros(v.shape, bool), np.zeros(v.shape)
-    full = size = np.sqrt(loops.energy(k, p, v, 2.0 * v, 2.0 * np.arcsin(np.sqrt(v)), 0.0, 0.5 * np.pi))
-    bound = np.sqrt(2.0 * v * (2.0 - 2.0 * v))
-    w_y = across - turning * (1.0 - 2.0 * v)
-    s = np.maximum(along * n_x + w_y * n_y - loops.taken_up(k, p, v, 2.0 * v, 1.0), 0.0)
-    for at, (cosine, sine, _, arc, step, way) in enumerate(table):
-        behind, dx = v * (1.0 + cosine), v * way
-        w_y = across - turning * (1.0 - behind)
-        twice = loops.energy(k, p, v, behind, 2.0 * np.arcsin(np.sqrt(0.5 * behind)), sine, arc)
-        before, rate = rate, loops.rate(along, w_y, v, behind, sine, twice)
-        grows, bound, last, full = bound / full, np.sqrt(behind * (2.0 - behind)), full, np.sqrt(twice)
-        grows = 0.5 * dx * (grows + bound / full)  # ∫ dx/λ over the step
-        # Strips that stick, until they meet their bound after a share of the step, if they do.
-        free = size * q + grows * np.stack([along, w_y + 0.5 * turning * dx])
-        under, over = last - size, np.hypot(*free) - full
-        leaves = sticks & (over >= 0.0)
-        stuck = np.where(leaves, under / np.where(leaves, under + over + TINY, 1.0), 0.0)
-        # Strips that slip, over the rest.
-        x, y = _half_angle(*_direction(size * q + stuck * (free - size * q)))
-        kappa = 0.5 * step * (before + rate) * (1.0 - stuck)
-        lagging = w_y + turning * (loops.lag(kappa) * (1.0 - stuck) * dx)
-        more, less, other = loops.turn(along, lagging, np.exp(-kappa))
-        turned = np.stack(loops.direction(more * x + other * y, less * y + other * x))
-        slip = along * turned[0] + w_y * turned[1] - loops.taken_up(k, p, v, behind, cosine)
-        # Those of them whose slip falls to zero after a share of the step, and which stick from there on.
-        enters = ~sticks & (slip < 0.0)
-        slid = np.where(enters, s / np.where(enters, s - slip, 1.0), 0.0)
-        held = (last + slid * (full - last)) * _direction(q + slid * (turned - q))
-        held += (1.0 - slid) * grows * np.stack([along, w_y + 0.5 * turning * (1.0 - slid) * dx])
-        free, sticks = np.where(enters, held, free), enters | (sticks & ~leaves)
-        q, size = np.where(sticks, _direction(free), turned), np.where(sticks, np.minimum(np.hypot(*free), full), full)
-        s = np.where(sticks, 0.0, np.maximum(slip, 0.0))
-        # A node stands for half a step on each side, and these slip over more or less of it.
-        fields[:2, at], fields[2, at] = BELOW * bound * size / full * q, np.where(leaves, 1.5 - stuck, 1.0) * s
+    fields = np.empty((3, len(table), rows.shape[1]))
+    if compiled:
+        loops.again_loop(np.ascontiguousarray(rows), table, fields)
+        return fields
+    state = loops.first(tuple(rows))
+    for at, node in enumerate(table):
+        *fields[:, at], before, state = loops.again(tuple(rows), tuple(node), state)
         if at:
-            fields[2, at - 1] *= np.where(enters, 0.5 + 0.5 * slid, 1.0)
+            fields[2, at - 1] *= before
     return fields
-
-
-def _direction(vectors: Array) -> Array:
-    """Return unit vectors, (2, strips)."""
-    unit: Array = vectors / (np.hypot(*vectors) + TINY)
-    return unit

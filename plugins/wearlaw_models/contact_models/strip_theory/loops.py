@@ -131,6 +131,75 @@ def slipping(strip: tuple[Number, ...], cosine: float, half_x: Number, half_y: N
     return 1.0 - behind, root(behind * (2.0 - behind)), q_x, q_y, slip
 
 
+def choose(which: Any, number: Any, other: Any) -> Any:
+    """Return a number where `which` is 1, and the other one where it is 0; both are finite."""
+    return which * number + (1.0 - which) * other
+
+
+def first(strip: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return the state of `again` at the first slip: q̂, the size of λq, s, whether the strip sticks, rate, bound, λ."""
+    along, across, turning, k_x, k_y, v, n_x, n_y = strip
+    k, p = shape(k_x, k_y, turning, n_x, n_y)
+    full = root(energy(k, p, v, 2.0 * v, 2.0 * np.arcsin(root(v)), 0.0, 0.5 * np.pi))
+    w_y = across - turning * (1.0 - 2.0 * v)
+    s = np.maximum(along * n_x + w_y * n_y - taken_up(k, p, v, 2.0 * v, 1.0), 0.0)
+    return n_x, n_y, full, s, 0.0 * v, 0.0 * v, root(2.0 * v * (2.0 - 2.0 * v)), full
+
+
+def again(strip: tuple[Any, ...], node: tuple[float, ...], state: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Return the traction and slip at a node of a strip that sticks again, a factor of the slip before, and the state.
+
+    The node is a row of the table of `slip_loop`; the size of λq is its bound where the strip slips.
+    """
+    along, across, turning, k_x, k_y, v, n_x, n_y = strip
+    cosine, sine, _, arc, step, way = node
+    q_x, q_y, size, s, sticks, rate_before, bound_before, last = state
+    k, p = shape(k_x, k_y, turning, n_x, n_y)
+    behind, dx = v * (1.0 + cosine), v * way
+    w_y = across - turning * (1.0 - behind)
+    twice = energy(k, p, v, behind, 2.0 * np.arcsin(root(0.5 * behind)), sine, arc)
+    rate_here = rate(along, w_y, v, behind, sine, twice)
+    bound, full = root(behind * (2.0 - behind)), root(twice)
+    grows = 0.5 * dx * (bound_before / last + bound / full)  # ∫ dx/λ over the step
+    # A strip that sticks, until it meets its bound after a share of the step, if it does.
+    free_x, free_y = size * q_x + grows * along, size * q_y + grows * (w_y + 0.5 * turning * dx)
+    under, over = last - size, root(free_x * free_x + free_y * free_y) - full
+    leaves = sticks * (over >= 0.0)
+    stuck = leaves * under / choose(leaves, under + over + TINY, 1.0)
+    # A strip that slips, over the rest.
+    x, y = unit(size * q_x + stuck * (free_x - size * q_x), size * q_y + stuck * (free_y - size * q_y))
+    ahead, long = 1.0 * (x >= 0.0), 1.0 + np.abs(x)
+    half_x, half_y = choose(ahead, long, y), choose(ahead, y, long)
+    kappa = 0.5 * step * (rate_before + rate_here) * (1.0 - stuck)
+    more, less, other = turn(along, w_y + turning * (lag(kappa) * (1.0 - stuck) * dx), np.exp(-kappa))
+    x, y = direction(more * half_x + other * half_y, less * half_y + other * half_x)
+    slip = along * x + w_y * y - taken_up(k, p, v, behind, cosine)
+    # One of these whose slip falls to zero after a share of the step, and which sticks from there on.
+    enters = (1.0 - sticks) * (slip < 0.0)
+    slid = enters * s / choose(enters, s - slip, 1.0)
+    held_x, held_y = unit(q_x + slid * (x - q_x), q_y + slid * (y - q_y))
+    reached, rest = last + slid * (full - last), (1.0 - slid) * grows
+    free_x = choose(enters, reached * held_x + rest * along, free_x)
+    free_y = choose(enters, reached * held_y + rest * (w_y + 0.5 * turning * (1.0 - slid) * dx), free_y)
+    sticks = enters + (1.0 - enters) * sticks * (1.0 - leaves)
+    to_x, to_y = unit(free_x, free_y)
+    q_x, q_y = choose(sticks, to_x, x), choose(sticks, to_y, y)
+    within = np.minimum(root(free_x * free_x + free_y * free_y), full)
+    size = choose(sticks, within, full)
+    s = (1.0 - sticks) * np.maximum(slip, 0.0)
+    traction = BELOW * bound * size / full
+    # A node stands for half a step on each side, and these slip over more or less of it.
+    before = choose(enters, 0.5 + 0.5 * slid, 1.0)
+    of_node = choose(leaves, 1.5 - stuck, 1.0) * s
+    return traction * q_x, traction * q_y, of_node, before, (q_x, q_y, size, s, sticks, rate_here, bound, full)
+
+
+def unit(x: Number, y: Number) -> tuple[Number, Number]:
+    """Return a vector over its length."""
+    length = root(x * x + y * y) + TINY
+    return x / length, y / length
+
+
 ROWS, NODES = "float64[:, ::1]", "float64[:, :, ::1]"
 
 
@@ -147,6 +216,23 @@ def stick_loop(strips: Array, table: Array, nodes: Array) -> None:
             x, bound, q_x, q_y = stuck(v[i], n_x[i], n_y[i], turning[i] / k_y[i], cosine, sine)
             to_x[i], to_length[i], to_bound[i] = x, (1.0 - v[i]) * length, bound
             to_q_x[i], to_q_y[i] = q_x, q_y
+
+
+@wl.compiled_loop(f"void({ROWS}, {ROWS}, {NODES})")
+def again_loop(strips: Array, table: Array, fields: Array) -> None:
+    """Fill in the tractions and slips of strips that stick again, (3, nodes, strips)."""
+    for i in range(strips.shape[1]):
+        strip = (
+            strips[0, i], strips[1, i], strips[2, i], strips[3, i],
+            strips[4, i], strips[5, i], strips[6, i], strips[7, i],
+        )  # fmt: skip
+        state = first(strip)
+        for at in range(table.shape[0]):
+            cosine, sine, length, arc, step, way = table[at]
+            x, y, slip, before, state = again(strip, (cosine, sine, length, arc, step, way), state)
+            fields[0, at, i], fields[1, at, i], fields[2, at, i] = x, y, slip
+            if at:
+                fields[2, at - 1, i] *= before
 
 
 @wl.compiled_loop(f"void({ROWS}, {ROWS}, {', '.join([ROWS] * 3)})")
