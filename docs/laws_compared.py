@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 import wearlaw as wl
 from wearlaw import Array, Q
 from wearlaw.loader import discovered
-from wearlaw_apps.output.drawing import PALETTE, STYLE, WIDTH
+from wearlaw_apps.output.style import PAGE, PALETTE, STYLE
 
 DPI = 110
 TABLE = Path(__file__).parent / "laws-compared.csv"
@@ -178,7 +178,7 @@ def _that_differ(curve: Curve, curves: Sequence[Curve]) -> dict[str, str]:
 def picture() -> Figure:
     """Return the mass per joule over Tγ/A, and over the power density, a panel for each case."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, 9.0), layout="constrained")
+        figure = Figure(figsize=(PAGE, 9.0), layout="constrained")
         panels = figure.subplots(2, 1, sharex=True, sharey=True)
         for axes, case in zip(panels, CASES, strict=True):
             _draw(axes, case)

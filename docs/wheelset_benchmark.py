@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from wearlaw import Array, Q
-from wearlaw_apps.output.drawing import PALETTE, STYLE, WIDTH
+from wearlaw_apps.output.style import PAGE, PALETTE, STYLE
 
 FOLDER = Path(__file__).parent / "wheelset-benchmark"
 DATA = Path(__file__).parents[1] / "tests" / "data"
@@ -179,7 +179,7 @@ def predicted(displacement: Array) -> wl.Prediction:
 def picture() -> Figure:
     """Return place and power over the displacement, and the pressure of two humps, beside CONTACT's."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, 6.6), layout="constrained")
+        figure = Figure(figsize=(PAGE, 6.6), layout="constrained")
         axes = figure.subplot_mosaic([["where", "power"], ["humps", "humps"]], height_ratios=(1.5, 1.0))
         _over_displacement(axes["where"], axes["power"])
         _two_humps(axes["humps"])
