@@ -59,6 +59,9 @@ _WORDS = r"[^\[\]\s]*+(?:\s++[^\[\]\s]++)*+"
 HEAD = re.compile(rf"(?P<name>{_WORDS})\s*+(?:\[\s*+(?P<unit>{_WORDS})\s*+\])?")
 """The head of a column, as in "creepage [%]": a name and an optional unit; the time is linear in the length."""
 
+OTHER_HEAD = re.compile(r"(?P<name>.*\S)(?:\s*\((?P<unit>[^()]+)\)|(?:,|\s/|\s+in)\s+(?P<behind>\S+))")
+"""Other heads that state a unit, if it is known: "Load (N)", "Load, N", "F / N" and "Load in N"."""
+
 
 class Column(NamedTuple):
     """A column in use.
@@ -269,6 +272,9 @@ def named_column(head: str, place: int) -> Column:
     name, unit = (match["name"], match["unit"]) if match else (head, None)
     with suppress(UnitError):
         unit = unit and _known(unit)
+    if unit is None and (match := OTHER_HEAD.fullmatch(head)):
+        with suppress(UnitError):
+            name, unit = match["name"], _known(match["unit"] or match["behind"])
     return Column(name, head, place, unit)
 
 
@@ -300,15 +306,17 @@ def read_table(
     sep: str | None = None,
     decimal: str = ".",
     comment: str = "#",
+    sheet: str | None = None,
 ) -> Table:
     """Return columns of a table with their units.
 
     Parameters
     ----------
     source : path, text file, pandas.DataFrame or xarray.Dataset
-        A CSV file, or a table of pandas or xarray, such as ``xarray.open_dataset("run.nc", decode_times=False)``. The
-        unit of a column stands in its head, as in "Fz [kN]", or in the `attrs["units"]` of xarray. "[-]" is a ratio. If
-        all cells of the first row of a CSV file are numbers, it has no header, and the columns are "1", "2", ...
+        A CSV file, a spreadsheet (.xlsx, .ods), or a table of pandas or xarray, such as
+        ``xarray.open_dataset("run.nc", decode_times=False)``. The unit of a column stands in its head, as in "Fz [kN]"
+        or "Fz (kN)", in a row of units below the heads, or in the `attrs["units"]` of xarray. "[-]" is a ratio. If all
+        cells of the first row of a CSV file are numbers, it has no header, and the columns are "1", "2", ...
     columns : mapping of str to str, optional
         The columns to use by the names that they get, as in {"force": "Fz [kN]", "creepage": "-slip"}. A minus changes
         the sign. State the unit in brackets if the table does not. Default: all, by their heads without units.
@@ -319,6 +327,8 @@ def read_table(
         The decimal mark of a CSV file.
     comment : str
         What lines above the header of a CSV file begin with that are comments; without a header, all such lines.
+    sheet : str, optional
+        The sheet of a spreadsheet by its name. Default: the only one that has cells.
 
     Returns
     -------
@@ -329,17 +339,21 @@ def read_table(
     DataError
         If there is no such table, or no such column; the message names all faults.
     """
-    table = open_table(source, sep=sep, decimal=decimal, comment=comment)
+    table = open_table(source, sep=sep, decimal=decimal, comment=comment, sheet=sheet)
     table.columns = table.select(columns)
     return table
 
 
-def open_table(source: Any, *, sep: str | None = None, decimal: str = ".", comment: str = "#") -> Table:
+def open_table(
+    source: Any, *, sep: str | None = None, decimal: str = ".", comment: str = "#", sheet: str | None = None
+) -> Table:
     """Return a table without columns in use; arguments as for `read_table`."""
+    if sheet is not None and not is_spreadsheet(source):
+        raise DataError(f"sheet: {shown(source)} is no spreadsheet; give one that ends in {', '.join(sheets.ENDINGS)}")
     if isinstance(source, str | os.PathLike):
         path, label = Path(source), f"table {shown(Path(source))}"
-        if path.suffix.lower() == ".xlsx":
-            return CsvTable(label, sheets.text_of(path, label), "\t", ".", comment)
+        if is_spreadsheet(path):
+            return CsvTable(label, sheets.text_of(path, label, sheet), "\t", decimal, comment)
         if reader := dict(loader.installed("file reader")).get(path.suffix[1:]):
             return open_table(reader(path))
         return CsvTable(label, path, sep, decimal, comment)
@@ -357,6 +371,11 @@ def explain_reader(name: str, reader: Callable[..., Any]) -> Iterator[str]:
     """Yield the lines of `wearlaw show` for a reader of files."""
     yield inspect.getdoc(reader) or ""
     yield f"It reads files that end in .{name}, in wl.read_profile or wl.sweep."
+
+
+def is_spreadsheet(source: object) -> bool:
+    """Return whether a source is the path of a spreadsheet, by its ending."""
+    return isinstance(source, str | os.PathLike) and Path(source).suffix.lower() in sheets.ENDINGS
 
 
 class FrameTable(Table):

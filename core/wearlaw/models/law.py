@@ -124,10 +124,14 @@ class Outcome(Variable):
         "area mean" if the law gives a value at each node; the result is its mean over the area of the patch. "patch" if
         it gives one value for the whole patch, such as the damage by one passage. Such a value is never averaged over
         the area and never summed over several patches.
+    wear : bool
+        Whether it is the wear of a body, which tests can also measure as mass, volume or depth. Its unit says what of:
+        mass or volume, by distance rolled and area, by distance, or by revolution.
     """
 
     sign: Literal["positive", "not negative", "any"] = "not negative"
     of: Literal["area mean", "patch"] = field(kw_only=True)
+    wear: bool = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:
         """Check the fields, and fill in the words."""
@@ -461,7 +465,7 @@ class WearLaw(Law):
     """
 
     kind: ClassVar[str] = "wear law"
-    outcome: ClassVar[Outcome] = Outcome(WEAR, WEAR_RATE, of="area mean")
+    outcome: ClassVar[Outcome] = Outcome(WEAR, WEAR_RATE, of="area mean", wear=True)
     zero_in_stick: ClassVar[bool] = True
 
     if TYPE_CHECKING:  # for checkers, these methods of `Law` return wear laws

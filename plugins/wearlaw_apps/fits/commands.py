@@ -16,6 +16,7 @@ from wearlaw.units.quantities import text_of
 from wearlaw.version import __version__
 from wearlaw_apps.fits.comparison import Comparison, Names, Predictor, compare_named
 from wearlaw_apps.fits.fit import fit as fit_parameters
+from wearlaw_apps.fits.least_squares import LOSSES
 from wearlaw_apps.fits.named_numbers import FRICTION
 from wearlaw_apps.fits.pairs import Pair, compose
 from wearlaw_apps.fits.read_tests import read_tests
@@ -55,6 +56,15 @@ def common(command: CommandT) -> CommandT:
             help="Scatter of measurements, by a factor or by an amount; ignored if the tests state uncertainties.",
         ),
         click.option("--friction", type=float, help="Friction coefficient of tests without a column of it."),
+        click.option("--body", metavar="BODY", help="Body whose mass, volume or depth was measured, or both."),
+        click.option("--balance", "balance_resolution", metavar="MASS", help='Smallest step of the balance: "0.1 mg".'),
+        click.option(
+            "--columns",
+            metavar="NAME=HEAD",
+            multiple=True,
+            help='A column by its head, as in normal_force="Load (N)"; may be repeated.',
+        ),
+        click.option("--sheet", help="Sheet of a spreadsheet [default: its only one]."),
         click.option("--decimal", default=".", show_default=True, help="Decimal mark of the tests."),
         click.option("--sep", help="What separates the cells of the tests [default: semicolon, tab or comma]."),
         click.option(
@@ -109,6 +119,7 @@ stages_option = click.option(
 @click.option("--fixed", metavar="FIELD=VALUE", multiple=True, help="Set a field of the law; may be repeated.")
 @common
 @bounds_option
+@click.option("--robust", type=click.Choice([*LOSSES]), default="linear", show_default=True, help="Loss of residuals.")
 @click.option("--bootstrap", type=int, default=1000, show_default=True, help="Replicates; 0 for quick intervals.")
 @click.option("--confidence", type=float, default=0.95, show_default=True, help="Of the intervals.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Of the random numbers.")
@@ -124,6 +135,9 @@ def fit(
     bounds: tuple[str, ...],
     rig: Path | None,
     friction: float | None,
+    columns: tuple[str, ...],
+    sheet: str | None,
+    balance_resolution: str | None,
     sep: str | None,
     decimal: str,
     bootstrap: int,
@@ -133,7 +147,7 @@ def fit(
     latex: bool,
     **settings: Any,
 ) -> None:
-    """Fit parameters of a wear law to tests: TESTS is a CSV file with units in its header, such as creepage [%].
+    """Fit parameters of a wear law to tests: TESTS is a CSV file or a spreadsheet with units in its header.
 
     \b
     wearlaw fit my-tests.csv --contact exact --law usfd --free q_s,m_c,tr_sc -o fit/
@@ -153,7 +167,7 @@ def fit(
             law_fields["label"] = label or f"{name} fitted to {Path(tests).stem}"
         if both := [name for name in names if name in law_fields]:
             raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
-        measured = read_tests(tests, sep=sep, decimal=decimal)
+        measured = _tests(tests, columns, sheet=sheet, sep=sep, decimal=decimal, balance_resolution=balance_resolution)
         if FRICTION not in names:
             _note_friction(measured, friction, notes)
         predict = _rig(rig, notes) | contact_model(contact)
@@ -176,6 +190,11 @@ def fit(
         "lack_of_fit": [asdict(test) for test in fitted.lack_of_fit],
     }
     answer(folder, files, notes.texts, lambda: click.echo(repr(fitted)), record)
+
+
+def _tests(tests: str, columns: tuple[str, ...], **options: Any) -> WearTests:
+    """Return the tests of a file."""
+    return read_tests(tests, columns=fields("--columns", columns, "NAME=HEAD") if columns else None, **options)
 
 
 def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | float]]:
@@ -239,6 +258,10 @@ def compare(
     scatter: str,
     rig: Path | None,
     friction: float | None,
+    body: str | None,
+    columns: tuple[str, ...],
+    sheet: str | None,
+    balance_resolution: str | None,
     sep: str | None,
     decimal: str,
     output: Path | None,
@@ -248,7 +271,8 @@ def compare(
 ) -> None:
     """Rank contact models and wear laws by how well they predict tests.
 
-    TESTS is a CSV file with units in its header, such as creepage [%]. Every contact model is paired with every law.
+    TESTS is a CSV file or a spreadsheet with units in its header, such as creepage [%]. Every contact model is paired
+    with every law.
 
     \b
     wearlaw compare my-tests.csv --contacts global,exact,fastsim --laws usfd,kth,brr -o cmp/
@@ -267,7 +291,7 @@ def compare(
         raise click.UsageError("--cross-validate: say which parameters are free, as in --free usfd=q_s,m_c")
     notes = Notes()
     with results_folder(folder, overwrite, COMPARISON) as fresh:
-        measured = read_tests(tests, sep=sep, decimal=decimal)
+        measured = _tests(tests, columns, sheet=sheet, sep=sep, decimal=decimal, balance_resolution=balance_resolution)
         _note_friction(measured, friction, notes)
         chosen = {text: law_of(text) for text in listed("--laws", laws)}
         named = {law.label or text: law for text, law in chosen.items()}
@@ -281,11 +305,11 @@ def compare(
         freed, ends = _freed(free, named), _bounds(bounds)
         for field in ends.keys() - {field for fields_of_law in freed.values() for field in fields_of_law}:
             raise click.UsageError(f"--bounds: {shown(field)} is not free; add it to --free, as in --free LAW={field}")
-        settings: Any = {"friction_coefficient": friction, "scatter": scatter}
+        settings: Any = {"friction_coefficient": friction, "scatter": scatter, "body": body}
         for law, names in freed.items():
             settings["bounds"] = {field: ends[field] for field in names if field in ends}
             predictors += _fits([pair for pair in pairs if pair.law == law], names, measured, notes, settings)
-        comparison = compare_named(predictors, measured, friction, cross_validate=parts, progress=True)
+        comparison = compare_named(predictors, measured, friction, cross_validate=parts, body=body, progress=True)
         for note in comparison.notes:
             notes.add(note)
         with notes.of("figure"):
@@ -344,7 +368,9 @@ def _write_fit(
         "parameters": {name: text_of(value) for name, value in fit.parameters.items()},
         "intervals": {name: [text_of(end) for end in ends] for name, ends in fit.intervals.items()},
         "interval_method": fit.interval_method,
+        "conversions": list(fit.conversions),
         "aic": fit.aic,
+        "outliers": fit.outliers["label"].tolist(),
         "lack_of_fit": [asdict(test) for test in fit.lack_of_fit],
         "provenance": fit.provenance,
         "predict": fit.predict.model_dump(mode="json"),

@@ -31,10 +31,12 @@ from wearlaw.units.variables import name_of
 from wearlaw_apps.fits.agreement import Agreement, agreement
 from wearlaw_apps.fits.fit import fit as refit
 from wearlaw_apps.fits.lack_of_fit import repeats
+from wearlaw_apps.fits.measured_wear import in_outcomes
 from wearlaw_apps.fits.named_numbers import FRICTION
 from wearlaw_apps.fits.observations import TRACTION, test_names
+from wearlaw_apps.fits.read_tests import Columns, Source, tests_of
 from wearlaw_apps.fits.result import Fit
-from wearlaw_apps.fits.wear_tests import WearTests, expect_tests
+from wearlaw_apps.fits.wear_tests import WearTests
 from wearlaw_apps.output.curves import BLACK, Curve, FigureData
 from wearlaw_apps.output.labels import label, labels, readable
 from wearlaw_apps.output.notes import Notes, caught_warnings
@@ -55,6 +57,9 @@ Folds: TypeAlias = int | Literal["leave-one-out"]
 
 SEED = 0
 """Seed of the random order in which operating points are dealt to folds, so that a comparison can be repeated."""
+
+ROUNDING = 1e-9
+"""Relative difference up to which two rigs convert measured wear alike."""
 
 COLUMNS = {
     "predictor": "object",
@@ -233,11 +238,13 @@ def _cell(value: Any) -> str:
 
 def compare(
     predictors: Mapping[str, Predictor] | Sequence[Predictor],
-    tests: WearTests,
+    tests: WearTests | Source,
     *,
+    columns: Columns = None,
     outcome: str | None = None,
     friction_coefficient: ArrayLike | None = None,
     cross_validate: Folds | None = None,
+    body: str | None = None,
 ) -> Comparison:
     """Rank predictors by how well they agree with measured wear rates or another outcome, all on the same tests.
 
@@ -246,8 +253,10 @@ def compare(
     predictors : mapping of str to Pipeline or Fit, or sequence of these
         The predictors of the outcome. In a sequence, each is named after its law and contact model, such as
         "usfd on exact", or "usfd fitted on exact" for a `Fit`.
-    tests : WearTests
-        Measured tests. Those without the outcome are left out.
+    tests : WearTests, path or pandas.DataFrame
+        Measured tests, or what `wearlaw.read_tests` reads. Those without the outcome are left out.
+    columns : mapping of str to str, optional
+        Of a table: its columns by the names that they get, as for `wearlaw.read_tests`.
     outcome : str, optional
         Name of the outcome, such as "rcf_damage"; needed if the predictors share several that the tests measure.
     friction_coefficient : array_like of float, optional
@@ -256,6 +265,8 @@ def compare(
         Each `Fit` predicts every test from a fit of its free parameters to tests at other operating points: to all
         others for "leave-one-out", or to those in the other of this number of random folds. Repeated tests, whose
         conditions agree to 0.1 %, stay together. Pipelines predict as they are.
+    body : str, optional
+        The body whose mass, volume or depth was measured, as for `wearlaw.fit`.
 
     Returns
     -------
@@ -289,7 +300,7 @@ def compare(
     tests, and if fits assume different kinds of scatter. A note names the laws that were fitted to these tests, and
     `in_sample` counts the tests; cross-validation ranks fits by tests that they have not seen.
     """
-    expect_tests(tests)
+    tests = tests_of(tests, columns)
     every = list(predictors.values() if isinstance(predictors, Mapping) else predictors)
     if not every:
         raise InputError("give at least one predictor, such as rig | contact_model | law")
@@ -304,7 +315,7 @@ def compare(
         names = [Names(name, name, of_models.contact) for name, of_models in zip(predictors, names, strict=True)]
     notes = Notes()
     named = list(zip(names, every, strict=True))
-    comparison = compare_named(named, tests, friction_coefficient, outcome, cross_validate, notes=notes)
+    comparison = compare_named(named, tests, friction_coefficient, outcome, cross_validate, body, notes=notes)
     notes.warn()
     return comparison
 
@@ -316,6 +327,7 @@ def compare_named(
     friction_coefficient: ArrayLike | None,
     outcome: str | None = None,
     cross_validate: Folds | None = None,
+    body: str | None = None,
     progress: bool = False,
     notes: Notes | None = None,
 ) -> Comparison:
@@ -332,6 +344,8 @@ def compare_named(
     unit = _law(predictors[0], outcome).outcome.unit
     tests = tests.measuring([name for predictor in predictors for name in named_outcomes(_pipeline(predictor).laws)])
     notes = Notes() if notes is None else notes
+    tests, named = _converted(named, tests, outcome, friction_coefficient, body, notes)
+    predictors = [predictor for _, predictor in named]
     measured, name = tests.measured(outcome, unit), name_of(outcome)
     there = ~np.isnan(measured)
     if not there.any():
@@ -368,6 +382,38 @@ def compare_named(
     return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, unit, how)
 
 
+def _converted(
+    named: Sequence[tuple[Names, Predictor]],
+    tests: WearTests,
+    outcome: str,
+    friction: Any,
+    body: str | None,
+    notes: Notes,
+) -> tuple[WearTests, list[tuple[Names, Predictor]]]:
+    """Return tests with measured wear as the outcome, and the predictors, of the weighed body if the bodies differ."""
+    converted: list[WearTests] = []
+    predictors: list[tuple[Names, Predictor]] = []
+    for names, predictor in named:
+        fitted = predictor.parameters.get(FRICTION) if isinstance(predictor, Fit) else None
+        mu = friction if fitted is None else float(fitted.magnitude)
+        with OneWarning() as unusual:
+            some, pipeline, words = in_outcomes(tests, _pipeline(predictor), mu, body)
+            unusual.clear()
+        converted.append(some)
+        predictors.append((names, predictor if isinstance(predictor, Fit) else pipeline))
+        for text in words:
+            notes.add(f"converted: {text}")
+    unit = _law(named[0][1], outcome).outcome.unit
+    first, *others = (some.measured(outcome, unit) for some in converted)
+    for other, (names, _) in zip(others, predictors[1:], strict=True):
+        if not np.allclose(first, other, rtol=ROUNDING, atol=0.0, equal_nan=True):
+            raise InputError(
+                f"{names.label}: its rig converts the measured wear to another {name_of(outcome)} than that of"
+                f" {predictors[0][0].label}; compare predictors of one rig"
+            )
+    return converted[0], predictors
+
+
 def _outcome(predictors: Sequence[Predictor], tests: WearTests, outcome: str | None) -> str:
     """Return the outcome to compare: the given one, or the only one that all predict and the tests measure."""
     predicted = [named_outcomes(_pipeline(predictor).laws) for predictor in predictors]
@@ -383,8 +429,11 @@ def _outcome(predictors: Sequence[Predictor], tests: WearTests, outcome: str | N
     if not shared:
         raise InputError(f"the predictors have no outcome in common; they predict {', '.join(every)}")
     tests = tests.measuring(shared)
+    outcomes = {name: _law(predictors[0], name).outcome for name in shared}
     measured = [
-        name for name in shared if not np.isnan(tests.measured(name, _law(predictors[0], name).outcome.unit)).all()
+        name
+        for name, of_law in outcomes.items()
+        if (of_law.wear and tests.ways) or not np.isnan(tests.measured(name, of_law.unit)).all()
     ]
     if len(measured) > 1:
         raise InputError(

@@ -10,6 +10,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from typing import Any, Literal
 
 import numpy as np
+import scipy
 
 from wearlaw.arrays import Array, steadily
 from wearlaw.configuration import known_name
@@ -30,18 +31,36 @@ from wearlaw_apps.fits.intervals import (
     leverage,
     replicate,
     student_intervals,
+    studentised,
     studentised_intervals,
     undetermined,
 )
 from wearlaw_apps.fits.lack_of_fit import LackOfFit, lack_of_fit, repeats
-from wearlaw_apps.fits.least_squares import Bounds, Solutions, fit_many, search
+from wearlaw_apps.fits.least_squares import LOSSES, STEP, Bounds, Solutions, fit_many, jacobian, search
+from wearlaw_apps.fits.measured_wear import in_outcomes
 from wearlaw_apps.fits.named_numbers import FRICTION, changed_parts
 from wearlaw_apps.fits.observations import FLOOR, Observations, Scatter, observe, test_names, wear_index_density
+from wearlaw_apps.fits.read_tests import Columns, Source, tests_of
 from wearlaw_apps.fits.result import Fit
-from wearlaw_apps.fits.wear_tests import WearTests, expect_tests
+from wearlaw_apps.fits.wear_tests import WearTests
 
 NEAR = 10.0
 """Starting points lie within this factor of the first value, up and down."""
+
+NORMAL = 1.4826
+"""Standard deviation of a normal distribution over the median of the magnitudes."""
+
+MARGIN = 2.0
+"""Standard deviations from which on a robust loss takes a test for an outlier, scipy's `f_scale`."""
+
+MOST_ROUNDS = 100
+"""Most iterations of a robust fit."""
+
+LEAST_SLOPE = 0.1
+"""Least mean slope ψ' of a robust loss; near zero, most tests have hardly any weight, and intervals no meaning."""
+
+SETTLED = 1e-7
+"""Change of the scaled parameters from which on a robust fit has settled."""
 
 ROUNDS = 3
 """Iterations in which the scatter about the fit sets the weights of two kinds of measurement."""
@@ -64,12 +83,15 @@ DIGITS = 4
 
 def fit(
     predict: Pipeline[...],
-    tests: WearTests,
+    tests: WearTests | Source,
     free: Sequence[str],
     *,
+    columns: Columns = None,
     friction_coefficient: float | None = None,
     scatter: Literal["relative", "absolute"] = "relative",
+    robust: Literal["linear", "huber", "soft_l1", "cauchy", "arctan"] = "linear",
     bounds: Mapping[str, tuple[QuantityLike | float, QuantityLike | float]] | None = None,
+    body: str | None = None,
     starts: int = 256,
     bootstrap: int = 1000,
     seed: int = 0,
@@ -83,23 +105,32 @@ def fit(
     predict : Pipeline
         The pipeline to fit. Parameters that are not free keep the values of its laws and stages. Without a law, the
         friction coefficient and the numbers of stages are fitted to the measured traction.
-    tests : WearTests
-        Measured tests. Those without a law's outcome do not affect the parameters of the law.
+    tests : WearTests, path or pandas.DataFrame
+        Measured tests, or what `wearlaw.read_tests` reads. Those without a law's outcome do not affect its parameters.
     free : sequence of str
         Numeric fields of laws and stages, nested ones with a dot as in "coefficient.low_speed", and
         "friction_coefficient". A name that several of them have is written "third_body.reduction", or "usfd_rail.m_m"
         for one of the laws of two bodies. The friction coefficient is one value for all tests. It and the numbers of
         stages are also fitted to the traction T/N, on an ellipse with T = √(Fx² + Fy²).
+    columns : mapping of str to str, optional
+        Of a table: its columns by the names that they get, as for `wearlaw.read_tests`.
     friction_coefficient : float, optional
         μ of tests without one, or the starting value if it is free.
     scatter : str
         "relative": measurements scatter by a factor, and the residual is ln(predicted/measured). "absolute": the
         residual is predicted - measured. If the tests state an uncertainty of the wear rate, the residual is
         (predicted - measured) over that, whatever is given here.
+    robust : str
+        Loss of the residuals, as in ``scipy.optimize.least_squares``: "linear" for least squares; in the others, tests
+        far from the fit count less, the least in "arctan". Far is beyond twice the stated uncertainty, or else
+        2 · 1.4826 times the median of the residuals' magnitudes.
     bounds : mapping of str to pair, optional
         Least and greatest values, within the limits of the field. Default: a hundredth and a hundred times the
         starting value of a number that must be positive; for any other, a hundred times its size below and above it;
         within the limits of the field.
+    body : str, optional
+        The body whose mass, volume or depth was measured, such as "disc_2", or "both" if it is the sum of both.
+        Default: the body of the law, or that in the head of the column, or else the first body of the rig.
     starts : int
         Number of further starting points, within a factor of ten of the given law.
     bootstrap : int
@@ -119,6 +150,8 @@ def fit(
         too few tests, no fit is found, or a setting is invalid.
     ConditionsError
         If the rig does not take the conditions of the tests.
+    DataError
+        If measured wear cannot be converted to the outcome of the law; the message says what is missing.
 
     Warns
     -----
@@ -127,15 +160,18 @@ def fit(
     UnusualWarning
         If the median of a column, or the fitted friction coefficient, is unusual.
     FitWarning
-        If the law does not fit the tests (see `LackOfFit`), the fit ends at a bound, or the bootstrap is unreliable.
+        If the law does not fit the tests (see `LackOfFit`), tests are outliers (see `Fit.outliers`), the fit ends at a
+        bound, or the bootstrap is unreliable.
 
     Notes
     -----
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
-    expect_tests(tests)
+    tests = tests_of(tests, columns)
     if scatter not in ("relative", "absolute"):
         raise FitError(f'scatter: must be "relative" or "absolute", got {shown(scatter)}')
+    if robust not in LOSSES:
+        raise FitError(f"robust: must be one of {', '.join(map(shown, LOSSES))}; got {shown(robust)}")
     for name, count in {"starts": starts, "bootstrap": bootstrap, "seed": seed}.items():
         if not isinstance(count, int) or count < 0:
             raise FitError(f"{name}: must be a whole number, zero or positive, got {shown(count)}")
@@ -149,23 +185,28 @@ def fit(
         "free": free,
         "friction_coefficient": friction_coefficient,
         "scatter": scatter,
+        "robust": robust,
         "bounds": bounds,
         "starts": starts,
         "seed": seed,
         "confidence": confidence,
     }
-    if isinstance(predict, Pipeline):
-        remark(tests.unusual(predict))
     with steadily(), OneWarning() as unusual:
-        task = _Task.of(predict, tests, free, friction_coefficient, scatter, bounds or {})
+        task = _Task.of(predict, tests, free, friction_coefficient, scatter, robust, bounds or {}, body)
+        settings["predict"] = task.predict
+        unusual.clear()  # columns are seen by their medians
+    remark(task.tests.unusual(task.predict))
+    with steadily(), OneWarning() as unusual:
         best = task.solve(starts, seed)
         replicates = None
         if bootstrap:
             counts = [observed.measured.size for observed in task.observations]
             groups = np.repeat(np.arange(len(counts)), counts)
-            replicates = replicate(task.model, best, task.free.bounds, groups, bootstrap, seed, on_progress)
+            replicates = replicate(
+                task.model, best, task.errors(best).residuals[0], task.free.bounds, groups, bootstrap, seed, on_progress
+            )
         result = _result(task, best, replicates, confidence, settings)
-        unusual.clear()  # the search visits parameters that nobody asked for, and columns are seen by their medians
+        unusual.clear()  # the search visits parameters that nobody asked for
         if (
             FRICTION in result.parameters
             and (friction := result.parameters[FRICTION].magnitude) > RATIOS["friction"].most
@@ -179,7 +220,7 @@ def fit(
     if overload:
         overload.warn()
     poor = (test.warning for test in result.lack_of_fit if test.poor)
-    for text in (*poor, *_at_bounds(task, best), *_unreliable(task, replicates)):
+    for text in (*poor, *_outliers(result), *_at_bounds(task, best), *_unreliable(task, replicates)):
         warn(text, FitWarning)
     _warn_of_kept(task)
     return result
@@ -187,14 +228,17 @@ def fit(
 
 @dataclass
 class _Task:
-    """The free parameters, the measurements, and the weights of the residuals."""
+    """The free parameters, the measurements, and the weights of the residuals: of their kind, and of a robust loss."""
 
     predict: Pipeline[...]
     tests: WearTests
     scatter: Scatter
     free: FreeParameters
     observations: list[Observations]
+    robust: str
     weights: Array
+    trust: Array
+    conversions: tuple[str, ...]
 
     @classmethod
     def of(
@@ -204,7 +248,9 @@ class _Task:
         free: Sequence[str],
         friction: float | None,
         scatter: Literal["relative", "absolute"],
+        robust: str,
         bounds: Mapping[str, Any],
+        body: str | None,
     ) -> _Task:
         """Return the task for the arguments of `fit`."""
         if not isinstance(predict, Pipeline):
@@ -216,8 +262,10 @@ class _Task:
             friction = float(number)
         predict = predict.with_law(*(law.explicit() for law in predict.laws)) if predict.laws else predict
         first = _first_friction(tests, friction) if FRICTION in free else friction
+        tests = tests.measuring(named_outcomes(predict.laws))
+        tests, predict, conversions = in_outcomes(tests, predict, first, body)
         parameters = FreeParameters.of(predict, free, first, bounds)
-        observations = observe(predict, tests.measuring(named_outcomes(predict.laws)), parameters, first, scatter)
+        observations = observe(predict, tests, parameters, first, scatter)
         stated = any(observed.scatter == "uncertainty" for observed in observations)
         count = sum(observed.measured.size for observed in observations)
         if count <= len(parameters.names):
@@ -225,7 +273,9 @@ class _Task:
                 f"tests: {count} measurement{'s' if count > 1 else ''} cannot tell {len(parameters.names)} parameters"
                 f" ({', '.join(parameters.names)}) and their scatter; give more tests, or free fewer parameters"
             )
-        return cls(predict, tests, "uncertainty" if stated else scatter, parameters, observations, np.ones(count))
+        kind: Scatter = "uncertainty" if stated else scatter
+        ones = np.ones(count), np.ones(count)
+        return cls(predict, tests, kind, parameters, observations, robust, *ones, conversions)
 
     def parts(self, values: Array) -> list[Array]:
         """Return values of all measurements, (n,), by their kind, as views."""
@@ -235,11 +285,11 @@ class _Task:
         """Return the weighted residuals (sets, n) of scaled parameters (sets, p)."""
         values = self.free.columns(theta)
         residuals = [observed.compare(observed.predicted(values)) for observed in self.observations]
-        return np.concatenate(residuals, axis=-1) * self.weights
+        return np.concatenate(residuals, axis=-1) * self.weights * self.trust
 
     def residuals(self, best: Solutions) -> Array:
         """Return the residuals of a fit without their weights, (n,)."""
-        residuals: Array = best.residuals[0] / self.weights
+        residuals: Array = best.residuals[0] / (self.weights * self.trust)
         return residuals
 
     def solve(self, starts: int, seed: int) -> Solutions:
@@ -253,6 +303,8 @@ class _Task:
             for _ in range(ROUNDS):
                 self._weigh(best)
                 best = fit_many(self.model, target[None], best.theta, bounds)
+        if self.robust != "linear":
+            best = self._robust(best, bounds)
         if not best.converged[0]:
             advice = give_bounds(self.free.names[0])
             raise FitError(f"the fit has not converged; {advice}, or a law whose parameters are nearer to the tests")
@@ -271,6 +323,70 @@ class _Task:
             scatter = math.sqrt(float(np.mean(residuals**2)))
             if residuals.size >= LEAST_GROUP and scatter > 0.0:
                 weights[:] = 1.0 / max(scatter, LEAST_SCATTER)
+
+    def _robust(self, best: Solutions, bounds: Bounds) -> Solutions:
+        """Return the fit by the robust loss, with residuals and derivatives that are not weighted by it.
+
+        Least squares with the weights ρ' have the same minimum, and are solved until they settle.
+
+        Notes
+        -----
+        P. W. Holland and R. E. Welsch, Commun. Statist. A 6 (1977) 813-827.
+        """
+        target, converged = np.zeros((1, self.weights.size)), False
+        for _ in range(MOST_ROUNDS):
+            before = best.theta
+            size = self.residuals(best) * self.weights / self._scale(best)
+            self.trust[:] = np.sqrt(LOSSES[self.robust](size**2))
+            best = fit_many(self.model, target, before, bounds)
+            if converged := bool(best.converged[0] and np.abs(best.theta - before).max() < SETTLED):
+                break
+        self.trust[:] = 1.0
+        residuals = self.model(best.theta)
+        slopes = jacobian(self.model, best.theta, residuals, bounds)
+        return Solutions(best.theta, residuals, slopes, np.array([converged]))
+
+    def _scale(self, best: Solutions) -> Array:
+        """Return the scale of the residuals in a robust loss, (n,)."""
+        every = self.parts(self.residuals(best) * self.weights)
+        scales = [
+            1.0 if observed.scatter == "uncertainty" else NORMAL * float(np.median(np.abs(part)))
+            for observed, part in zip(self.observations, every, strict=True)
+        ]
+        return np.repeat(MARGIN * np.maximum(scales, LEAST_SCATTER), [part.size for part in every])
+
+    def errors(self, best: Solutions) -> Solutions:
+        """Return the fit with residuals that scatter as the estimate does: of a robust fit, s ψ(r/s)/mean ψ'.
+
+        With ψ(r) = r ρ'(r²), least squares of these have the same minimum, and its covariance.
+
+        Notes
+        -----
+        P. J. Huber, Robust Statistics, Wiley 1981, section 7.6, without the correction of order p/n.
+        """
+        if self.robust == "linear":
+            return best
+        loss, scale = LOSSES[self.robust], self._scale(best)
+        size = best.residuals[0] / scale
+        low, size, high = (value * loss(value**2) for value in (size - STEP, size, size + STEP))
+        slope = float(np.mean(high - low)) / (2.0 * STEP)
+        if slope < LEAST_SLOPE:
+            raise FitError(f'robust: too many tests lie far from the fit for {shown(self.robust)}; take "soft_l1"')
+        return dataclasses.replace(best, residuals=(scale * size / slope)[None])
+
+    def studentised(self, best: Solutions) -> Array:
+        """Return the studentised residuals, (n,)."""
+        errors = self.errors(best)
+        return studentised(best.residuals[0], errors.residuals[0], leverage(best), len(self.free.names))
+
+    def most(self, confidence: float) -> float:
+        """Return the largest studentised residual that a test reaches by chance, of all tests at once.
+
+        The level is that of each test times their number, after Bonferroni.
+        """
+        count = self.weights.size
+        tail = 0.5 * (1.0 - confidence) / count
+        return float(-scipy.special.stdtrit(max(count - len(self.free.names) - 1, 1), tail))
 
 
 def _first_friction(tests: WearTests, friction: float | None) -> float:
@@ -294,8 +410,9 @@ def _result(
     """Return the result of a fit."""
     free, values = task.free, task.free.columns(best.theta)
     observations = tuple(_with_friction(observed, values) for observed in task.observations)
-    by_student = student_intervals(best, confidence)
-    ends = by_student if replicates is None else studentised_intervals(best, replicates, confidence)
+    errors = task.errors(best)
+    by_student = student_intervals(errors, confidence)
+    ends = by_student if replicates is None else studentised_intervals(errors, replicates, confidence)
     samples = {} if replicates is None else free.columns(replicates.theta)
     slopes = free.slopes(best.theta[0])
     chi2, aic = _sums(task, best)
@@ -304,7 +421,7 @@ def _result(
         intervals=_pairs(free, ends),
         covariance_intervals=_pairs(free, by_student),
         confidence=confidence,
-        covariance=covariance(best)[0] * np.outer(slopes, slopes),
+        covariance=covariance(errors)[0] * np.outer(slopes, slopes),
         predict=_fitted_pipeline(task, values, observations),
         tests=task.tests,
         scatter=task.scatter,
@@ -313,6 +430,9 @@ def _result(
         samples={name: free.quantity(name, draws) for name, draws in samples.items()},
         observations=observations,
         lack_of_fit=tuple(_lack_of_fit(task, best, confidence)),
+        studentised=task.studentised(best),
+        most=task.most(confidence),
+        conversions=task.conversions,
         settings=settings,
     )
 
@@ -419,6 +539,20 @@ def _sums(task: _Task, best: Solutions) -> tuple[float, float]:
     kinds, tiny = task.parts(squares), float(np.finfo(np.float64).tiny)
     likelihood = sum(kind.size * math.log(max(float(kind.mean()), tiny)) for kind in kinds)
     return float(squares.sum()), likelihood + 2.0 * (parameters + len(kinds))
+
+
+def _outliers(fit: Fit) -> Iterator[str]:
+    """Yield what to tell the user of tests that lie farther from a fit than the others allow."""
+    if len(outliers := fit.outliers):
+        names = ", ".join(
+            f"{row.label} ({name_of(str(row.observable).partition(' ')[0])}, {row.studentised:.1f})"
+            for row in outliers.itertuples()
+        )
+        yield (
+            f"outliers: test{'s' if len(outliers) > 1 else ''} {names}; the studentised residual is beyond"
+            f" {fit.most:.1f}, the most that the other tests allow at a level of {1.0 - fit.confidence:.2g} over all"
+            ' tests. They stay in the fit: check them, or fit with robust="soft_l1"'
+        )
 
 
 def _at_bounds(task: _Task, best: Solutions) -> Iterator[str]:

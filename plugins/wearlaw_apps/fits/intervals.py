@@ -25,6 +25,9 @@ hundred times the error of the derivatives."""
 INVOLVED = 0.1
 """Share of a parameter in an undetermined combination from which it counts as undetermined."""
 
+LEAST_ERROR = 1e-3
+"""Least scatter by which residuals are studentised; made-up tests scatter by less, and have no outliers."""
+
 SINGULAR = 1e-12
 """Eigenvalues of JᵀJ, over the largest, that count as zero."""
 
@@ -72,6 +75,38 @@ def leverage(fit: Solutions) -> Array:
     return leverages
 
 
+def studentised(residuals: Array, errors: Array, leverages: Array, count: int) -> Array:
+    """Return residuals over what they scatter by the others alone, (n,); Student's t with n - p - 1 degrees of freedom.
+
+    tᵢ = rᵢ/(s₍ᵢ₎ √(1 - hᵢ)), with the scatter s₍ᵢ₎ of a fit without test i. For a law that is linear over the scatter,
+    s₍ᵢ₎² = (Σr² - rᵢ²/(1 - hᵢ))/(n - p - 1).
+
+    Parameters
+    ----------
+    residuals, errors : ndarray, (n,)
+        Residuals, and those from which the scatter follows; they differ in a robust fit.
+    leverages : ndarray, (n,)
+        hᵢ, as from `leverage`.
+    count : int
+        Number p of parameters.
+
+    Returns
+    -------
+    ndarray, (n,)
+        NaN for a test that decides a parameter alone, or if there are too few tests.
+
+    Notes
+    -----
+    R. D. Cook and S. Weisberg, Residuals and Influence in Regression, Chapman and Hall 1982, section 2.2.
+    """
+    spare, degrees = 1.0 - leverages, residuals.size - count - 1
+    usable = (leverages < DECIDED_ALONE) & (degrees > 0)
+    size = np.where(usable, spare, 1.0)
+    without = (np.sum(errors**2) - errors**2 / size) / max(degrees, 1)
+    scatter = np.sqrt(np.maximum(without, LEAST_ERROR**2) * size)
+    return np.where(usable, residuals / scatter, np.nan)
+
+
 def student_intervals(fit: Solutions, confidence: float) -> tuple[Array, Array]:
     """Return the ends of the intervals by Student's t with n - p degrees of freedom, each (p,)."""
     tests, count = fit.jacobian.shape[1:]
@@ -82,17 +117,18 @@ def student_intervals(fit: Solutions, confidence: float) -> tuple[Array, Array]:
 def replicate(
     model: Model,
     fit: Solutions,
+    errors: Array,
     bounds: Bounds,
     groups: NDArray[np.intp],
     count: int,
     seed: int,
     on_progress: Callable[[int], None] | None = None,
 ) -> Replicates:
-    """Fit the model to the fitted values plus residuals resampled within each of the `groups`, (n,).
+    """Fit the model to the fitted values plus `errors` (n,) resampled within each of the `groups`, (n,).
 
-    Since the fit follows each test, its residual is smaller than its scatter by √(1 - leverage). Residuals are scaled
-    up by that and centred in their group before they are drawn. `on_progress` is called with the number of replicates
-    in each finished batch.
+    The errors are the residuals of the fit, or of a robust fit those of least squares with the same minimum. Since the
+    fit follows each test, they are smaller than its scatter by √(1 - leverage). They are scaled up by that and centred
+    in their group before they are drawn. `on_progress` is called with the number of replicates in each finished batch.
 
     Notes
     -----
@@ -101,7 +137,7 @@ def replicate(
     """
     generator = np.random.default_rng(seed)
     predicted = fit.residuals[0]  # as good as the prediction, since the target of the model is zero
-    scatter = predicted / np.sqrt(1.0 - np.minimum(leverage(fit), DECIDED_ALONE))
+    scatter = errors / np.sqrt(1.0 - np.minimum(leverage(fit), DECIDED_ALONE))
     drawn = np.empty((count, scatter.size))
     for group in np.unique(groups):
         members = np.flatnonzero(groups == group)

@@ -6,7 +6,7 @@ All functions take a *model* of many parameter sets, from θ of shape (sets, p) 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -37,6 +37,16 @@ FITTED = 8
 SOFTEST, STIFFEST = 1e-12, 1e12
 """Least and greatest damping. At the greatest one, a step is as small as rounding. A fit that it does not improve has
 converged: the best fit may lie on a kink of the model, where the gradient does not vanish."""
+
+
+LOSSES: Mapping[str, Callable[[Array], Array]] = {
+    "linear": np.ones_like,
+    "huber": lambda z: 1.0 / np.sqrt(np.maximum(z, 1.0)),
+    "soft_l1": lambda z: 1.0 / np.sqrt(1.0 + z),
+    "cauchy": lambda z: 1.0 / (1.0 + z),
+    "arctan": lambda z: 1.0 / (1.0 + z**2),
+}
+"""Slopes dρ/dz of scipy's losses in z = r²: the weights of r² in least squares with the same minimum."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConfigurationError, FitError, ModelError
-from wearlaw.models.law import WEAR, named_outcomes
+from wearlaw.models.law import named_outcomes
 from wearlaw.numerics.integrate import integrate_forces, patch_area
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.variables import UNITS, name_of
@@ -30,6 +30,10 @@ TRACTION = "traction_coefficient"
 
 FLOOR = 1e-300
 """Replaces a prediction of zero, whose logarithm is infinite."""
+
+
+NOT_WEAR = "; by its law, {} is no wear that a measured mass converts to (wear=True of its Outcome)"
+"""Added to the error for tests that measure a mass, and a law of another outcome."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,7 +137,8 @@ def observe(
         there = ~np.isnan(values)
         needed = FRICTION in free.names if index is None else index in free.freed_laws
         if needed and not there.any():
-            raise FitError(f"tests: none of the {len(tests)} tests has a {name_of(name)}, which is fitted")
+            hint = NOT_WEAR.format(name) if tests.ways and law is not None and not law.outcome.wear else ""
+            raise FitError(f"tests: none of the {len(tests)} tests has a {name_of(name)}, which is fitted{hint}")
         if not (needed or (of_contact and there.any())):
             continue
         selected, measured = tests[there], values[there]
@@ -143,9 +148,10 @@ def observe(
         if of_contact:  # else the measured traction would replace the one that follows from the parameters
             conditions.pop(TRACTION, None)
         problem = pipeline.posed(conditions, of_one_patch="fit")
-        stated = name == WEAR and tests.wear_rate_uncertainty is not None
+        stated = f"{name}_uncertainty" in {**tests.columns, **tests.outcomes}
         chosen: Scatter = "uncertainty" if stated else scatter
-        divisor = _divisor(name, selected, measured, chosen)
+        unit = "" if law is None else law.outcome.unit
+        divisor = _divisor(name, unit, selected, measured, chosen)
         observations.append(
             Observations(name, index, pipeline, free.places, selected, measured, conditions, problem, chosen, divisor)
         )
@@ -157,16 +163,16 @@ def observe(
     return observations
 
 
-def _divisor(observable: str, tests: WearTests, measured: Array, scatter: Scatter) -> Array:
+def _divisor(observable: str, unit: str, tests: WearTests, measured: Array, scatter: Scatter) -> Array:
     """Return the divisor of the residuals, (n,), or raise an error if measurements cannot scatter in that way."""
     if scatter == "absolute":
         return np.full_like(measured, np.sqrt(np.mean(measured**2)) or 1.0)
     if scatter == "uncertainty":
-        divisor = tests.columns["wear_rate_uncertainty"]
+        divisor = tests.measured(f"{observable}_uncertainty", unit)
         if np.isnan(divisor).any():
             raise FitError(
-                f"wear_rate_uncertainty: is missing in {test_names(tests, np.isnan(divisor))}; give it for all tests"
-                " with a wear rate, or for none"
+                f"{observable}_uncertainty: is missing in {test_names(tests, np.isnan(divisor))}; give it for all"
+                f" tests with a {name_of(observable)}, or for none"
             )
         return divisor
     zero = measured <= 0.0

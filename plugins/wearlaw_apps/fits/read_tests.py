@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Collection, Iterator
+import re
+from collections.abc import Collection, Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
-import wearlaw as wl
+import numpy as np
+
 from wearlaw import loader
 from wearlaw.errors import DataError, InputError, UnitError, did_you_mean, shown
 from wearlaw.models.model import CONDITIONS
 from wearlaw.text_files import read_text
-from wearlaw_apps.fits.wear_tests import COLUMNS, Values, WearTests
+from wearlaw.units.quantities import Q, QuantityLike, parse
+from wearlaw_apps.fits.wear_tests import BALANCE, COLUMNS, ROLLED, WAYS, Values, WearTests, is_way
 from wearlaw_apps.output.datasets import names_in
-from wearlaw_apps.tables import Table
+from wearlaw_apps.tables import Column, Table, is_spreadsheet, open_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,13 +30,45 @@ LARGEST = 2**22
 TEXTS = ("label", "comment")
 """Columns of text."""
 
+LATER = (*WAYS, *ROLLED, BALANCE.name)
+"""Columns that others must resemble closely to be taken for them: a mass is no mass_loss."""
+
+
+Source: TypeAlias = "str | os.PathLike[str] | pd.DataFrame"
+"""A file of tests, the name of shipped tests, or a table."""
+
+Columns: TypeAlias = "Mapping[str, str] | None"
+"""Columns of a table by the names that they get, as in {"normal_force": "Load (N)"}."""
+
+OTHER_NAMES = {
+    "slip": "creepage",
+    "slip ratio": "creepage",
+    "load": "normal_force",
+    "force": "normal_force",
+    "pressure": "max_pressure",
+    "mu": "friction_coefficient",
+    "cof": "friction_coefficient",
+    "friction": "friction_coefficient",
+    "traction": "traction_coefficient",
+    "weight loss": "mass_loss",
+    "wear": "wear_rate",
+    "revs": "revolutions",
+    "time": "duration",
+    "test": "label",
+    "test no.": "label",
+}
+"""What labs call columns, for suggestions."""
+
 
 def read_tests(
-    source: str | os.PathLike[str] | pd.DataFrame,
+    source: Source,
     *,
+    columns: Columns = None,
     outcomes: Collection[str] = (),
     sep: str | None = None,
     decimal: str = ".",
+    sheet: str | None = None,
+    balance_resolution: QuantityLike | None = None,
 ) -> WearTests:
     """Read tests from a table, or return shipped tests by their name.
 
@@ -43,10 +78,17 @@ def read_tests(
         A CSV file with units in its header, such as ``creepage [%]``, or any table that `read_table` takes; or the name
         of shipped tests, such as "lewis2004". Columns such as ``mass [kg]`` are other conditions of a rig, and columns
         such as ``heat_flux [W/mm^2]`` measured outcomes of laws.
+    columns : mapping of str to str, optional
+        Columns by the names that they get, as in {"normal_force": "Load (N)", "creepage": "Slip [%]"}; state the unit
+        in brackets if the table does not. Columns that have such names already stay, and all others are left out.
     outcomes : collection of str, optional
         Names of columns that are outcomes of laws that no plugin provides. Without it, such a column must be complete.
     sep, decimal : str, optional
         What separates the cells, and the decimal mark, as in `read_table`.
+    sheet : str, optional
+        The sheet of a spreadsheet by its name. Default: the only one that has cells.
+    balance_resolution : Quantity or str, optional
+        Smallest step of the balance [kg], from which the standard uncertainty of `mass_loss` follows.
 
     Raises
     ------
@@ -56,9 +98,23 @@ def read_tests(
         If several plugins ship tests of that name.
     """
     outcomes = names_in(outcomes, "outcomes")
-    if isinstance(source, str | os.PathLike):
-        return parse_tests(text_of_tests(source), str(source), outcomes, sep, decimal)
-    return _checked(wl.read_table(source, sep=sep, decimal=decimal), "a table", outcomes)
+    name = str(source) if isinstance(source, str | os.PathLike) else "a table"
+    if isinstance(source, str | os.PathLike) and not is_spreadsheet(source):
+        table = open_table(_text_file(text_of_tests(source), name), sep=sep, decimal=decimal, sheet=sheet)
+    else:
+        table = open_table(source, sep=sep, decimal=decimal, sheet=sheet)
+    return _checked(table, name, outcomes, columns, balance_resolution)
+
+
+def tests_of(tests: WearTests | Source, columns: Columns) -> WearTests:
+    """Return the argument `tests` of a function, which may be anything that `read_tests` reads."""
+    if not isinstance(tests, WearTests):
+        if isinstance(tests, str | os.PathLike) or hasattr(tests, "to_numpy"):
+            return read_tests(tests, columns=columns)
+        raise InputError(f"tests: must be wearlaw.WearTests, as from wl.read_tests, or a table; got {shown(tests)}")
+    if columns is not None:
+        raise InputError("columns: the tests are read already; give columns to wl.read_tests")
+    return tests
 
 
 def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
@@ -83,17 +139,29 @@ def parse_tests(
     text: str, name: str, outcomes: Collection[str] = (), sep: str | None = None, decimal: str = "."
 ) -> WearTests:
     """Return the tests of a CSV text; its `name` stands in errors, and for the source of tests that state none."""
+    return _checked(open_table(_text_file(text, name), sep=sep, decimal=decimal), name, outcomes)
+
+
+def _text_file(text: str, name: str) -> io.StringIO:
     file = io.StringIO(text)
     file.name = name
-    return _checked(wl.read_table(file, sep=sep, decimal=decimal), name, outcomes)
+    return file
 
 
-def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
+def _checked(
+    table: Table,
+    name: str,
+    outcomes: Collection[str],
+    columns_of: Columns = None,
+    balance_resolution: QuantityLike | None = None,
+) -> WearTests:
     """Return the tests of a table."""
     table.label = f"the tests {shown(Path(name))}"
     conditions = {name for rig in loader.installed("rig").values() for name in rig.conditions()} | CONDITIONS
     measured = {*outcomes, *(law.outcome.name for law in loader.installed("law").values())}
-    wrong = list(_unknown(table, {*conditions, *measured}))
+    names = {*COLUMNS, *TEXTS, *conditions, *measured}
+    table.columns, wrong = _chosen(table, names, columns_of)
+    wrong += _unknown(table, {*conditions, *measured}) if columns_of is None else []
     if wrong:
         raise DataError(f"{table.label} are wrong in:", wrong)
     columns: dict[str, Values] = {}
@@ -107,6 +175,9 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
             wrong.append(f"column '{table.columns[column].head}': {error}")
     if wrong:
         raise DataError(f"{table.label} are wrong in:", wrong)
+    if balance_resolution is not None and columns:
+        step = parse(balance_resolution)
+        columns[BALANCE.name] = Q(np.full(len(next(iter(columns.values()))), float(step.magnitude)), str(step.units))
     texts = {name: table.texts(name) for name in TEXTS if name in table.columns}
     count = len(next(iter(columns.values()), ()))
     if not count:
@@ -125,23 +196,60 @@ def _checked(table: Table, name: str, outcomes: Collection[str]) -> WearTests:
     )
 
 
+def _chosen(table: Table, names: Collection[str], columns: Columns) -> tuple[dict[str, Column], list[str]]:
+    """Return the columns to use by name, and what is wrong with them.
+
+    Beside `columns` these are all that have the name of a column of tests, in any case, with blanks or underscores;
+    without `columns` all.
+    """
+    selected, wrong = ({}, []) if columns is None else (table.select(columns), [])
+    taken = {column.place for column in selected.values()}
+    for column in table.heads:
+        if column.place in taken:
+            continue
+        plain = re.sub(r"[\s-]+", "_", column.name).casefold()
+        name = plain if plain in names or is_way(plain) else column.name
+        if columns is not None and (name in selected or not (name in names or is_way(name))):
+            continue
+        if name in selected:
+            wrong.append(f"{name} is given twice, by '{selected[name].head}' and '{column.head}'")
+        selected[name] = column._replace(name=name)
+    return selected, wrong
+
+
 def _unknown(table: Table, names: Collection[str]) -> Iterator[str]:
     """Yield what is wrong with columns that are neither of tests nor conditions or outcomes of installed rigs or laws.
 
     Another condition of a rig has a unit, and a name unlike those of missing columns.
     """
     missing = [name for name in (*COLUMNS, *TEXTS) if name not in table.columns]
-    unknown = []
+    near, nearer = ([name for name in missing if (name in LATER) == later] for later in (False, True))
+    unknown: list[Column] = []
+    likely: dict[str, str] = {}
     for column in table.columns.values():
-        if column.name in (*COLUMNS, *TEXTS, *names):
+        if column.name in (*COLUMNS, *TEXTS, *names) or is_way(column.name):
             continue
         of_body = column.name.startswith("wear_rate_")  # the wear rate of one body
-        alike = [name for name in missing if not (of_body and name == "wear_rate")]
-        if column.unit is None or get_close_matches(column.name, alike, n=1):
+        alike = [name for name in near if not (of_body and name == "wear_rate")]
+        close = get_close_matches(column.name, alike, n=1) or get_close_matches(column.name, nearer, n=1, cutoff=0.8)
+        words = column.name.casefold().replace("_", " ")
+        other = OTHER_NAMES.get(words, "")
+        name = next(iter(close), other if other in missing else "")
+        if column.unit is None or name:
             unknown.append(column)
-            yield f"column '{column.head}': unknown column{did_you_mean(column.name, [*COLUMNS, *TEXTS])}"
+            name = name or next(iter(get_close_matches(words.replace(" ", "_"), missing, n=1)), "")
+            if name:
+                likely.setdefault(name, column.head)
+            meant = f"; did you mean '{name}'?" if name else ""
+            yield f"column '{column.head}': unknown column{meant}"
     if unknown:
         heads = ", ".join(f"{name} [{spec.unit}]" if spec.unit else name for name, spec in COLUMNS.items())
+        in_python = ", ".join(f'"{name}": "{column}"' for name, column in likely.items())
+        options = " ".join(f'--columns {name}="{column}"' for name, column in likely.items())
+        yield (
+            f"say which column is which by columns={{{in_python}}}, on the command line by"
+            f" {options or '--columns NAME=HEAD'}; others are then left out"
+        )
         yield (
             f"the columns are {heads}, {', '.join(TEXTS)}, in any unit; another condition of a rig has its unit in"
             " square brackets, as in 'mass [kg]'"

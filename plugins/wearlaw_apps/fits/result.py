@@ -66,7 +66,7 @@ class Fit:
     predict : Pipeline
         The pipeline with the fitted laws and stages.
     tests : WearTests
-        All given tests.
+        All tests, their wear as outcomes of the laws.
     scatter : str
         Kind of residuals: "relative", "absolute" or "uncertainty".
     chi2 : float
@@ -80,6 +80,12 @@ class Fit:
         The measurements with their pipeline, and the fitted friction coefficient.
     lack_of_fit : tuple of LackOfFit
         A test for each kind of measurement with repeated tests or stated uncertainties.
+    studentised : ndarray, (n,)
+        Each residual over its scatter by the other tests, in the order of `residuals`.
+    most : float
+        The largest studentised residual that chance explains at the level 1 - `confidence` over all tests.
+    conversions : tuple of str
+        How measured mass, volume or depth became the outcome of the law, a line for each column.
     settings : dict
         The arguments of `fit`, without the tests and the bootstrap, to make the fit anew.
     """
@@ -97,6 +103,9 @@ class Fit:
     samples: dict[str, Quantity]
     observations: tuple[Observations, ...]
     lack_of_fit: tuple[LackOfFit, ...]
+    studentised: Array
+    most: float
+    conversions: tuple[str, ...]
     settings: Mapping[str, Any]
 
     @property
@@ -161,7 +170,8 @@ class Fit:
     def residuals(self) -> pd.DataFrame:
         """A row for each measurement: test, measured and predicted value, residual, and predicted over measured.
 
-        The ratio is NaN unless both values are positive.
+        The ratio is NaN unless both values are positive. The studentised residual is NaN for a test that decides a
+        parameter alone.
         """
         frames = []
         for observed in self.observations:
@@ -182,7 +192,12 @@ class Fit:
                 "predicted/measured": ratio,
             }
             frames.append(pd.DataFrame(columns))
-        return pd.concat(frames, ignore_index=True)
+        return pd.concat(frames, ignore_index=True).assign(studentised=self.studentised)
+
+    @property
+    def outliers(self) -> pd.DataFrame:
+        """The rows of `residuals` whose studentised residual is beyond `most`."""
+        return self.residuals[np.abs(self.studentised) > self.most]
 
     def table(self) -> pd.DataFrame:
         """Return the parameters with their intervals, a row for each."""
@@ -281,6 +296,10 @@ class Fit:
         for test in self.lack_of_fit:
             of = f" of {name_of(test.observable)}" if len(self.observations) > 1 else ""
             yield "lack of fit", f"{'yes' if test.poor else 'none'}{of}: {test}"
+        for name, value in zip(self.outliers["label"], self.outliers["studentised"], strict=True):
+            yield "outlier", f"test {name}: studentised residual {value:.1f}, beyond {self.most:.1f}"
+        for text in self.conversions:
+            yield "converted", text
         yield "intervals", f"{self.confidence:.0%}, {self.interval_method}"
 
 

@@ -16,12 +16,12 @@ import pint
 
 from wearlaw.arrays import Array
 from wearlaw.contact.conditions import Condition
-from wearlaw.errors import ConditionsError, DataError, InputError, UnitError, did_you_mean, shown
+from wearlaw.errors import ConditionsError, DataError, UnitError, did_you_mean, shown
 from wearlaw.models.model import CONDITIONS
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.units.quantities import WEAR_RATE, Q, Quantity, QuantityLike, Unit, from_si, parse, real_array
 from wearlaw.units.registry import si_factor, symbol
-from wearlaw.units.variables import VARIABLES
+from wearlaw.units.variables import VARIABLES, Variable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,12 +39,49 @@ MEASURED_FORCES = ("tangential_force", "frictional_heat")
 TRACTIONS = ("traction_coefficient", *MEASURED_FORCES)
 """Columns of measured traction."""
 
-COLUMNS = {
-    name: VARIABLES[name]
-    for name in (
-        *("creepage", *LOADS, "friction_coefficient"),
-        *(*TRACTIONS, "rolling_speed", "wear_rate", "wear_rate_uncertainty"),
+WAYS = {
+    variable.name: variable
+    for variable in (
+        Variable("mass_loss", "mg", meaning="Mass that a body lost in the test", sign="not negative"),
+        Variable("wear_volume", "mm^3", meaning="Volume that a body lost in the test", sign="not negative"),
+        Variable("wear_depth", "um", meaning="Radial depth that a disc lost in the test", sign="not negative"),
+        VARIABLES["mass_per_distance"],
+        Variable("mass_per_cycle", "ug", meaning="Mass that a body lost per revolution", sign="not negative"),
     )
+}
+"""Columns of wear measured in other ways than as the outcome of a law."""
+
+TOTALS = ("mass_loss", "wear_volume", "wear_depth")
+"""Those of `WAYS` that need to know how far the test rolled."""
+
+ROLLED = {
+    variable.name: variable
+    for variable in (
+        Variable("distance", "km", meaning="Distance rolled in the test"),
+        Variable("revolutions", "", meaning="Revolutions of the weighed body in the test"),
+        Variable("cycles", "", meaning="The same as revolutions"),
+        Variable("duration", "h", meaning="Duration of the test, at the rig's rolling speed"),
+    )
+}
+"""Columns that tell how far a test rolled, the first that a test has."""
+
+BALANCE = Variable("balance_resolution", "mg", meaning="Smallest step of the balance")
+"""The column that gives `mass_loss` a standard uncertainty."""
+
+UNCERTAIN = ("_uncertainty", "_scatter")
+"""What follows the name of a measurement in the head of its standard uncertainty."""
+
+COLUMNS = {
+    **{
+        name: VARIABLES[name]
+        for name in (
+            *("creepage", *LOADS, "friction_coefficient"),
+            *(*TRACTIONS, "rolling_speed", "wear_rate", "wear_rate_uncertainty"),
+        )
+    },
+    **WAYS,
+    **ROLLED,
+    BALANCE.name: BALANCE,
 }
 """All columns of tests of discs."""
 
@@ -83,6 +120,16 @@ class Arrays(TypedDict, total=False):
     rolling_speed: QuantityLike
     wear_rate: QuantityLike
     wear_rate_uncertainty: QuantityLike
+    mass_loss: QuantityLike
+    wear_volume: QuantityLike
+    wear_depth: QuantityLike
+    mass_per_distance: QuantityLike
+    mass_per_cycle: QuantityLike
+    distance: QuantityLike
+    revolutions: QuantityLike | ArrayLike
+    cycles: QuantityLike | ArrayLike
+    duration: QuantityLike
+    balance_resolution: QuantityLike
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -93,7 +140,7 @@ class WearTests:
     ----------
     columns : dict of str to ndarray, (tests,)
         Values in SI by name: `creepage`, one of the loads, and any of `friction_coefficient`, `traction_coefficient`,
-        `wear_rate` and `wear_rate_uncertainty`. NaN for a missing measurement.
+        `wear_rate`, `wear_rate_uncertainty`, and what measures wear in another way. NaN for a missing measurement.
     labels : tuple of str
         The name of each test, "" if it has none.
     source : str
@@ -141,12 +188,20 @@ class WearTests:
             V of the tests whose heat is given [m/s].
         wear_rate, wear_rate_uncertainty : Quantity or str, (tests,), optional
             Mass lost per distance rolled and area [kg/m³], and its standard uncertainty.
+        mass_loss, wear_volume, wear_depth, mass_per_distance, mass_per_cycle : (tests,), optional
+            Wear in other measures, which a fit and a comparison convert on their rig: mass [kg], volume [m³] or radial
+            depth [m] lost in the test, or mass per distance rolled [kg/m] or per revolution [kg].
+        distance, revolutions, cycles, duration : (tests,), optional
+            How far the test rolled, for the first three of these [m], [-], [-] or [s].
+        balance_resolution : Quantity or str, (tests,), optional
+            Smallest step of the balance [kg], from which the standard uncertainty of `mass_loss` follows.
         other_conditions : mapping of str to Quantity, str or array_like, (tests,), optional
             Further conditions of the rig by name, such as {"mass": Q([20, 40], "kg")}. With these, creepage and load
             may be missing, and the rig checks whether it needs them.
         outcomes : mapping of str to Quantity, str or array_like, (tests,), optional
             Measured outcomes of laws by their names in results, such as {"heat_flux": Q([2, 5], "W/mm^2")}, or
-            "wear_rate_rail" for a law of one body; the wear rate is an argument of its own.
+            "wear_rate_rail" for a law of one body; the wear rate is an argument of its own. Also "mass_loss_rail" and
+            the like, and standard uncertainties such as "mass_loss_uncertainty".
         labels : sequence of str, optional
             The name of each test.
         source : str, optional
@@ -187,6 +242,7 @@ class WearTests:
         place: Callable[[str, int], str],
     ) -> Self:
         """Return tests from columns of one length, with the names of those that are outcomes."""
+        outcomes = {*outcomes, *(name for name in given if is_way(name))}
         wrong = faulty_names(given, outcomes)
         columns: dict[str, Array] = {}
         for name in COLUMNS:
@@ -235,9 +291,15 @@ class WearTests:
 
     def measuring(self, outcomes: Collection[str]) -> WearTests:
         """Return the tests with the columns of these names as measured outcomes, not as conditions of the rig."""
-        moved = {name: value for name, value in self.other_conditions.items() if name in outcomes}
+        names = {*outcomes, *(f"{name}_uncertainty" for name in outcomes)}
+        moved = {name: value for name, value in self.other_conditions.items() if name in names}
         kept = {name: value for name, value in self.other_conditions.items() if name not in moved}
         return replace(self, other_conditions=kept, outcomes={**self.outcomes, **moved})
+
+    @property
+    def ways(self) -> list[str]:
+        """Columns that measure wear in other ways than as the outcome of a law, with their uncertainties."""
+        return [name for name in (*self.columns, *self.outcomes) if name in WAYS or is_way(name)]
 
     def measured(self, name: str, unit: str) -> Array:
         """Return measurements of an outcome or a column in SI, of shape (tests,); NaN where there is none.
@@ -389,6 +451,11 @@ class WearTests:
         return from_si(self.columns.get(name, missing), COLUMNS[name].unit)
 
 
+def is_way(name: str) -> bool:
+    """Return whether a column other than `WAYS` measures wear, such as "mass_loss_rail", or its uncertainty."""
+    return name not in COLUMNS and any(name.startswith(f"{way}_") for way in WAYS)
+
+
 def head(name: str) -> str:
     """Return the head of a column with its usual unit, as in "creepage [%]"."""
     unit = COLUMNS[name].unit
@@ -425,8 +492,11 @@ def faulty_names(names: Collection[str], outcomes: Collection[str]) -> list[str]
         )
     if "wear_rate_uncertainty" in names and "wear_rate" not in names:
         wrong.append("wear_rate_uncertainty: there is no wear_rate beside it")
-    if all(name in (*NEEDED, "rolling_speed") for name in names):
-        wrong.append(f"nothing is measured; add a column '{head('wear_rate')}' or 'traction_coefficient'")
+    totals = [name for name in names if name.startswith(TOTALS)]
+    if totals and not any(name in names for name in ROLLED):
+        wrong.append(f"{totals[0]}: add how far the test rolled, as a column {' or '.join(map(head, ROLLED))}")
+    if all(name in (*NEEDED, *ROLLED, BALANCE.name, "rolling_speed") for name in names):
+        wrong.append(f"nothing is measured; add a column such as '{head('mass_loss')}' or 'traction_coefficient'")
     return wrong
 
 
@@ -473,6 +543,8 @@ def _in_si(name: str, unit: str, values: Values) -> Array:
         raise UnitError(
             f"has no unit; give it in {unit} or another unit of that dimension, in a file as '{name} [{unit}]'"
         )
+    if name in ("revolutions", "cycles") and isinstance(values, pint.Quantity) and "turn" in str(values.units):
+        return np.asarray(values.m_as("turn"))  # to pint an angle
     try:
         factor = si_factor(Q(1.0, _unit(values)), unit)
     except UnitError as error:
@@ -505,9 +577,3 @@ def _same_length(columns: Mapping[str, Values]) -> dict[str, Values]:
         copied = np.array(np.broadcast_to(plain(values), shape))
         arrays[name] = Q(copied, str(values.units)) if isinstance(values, pint.Quantity) else copied
     return arrays
-
-
-def expect_tests(tests: object) -> None:
-    """Raise an `InputError` unless the argument `tests` of a function is a set of tests."""
-    if not isinstance(tests, WearTests):
-        raise InputError(f"tests: must be wearlaw.WearTests, as from wl.read_tests; got {shown(tests)}")

@@ -11,7 +11,7 @@ import pandas as pd
 
 import wearlaw as wl
 from wearlaw_apps.life.life import Life
-from wearlaw_apps.output.commands import answer, folder_for, value, values
+from wearlaw_apps.output.commands import answer, fields, folder_for, value, values
 from wearlaw_apps.output.curves import FigureFormat
 from wearlaw_apps.output.files import write_files, writes_results
 from wearlaw_apps.output.folder import results_folder
@@ -27,6 +27,8 @@ LIFE = "life.json"
 @click.argument("case", shell_complete=completed("case"))
 @click.argument("line", type=click.Path(path_type=Path))
 @click.option("--over", required=True, metavar="DISTANCE", help='Distance, as in "100000 km"; passages for a rail.')
+@click.option("--columns", metavar="NAME=HEAD", multiple=True,
+              help='The column of a condition, as in velocity="v (km/h)"; may be repeated.')  # fmt: skip
 @click.option("--sep", help="What separates the cells of LINE [default: semicolon, tab or comma].")
 @click.option("--decimal", default=".", show_default=True, help="Decimal mark of LINE.")
 @click.option("--until", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
@@ -39,6 +41,7 @@ def life(
     case: str,
     line: Path,
     over: str,
+    columns: tuple[str, ...],
     sep: str | None,
     decimal: str,
     until: tuple[str, ...],
@@ -62,7 +65,7 @@ def life(
     """  # noqa: D301
     folder = output or folder_for(str(line), "life")
     partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
-    loaded, notes = load_case(case), Notes()
+    loaded, notes, named = load_case(case), Notes(), fields("--columns", columns, "NAME=HEAD")
     arguments: dict[str, Any] = values("--set", settings)
     with results_folder(folder, overwrite, LIFE) as fresh:
         with notes.of("life"), caught_warnings(wl.ResumeWarning) as resumed:
@@ -71,7 +74,8 @@ def life(
                 predict = predict | stage
             predict = predict | loaded.wear_laws[0]
             result = wl.wear_out(
-                predict, line, over=value(over), sep=sep, decimal=decimal, until=values("--until", until),
+                predict, line, over=value(over), columns=named or None,
+                sep=sep, decimal=decimal, until=values("--until", until),
                 workers=workers, store=partial, resume=resume, progress=True, **arguments,
             )  # fmt: skip
         laws = [repr(law) for law in result.pipeline.laws]

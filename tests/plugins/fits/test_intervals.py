@@ -77,7 +77,7 @@ def test_for_normal_scatter_the_bootstrap_agrees_with_student(tails: float, draw
     # The residuals of the fit are the quantiles of a normal distribution, in an order that is orthogonal to the line.
     scatter = stats.norm.ppf((np.arange(X.size) + 0.5) / X.size)[np.random.default_rng(4).permutation(X.size)]
     model, fit, _ = straight(scatter)
-    replicates = replicate(model, fit, WIDE, ONE_GROUP, 8000, seed=0)
+    replicates = replicate(model, fit, fit.residuals[0], WIDE, ONE_GROUP, 8000, seed=0)
     by_bootstrap, by_student = studentised_intervals(fit, replicates, 0.95), student_intervals(fit, 0.95)
     error = standard_errors(fit)[0]
     # A quantile t of 8000 draws has the standard error √(0.025 · 0.975/8000)/density(t), 0.04 with 10 degrees of
@@ -94,7 +94,7 @@ def test_for_skewed_scatter_the_interval_reaches_farther_to_the_side_of_the_tail
     target = np.random.default_rng(1).exponential(size=15)
     bounds = Bounds(np.array([-50.0]), np.array([50.0]))
     fit = fitted(mean_of(target), [0.0], bounds)
-    replicates = replicate(mean_of(target), fit, bounds, np.zeros(15, dtype=np.intp), 2000, seed=0)
+    replicates = replicate(mean_of(target), fit, fit.residuals[0], bounds, np.zeros(15, dtype=np.intp), 2000, seed=0)
     low, high = studentised_intervals(fit, replicates, 0.95)
     mean = target.mean()
     assert fit.theta[0, 0] == pytest.approx(mean, rel=1e-8)
@@ -110,7 +110,7 @@ def test_residuals_are_drawn_as_large_as_the_scatter_is() -> None:
         return theta[:, :1] + theta[:, 1:] * x - scatter
 
     fit = fitted(model, [0.0, 0.0])
-    replicates = replicate(model, fit, WIDE, np.zeros(4, dtype=np.intp), 20000, seed=0)
+    replicates = replicate(model, fit, fit.residuals[0], WIDE, np.zeros(4, dtype=np.intp), 20000, seed=0)
     drawn = fit.residuals[0] / np.sqrt(1.0 - leverage(fit))
     columns = np.stack([np.ones(4), x], axis=-1)
     exact = drawn.var() * np.linalg.inv(columns.T @ columns)
@@ -126,7 +126,7 @@ def test_residuals_are_drawn_within_their_group() -> None:
         return np.where(groups == 0, theta[:, :1], theta[:, 1:]) - scatter
 
     fit = fitted(model, [0.0, 0.0])
-    spread = replicate(model, fit, WIDE, groups, 500, seed=0).theta.std(axis=0)
+    spread = replicate(model, fit, fit.residuals[0], WIDE, groups, 500, seed=0).theta.std(axis=0)
     assert spread[0] < 1e-3
     assert spread[1] > 1.0
 
@@ -159,7 +159,7 @@ def test_intervals_of_a_law_with_kinks_hold_the_true_parameters_as_often_as_they
     for number in range(fits):
         one = best[number]
         model = to(usfd, targets[number])
-        replicates = replicate(model, one, bounds, np.zeros(W.size, dtype=np.intp), 200, number)
+        replicates = replicate(model, one, one.residuals[0], bounds, np.zeros(W.size, dtype=np.intp), 200, number)
         low, high = studentised_intervals(one, replicates, level)
         held += (low <= 0.0) & (high >= 0.0)
     # Of 100 intervals that hold the truth with probability 0.95, fewer than these 87 do once in a thousand times.

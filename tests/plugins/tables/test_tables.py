@@ -163,7 +163,7 @@ def test_a_spreadsheet_is_a_table_with_the_rows_of_its_sheet(tmp_path: Path, inl
     assert table.numbers("force").tolist() == [7.1, 7.25]
     assert table.numbers("slip").tolist() == [-0.5, 1e-3]
     assert (table.lines.tolist(), table.comments) == ([3, 5], ["made up"])
-    with pytest.raises(wl.DataError, match="has 2 sheets with cells; keep the one to read"):
+    with pytest.raises(wl.DataError, match=r"has 2 sheets with cells, 'sheet1\.xml' and 'sheet2\.xml'; name one"):
         wl.read_table(xlsx(tmp_path / "two.xlsx", rows, rows))
 
 
