@@ -50,6 +50,9 @@ NEAR = 10.0
 NORMAL = 1.4826
 """Standard deviation of a normal distribution over the median of the magnitudes."""
 
+LEVEL = 0.01
+"""Probability that a set of tests without outliers has a test that is named as one."""
+
 MARGIN = 2.0
 """Standard deviations from which on a robust loss takes a test for an outlier, scipy's `f_scale`."""
 
@@ -379,13 +382,10 @@ class _Task:
         errors = self.errors(best)
         return studentised(best.residuals[0], errors.residuals[0], leverage(best), len(self.free.names))
 
-    def most(self, confidence: float) -> float:
-        """Return the largest studentised residual that a test reaches by chance, of all tests at once.
-
-        The level is that of each test times their number, after Bonferroni.
-        """
+    def most(self) -> float:
+        """Return the largest studentised residual that chance explains, at `LEVEL` over all tests, after Bonferroni."""
         count = self.weights.size
-        tail = 0.5 * (1.0 - confidence) / count
+        tail = 0.5 * LEVEL / count
         return float(-scipy.special.stdtrit(max(count - len(self.free.names) - 1, 1), tail))
 
 
@@ -431,7 +431,7 @@ def _result(
         observations=observations,
         lack_of_fit=tuple(_lack_of_fit(task, best, confidence)),
         studentised=task.studentised(best),
-        most=task.most(confidence),
+        most=task.most(),
         conversions=task.conversions,
         settings=settings,
     )
@@ -550,7 +550,7 @@ def _outliers(fit: Fit) -> Iterator[str]:
         )
         yield (
             f"outliers: test{'s' if len(outliers) > 1 else ''} {names}; the studentised residual is beyond"
-            f" {fit.most:.1f}, the most that the other tests allow at a level of {1.0 - fit.confidence:.2g} over all"
+            f" {fit.most:.1f}, the most that the other tests allow at a level of {LEVEL:.0%} over all"
             ' tests. They stay in the fit: check them, or fit with robust="soft_l1"'
         )
 

@@ -83,7 +83,7 @@ class Fit:
     studentised : ndarray, (n,)
         Each residual over its scatter by the other tests, in the order of `residuals`.
     most : float
-        The largest studentised residual that chance explains at the level 1 - `confidence` over all tests.
+        The largest studentised residual that chance explains, at a level of 1 % over all tests.
     conversions : tuple of str
         How measured mass, volume or depth became the outcome of the law, a line for each column.
     settings : dict
