@@ -72,9 +72,7 @@ def fitted(**options: Any) -> Any:
 
 
 def test_outliers_are_named_and_stay() -> None:
-    with pytest.warns(
-        wl.FitWarning, match=r"outliers: test run 3 \(wear rate, -\d.*at a level of 1% over all tests"
-    ):
+    with pytest.warns(wl.FitWarning, match=r"outliers: test run 3 \(wear rate, -\d.*at a level of 1% over all tests"):
         fit = fitted()
     assert fit.most == pytest.approx(stats.t.ppf(1.0 - 0.005 / 15, 13), rel=1e-12)
     assert fit.outliers["label"].tolist() == ["run 3"]  # it hides the smaller one
