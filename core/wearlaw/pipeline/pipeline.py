@@ -358,6 +358,22 @@ def _with_conditions(problem: Problem, arrays: Mapping[str, Array]) -> Problem:
     return problem.replaced(conditions={**wide, **problem.conditions})
 
 
+def _with_same(part: Problem, problem: Problem, names: Iterable[str]) -> Problem:
+    """Return a problem that a rig makes to balance its loads, with conditions that all operating points share.
+
+    Raises
+    ------
+    ConditionsError
+        If a condition differs between the points, and the rig does not give it to the problem.
+    """
+    lacking = {name: problem.conditions[name] for name in names if name not in part.conditions}
+    for name, array in lacking.items():
+        if np.ptp(array) > 0.0:
+            raise ConditionsError(f"{name}: must be one value, since the rig balances its loads without it")
+        lacking[name] = np.full(part.batch_shape, array.flat[0] if array.ndim else array)
+    return part.replaced(conditions={**part.conditions, **lacking}) if lacking else part
+
+
 def _in_batch(problem: Problem) -> Problem:
     """Return a rig's problem with places on profiles in the shape of its batch, and NaN for patches that do not exist.
 
@@ -553,7 +569,10 @@ class Pipeline(Configuration, Generic[P]):
         if type(rig).balanced is Rig.balanced:
             return problem
         with Blame(rig), steadily():
-            balanced = rig.balanced(problem, Forces(self.staged_model))
+            forces = Forces(self.staged_model)
+            names = {name for model in self.models if not isinstance(model, Law) for name in model.own_conditions()}
+            names &= problem.conditions.keys()
+            balanced = rig.balanced(problem, lambda part: forces(_with_same(part, problem, names) if names else part))
             if not isinstance(balanced, Problem) or _axes(balanced) != _axes(problem):
                 raise ValueError("`balanced` must return a problem like the one given, as from `Problem.replaced`")
             if problem.conditions and not balanced.conditions:

@@ -49,7 +49,7 @@ class Subject:
         replaced = [name for names in self.rig.choices if {*names} & {*conditions} for name in names]
         of_models = {name: condition.example for name, condition in self.declared.items() if condition.required}
         of_rig = {name: value for name, value in self.rig.example.items() if name not in replaced}
-        return {**of_models, **of_rig, **conditions}
+        return {**of_rig, **of_models, **conditions}
 
     @property
     def declared(self) -> dict[str, Any]:
