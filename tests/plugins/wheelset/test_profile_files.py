@@ -262,6 +262,27 @@ def test_points_of_a_scan_that_run_back_are_left_out_and_named(tmp_path: Path) -
     assert len(values(profile)) >= len(points) - 3
 
 
+@pytest.mark.parametrize("down", [1.0, -1.0])
+def test_a_rail_of_miniprof_may_have_its_height_downwards(tmp_path: Path, down: float) -> None:
+    points = table(0.5, RAIL.turned("-1.4 deg"))
+    half = points[(points[:, 1] < 20.0) | (points[:, 0] < 0.0)]  # one side is measured further down than the other
+    path = saved(tmp_path, "a.ban", f"ColumnDef=X,Y\nXYPoints={len(half)}\n" + rows(half * [-1.0, down], "  "))
+    with warnings.catch_warnings(record=True, action="always") as caught:
+        found = values(wl.read_profile(path))
+    assert found == pytest.approx(half, abs=1e-5)
+    assert [str(warning.message).endswith("repaired: mirror_z=True") for warning in caught] == [True] * (down > 0.0)
+
+
+def test_a_rail_whose_deep_side_is_not_the_gauge_side_may_be_mirrored(tmp_path: Path) -> None:
+    points = table(0.5, RAIL)
+    measured = points[(points[:, 1] < 6.0) | (points[:, 0] < 0.0)] * [-1.0, 1.0]
+    path = saved(tmp_path, "a.csv", rows(measured, ","))
+    with pytest.warns(wl.UnusualWarning, match=r"goes 5\.\d+ mm down on its gauge side, .* file by mirror_y=True"):
+        wl.read_profile(path, kind="rail")
+    with warnings.catch_warnings(action="error"):
+        wl.read_profile(path, kind="rail", mirror_y=True)
+
+
 # GENSYS --------------------------------------------------------------------------------------------------------------
 
 
@@ -433,7 +454,7 @@ PARTS += "\n[Profile2Info]\nColumnDef=Y,X\n[Profile2Points]\n" + rows(table()[::
         ("a.whl", OLD.replace("\n\n", "\n") + rows(table(), " "), "older MiniProf, must end with an empty line"),
         ("a.whl", f"{MEASURED}end of it\n", "line 163: a coordinate must be a number, got 'end'"),
         ("a.mpt", PARTS, r"it has several parts: 1 from line 5, 2 from line \d+; say which to read, as in part=1"),
-        ("a.whe", "WHEELPROFILE\nworn\n", "line 1: 'WHEELPROFILE' is the format of VAMPIRE, .* not read; save two"),
+        ("a.whe", "WHEELPROFILE\nworn\n", "line 1: 'WHEELPROFILE' is the format of VAMPIRE, .* not read; save y"),
         ("a.slcs", "0.0 1.0 % offset\n2\n0 0\n1\n 0.0 'a.prr'\n", "line 5: .* list of slices along the track"),
         ("a.whl", "\n".join(MEASURED.splitlines()[:-7]), r"XYPoints says 153 points, but it has 146; is it whole"),
         ("a.whl", MEASURED.replace("=70", "=x"), "wheeldiametertaperline in the header must be a number, got 'x'"),

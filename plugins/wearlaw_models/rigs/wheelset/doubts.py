@@ -73,6 +73,14 @@ def of_shape(kind: Kind, curve: Curve, lean: float) -> Iterator[str]:
                 f"the rail is {_mm(width)} wide {_mm(CROWN)} below its top, but heads of rails have 60 to"
                 " 80 mm; is it the profile of a wheel?"
             )
+        top = int(curve.z.argmin())
+        inner, outer = (float(np.ptp(part)) for part in (curve.z[: top + 1], curve.z[top:]))
+        if inner < SIDE_DEPTH <= outer:
+            yield (
+                f"the profile goes {_mm(inner)} down on its gauge side, y < 0, where the gauge is measured at"
+                f" {_mm(SIDE_DEPTH)}, and {_mm(outer)} on the other one; if it is mirrored, change the sign of y, in a"
+                " file by mirror_y=True"
+            )
         if lean < -OUTWARDS:
             yield (
                 f"the head of the rail leans outwards by {np.degrees(-lean):.3g} deg: its gauge side must be at y < 0;"

@@ -38,8 +38,7 @@ SPREADSHEET = ".xlsx"
 COLUMNS = (".csv", ".txt", ".dat", ".asc", "", ".whe", ".rai", *GENSYS, SPREADSHEET)
 
 REFUSED = {
-    r"(WHEEL|RAIL)PROFILE\b": "is the format of VAMPIRE, which is not read; save two columns as .csv, y outwards and z"
-    " down",
+    r"\s*(WHEEL|RAIL)PROFILE\b": "is the format of VAMPIRE, which is not read; save y, outwards, and z, down, as .csv",
     r"""[^'"=%!#]*\d[\s,]+['"][^'"]+\.\w+['"]""": "belongs to a list of slices along the track, which is not read;"
     " a rail has one profile all along, so give one of the files in the list",
 }  # fmt: skip
@@ -303,7 +302,8 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str, part: int | N
 
     In the newer generation the header has lines such as Key=Value, and in the older one it ends with an empty line.
     Words behind a point are remarks. X of a wheel is outwards from the back of the flange, and its Y positive towards
-    the flange, so down, from any height. X of a rail is positive towards the gauge side, and its Y positive up.
+    the flange, so down, from any height. X of a rail is positive towards the gauge side, and its Y positive up; in some
+    files it is positive down, which the points show.
     """
     texts = [re.split('[!"%#]', line)[0].strip() for line in lines]
     low, high = _part(texts, part)

@@ -31,6 +31,8 @@ UPRIGHT = np.radians(80.0)
 """Slope from which a side is too steep to touch [rad], so that two points are enough for a straight one."""
 BACK = 5e-3
 """Distance from y = 0 up to which the end of a wheel's profile is taken for the back of its flange [m]."""
+MIRROR_Z = "mirror_z=True"
+"""What mends points that are upside down."""
 BLOCK = 64
 """Steps in a block whose bounding box is compared with those of others."""
 
@@ -177,7 +179,7 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
         raise PointsError(
             f"the {kind} is upside down: z is positive down, but its {part} has {point(place, y, z, name)}, above its"
             f" median height of {_mm(level)}; change the sign of z, in a file by mirror_z=True",
-            Repair("mirror_z=True", matrix=((1.0, 0.0), (0.0, -1.0))),
+            Repair(MIRROR_Z, matrix=((1.0, 0.0), (0.0, -1.0))),
         )
     place = int(np.argmax(z))
     if kind != "wheel" or down <= CLEAR or y[place] < 0.0:

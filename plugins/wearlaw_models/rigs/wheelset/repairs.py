@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from wearlaw_models.rigs.wheelset.files import Kind, Points
-from wearlaw_models.rigs.wheelset.points import PointsError, Repair, check_orientation, check_points, filled
+from wearlaw_models.rigs.wheelset.points import MIRROR_Z, PointsError, Repair, check_orientation, check_points, filled
 
 MOST = 0.1
 """Greatest share of the points that are left out."""
@@ -16,7 +16,7 @@ MOST = 0.1
 def repaired(points: Points, kind: Kind, every: bool) -> tuple[Points, list[str]]:
     """Return the points of a file, checked and mended, and what was done.
 
-    Without `every`, only points of a scan that are doubled or run back are left out.
+    Without `every`, only what scans have is mended: points that are doubled or run back, and rails with z upwards.
 
     Raises
     ------
@@ -35,7 +35,9 @@ def repaired(points: Points, kind: Kind, every: bool) -> tuple[Points, list[str]
             check_orientation(kind, points.y, points.z, name)
         except PointsError as error:
             repair = error.repair
-            if repair is None or not (every or (points.scanned and repair.leave_out.size)) or repair.text in done:
+            upside_down = kind == "rail" and repair is not None and repair.text == MIRROR_Z
+            usual = points.scanned and repair is not None and (repair.leave_out.size or upside_down)
+            if repair is None or not (every or usual) or repair.text in done:
                 raise
             if repair.leave_out.size:
                 if points.y.size - repair.leave_out.size < fewest:
@@ -53,8 +55,8 @@ def _mended(points: Points, repair: Repair) -> Points:
     """Return the points after a repair."""
     y, z, lines, weights = points.y, points.z, points.lines, points.weights
     if repair.fill:
-        known = () if weights is None else (weights,)
-        y, z, numbers, *more = filled(y, z, lines.astype(np.float64), *known, every=True)
+        more_values = () if weights is None else (weights,)
+        y, z, numbers, *more = filled(y, z, lines.astype(np.float64), *more_values, every=True)
         return replace(points, y=y, z=z, lines=numbers.astype(np.intp), weights=next(iter(more), None))
     (yy, yz), (zy, zz) = repair.matrix
     y, z = yy * y + yz * z + repair.shift_y, zy * y + zz * z
