@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+import webbrowser
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from html import escape
+from secrets import token_urlsafe
 from time import perf_counter
 from typing import Any
 
@@ -13,6 +16,7 @@ import numpy as np
 import pandas as pd
 import panel as pn
 from bokeh.models import CustomJS
+from tornado.web import HTTPError, RequestHandler
 
 import wearlaw as wl
 from wearlaw import loader
@@ -21,11 +25,11 @@ from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.prediction import SHOWN
 from wearlaw.text_files import reason_of
 from wearlaw.units.variables import VARIABLES, name_of
-from wearlaw_apps.explore.subject import Subject, numbered
+from wearlaw_apps.explore.subject import Subject, code_of, numbered
 from wearlaw_apps.output.commands import values
 from wearlaw_apps.output.conditions import Known
 from wearlaw_apps.output.curves import BLACK, Map
-from wearlaw_apps.output.labels import in_words, label
+from wearlaw_apps.output.labels import in_words, label, readable
 from wearlaw_apps.output.notes import Notes, caught_warnings
 from wearlaw_apps.output.pictures import fields_of, raster
 from wearlaw_apps.show import LAWS, completed
@@ -47,12 +51,23 @@ WIDE: dict[str, Any] = {"flex": "1 1 300px", "min-width": "260px", "max-width": 
 TABLE = ":host { overflow-x: auto } th { text-align: left }"
 """Style of a table, which scrolls on a narrow screen."""
 
-VIEWPORT = """document.head.insertAdjacentHTML("beforeend",
-    '<meta name="viewport" content="width=device-width, initial-scale=1">')"""
-"""JavaScript that makes the page as wide as the screen of a phone."""
+SCREEN = """document.head.insertAdjacentHTML("beforeend",
+    '<meta name="viewport" content="width=device-width, initial-scale=1">' +
+    '<style>@media (prefers-color-scheme: dark) {' +
+    ' html { background: #ebe7e3; filter: invert(1) hue-rotate(180deg) } }</style>')"""
+"""JavaScript that makes the page as wide as the screen of a phone, and dark where its reader prefers that."""
+
+MAPS = "@media (prefers-color-scheme: dark) { .heatmaplayer, .cbfills { filter: invert(1) hue-rotate(180deg) } }"
+"""Style that keeps the colours of maps on a dark page."""
+
+WRONG = ":host { outline: 2px solid #c04000; outline-offset: 4px }"
+"""Style of a control whose value is refused."""
+
+LOCAL = r"(localhost|127\.0\.0\.1|\[?::1\]?)"
+"""The hosts under which the page is served."""
 
 
-def patch_figures(predictions: Mapping[str, wl.Prediction]) -> list[wl.FigureData]:
+def patch_figures(predictions: Mapping[str, wl.Prediction], patch: str = "") -> list[wl.FigureData]:
     """Return figures of pressure, slip and wear in a patch, by the first law that sees its cells; [] if none does."""
     law, prediction = next(
         ((law, prediction) for law, prediction in predictions.items() if prediction.scale == "cells"), ("", None)
@@ -68,7 +83,7 @@ def patch_figures(predictions: Mapping[str, wl.Prediction]) -> list[wl.FigureDat
         else:
             drawn = Map("", *raster(prediction, fields[of].values))
             panel = wl.Panel(along, wl.PlotAxis("y [mm]"), (), equal=True, map=drawn)
-        title = f"{label(name)} by {law}" if name == "wear_rate" else label(name)
+        title = f"{label(name)}{f' by {law}' if name == 'wear_rate' else ''}{f', {patch}' if patch else ''}"
         figures.append(wl.FigureData(name, title, (panel,)))
     return figures
 
@@ -93,7 +108,7 @@ def numbers(patches: Mapping[str, Mapping[str, wl.Prediction]]) -> str:
         first = next(iter(predictions.values()))
         wear = {f"wear rate by {law}": prediction.wear_rate for law, prediction in predictions.items()}
         columns[patch] = wear | {name_of(name): first[name] for name in SHOWN[first.problem.geometry]}
-    return str(pd.DataFrame(columns).map(repr).to_html(border=0, header=len(columns) > 1))
+    return str(pd.DataFrame(columns).map(repr).to_html(border=0, header=any(columns)))
 
 
 def slider(condition: Any, name: str, value: object) -> Any:
@@ -117,6 +132,25 @@ def slider(condition: Any, name: str, value: object) -> Any:
     return made
 
 
+def of_rig(name: str, value: Any) -> Any:
+    """Return a slider for a number of a rig, from half to one and a half times its value; None if that is infinite."""
+    unit = f"{value.units:~C}" if isinstance(value, wl.Quantity) else ""
+    start = float(getattr(value, "magnitude", value))
+    if not np.isfinite(start):
+        return None
+    low, high = sorted((0.5 * start, 1.5 * start)) if start else (-1.0, 1.0)
+    text = f"{name.replace('_', ' ').replace('.', ': ')}{f' [{readable(unit)}]' if unit else ''}"
+    ends = {"start": low, "end": high, "step": (high - low) / 200.0, "format": "0.[0000]"}
+    made: Any = pn.widgets.EditableFloatSlider(label=text, value=start, **ends, **STRETCHED)
+    made.unit = unit
+    return made
+
+
+def written(control: Any) -> str | float:
+    """Return the value of a slider with its unit."""
+    return f"{control.value:.6g} {control.unit}" if control.unit else float(f"{control.value:.6g}")
+
+
 class Page:
     """The page of a rig, which starts from its example conditions and the given ones."""
 
@@ -127,6 +161,8 @@ class Page:
         every = {**subject.declared, **subject.rig.conditions()}
         sliders = {name: slider(every.get(name), name, value) for name, value in self.start.items()}
         self.sliders = {name: control for name, control in sliders.items() if control is not None}
+        fields = {name: of_rig(name, value) for name, value in subject.fields.items()}
+        self.fields = {name: control for name, control in fields.items() if control is not None}
         self.model = pn.widgets.Select(label="Contact model", options=[*subject.models], **STRETCHED)
         self.laws = pn.widgets.CheckBoxGroup(options=[*subject.laws], value=subject.first_laws, inline=True)
         self.patch = pn.widgets.Select(label="Patch", options=[""], visible=False, **STRETCHED)
@@ -135,7 +171,7 @@ class Page:
         self.notes, self.numbers, self.python = (pn.pane.HTML(stylesheets=[TABLE], **STRETCHED) for _ in range(3))
         self._update()
         self._update()  # for its time: the first predictions load and compile
-        for control in self.sliders.values():
+        for control in (*self.sliders.values(), *self.fields.values()):
             control.param.watch(self._moved, "value")
             control.param.watch(self._update, "value_throttled")
         for widget in (self.model, self.laws, self.patch):
@@ -144,7 +180,8 @@ class Page:
     def layout(self) -> Any:
         """Return the controls beside the figures, or above them on a phone."""
         laws = pn.Column(pn.pane.HTML("Wear laws"), self.laws)
-        controls = [*self.sliders.values(), self.model, laws, self.patch, self.numbers]
+        rig = pn.Card(*self.fields.values(), title="Rig", collapsed=True, visible=bool(self.fields), **STRETCHED)
+        controls = [*self.sliders.values(), rig, self.model, laws, self.patch, self.numbers]
         left = pn.Column(*controls, styles={**WIDE, "max-width": "420px"})
         right = pn.Column(self.notes, self.figures, self.python, styles={**WIDE, "flex": "4 1 600px"})
         return pn.FlexBox(left, right, flex_wrap="wrap", **STRETCHED)
@@ -160,16 +197,23 @@ class Page:
     def _show(self, model: str, laws: list[str]) -> None:
         notes, started = Notes(), perf_counter()
         conditions = dict(self.start)
-        for name, control in self.sliders.items():
-            conditions[name] = f"{control.value:.6g} {control.unit}" if control.unit else float(f"{control.value:.6g}")
+        conditions |= {name: written(control) for name, control in self.sliders.items()}
+        try:
+            self.subject.change({name: written(control) for name, control in self.fields.items()})
+        except wl.WearlawError as error:
+            notes.add(f"rig: {error}")
+            laws = []
         predictions = self.subject.predict(model, laws, conditions, notes)
+        errors = " ".join(text for text in notes.texts if text not in notes.kinds)
+        for name, control in {**self.sliders, **self.fields}.items():
+            control.stylesheets = [WRONG] if re.search(rf"(?<!\w){re.escape(name)}\b", errors) else []
         curve = self._curve(predictions, conditions) if perf_counter() - started < SLOW else []
         self.seconds = perf_counter() - started
         patches = by_patch(predictions)
         self.patch.param.update(options=[*patches] or [""], visible=len(patches) > 1)
         if patches and self.patch.value not in patches:
             self.patch.value = next(iter(patches))
-        patch = patch_figures(patches.get(self.patch.value, {}))
+        patch = patch_figures(patches.get(self.patch.value, {}), self.patch.value)
         self._draw([*patch, *curve, *self._profiles(predictions)])
         self.numbers.object = numbers(patches)
         python = escape(self.subject.python(model, laws, conditions), quote=False)
@@ -192,7 +236,9 @@ class Page:
         now = np.array([largest(prediction) for prediction in predictions.values()])
         point = wl.Curve("now", np.full(now.shape, along.value), now, colour=BLACK, points=True)
         panel = wl.Panel(wl.PlotAxis(along.label), wl.PlotAxis(label("wear_rate")), (*curves, point))
-        return [wl.FigureData("curve", f"wear over {name_of(creepage)}", (panel,))]
+        several = any(prediction.problem.dims for prediction in predictions.values())
+        of = ", the largest of the patches" if several else ""
+        return [wl.FigureData("curve", f"wear over {name_of(creepage)}{of}", (panel,))]
 
     def _profiles(self, predictions: Mapping[str, wl.Prediction]) -> Iterable[wl.FigureData]:
         """Return the figures of a rig with profiles, such as a wheelset."""
@@ -208,11 +254,13 @@ class Page:
                 name = f"{figure.name}_{number}"
                 if name not in self.panes:
                     look: dict[str, Any] = {"config": {"displayModeBar": False}, "styles": WIDE, **STRETCHED}
+                    look["stylesheets"] = [MAPS]
                     self.panes[name] = pn.pane.Plotly(name=name, **look)
                 drawn = plotly_figure(replace(figure, panels=(replace(panel, title=panel.title or figure.title),)))
                 listed = len(panel.curves) > 1
                 margin = {"l": 60, "r": 10, "t": 30, "b": 90 if listed else 50}
                 look = {"height": 280, "margin": margin, "showlegend": listed, "template": "none"}
+                look |= {"paper_bgcolor": "rgba(0,0,0,0)", "plot_bgcolor": "rgba(0,0,0,0)"}
                 below = {"orientation": "h", "yref": "container", "y": 0, "yanchor": "bottom"}
                 self.panes[name].object = {**drawn, "layout": {**drawn["layout"], **look, "legend": below}}
                 shown.append(self.panes[name])
@@ -242,9 +290,14 @@ def explore(predict: Any, /, **conditions: Any) -> Any:
     """
     expect_pipeline(predict)
     pn.extension("plotly", inline=True)
-    models = {predict.contact_model: "predict.contact_model"}
-    laws, stages = numbered("predict.laws", predict.laws), numbered("predict.stages", predict.stages)
-    return Page(Subject(predict.rig, "predict.rig", "", models, laws, stages), conditions).layout()
+    models = {predict.contact_model: code_of(predict.contact_model, "predict.contact_model")}
+    laws, stages = (
+        {part: code_of(part, code) for part, code in numbered(f"predict.{name}", parts).items()}
+        for name, parts in (("laws", predict.laws), ("stages", predict.stages))
+    )
+    return Page(
+        Subject(predict.rig, code_of(predict.rig, "predict.rig"), "", models, laws, stages), conditions
+    ).layout()
 
 
 @click.command("explore")
@@ -271,18 +324,31 @@ def command(rig: str, laws: tuple[str, ...], conditions: tuple[str, ...], port: 
 
     def opened() -> Any:
         document: Any = pn.state.curdoc
-        document.js_on_event("document_ready", CustomJS(code=VIEWPORT))
+        document.js_on_event("document_ready", CustomJS(code=SCREEN))
         return Page(subject, start).layout()
 
     Page(subject, start)  # an error before the server starts
-    look: dict[str, Any] = {"show": browser, "verbose": False, "title": f"wearlaw: {subject.rig.name}"}
+    token = token_urlsafe(16)  # other programs and pages cannot guess it
+    look: dict[str, Any] = {"show": False, "verbose": False, "title": {token: f"wearlaw: {subject.rig.name}"}}
     try:
-        server: Any = pn.serve(opened, port=port, address="localhost", start=False, **look)
+        server: Any = pn.serve({token: opened}, port=port, address="localhost", start=False, use_index=False, **look)
     except OSError as error:  # another program uses it, or only the system may
         hint = "choose another, or leave --port out for a free one"
         raise click.ClickException(f"--port: cannot use {port}: {reason_of(error)}; {hint}") from None
-    click.echo(f"The page is at http://localhost:{server.port}; end it with Ctrl-C")
+    server._tornado.add_handlers(rf"(?!{LOCAL}$).*", [(".*", Refused)])
+    address = f"http://localhost:{server.port}/{token}"
+    click.echo(f"The page is at {address}; end it with Ctrl-C")
+    if browser:
+        server.io_loop.add_callback(webbrowser.open, address)
     server.run_until_shutdown()
+
+
+class Refused(RequestHandler):
+    """Answers to a name of this computer that a page elsewhere has given it."""
+
+    def prepare(self) -> None:
+        """Refuse every request."""
+        raise HTTPError(403)
 
 
 def named(rig: str, chosen: Iterable[str] = ()) -> Subject:

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
 import wearlaw as wl
+from wearlaw.fields import specification
+from wearlaw.parameters import changed, number_in_si, numbers
 from wearlaw_apps.output.labels import labelled
 from wearlaw_apps.output.notes import Notes
 from wearlaw_apps.sweeps.several import composed
 
 FIRST = "strip_theory"
 """The contact model with which a page starts, if it solves the rig's patches and the user has none."""
+
+LONGEST = 1500
+"""Most letters of the arguments of a model in Python, such as those of a profile by points."""
 
 MEANS: Any = wl.patch_mean()
 """The stage for a law of patch means."""
@@ -50,6 +56,28 @@ class Subject:
         of_models = {name: condition.example for name, condition in self.declared.items() if condition.required}
         of_rig = {name: value for name, value in self.rig.example.items() if name not in replaced}
         return {**of_rig, **of_models, **conditions}
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """The numbers of the rig but those of its materials, by name."""
+        return {name: value for name, value in numbers(self.rig).items() if "material" not in name.split(".")}
+
+    def change(self, fields: Mapping[str, Any]) -> None:
+        """Give the rig other numbers, as text with units."""
+        now = self.fields
+        values = {name: wl.parse(value) if isinstance(value, str) else value for name, value in fields.items()}
+        moved = {
+            name: value
+            for name, value in values.items()
+            if not math.isclose(number_in_si(value), number_in_si(now[name]), rel_tol=1e-5)  # texts have six digits
+        }
+        for name, value in moved.items():
+            try:
+                self.rig = changed(self.rig, {name: value})
+            except wl.WearlawError as error:
+                raise wl.InputError(f"{name}: {error}") from None
+        if moved:
+            self.code = code_of(self.rig, self.code)
 
     @property
     def declared(self) -> dict[str, Any]:
@@ -95,6 +123,23 @@ class Subject:
             composed_of = " | ".join([self.code, *(self.codes[part] for part in parts)])
             lines.append(f"print(({composed_of})({', '.join(['**conditions', *declared])}))")
         return "\n".join(lines)
+
+
+MAKERS = {"rig": "rig", "contact model": "contact_model", "stage": "stage", "wear law": "wear_law", "law": "law"}
+"""Functions of wearlaw that make models, by kind."""
+
+
+def code_of(part: Any, code: str) -> str:
+    """Return the Python that makes a model, or that of the user where it would be long or is of no installed class."""
+    make, fields = MAKERS[part.kind], specification(part)
+    name = fields.pop("type" if part.kind == "rig" else "model")
+    installed = {**wl.installed(part.kind), **wl.installed("parameter set")}.get(name)
+    arguments = "".join(f", {field}={value!r}" for field, value in fields.items())
+    if type(part) not in (installed, type(installed)) or len(arguments) > LONGEST:
+        return code
+    with suppress(wl.WearlawError):
+        arguments = "" if getattr(wl, make)(name) == part else arguments
+    return f"wl.{make}({name!r}{arguments})"
 
 
 def numbered(code: str, parts: Iterable[Any]) -> dict[Any, str]:

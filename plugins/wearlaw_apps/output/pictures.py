@@ -219,7 +219,7 @@ def fields_of(prediction: Prediction) -> xarray.Dataset:
 
 
 def raster(prediction: Prediction, field: Array, columns: int = 81, rows: int = 51) -> tuple[Array, Array, Array]:
-    """Return x and y of a grid over a patch [mm], and a field at its points: that of the nearest node, NaN outside.
+    """Return x and y of a grid over a patch [mm], and a field at its points, between its nodes; NaN outside.
 
     The edge is that of an ellipse, or else a smooth one through the ends of the strips.
     """
@@ -231,11 +231,18 @@ def raster(prediction: Prediction, field: Array, columns: int = 81, rows: int = 
     middle = np.interp(y, strips[order], middles[order])
     begin, end = (middle - edge).min(), (middle + edge).max()
     x = 0.5 * (begin + end) + 0.5 * (end - begin) * (2.0 * np.arange(columns) + 1.0 - columns) / columns
-    from_middle = x - middle[:, None]
-    strip = np.abs(y[:, None] - strips).argmin(axis=1)
-    stretch = edge / np.maximum(0.5 * length.sum(axis=0)[strip], np.finfo(float).tiny)
-    node = np.abs(from_middle[..., None] - stretch[:, None, None] * nodes.T[strip, None]).argmin(axis=-1)
-    return 1e3 * x, 1e3 * y, np.where(np.abs(from_middle) <= edge[:, None], field[node, strip[:, None]], np.nan)
+    from_middle, tiny = x - middle[:, None], np.finfo(float).tiny
+    share = from_middle / np.maximum(edge, tiny)[:, None]  # along each row, -1 to 1 within the patch
+    in_strips = []
+    for strip in order:
+        along, half = np.argsort(nodes[:, strip]), max(0.5 * length[:, strip].sum(), tiny)
+        in_strips.append(np.interp(share, nodes[along, strip] / half, field[along, strip]))
+    place = np.interp(y, strips[order], np.arange(strips.size))
+    below = np.minimum(place.astype(int), max(strips.size - 2, 0))
+    stacked, weight, row = np.stack(in_strips), (place - below)[:, None], np.arange(rows)
+    above = np.minimum(below + 1, strips.size - 1)
+    between = (1.0 - weight) * stacked[below, row] + weight * stacked[above, row]
+    return 1e3 * x, 1e3 * y, np.where(np.abs(from_middle) <= edge[:, None], between, np.nan)
 
 
 def _strips(prediction: Prediction) -> tuple[Array, Array, Array, Array, Array]:

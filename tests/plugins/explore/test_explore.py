@@ -5,15 +5,20 @@ The browser needs chromium and chromedriver, as for the report.
 
 from __future__ import annotations
 
+import html
+import http.client
+import io
 import os
 import socket
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from time import process_time, sleep
 from typing import Any, ClassVar
 
+import matplotlib.pyplot as plt
 import numpy as np
 import panel as pn
 import pytest
@@ -22,7 +27,7 @@ from selenium.webdriver import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
 import wearlaw as wl
-from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, PATIENCE_S, started
+from tests.plugins.studies.test_report_browser import BROWSER, DRIVER, PATIENCE_S, scheme, started
 from wearlaw_apps.explore.page import Page, named, patch_figures  # private: the page without a browser
 from wearlaw_apps.explore.subject import Subject  # private: a rig that is not installed
 from wearlaw_apps.output.notes import Notes  # private: what the page shows as notes
@@ -212,6 +217,56 @@ def opened(browser: webdriver.Chrome, address: str, width: int) -> webdriver.Chr
     return browser
 
 
+def test_the_rig_has_sliders_too_and_the_python_has_its_values(capsys: pytest.CaptureFixture[str]) -> None:
+    page = Page(named("wheel_rail"), {})
+    before = page.numbers.object
+    page.fields["wheel_radius"].value = 500.0
+    assert page.numbers.object != before
+    code = page.python.object.split("white-space: pre-wrap'>")[1].partition("</pre>")[0]
+    assert "500.0 mm" in code
+    exec(html.unescape(code), {})
+    printed = capsys.readouterr().out
+    rig = wl.rig("wheel_rail", **{**wl.installed("rig")["wheel_rail"].example_fields, "wheel_radius": "500 mm"})
+    predicted_here = (rig | wl.contact_model("strip_theory") | wl.wear_law("usfd"))(**rig.example)
+    assert printed.strip() == repr(predicted_here)
+
+
+@pytest.mark.parametrize(("control", "value"), [("creepage", 250.0), ("disc_1.diameter", -5.0)])
+def test_an_error_marks_its_control(control: str, value: float) -> None:
+    page = Page(named("twin_disc"), {})
+    every = {**page.sliders, **page.fields}
+    assert not any(one.stylesheets for one in every.values())
+    every[control].value = value
+    assert [name for name, one in every.items() if one.stylesheets] == [control]
+    assert control in page.notes.object
+
+
+def test_numbers_and_pictures_say_which_patch_they_are_of() -> None:
+    page = Page(named("wheelset"), {})
+    assert "<th>left, patch 1</th>" in page.numbers.object
+    titles = [pane.object["layout"]["annotations"][0]["text"] for pane in page.figures]
+    assert titles[0] == "pressure p [MPa], left, patch 1"
+    assert "wear over lateral displacement, the largest of the patches" in titles
+
+
+def test_a_page_has_a_token_and_answers_to_this_computer_alone(address: str) -> None:
+    port = int(address.split(":")[2].partition("/")[0])
+    token = address.rpartition("/")[2]
+    assert len(token) >= 20
+
+    def status(path: str, **heads: str) -> int:
+        with closing(http.client.HTTPConnection("localhost", port, timeout=20)) as connection:
+            connection.request("GET", path, headers=heads)
+            with connection.getresponse() as answer:
+                return answer.status
+
+    assert status(f"/{token}") == 200
+    assert status("/") == status("/page") == 404
+    assert status(f"/{token}", Host="example.org") == 403
+    socket_of = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13"}
+    assert status(f"/{token}/ws", Origin="http://example.org", **socket_of, **{"Sec-WebSocket-Key": "YQ=="}) == 403
+
+
 def test_a_port_in_use_is_told() -> None:
     with socket.create_server(("localhost", 0)) as used:
         port = used.getsockname()[1]
@@ -229,7 +284,10 @@ def test_a_notebook_gets_a_page_that_renders() -> None:
     with pn.config.set(console_output="disable"):  # which needs IPython
         bundle, _ = page._repr_mimebundle_()
     assert "<script" in bundle["text/html"]
-    assert "creepage='3 %'" in "".join(pane.object for pane in page.select(pn.pane.HTML))
+    code = "".join(pane.object for pane in page.select(pn.pane.HTML))
+    assert "creepage='3 %'" in code
+    assert "wl.rig('twin_disc', disc_1={'diameter': '47.0 mm'" in html.unescape(code)
+    assert "predict." not in code
 
 
 @needs_browser
@@ -245,6 +303,16 @@ def test_arrow_keys_move_a_slider_and_the_numbers_follow(browser: webdriver.Chro
     assert "Traceback" not in text(page)
     hosts = page.execute_script("return performance.getEntriesByType('resource').map(e => new URL(e.name).hostname)")
     assert set(hosts) == {"localhost"}
+
+
+@needs_browser
+@pytest.mark.parametrize("wanted", ["light", "dark"])
+def test_the_page_is_dark_where_its_reader_prefers_that(browser: webdriver.Chrome, address: str, wanted: str) -> None:
+    scheme(browser, wanted)
+    page = opened(browser, address, 1300)
+    shot = plt.imread(io.BytesIO(page.get_screenshot_as_png()))[..., :3]
+    assert (np.median(shot) < 0.2) == (wanted == "dark")
+    scheme(browser, "light")
 
 
 @needs_browser

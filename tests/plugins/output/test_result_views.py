@@ -336,12 +336,14 @@ def test_at_one_point_the_fields_of_the_patch_are_shown() -> None:
     assert axes.get_ylabel() == "pressure p, traction q [MPa]"
     assert found.plot("wear_rate").get_ylabel() == "wear rate [µg/m/mm²]"
     patch = ON_RAIL(**OF_RAIL)
-    (mesh,) = patch.plot("slip").collections
-    expected = 100.0 * patch.contact.slip
-    assert np.unique(mesh.get_array().compressed()) == pytest.approx(np.unique(expected), rel=4 * EPS)
-    (mesh,) = patch.plot("wear_rate").collections
     rate = 1e3 * (patch.contact | patch.laws[0]).rate  # [µg/m/mm²]
-    assert mesh.get_array().max() == pytest.approx(rate.max(), rel=4 * EPS)
+    for name, values in (("slip", 100.0 * patch.contact.slip), ("wear_rate", rate)):
+        (mesh,) = patch.plot(name).collections
+        shown = mesh.get_array().compressed()
+        assert values.min() * (1 - 4 * EPS) <= shown.min() <= shown.max() <= values.max() * (1 + 4 * EPS), name
+    (mesh,) = patch.plot("slip").collections
+    steps = np.abs(np.diff(100.0 * patch.contact.slip.reshape(patch.contact.pressure.shape[-2:]), axis=0))
+    assert np.abs(np.diff(mesh.get_array(), axis=1)).max() < 0.5 * steps.max(), "no blocks as large as a node"
     one = axles.PREDICT(**GIVEN)[2].sel(side="right", patch=2)
     assert one.plot().get_ylabel() == "position y across the patch [mm]"
     with pytest.raises(wl.InputError, match="'max_pressure' is no field of its patch"):
