@@ -47,7 +47,7 @@ def test_the_commands_in_the_list_run(tmp_path: Path, monkeypatch: pytest.Monkey
     monkeypatch.chdir(tmp_path)
     write_tests(rows(rates()))
     Path("tests.csv").rename("my-tests.csv")
-    shutil.copy(ROOT / "tests/plugins/contact_files/contact_results/carter.0001.mat", "case.0001.mat")
+    shutil.copy(ROOT / "plugins/wearlaw_apps/contact_files/carter.0001.mat", "case.0001.mat")
     for command in COMMANDS:
         line, _, into = command.partition(" > ")
         words = shlex.split(line.replace("NAME", "usfd"))

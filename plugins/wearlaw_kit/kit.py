@@ -12,12 +12,14 @@ from wearlaw.errors import InputError, WearlawWarning, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
 from wearlaw.models.model import Exempt, Model
+from wearlaw.models.reader import Reader
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw_kit import (  # each registers its rules  # noqa: F401
     contact,
     contact_forces,
     law,
     law_branches,
+    reader,
     rig,
     rig_inputs,
     stage,
@@ -113,23 +115,28 @@ def checks(model: Model) -> Iterator[Check]:
 
     Parameters
     ----------
-    model : Rig, ContactModel, Stage or Law
+    model : Rig, ContactModel, Stage, Law or Reader
         The model, with the options to check.
 
     Raises
     ------
     InputError
-        If this is not a model, or is a rig without an `example`.
+        If this is not a model, or is a rig or a reader without an `example`.
     """
-    if not isinstance(model, Rig | ContactModel | Stage | Law):
-        raise InputError(
-            f"checks: needs a rig, a contact model, a stage or a law, such as wl.wear_law('usfd'); got {model!r}"
-        )
+    if not isinstance(model, Rig | ContactModel | Stage | Law | Reader):
+        kinds = "a rig, a contact model, a stage, a law or a reader"
+        raise InputError(f"checks: needs {kinds}, such as wl.wear_law('usfd'); got {model!r}")
     if isinstance(model, Rig) and not model.example:
         conditions = ", ".join(f'"{name}": ...' for name in model.conditions())
         raise InputError(
             f"checks: rig '{model.name}' has no conditions to try it with; write the conditions of one test into the"
             f' class {type(model).__name__}, with units as text such as "1 %":\n  example = {{{conditions}}}'
+        )
+    if isinstance(model, Reader) and not model.example:
+        file = f'"file": Path(__file__).with_name("small{model.suffixes[0]}")'
+        raise InputError(
+            f"checks: reader '{model.name}' has no file to try it with; write a small one, and what its program says of"
+            f' it, into the class {type(model).__name__}:\n  example = {{{file}, "rolling_speed": "30 m/s", ...}}'
         )
     for kit_rule in RULES:
         if not isinstance(model, kit_rule.kind):
@@ -142,7 +149,7 @@ def checks(model: Model) -> Iterator[Check]:
 
 def _run(kit_rule: Rule, model: Any, exemption: Exempt | None = None) -> None:
     """Check a model on problems that have the conditions that it declares."""
-    token = CHECKED.set({} if isinstance(model, Rig) else model.own_conditions())
+    token = CHECKED.set({} if isinstance(model, Rig | Reader) else model.own_conditions())
     try:
         with exempt(exemption):
             kit_rule.check(model)
@@ -157,7 +164,7 @@ def conformance(
 
     Parameters
     ----------
-    model : Rig, ContactModel, Stage or Law
+    model : Rig, ContactModel, Stage, Law or Reader
         The model, with the options to check.
     expected_failures : mapping of str to str, optional
         Checks that are known to fail, each with the reason. The test fails once one of them passes.

@@ -14,10 +14,12 @@ from wearlaw.kernels import accelerate
 from wearlaw.models.contact_model import ContactModel, LineContactModel, Stage
 from wearlaw.models.law import Law
 from wearlaw.models.model import Model
+from wearlaw.models.reader import Reader
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.units.quantities import Q
 from wearlaw_kit.examples import assert_close
 from wearlaw_kit.law_contacts import random_contacts
+from wearlaw_kit.reader import contact_of
 from wearlaw_kit.rig import PRECISE, values_of, varied
 from wearlaw_kit.rules import rule
 from wearlaw_kit.shapes import LINE, of_model, of_stage
@@ -74,6 +76,9 @@ def _assert_same(actual: Array, due: Array, what: str, other: Mapping[str, Any])
 def _computed(model: Model, points: int = POINTS) -> Array:
     if isinstance(model, Rig):
         return _made(model, {})
+    if isinstance(model, Reader):
+        contact = contact_of(model)
+        return np.stack([getattr(contact, name) for name in TOTALS])
     if isinstance(model, Law):
         return model.rate(random_contacts(points, law=model), model.numbers)
     assert isinstance(model, ContactModel | Stage)

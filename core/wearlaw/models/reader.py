@@ -28,6 +28,11 @@ class Reader(Model):
     suffixes: ClassVar[tuple[str, ...]]
     """The endings of the files, in lower case, such as (".mat",)."""
 
+    example: ClassVar[Mapping[str, Any]] = {}
+    """A small file to try the reader with, and what its program says of the contact, with units, such as
+    {"file": Path(__file__).with_name("small.prt"), "normal_force": "80 kN", "slip": "0.3 %"}. The file is a path or its
+    content; of a value that varies over the patch, such as the slip, the largest magnitude is stated."""
+
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
         """Raise an error for a reader without endings of files, or with one text in place of several."""

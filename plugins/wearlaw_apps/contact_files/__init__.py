@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -49,6 +49,14 @@ class ContactMat(wl.Reader):
     name: ClassVar[str] = "contact_mat"
     source: ClassVar[str] = "E. A. H. Vollebregt, CONTACT, https://github.com/eve70a/CONTACT: matlab/loadcase.m"
     suffixes: ClassVar[tuple[str, ...]] = (".mat",)
+    example: ClassVar[Mapping[str, Any]] = {
+        "file": Path(__file__).with_name("carter.0001.mat"),
+        "normal_force": "972.3 kN",
+        "tangential_force": "152 kN",
+        "max_pressure": "619.1 MPa",
+        "longitudinal_creepage": "-0.1 %",
+        "rolling_speed": "30000 mm/s",
+    }
 
     wheel: wl.MaterialField = wl.steel()
     """Material of the wheel; E and ν are those of the file."""

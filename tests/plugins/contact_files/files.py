@@ -15,7 +15,7 @@ RESULTS, EXAMPLES = Path(__file__).parent / "contact_results", ROOT / "docs" / "
 FILES = {
     "half_space": RESULTS / "half_space.0001.mat",
     "fastsim": RESULTS / "fastsim.0001.mat",
-    "carter": RESULTS / "carter.0001.mat",
+    "carter": ROOT / "plugins" / "wearlaw_apps" / "contact_files" / "carter.0001.mat",
     "tread": EXAMPLES / "flange.0001a.mat",
     "flange": EXAMPLES / "flange.0001b.mat",
 }

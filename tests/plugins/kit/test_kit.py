@@ -149,7 +149,7 @@ def test_checks_are_named_documented_and_frozen() -> None:
 
 
 def test_checks_of_something_else_are_an_error() -> None:
-    with pytest.raises(wl.InputError, match="needs a rig, a contact model, a stage or a law"):
+    with pytest.raises(wl.InputError, match="needs a rig, a contact model, a stage, a law or a reader"):
         list(checks(3))  # type: ignore[arg-type]
 
 

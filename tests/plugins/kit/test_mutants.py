@@ -19,6 +19,7 @@ from tests.plugins.kit import (
     strips,
     wrong_contacts,
     wrong_laws,
+    wrong_readers,
     wrong_rigs,
     wrong_stages,
 )
@@ -27,6 +28,7 @@ from wearlaw_kit import Check, checks, conformance
 WRONG: dict[Any, str] = {
     **wrong_laws.CAUGHT,
     **wrong_contacts.CAUGHT,
+    **wrong_readers.CAUGHT,
     **wrong_rigs.CAUGHT,
     **wrong_stages.CAUGHT,
 }
@@ -34,6 +36,7 @@ WRONG: dict[Any, str] = {
 
 RIGHT_LAWS: list[Any] = [wrong_laws.Ramps(), wl.wear_law("brr"), wl.wear_law("kth")]
 RIGHT_RIGS: list[Any] = [wrong_rigs.Weight(), wl.TwinDisc.suros(), wrong_rigs.OnStrips()]
+RIGHT_READERS: list[Any] = [wrong_readers.RightReader(), wl.installed("reader")["contact_mat"]()]
 RIGHT_STAGES: list[Any] = [wrong_stages.Lubricated()]
 RIGHT_ON: dict[str, list[Any]] = {
     "line": [wl.contact_model("exact"), cells.Cells()],
@@ -90,7 +93,7 @@ def test_each_wrong_model_is_caught_by_the_check_that_should(mutant: Any) -> Non
 )
 def test_every_check_of_an_invariant_catches_a_mutant() -> None:
     contact_models = [model for models in RIGHT_ON.values() for model in models]
-    assert names_of(RIGHT_LAWS + contact_models + RIGHT_RIGS + RIGHT_STAGES) == set(WRONG.values())
+    assert names_of(RIGHT_LAWS + contact_models + RIGHT_RIGS + RIGHT_READERS + RIGHT_STAGES) == set(WRONG.values())
 
 
 @pytest.mark.parametrize("shape", RIGHT_ON)
@@ -128,7 +131,7 @@ def test_a_law_with_a_jump_passes(check: Check) -> None:
     check()
 
 
-RIGHT = (*wrong_stages.RIGHT, *RIGHT_RIGS, Axle(), axles.Cut(), axles.Placed(hertzian=False))
+RIGHT = (*wrong_stages.RIGHT, *RIGHT_READERS, *RIGHT_RIGS, Axle(), axles.Cut(), axles.Placed(hertzian=False))
 
 
 @pytest.mark.parametrize("model", RIGHT, ids=lambda model: type(model).__name__)
