@@ -11,12 +11,11 @@ from pathlib import Path
 import click
 
 from wearlaw import loader
-from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, shown
+from wearlaw.errors import ConfigurationError, InputError, UnknownModelError, did_you_mean, shown
 from wearlaw.fields import is_law_file, read_law
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
 from wearlaw.models.model import Model
-from wearlaw.pipeline.pipeline import Rig
 from wearlaw_apps.output.commands import fields, values
 from wearlaw_apps.show import accuracies
 from wearlaw_kit.kit import Check, checks, validate_expected
@@ -53,10 +52,13 @@ def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
 
 
 @click.command()
-@click.argument("name")
+@click.argument("name", required=False)
 @click.option(
     "--option", "options", metavar="FIELD=VALUE", multiple=True, help="Set a field of the model; may be repeated."
 )
+@click.option("--distribution", metavar="NAME", help="Check all models of an installed distribution.")
+@click.option("--only", metavar="CHECK", multiple=True, help="Run this check alone; may be repeated.")
+@click.option("--durations", is_flag=True, help="State the time of every check.")
 @click.option(
     "--expect-failure",
     "expected",
@@ -64,74 +66,121 @@ def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
     multiple=True,
     help="A check that is known to fail, with the reason; if it passes, that is a failure. May be repeated.",
 )
-def check(name: str, options: tuple[str, ...], expected: tuple[str, ...]) -> None:
+def check(
+    name: str | None,
+    options: tuple[str, ...],
+    distribution: str | None,
+    only: tuple[str, ...],
+    durations: bool,
+    expected: tuple[str, ...],
+) -> None:
     """Check that an installed model keeps what wearlaw relies on. Prints a line a check; exit code 1 if any fails.
 
-    A line states the time of a check that takes a second or more.
+    A model is tried with its `example_fields`, unless you set them. A line states the time of a check that takes a
+    second or more.
 
     \b
     wearlaw check usfd
     wearlaw check usfd --option fitted_for=exact
+    wearlaw check half_space --only forces_are_continuous --durations
+    wearlaw check --distribution wearlaw-mine       all models of a plugin
     wearlaw check my_set                            a parameter set of a plugin
     wearlaw check fit/law.toml                      the law in a file
     wearlaw check twin_disc --option track_width="8 mm"
     wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
     """  # noqa: D301
-    source, settings = _installed(name), values("--option", options)
-    model = _made(source, settings) if isinstance(source, type) else source.model_copy(update=settings)
-    reasons = fields("--expect-failure", expected, "CHECK=REASON")
-    model_checks = list(checks(model))
-    validate_expected("--expect-failure", model, model_checks, reasons)
-    outcomes = Counter(_outcome(model_check, reasons.get(model_check.name)) for model_check in model_checks)
+    if (name is None) == (distribution is None):
+        raise click.UsageError("give the name of a model, or --distribution")
+    settings, reasons = values("--option", options), fields("--expect-failure", expected, "CHECK=REASON")
+    sources = [_installed(name)] if name is not None else _provided(str(distribution))
+    models = [
+        _made(source, settings) if isinstance(source, type) else source.model_copy(update=settings)
+        for source in sources
+    ]
+    chosen = [(model, list(checks(model))) for model in models]
+    known = {model_check.name for _, model_checks in chosen for model_check in model_checks}
+    for unknown in (check_name for check_name in only if check_name not in known):
+        raise InputError(
+            f"--only: no check of {name or distribution} is called '{unknown}'{did_you_mean(unknown, known)}"
+        )
+    total: Counter[str] = Counter()
+    for model, model_checks in chosen:
+        if name is None:
+            click.echo(f"{model.kind} {model.name}")
+        of_model = reasons if name is not None else {c.name: reasons[c.name] for c in model_checks if c.name in reasons}
+        for lacking in validate_expected("--expect-failure", model, model_checks, of_model):
+            click.echo(f"note: this version of wearlaw has no check '{lacking}'")
+        total += _checked(model, [c for c in model_checks if c.name in (only or known)], of_model, durations)
+    as_expected = f"{total['failed as expected']} failed as expected, " if total["failed as expected"] else ""
+    click.echo(f"{total['ok']} ok, {total['failed']} failed, {as_expected}{total['not claimed']} not claimed")
+    if total["failed"]:
+        click.get_current_context().exit(1)
+
+
+def _checked(model: Model, model_checks: list[Check], reasons: Mapping[str, str], durations: bool) -> Counter[str]:
+    """Run checks of a model, print their lines, and return how many had which outcome."""
+    least = 0.0 if durations else 1.0
+    outcomes = Counter(_outcome(model_check, reasons.get(model_check.name), least) for model_check in model_checks)
     if isinstance(model, ContactModel):
         for line in accuracies(model):
             click.echo(line)
     for claim, reason in model.exemptions.items():
         click.echo(f"not claimed {claim}: {reason}")
-    as_expected = f"{outcomes['failed as expected']} failed as expected, " if outcomes["failed as expected"] else ""
-    click.echo(f"{outcomes['ok']} ok, {outcomes['failed']} failed, {as_expected}{len(model.exemptions)} not claimed")
-    if outcomes["failed"]:
-        click.get_current_context().exit(1)
+    return outcomes + Counter({"not claimed": len(model.exemptions)})
+
+
+def _provided(distribution: str) -> list[type[Model] | Law]:
+    """Return the classes of the models of a distribution, and its parameter sets."""
+    by_distribution: dict[str, list[type[Model] | Law]] = {}
+    for kind in (*loader.MODELS, "parameter set"):
+        for providers in loader.discovered()[kind].providers.values():
+            for model, origin in providers:
+                by_distribution.setdefault(loader.normal(origin.distribution), []).append(model)
+    sought = loader.normal(distribution)
+    if sought not in by_distribution:
+        raise UnknownModelError(
+            f"no installed distribution {shown(distribution)} has models{did_you_mean(sought, by_distribution)}"
+        )
+    return by_distribution[sought]
 
 
 def _made(model: type[Model], options: Mapping[str, object]) -> Model:
-    """Return the model with these fields; a rig takes others from its `example_fields`."""
-    example = model.example_fields if issubclass(model, Rig) else {}
+    """Return the model with these fields, and others from its `example_fields`."""
     try:
-        return model(**{**example, **options})
+        return model(**{**model.example_fields, **options})
     except ConfigurationError as error:
         missing = dict.fromkeys(problem.path[0] for problem in error.problems if problem.message == "is missing")
         if not missing:
             raise
         hint = f"give {' '.join(f'--option {field}=VALUE' for field in missing)}"
-        if issubclass(model, Rig):
-            hint += f", or values to try the rig with in {model.__name__}.example_fields"
-        raise InputError(f"{error}\n{hint}") from None
+        raise InputError(
+            f"{error}\n{hint}, or values to try the {model.kind} with in {model.__name__}.example_fields"
+        ) from None
 
 
-def _outcome(check: Check, expected: str | None) -> str:
+def _outcome(check: Check, expected: str | None, least: float) -> str:
     """Run a check, print its line, with the reason if it is expected to fail, and return what to count it as."""
     start = time.process_time()
     try:
         check()
     except AssertionError as error:
         if expected is not None:
-            click.echo(f"failed as expected {check.name}{_duration(start)}: {expected}")
+            click.echo(f"failed as expected {check.name}{_duration(start, least)}: {expected}")
             return "failed as expected"
         reason = str(error) or check.doc
-        click.echo(f"FAILED {check.name}{_duration(start)}: {reason.strip().splitlines()[0]}")
+        click.echo(f"FAILED {check.name}{_duration(start, least)}: {reason.strip().splitlines()[0]}")
         return "failed"
     if expected is not None:
-        click.echo(f"FAILED {check.name}{_duration(start)}: it passes, but is expected to fail: {expected}")
+        click.echo(f"FAILED {check.name}{_duration(start, least)}: it passes, but is expected to fail: {expected}")
         return "failed"
-    click.echo(f"ok {check.name}{_duration(start)}")
+    click.echo(f"ok {check.name}{_duration(start, least)}")
     return "ok"
 
 
-def _duration(start: float) -> str:
-    """Return the time that a check took of the processor, if that is a second or more."""
+def _duration(start: float, least: float) -> str:
+    """Return the time that a check took of the processor [s], if that is not less than a number."""
     taken = time.process_time() - start
-    return f" ({taken:.0f} s)" if taken >= 1.0 else ""
+    return f" ({taken:.0f} s)" if taken >= 1.0 else f" ({taken:.3f} s)" if taken >= least else ""
 
 
 def _installed(name: str) -> type[Model] | Law:

@@ -327,7 +327,7 @@ def is_monotone_as_declared(law: Law) -> None:
                 fell = after < rate * (1.0 - max(SAME, leeway()))
                 assert not fell.any(), (
                     f"the rate falls from {rate[fell][0]!r} to {after[fell][0]!r} as {name} grows from"
-                    f" {at_nodes(start, name)[fell][0]:g} by a factor of {factor:g} in {by}"
+                    f" {at_nodes(start, name)[fell][0]:g} by the share {factor - 1.0:.3g} in {by}"
                 )
 
 

@@ -193,7 +193,11 @@ def conditions_are_declared(rig: Rig) -> None:
     """`conditions()` has the names in the example and the one in `creepage`, and the example is one test."""
     declared, creepage = rig.conditions(), () if rig.creepage is None else (rig.creepage,)
     for name in (*rig.example, *creepage):
-        assert name in declared, f"`conditions()` does not name '{name}', only {', '.join(declared) or 'none'}"
+        assert declared, (
+            f"no condition is declared; annotate `**conditions` of `problem` with Unpack[...] of a TypedDict that has"
+            f" '{name}'"
+        )
+        assert name in declared, f"`conditions()` does not name '{name}', only {', '.join(declared)}"
     for name in creepage:
         assert name in varied(rig), f"the example gives no '{name}', which `creepage` names"
     for name, value in varied(rig).items():

@@ -93,6 +93,9 @@ class Model(Configuration, ABC):
     and a docstring. They are conditions of every pipeline with the model, which reads them from `conditions` of the
     problem or the contact. A rig with a condition of this name provides it."""
 
+    example_fields: ClassVar[Mapping[str, Any]] = {}
+    """Values of fields to try the model with: of those without a default, or of one that makes it fast."""
+
     _provided_by: ClassVar[Callable[..., str]]
     """Where a class of models comes from, in words; set by the look-up of plugins."""
 

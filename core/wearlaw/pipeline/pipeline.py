@@ -103,9 +103,6 @@ class Rig(Model):
     example: ClassVar[Mapping[str, Any]] = {}
     """Conditions of one test to try the rig with, such as {"mass": "20 kg", "creepage": "1 %"}."""
 
-    example_fields: ClassVar[Mapping[str, Any]] = {}
-    """Values of the fields without a default to try the rig with."""
-
     @classmethod
     def subject(cls) -> str:
         """Return the name of this rig in messages."""

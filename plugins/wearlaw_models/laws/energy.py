@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -36,6 +37,7 @@ class Energy(wl.WearLaw):
         "H. Krause and G. Poll, Wear 113 (1986) 103-122; see also I. Zobory, Vehicle System Dynamics 28 (1997) 221-259"
     )
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("wear_index_density",)
+    example_fields: ClassVar[Mapping[str, Any]] = {"mass_per_energy": "5 ug/J"}
 
     mass_per_energy: Annotated[MassPerEnergy, Field(examples=["1 ug/J"])]
     """Mass lost per energy of friction, in mild wear if there is a limit [µg/J]."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -44,6 +44,14 @@ class WLRM(wl.Law):
         "M. Burstow, Whole life rail model application and development for RSSB: development of an RCF damage"
         " parameter, AEA Technology 2003, RSSB research project T115; the form alone, since the report was not read"
     )
+    example_fields: ClassVar[Mapping[str, Any]] = {
+        "threshold": "20 N",
+        "peak": "65 N",
+        "balance": "175 N",
+        "peak_damage": 1e-5,
+        "beyond": "falls",
+        "traction": "either",
+    }
     outcome: ClassVar[wl.Outcome] = wl.Outcome(
         "rcf_damage",
         unit="",

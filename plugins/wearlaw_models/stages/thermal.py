@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,6 +119,7 @@ class Thermal(wl.Stage):
         "temperature: M. Ertz, K. Knothe, Wear 253 (2002) 498-508, and friction: piecewise linear in it, both after the"
         " user guide and the source of the program CONTACT (E. A. H. Vollebregt)"
     )
+    example_fields: ClassVar[Mapping[str, Any]] = {"hot_ratio": 0.4, "temperature_range": "500 K"}
 
     hot_ratio: Annotated[float, Field(gt=0.0, le=1.0, strict=True)]
     """Friction coefficient of the hot contact over that of the cold one, h [-]."""

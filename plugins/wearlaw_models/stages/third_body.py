@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -41,6 +42,7 @@ class ThirdBody(wl.Stage):
         "M. Spiryagin, O. Polach, C. Cole, Vehicle System Dynamics 51 (2013) 1765-1783, after the user guide and the"
         " source of the program CONTACT (E. A. H. Vollebregt)"
     )
+    example_fields: ClassVar[Mapping[str, Any]] = {"reduction": 0.7}
 
     reduction: Annotated[float, Field(gt=0.0, le=1.0, strict=True)]
     """Reduction factor of the initial slope, k0 [-]."""

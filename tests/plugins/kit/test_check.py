@@ -71,6 +71,26 @@ def test_a_slow_check_states_its_time(install_model: InstallModel, monkeypatch: 
     assert "ok rate_is_finite (2 s)" in lines
 
 
+def test_a_choice_of_checks_states_their_durations(install_model: InstallModel) -> None:
+    lines, _ = checked(install_model, Own, "--only", "rate_is_finite", "--durations")
+    assert re.fullmatch(r"ok rate_is_finite \(0\.\d{3} s\)", lines[0])
+    assert lines[-1] == "1 ok, 0 failed, 1 not claimed"
+
+
+def test_all_models_of_a_distribution_are_checked(install_model: InstallModel) -> None:
+    install_model(Negative)
+    result = wearlaw("check", "--distribution", "WEARLAW_TESTING", "--option", "slope=1 m")
+    assert result.exit_code == 1
+    assert result.stdout.startswith("wear law own\n")
+    assert "\nFAILED rate_is_never_negative" in result.stdout
+
+
+def test_an_expected_failure_that_this_version_lacks_is_a_note(install_model: InstallModel) -> None:
+    lines, exit_code = checked(install_model, Own, "--expect-failure", "heat_flows_downhill=of a later version")
+    assert lines[0] == "note: this version of wearlaw has no check 'heat_flows_downhill'"
+    assert exit_code == 0
+
+
 @pytest.mark.parametrize(
     ("law", "check", "reason"),
     [
@@ -135,6 +155,9 @@ def test_the_declared_accuracy_of_a_contact_model_is_shown_for_each_shape_of_pat
         (["usfd", "--option", "fited_for=exact"], "usfd: fited_for: unknown field; did you mean 'fitted_for'?", 1),
         (["usfd", "--option", "exact"], "--option: write it as FIELD=VALUE, got 'exact'", 2),
         (["usfd", "--option", "q_s=a=b"], "usfd: q_s: 'a=b' is not a number with a unit", 1),
+        ([], "give the name of a model, or --distribution", 2),
+        (["--distribution", "wearlow"], "no installed distribution 'wearlow' has models; did you mean 'wearlaw'?", 1),
+        (["usfd", "--only", "rate_is"], "--only: no check of usfd is called 'rate_is'; did you mean 'rate_", 1),
         (["usfd", "--expect-failure", "rate_is=x"], "--expect-failure: no check of 'usfd' is called 'rate_is'", 1),
         (["usfd", "--expect-failure", "rate_is_finite= "], "the expected failure of 'rate_is_finite' has no reason", 1),
     ],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -56,6 +56,7 @@ class HalfSpace(wl.ContactModel):
         "J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer, 1990; the steady form after the"
         " source of the program CONTACT (E. A. H. Vollebregt)"
     )
+    example_fields: ClassVar[Mapping[str, Any]] = {"cells": 6}
 
     cells: Annotated[int, Field(ge=4, le=200, strict=True)] = 30
     """Elements along the patch and, on an ellipse, across it; given strips stay as they are. The time of

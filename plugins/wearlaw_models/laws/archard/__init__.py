@@ -100,6 +100,7 @@ class Archard(wl.WearLaw):
     source: ClassVar[str] = "J. F. Archard, J. Appl. Phys. 24 (1953) 981-988"
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("pressure", "slip")
     follows_pressure_times_slip: ClassVar[bool] = True
+    example_fields: ClassVar[Mapping[str, Any]] = {"coefficient": 1e-4}
 
     coefficient: Annotated[float, Field(gt=0.0, strict=True, examples=["1e-4"]), wl.Unit("", usual=(1e-10, 0.1))]
     """Wear coefficient of V = k N s / H, k [-]."""
