@@ -54,6 +54,7 @@ def sweep(
     keep: Mapping[str, str] | None = None,
     sep: str | None = None,
     decimal: str = ".",
+    sheet: str | None = None,
     outputs: Sequence[str] | None = None,
     workers: int = 1,
     client: Any = None,
@@ -74,11 +75,14 @@ def sweep(
     columns : mapping of str to str, optional
         The column of each condition, as in {"normal_force": "Fz [N]", "longitudinal_creepage": "-creep_x [-]"}. A minus
         changes the sign. The unit in brackets may be left out if the table has it, and the table may lack it if it is
-        given. Other columns are not used. Default: columns have the names of conditions.
+        given. Other columns are not used. Default: columns have the names of conditions. A name in braces, as in
+        "W{wheel} N [N]", stands for all wheels (contacts, ...) of a row, which become a dimension of the results.
     keep : mapping of str to str, optional
         Further columns of numbers to keep as coordinates of the results, such as {"time": "Time [s]"}.
     sep, decimal : str, optional
         Of a CSV file: what separates its cells, and its decimal mark, as in `read_table`.
+    sheet : str, optional
+        The sheet of a spreadsheet by its name. Default: the only one that has cells.
     outputs : sequence of str, optional
         Names of outcomes and properties of a prediction to keep, such as "wear_rate", "rcf_damage" or
         "tangential_force". If laws of one outcome differ by body, the name of the body follows, as in "wear_rate_rail".
@@ -124,7 +128,7 @@ def sweep(
     return computed(
         lambda first, points: checked_job(predict, first, points, outputs),
         *(predict, table, conditions),
-        reading=Reading(columns, keep, sep, decimal),
+        reading=Reading(columns, keep, sep, decimal, sheet=sheet),
         running=Running(workers, client, store, resume, progress),
     )
 
@@ -137,6 +141,7 @@ class Reading(NamedTuple):
     sep: str | None
     decimal: str
     summed: bool = False
+    sheet: str | None = None
 
 
 class Running(NamedTuple):
@@ -165,7 +170,7 @@ def computed(
     expect_pipeline(predict)
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
         raise InputError(f"workers: must be the number of processes, at least 1; got {shown(workers)}")
-    as_csv = {"sep": reading.sep, "decimal": reading.decimal}
+    as_csv = {"sep": reading.sep, "decimal": reading.decimal, "sheet": reading.sheet}
     with (
         writing_to(store),
         operating_points(

@@ -423,6 +423,10 @@ def test_a_spreadsheet_is_read(tmp_path: Path) -> None:
     points = table()
     path = xlsx(tmp_path / "a.xlsx", [["z [mm]", "y [mm]"], *points[:, ::-1].tolist()])
     assert values(wl.read_profile(path, kind="wheel")) == pytest.approx(points, abs=1e-12)
+    xlsx(path, [["notes", "more"]], [["z", "y"], *points[:, ::-1].tolist()])
+    assert values(wl.read_profile(path, kind="wheel", sheet="sheet2.xml")) == pytest.approx(points, abs=1e-12)
+    with pytest.raises(wl.DataError, match=r"has 2 sheets with cells, .* name one by sheet="):
+        wl.read_profile(path, kind="wheel")
 
 
 # Errors --------------------------------------------------------------------------------------------------------------

@@ -34,8 +34,8 @@ KINDS: dict[str, Kind] = {
 }  # fmt: skip
 """Kind of profile by the ending of a file."""
 SIMPACK, MINIPROF, GENSYS = (".prw", ".prr"), (".whl", ".ban", ".mpt"), (".wheel", ".rail")
-SPREADSHEET = ".xlsx"
-COLUMNS = (".csv", ".txt", ".dat", ".asc", "", ".whe", ".rai", *GENSYS, SPREADSHEET)
+SPREADSHEETS = (".xlsx", ".xlsm", ".ods")
+COLUMNS = (".csv", ".txt", ".dat", ".asc", "", ".whe", ".rai", *GENSYS, *SPREADSHEETS)
 
 REFUSED = {
     r"\s*(WHEEL|RAIL)PROFILE\b": "is the format of VAMPIRE, which is not read; save y, outwards, and z, down, as .csv",
@@ -87,9 +87,15 @@ class Points:
 
 
 def points_of(
-    path: Path, kind: Kind | None, units: str, sep: str | None = None, decimal: str = ".", part: int | None = None
+    path: Path,
+    kind: Kind | None,
+    units: str,
+    sep: str | None = None,
+    decimal: str = ".",
+    part: int | None = None,
+    sheet: str | None = None,
 ) -> tuple[Points, Kind]:
-    """Return the points of a file, and their kind; `kind`, `units` and `part` are for what the file does not say.
+    """Return the points of a file, and their kind; the options are those of `read_profile`.
 
     Raises
     ------
@@ -99,7 +105,7 @@ def points_of(
     ending = path.suffix.lower()
     by_ending: Kind | None = KINDS.get(ending)
     readers = {} if ending in (*KINDS, *COLUMNS, ".mpt") else dict(wl.installed("file reader"))
-    text = "" if ending == SPREADSHEET or ending[1:] in readers else _text_of(path)
+    text = "" if ending in SPREADSHEETS or ending[1:] in readers else _text_of(path)
     lines = text.splitlines()
     for number, line in enumerate(lines[:READ], 1):
         for pattern, reason in REFUSED.items():
@@ -112,8 +118,8 @@ def points_of(
     elif ending in MINIPROF or _is_miniprof(lines):
         points = _miniprof(lines, by_ending or kind, units, part)
     elif ending in COLUMNS or kind is not None:
-        source = path if ending == SPREADSHEET else io.StringIO(_tabbed(lines, sep, decimal))
-        points = _columns(source, units, decimal)
+        source = path if ending in SPREADSHEETS else io.StringIO(_tabbed(lines, sep, decimal))
+        points = _columns(source, units, decimal, sheet)
         if ending in GENSYS:  # y is positive towards the middle of the track
             points = replace(points, y=-points.y)
     else:
@@ -372,7 +378,7 @@ def _is_point(line: str) -> bool:
 
 def _tabbed(lines: Sequence[str], sep: str | None, decimal: str) -> str:
     """Return the lines of columns with tabs between the cells, without remarks and titles."""
-    texts = [re.split("[!#]", line)[0].strip() for line in lines]
+    texts = [re.split("[!#%]", line)[0].strip() for line in lines]
     if sep is None:
         points = [text for text in texts if NUMBER.match(text)] or texts
         sep = next((mark for mark in ";,".replace(decimal, "") if any(mark in text for text in points)), " ")
@@ -398,10 +404,10 @@ def _tabbed(lines: Sequence[str], sep: str | None, decimal: str) -> str:
     return "\n".join(rows)
 
 
-def _columns(source: Path | io.StringIO, units: str, decimal: str) -> Points:
+def _columns(source: Path | io.StringIO, units: str, decimal: str, sheet: str | None) -> Points:
     """Return the points of two columns, y outwards and z down, with a header or without."""
     try:
-        table = wl.read_table(source, decimal=decimal)
+        table = wl.read_table(source, decimal=decimal, sheet=sheet)
         named = {name.lower(): column for name, column in table.columns.items()}
         columns = [named["y"], named["z"]] if {"y", "z"} <= named.keys() else list(named.values())[:2]
         if len(columns) < 2:

@@ -638,6 +638,7 @@ class _File(wl.Configuration):
     sep: str | None = None
     decimal: str = "."
     part: int | None = None
+    sheet: str | None = None
     mirror_y: Annotated[bool, Field(strict=True)] = False
     mirror_z: Annotated[bool, Field(strict=True)] = False
     turn: Angle = Field(default="0 deg", validate_default=True)
@@ -666,6 +667,7 @@ def read_profile(
     sep: str | None = None,
     decimal: str = ".",
     part: int | None = None,
+    sheet: str | None = None,
     mirror_y: bool = False,
     mirror_z: bool = False,
     turn: wl.QuantityLike = "0 deg",
@@ -677,7 +679,7 @@ def read_profile(
     """Return the profile of a file.
 
     The ending or the first lines give the format: Simpack (.prr, .prw), MiniProf (.ban, .whl, .mpt), GENSYS (.rail,
-    .wheel), a spreadsheet (.xlsx), or else two columns, y and z.
+    .wheel), a spreadsheet (.xlsx, .ods), or else two columns, y and z.
 
     Parameters
     ----------
@@ -691,6 +693,8 @@ def read_profile(
         Of two columns: what separates the cells, by default semicolons, commas or any white space; the decimal mark.
     part : int, optional
         Which part of a MiniProf file with several to read, from 1.
+    sheet : str, optional
+        The sheet of a spreadsheet by its name. Default: the only one that has cells.
     mirror_y, mirror_z : bool
         Whether to change the sign of y or z.
     turn : Quantity or str
@@ -709,7 +713,7 @@ def read_profile(
         If the file cannot be read, or does not hold a profile. The message names the file and the line.
     """
     try:
-        points, told = points_of(Path(path), kind, units, sep, decimal, part)
+        points, told = points_of(Path(path), kind, units, sep, decimal, part, sheet)
         length = wl.Unit("mm", positive=False)
         y, z = (-points.y if mirror_y else points.y), (-points.z if mirror_z else points.z)
         angle = float(wl.Unit("deg", positive=False).si(turn, "turn"))
