@@ -27,7 +27,7 @@ def patches(slant: float = 0.0) -> wl.Problem:
     """Return patches in partial slip, with spin; the middles of their strips lie at x = `slant` × y."""
     random = np.random.default_rng(11)
     shares = (2.0 * np.arange(STRIPS) + 1.0) / STRIPS - 1.0
-    root, one = np.sqrt(1.0 - shares**2), np.ones(POINTS)
+    root, ones = np.sqrt(1.0 - shares**2), np.ones(POINTS)
     a, b, p0 = (random.uniform(low, 3.0 * low, POINTS) for low in (2e-3, 2e-3, 0.5e9))
     y = np.outer(b, shares)
     strips = wl.Strips(
@@ -36,8 +36,8 @@ def patches(slant: float = 0.0) -> wl.Problem:
     )  # fmt: skip
     xi, eta, phi = (random.uniform(-size, size, POINTS) for size in (2e-3, 2e-3, 0.5))
     return wl.Problem.of_strips(
-        strips, a=a, b=b, shear_modulus=82e9 * one, poisson_ratio=0.28 * one, friction_coefficient=0.3 * one,
-        longitudinal_creepage=xi, lateral_creepage=eta, spin=phi, rolling_speed=30.0 * one, density=7850.0 * one,
+        strips, a=a, b=b, shear_modulus=82e9 * ones, poisson_ratio=0.28 * ones, friction_coefficient=0.3 * ones,
+        longitudinal_creepage=xi, lateral_creepage=eta, spin=phi, rolling_speed=30.0 * ones, density=7850.0 * ones,
     )  # fmt: skip
 
 
@@ -66,24 +66,27 @@ def test_each_strip_slips_by_its_creepages(within: float) -> None:
     problem = patches(slant=0.2)[:1]
     strips, creepages = problem.strips, scattered(problem, 2e-3)
     assert strips is not None
-    found = STRIP_THEORY.solve(creeping(problem, creepages))
+    contact = STRIP_THEORY.solve(creeping(problem, creepages))
     # In the patch as a whole the slip is (ξ - φy, η - φx): the strip i then has those of its middle.
-    along, across, spin = (one[0] for one in creepages)
+    along, across, spin = (creepage[0] for creepage in creepages)
     all_over = problem[np.zeros(STRIPS, int)].with_creepages(
         along + spin * strips.y[0], across + spin * strips.x[0], spin
     )
     alone, strip = STRIP_THEORY.solve(all_over), np.arange(STRIPS)
     for name in ("traction_x", "traction_y", "x"):
-        one, other = getattr(found, name)[0], getattr(alone, name)[strip, :, strip].T
-        assert one == pytest.approx(other, abs=within * np.abs(other).max()), name
-    forces, moments = [], found.integral(found.x, found.traction_y) + found.integral(found.y, found.traction_x)
-    for traction in (found.traction_x, found.traction_y):
-        forces.append(found.over_strip(traction) * found.strip_width)
-    turned = found.over_strip((found.x - strips.x[:, None]) * found.traction_y) * found.strip_width
+        due = getattr(alone, name)[strip, :, strip].T
+        assert getattr(contact, name)[0] == pytest.approx(due, abs=within * np.abs(due).max()), name
+    forces, moments = (
+        [],
+        contact.integral(contact.x, contact.traction_y) + contact.integral(contact.y, contact.traction_x),
+    )
+    for traction in (contact.traction_x, contact.traction_y):
+        forces.append(contact.over_strip(traction) * contact.strip_width)
+    turned = contact.over_strip((contact.x - strips.x[:, None]) * contact.traction_y) * contact.strip_width
     power = (creepages[0] * forces[0] + creepages[1] * forces[1] - creepages[2] * turned).sum()
-    assert found.wear_index == pytest.approx(power, rel=within)
-    assert found.cell_wear_index == pytest.approx(power, rel=within)
-    assert found.moment_z == pytest.approx(-moments, rel=within)
+    assert contact.wear_index == pytest.approx(power, rel=within)
+    assert contact.cell_wear_index == pytest.approx(power, rel=within)
+    assert contact.moment_z == pytest.approx(-moments, rel=within)
     alone_forces = STRIP_THEORY.creep_forces(creeping(problem, creepages))
     assert alone_forces.power == pytest.approx(power, rel=within)
 
@@ -92,7 +95,7 @@ def test_each_strip_slips_by_its_creepages(within: float) -> None:
 def test_in_full_slip_each_strip_pulls_along_its_creepage(model: wl.ContactModel) -> None:
     problem = patches(slant=0.2)
     along, across, _ = scattered(problem, 1.0)
-    found = model.solve(creeping(problem, (along, across, np.zeros_like(along))))
+    contact = model.solve(creeping(problem, (along, across, np.zeros_like(along))))
     strips = problem.strips
     assert strips is not None
     size = np.hypot(along, across)
@@ -100,10 +103,12 @@ def test_in_full_slip_each_strip_pulls_along_its_creepage(model: wl.ContactModel
     # Full slip takes up some 0.5 % of the rolled way, and the creepages are 10 % and more. The load on elements of
     # half-spaces is that of the strips within some percent, strip by strip.
     within: Any = {"abs": 0.05 * 0.3 * problem.normal_force.max()} if model is HALF_SPACE else {"rel": 0.01}
-    assert found.force_x == pytest.approx((bound * along).sum(axis=-1), **within)
-    assert found.force_y == pytest.approx((bound * across).sum(axis=-1), **within)
-    assert found.wear_index == pytest.approx((bound * size**2).sum(axis=-1), rel=0.05 if model is HALF_SPACE else 0.001)
-    assert found.cell_wear_index == pytest.approx(found.wear_index, rel=1e-9)
+    assert contact.force_x == pytest.approx((bound * along).sum(axis=-1), **within)
+    assert contact.force_y == pytest.approx((bound * across).sum(axis=-1), **within)
+    assert contact.wear_index == pytest.approx(
+        (bound * size**2).sum(axis=-1), rel=0.05 if model is HALF_SPACE else 0.001
+    )
+    assert contact.cell_wear_index == pytest.approx(contact.wear_index, rel=1e-9)
 
 
 @with_models(STRIP_THEORY, HALF_SPACE)
@@ -147,10 +152,10 @@ class Filled(axles.Placed):
 
     def problem(self, **conditions: Any) -> wl.Problem:
         """Return the problem with three more strips, without width, length and pressure."""
-        found = super().problem(**conditions)
-        assert found.strips is not None
-        strips = found.strips.mapped(np.asarray, lambda of: np.concatenate([of, 0.0 * of[..., :3]], axis=-1))
-        return found.replaced(strips=dataclasses.replace(strips, y=np.where(strips.width > 0.0, strips.y, self.place)))
+        posed = super().problem(**conditions)
+        assert posed.strips is not None
+        strips = posed.strips.mapped(np.asarray, lambda of: np.concatenate([of, 0.0 * of[..., :3]], axis=-1))
+        return posed.replaced(strips=dataclasses.replace(strips, y=np.where(strips.width > 0.0, strips.y, self.place)))
 
 
 class Creeping(Filled):
@@ -160,15 +165,15 @@ class Creeping(Filled):
 
     def problem(self, **conditions: Any) -> wl.Problem:
         """Return the problem with all arrays of its strips."""
-        found = super().problem(**conditions)
-        return creeping(found, found.creepages_of_strips)
+        posed = super().problem(**conditions)
+        return creeping(posed, posed.creepages_of_strips)
 
 
 @with_models(STRIP_THEORY, FASTSIM, HALF_SPACE)
 @pytest.mark.parametrize("rig", [Filled(), Filled(place=0.1), Creeping()], ids=["among", "beside", "creeping"])
 @pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_strips_that_fill_up_a_batch_change_no_result(model: wl.ContactModel, rig: wl.Rig) -> None:
-    here, there = ((one | model | axles.KTH)(**axles.GIVEN) for one in (axles.Placed(hertzian=False), rig))
+    here, there = ((of | model | axles.KTH)(**axles.GIVEN) for of in (axles.Placed(hertzian=False), rig))
 
     def assert_same(data: Any, due: Any, strips: int | None) -> None:
         for name, values in due.data_vars.items():
@@ -196,8 +201,8 @@ def test_pictures_and_temperatures_do_not_show_strips_that_fill_up_a_batch() -> 
         drawn.append(raster(patch, fields_of(patch)["pressure"].values))
         hot.append(thermal.flash_temperature(patch.contact).magnitude)
     for other in drawn[1:]:
-        for one, due in zip(other, drawn[0], strict=True):
-            np.testing.assert_allclose(one, due, rtol=1e-9)
+        for values, due in zip(other, drawn[0], strict=True):
+            np.testing.assert_allclose(values, due, rtol=1e-9)
     np.testing.assert_allclose(hot, hot[0], rtol=1e-9)
 
 
@@ -206,9 +211,9 @@ def test_a_picture_shows_strips_where_they_lie() -> None:
         name: ClassVar[str] = "slanting"
 
         def problem(self, **conditions: Any) -> wl.Problem:
-            found = super().problem(**conditions)
-            assert found.strips is not None
-            return found.replaced(strips=dataclasses.replace(found.strips, x=0.5 * found.strips.y))
+            posed = super().problem(**conditions)
+            assert posed.strips is not None
+            return posed.replaced(strips=dataclasses.replace(posed.strips, x=0.5 * posed.strips.y))
 
     patch = (Slanting() | STRIP_THEORY)(**{**axles.GIVEN, "displacement": "0 mm"}).sel(side="right", patch=1)
     x, y, inside = raster(patch, fields_of(patch)["pressure"].values)

@@ -601,8 +601,9 @@ class Problem:
         strips = cast(Strips, self.strips)
         along, across, spin = self.longitudinal_creepage, self.lateral_creepage, self.spin[..., None]
         at_middle = along[..., None] - spin * strips.y, across[..., None] - spin * strips.x, spin + 0.0 * strips.y
-        own = strips.longitudinal_creepage, strips.lateral_creepage, strips.spin
-        along, across, spin = (at if one is None else one for at, one in zip(at_middle, own, strict=True))
+        of_strips = strips.longitudinal_creepage, strips.lateral_creepage, strips.spin
+        pairs = zip(at_middle, of_strips, strict=True)
+        along, across, spin = (at if creepage is None else creepage for at, creepage in pairs)
         return along, across, spin
 
     def body(self, name: str | None) -> Body:
