@@ -259,7 +259,8 @@ def _inside(problem: Problem, contact: Contact) -> NDArray[np.bool_]:
         within: NDArray[np.bool_] = x**2 + y**2 <= 1.0 + SAME
     else:
         on_strip = contact.y == problem.strips.y[..., None, :]
-        within = on_strip & (np.abs(contact.x) <= problem.strips.half_length[..., None, :] * (1.0 + SAME))
+        reach = problem.strips.half_length[..., None, :] * (1.0 + SAME)
+        within = on_strip & (np.abs(contact.x - problem.strips.x[..., None, :]) <= reach)
     return within
 
 
@@ -281,9 +282,10 @@ def _moments(problem: Problem) -> list[tuple[str, Array, tuple[Array, Array]]]:
         return [("x", a, (none, area * a**2 / 3.0))]
     if strips is None:
         return [("x", a, (none, area * a**2 / 4.0)), ("y", b, (none, area * b**2 / 4.0))]
-    along = (strips.area * strips.half_length**2).sum(axis=-1) / 3.0
+    middle = (strips.area * strips.x).sum(axis=-1)
+    along = (strips.area * (strips.half_length**2 / 3.0 + strips.x**2)).sum(axis=-1)
     across = (strips.area * strips.y).sum(axis=-1), (strips.area * strips.y**2).sum(axis=-1)
-    return [("x", strips.half_length.max(axis=-1), (none, along)), ("y", b, across)]
+    return [("x", strips.half_length.max(axis=-1), (middle, along)), ("y", b, across)]
 
 
 @on_problems(ELLIPSE, PATCH, applies=has_nodes)
@@ -376,7 +378,7 @@ def _pressure(problem: Problem, contact: Contact) -> Array:
     if problem.strips is None:
         return hertz_ellipse.pressure(contact.x, contact.y, a, b, p0)
     half_length, highest = (value[..., None, :] for value in (problem.strips.half_length, problem.strips.max_pressure))
-    return hertz.pressure(contact.x, half_length, highest)
+    return hertz.pressure(contact.x - problem.strips.x[..., None, :], half_length, highest)
 
 
 @on_shapes(*SHAPES, claims=("friction",))

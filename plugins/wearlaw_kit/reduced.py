@@ -37,18 +37,19 @@ STRIP_WIDTH = np.full(20, 0.1)
 def in_strips(problem: Problem, lean: float = 1.0) -> Problem:
     """Return an elliptic problem cut into strips, each longer and under less pressure the further they lie on one side.
 
-    Without `lean`, they are those of the ellipse. The load is that of the ellipse, which stands for the patch in
-    Kalker's coefficients.
+    Their middles lie askew. Without `lean`, they are those of the ellipse. The load is that of the ellipse, which
+    stands for the patch in Kalker's coefficients.
     """
     y, width = (share * problem.b[..., None] for share in (STRIP_AT, STRIP_WIDTH))
     root = np.sqrt(1.0 - STRIP_AT**2)
-    half_length = problem.a[..., None] * root * (1.0 + 0.2 * lean * STRIP_AT)
+    shares = root * (1.0 + 0.2 * lean * STRIP_AT), 0.2 * lean * STRIP_AT
+    half_length, x = (problem.a[..., None] * share for share in shares)
     shape = np.broadcast_to(root * (1.0 - 0.3 * lean * STRIP_AT), y.shape)
     load = (0.5 * np.pi * half_length * width * shape).sum(axis=-1)
     max_pressure = shape * (problem.normal_force / load)[..., None]
     fields = ("friction_coefficient", "longitudinal_creepage", "lateral_creepage", "spin", "rolling_speed", "density")
     return Problem.of_strips(
-        Strips(y=y, width=width, half_length=half_length, max_pressure=max_pressure),
+        Strips(y=y, width=width, half_length=half_length, max_pressure=max_pressure, x=x),
         shear_modulus=problem.shear_modulus,
         poisson_ratio=problem.poisson_ratio,
         a=problem.a,

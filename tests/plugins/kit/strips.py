@@ -69,7 +69,7 @@ class Strips(wl.ContactModel):
             load = (4.0 / 3.0 * given.half_length * given.width * squares).sum(axis=-1)
             centre = squares * (problem.normal_force / load)[..., None]
         share = (2.0 * np.arange(self.cells)[:, None] + 1.0) / self.cells - 1.0
-        x = half_length * share
+        x = half_length * share + (0.0 if given is None else given.x[..., None, :])
         step = 2.0 / self.cells * half_length
         across_patch = np.broadcast_to(y[..., None, :], x.shape)
         friction = problem.friction_coefficient[..., None, None]

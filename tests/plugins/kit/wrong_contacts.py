@@ -492,6 +492,13 @@ def pulled_by_the_number_of_strips(contact: wl.Contact, _: wl.Problem) -> wl.Con
     return times(contact, 0.05 * contact.strip_width.shape[-1])
 
 
+@wrong("nodes_cover_the_patch", on_strips(OwnSlope))
+def strips_side_by_side(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
+    """Strips whose middles lie askew are placed side by side."""
+    assert problem.strips is not None
+    return contact.replaced(x=contact.x - problem.strips.x[..., None, :])
+
+
 @wrong("creepages_of_strips_may_be_those_of_the_patch", on_strips(OwnSlope))
 def creeping_less_by_strips(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
     """With creepages for each strip the forces are a tenth smaller."""
