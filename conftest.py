@@ -166,7 +166,8 @@ def write_file(example: Example) -> None:
     path = Path(example.parsed["options"]["caption"])
     path.write_text(example.parsed["source"], encoding="utf-8")
     if path.parent != Path():
-        sys.path.insert(0, os.path.join(example.namespace["_folder"].name, path.parent))
+        folder = path.parent.parent if path.name == "__init__.py" else path.parent
+        sys.path.insert(0, os.path.join(example.namespace["_folder"].name, folder))
 
 
 def downloads(document: Any) -> Any:

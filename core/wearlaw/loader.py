@@ -260,8 +260,8 @@ def use(path: str | os.PathLike[str]) -> None:
     Parameters
     ----------
     path : str or path-like
-        A module with hooks, such as ``wearlaw_models``. Its folder goes to the end of `sys.path`, so that other
-        processes can import it.
+        A module with hooks, such as ``wearlaw_models``, or the folder of a package. Its folder goes to the end of
+        `sys.path`, so that other processes can import it.
 
     Raises
     ------
@@ -269,20 +269,23 @@ def use(path: str | os.PathLike[str]) -> None:
         If it is no plugin, or another module of its name is loaded already.
     """
     file, found = Path(path).resolve(), discovered()
-    known = sys.modules.get(file.stem)
+    if file.is_dir():
+        file /= "__init__.py"
+    place = file.parent if file.name == "__init__.py" else file
+    known = sys.modules.get(place.stem)
     if known is not None and getattr(known, "__file__", None) != str(file):
-        raise InputError(f"plugin {shown(Path(path))}: there is another module called {file.stem!r}; rename the file")
+        raise InputError(f"plugin {shown(Path(path))}: there is another module called {place.stem!r}; rename the file")
     if known is not None:
         return
     try:
-        origin = Origin(file.stem, file.name, hashlib.sha256(file.read_bytes()).hexdigest()[:8])
-        sys.path.append(str(file.parent))
-        hooks = _hooks(import_module(file.stem), origin)
+        origin = Origin(place.stem, place.name, hashlib.sha256(file.read_bytes()).hexdigest()[:8])
+        sys.path.append(str(place.parent))
+        hooks = _hooks(import_module(place.stem), origin)
         _add_models(hooks, origin, found)
         _add_kinds(hooks, found)
         _add_named(hooks, origin, found)
     except Exception as error:
-        sys.modules.pop(file.stem, None)
+        sys.modules.pop(place.stem, None)
         raise InputError(f"plugin {shown(Path(path))}: cannot be used: {described(error)}") from error
     found.plugins.append(origin)
 

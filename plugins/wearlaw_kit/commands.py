@@ -37,7 +37,7 @@ from wearlaw_kit.scaffold import Kind, write_plugin
 def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
     """Begin a plugin: write a small distribution, wearlaw-NAME, with a model to replace.
 
-    It holds a module of about 30 lines, its entry point, its tests, a README and a CI workflow, and passes its tests,
+    It holds a package of about 30 lines, its entry point, its tests, a README and a CI workflow, and passes its tests,
     ruff and mypy --strict as it is. NAME is what the model will be called in wearlaw.wear_law("NAME") or
     wearlaw.rig("NAME") and in case files: lower-case letters, digits and underscores. For a stage, a law of another
     outcome or a material, begin with a wear law and replace its module by one of the documentation.
@@ -45,7 +45,7 @@ def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
     if kind is None:
         raise click.UsageError("say what the plugin provides: --wear-law, --contact-model or --rig")
     folder = write_plugin(name, kind, output)
-    click.echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}.py. Next:")
+    click.echo(f"{folder} holds a {kind.replace('_', ' ')} to replace: wearlaw_{name}/__init__.py. Next:")
     install = 'python -m pip install -e ".[test]"'
     for line in (f"cd {shlex.quote(str(folder))}", install, "pytest", "wearlaw plugins", f"wearlaw check {name}"):
         click.echo(f"  {line}")

@@ -13,6 +13,7 @@ from typing import Literal, TypeAlias
 
 from wearlaw import loader
 from wearlaw.errors import InputError, OutputError, shown
+from wearlaw.hookspecs import INTERFACE_VERSION
 from wearlaw.version import __version__
 
 Kind: TypeAlias = Literal["wear_law", "contact_model", "rig"]
@@ -99,17 +100,19 @@ def _files(name: str, kind: Kind) -> dict[str, str]:
         "class_name": "".join(word.capitalize() for word in name.split("_")),
         "kind": kind.replace("_", " "),
         "version": __version__,
+        "interface": str(INTERFACE_VERSION),
         **{key: text.format(name) for key, text in EXAMPLES[kind].items()},
     }
     templates = {
         "pyproject.toml": "pyproject.toml.in",
-        f"wearlaw_{name}.py": f"{kind}/module.py.in",
+        f"wearlaw_{name}/__init__.py": f"{kind}/module.py.in",
         f"test_{name}.py": f"{kind}/test.py.in",
         "README.md": "README.md.in",
         ".github/workflows/tests.yml": "tests.yml.in",
     }
     folder = resources.files(__name__).joinpath("templates")
-    return {
+    texts = {
         path: Template(folder.joinpath(template).read_text(encoding="utf-8")).substitute(values)
         for path, template in templates.items()
     }
+    return {**texts, f"wearlaw_{name}/py.typed": ""}

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import zipfile
 from pathlib import Path
 from typing import get_args
 
 import pytest
 from click.testing import Result
 
+import wearlaw as wl
 from tests.cases import assert_refused, wearlaw
 from wearlaw_kit.scaffold import Kind  # private: the kinds that the command offers
 
@@ -30,8 +34,27 @@ def test_a_new_plugin_is_a_whole_distribution(kind: Kind) -> None:
     assert {*written} == {
         f"wearlaw-two_slopes/{file}"
         for file in (".github/workflows/tests.yml", "README.md", "pyproject.toml", "test_two_slopes.py")
-    } | {"wearlaw-two_slopes/wearlaw_two_slopes.py"}
-    assert "class TwoSlopes(" in written["wearlaw-two_slopes/wearlaw_two_slopes.py"].read_text(encoding="utf-8")
+    } | {f"wearlaw-two_slopes/wearlaw_two_slopes/{file}" for file in ("__init__.py", "py.typed")}
+    module = written["wearlaw-two_slopes/wearlaw_two_slopes/__init__.py"].read_text(encoding="utf-8")
+    assert "class TwoSlopes(" in module
+    assert f"wearlaw_interface = {wl.INTERFACE_VERSION}\n" in module
+
+
+def test_whatever_the_author_adds_to_the_package_is_in_the_wheel() -> None:
+    pytest.importorskip("build")
+    pytest.importorskip("hatchling")
+    new_plugin("two_slopes", "--wear-law")
+    folder = Path("wearlaw-two_slopes")
+    (folder / "wearlaw_two_slopes" / "tables").mkdir()
+    for added in ("formula.py", "tables/__init__.py", "tables/slopes.csv"):
+        (folder / "wearlaw_two_slopes" / added).write_text("")
+    build = [sys.executable, "-m", "build", "--wheel", "--no-isolation", str(folder)]
+    subprocess.run(build, check=True, capture_output=True)
+    (wheel,) = (folder / "dist").glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        held = {name for name in archive.namelist() if not name.startswith("wearlaw_two_slopes-")}
+    files = ("__init__.py", "py.typed", "formula.py", "tables/__init__.py", "tables/slopes.csv")
+    assert held == {f"wearlaw_two_slopes/{file}" for file in files}
 
 
 @pytest.mark.parametrize("name", ["", "two words", "Zobory", "2slopes", "class", "a-b", "../up", "é"])
