@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import re
 import textwrap
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -50,6 +51,13 @@ def completed(*kinds: str, listed: bool = False) -> Callable[..., list[Completio
     return complete
 
 
+EXAMPLE = "example:"
+"""The heading of code."""
+
+DEEPER = 6
+"""Spaces by which the fields of a table within a field are indented."""
+
+
 @click.command("plugins")
 def list_plugins() -> None:
     """List what the installed plugins provide, by kind and name, and the plugins that failed to load."""
@@ -72,13 +80,38 @@ def list_plugins() -> None:
 
 @click.command()
 @click.argument("name", shell_complete=completed())
-def show(name: str) -> None:
+@click.option("--markdown", is_flag=True, help="Write Markdown, such as for a README.")
+def show(name: str, markdown: bool) -> None:
     """Explain anything that `wearlaw plugins` lists, by its name, or a law by its file, such as fit/law.toml.
 
     A model shows its fields with units and defaults, its source, and what it declares; a material its values; a case
     its models and sweeps; a test set its source and columns; a section the cases that have it.
     """
-    click.echo(explain(name))
+    text = explain(name)
+    click.echo(in_markdown(text) if markdown else text)
+
+
+def in_markdown(text: str) -> str:
+    """Return a description as Markdown: headings, a list item for each field, and the example as code."""
+    lines: list[str] = []
+    section = ""
+    for line in text.splitlines():
+        bare = line.strip()
+        level, within = divmod(len(line) - len(bare) - 2, DEEPER)
+        if re.fullmatch("[a-z ]+:", line):
+            section = line
+            lines += [f"## {line[:1].upper()}{line[1:-1]}", "", *(["```python"] if section == EXAMPLE else [])]
+        elif head := re.fullmatch(r"(\S+): (an? .* of .*)", line):
+            section = ""
+            lines += [f"# {head[1]}", "", f"{head[2][:1].upper()}{head[2][1:]}."]
+        elif section == EXAMPLE:
+            lines.append(line[2:])
+        elif section and bare and within == 0:
+            of_name = re.match(r"\w+( \[.*?\])?( = .*| \(must be given\))?$", bare)
+            lines.append(f"{'  ' * level}- {f'`{bare}`' if of_name else bare}")
+        else:
+            lines.append(f"{'  ' * (level + 1)}{bare}" if section else line)
+    return "\n".join([*lines, *(["```"] if section == EXAMPLE else [])])
 
 
 def explain(name: str) -> str:

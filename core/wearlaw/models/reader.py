@@ -33,6 +33,10 @@ class Reader(Model):
     {"file": Path(__file__).with_name("small.prt"), "normal_force": "80 kN", "slip": "0.3 %"}. The file is a path or its
     content; of a value that varies over the patch, such as the slip, the largest magnitude is stated."""
 
+    digits: ClassVar[int | None] = None
+    """Significant digits of the numbers that the program prints: by their rounding, a traction may exceed its bound.
+    None for numbers of full precision."""
+
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
         """Raise an error for a reader without endings of files, or with one text in place of several."""
@@ -87,6 +91,12 @@ class Solved(ContactModel):
 
     def _origin(self) -> str:
         return "not known: the contact was solved elsewhere" if self.read_by is None else str(self.read_by._origin())
+
+    @property
+    def rounding(self) -> float:
+        """Share by which a printed traction may exceed its printed bound: half a unit of the last digit of each."""
+        digits = None if self.read_by is None else self.read_by.digits
+        return 0.0 if digits is None else 10.0 ** (1 - digits)
 
     @property
     def scale(self) -> Scale:

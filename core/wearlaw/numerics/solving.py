@@ -322,7 +322,8 @@ def _check_bound(model: ContactModel, contact: Contact, problem: Problem) -> Non
 
 def _rounding_of_traction(model: ContactModel) -> float:
     """Return the share by which a traction may exceed its bound: rounding, or the error of a force over the patch."""
-    return ROUNDINGS if model.scale == "cells" or model.accuracy == QUADRATURE else model.accuracy
+    printed = model.rounding if isinstance(model, Solved) else 0.0
+    return printed + (ROUNDINGS if model.scale == "cells" or model.accuracy == QUADRATURE else model.accuracy)
 
 
 def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> None:

@@ -161,6 +161,29 @@ def test_a_reader_needs_endings_and_starts_no_pipeline() -> None:
         _ = wl.installed("reader")["contact_mat"]() | wl.wear_law("usfd")
 
 
+@pytest.mark.parametrize(("digits", "works"), [(None, False), (6, True), (7, True), (8, False)])
+def test_tractions_may_exceed_their_bound_by_the_rounding_of_printed_digits(
+    digits: int | None, works: bool, install: Install, tmp_path: Path
+) -> None:
+    """Where the patch slips, the traction is its bound. A share of 3e-7 more is within 1e-6, but not within 1e-7."""
+    grown = "contact.replaced(**{name: (1 + 3e-7) * getattr(contact, name) for name in ('traction', 'traction_x')})"
+    install("wearlaw_prt", reader(result=grown).replace("suffixes =", f"digits = {digits}\n        suffixes ="))
+    if works:
+        assert wl.read_contact(printed(tmp_path)).wear_index > 0.0
+    else:
+        with pytest.raises(wl.ModelError, match="where its own bound is"):
+            wl.read_contact(printed(tmp_path))
+
+
+def test_a_reader_itself_reads_a_file(install: Install, tmp_path: Path) -> None:
+    install("wearlaw_prt", reader())
+    slippery = wl.installed("reader")["printed"](friction_coefficient=0.2)
+    path = printed(tmp_path)
+    found = wl.read_contact(path, reader=slippery)
+    assert found.wear_index == wl.read_contact(path, reader="printed", friction_coefficient=0.2).wear_index
+    assert wl.read_contact(path, reader=slippery, friction_coefficient=0.3).wear_index != found.wear_index
+
+
 def test_a_batch_of_files_has_the_results_of_each_of_them() -> None:
     paths = [FILES["tread"], FILES["flange"]]
     singles, batch = [wl.read_contact(path) for path in paths], wl.read_contact(paths)

@@ -137,3 +137,17 @@ def test_a_misspelt_command_suggests_one() -> None:
     result = wearlaw("rnu")
     assert result.exit_code == 2
     assert "there is no command 'rnu'; did you mean 'run'? wearlaw --help lists the commands" in result.stderr
+
+
+def test_a_description_as_markdown_has_headings_lists_and_code() -> None:
+    text = wearlaw("show", "twin_disc", "--markdown").stdout
+    assert text.startswith("# twin_disc\n\nA rig of wearlaw ")
+    fields, conditions = (
+        "\n## Fields\n\n- `disc_1 (must be given)`\n  The wheel disc.\n",
+        "\n## Conditions\n\n- `normal_fo",
+    )
+    assert fields in text
+    assert "\n  - `diameter (must be given)`\n    Diameter, D [m];" in text
+    assert conditions in text
+    code = text.partition("```python\n")[2].partition("\n```")[0]
+    exec(code, {})
