@@ -4,7 +4,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from wearlaw_apps.output.drawing import PALETTE, STYLE
+from wearlaw_apps.output.style import PALETTE, STYLE
 
 MODELS = (
     ("Discs, or a wheel on a rail?", ""),

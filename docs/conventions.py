@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Ellipse, Rectangle
 
-from wearlaw_apps.output.drawing import PALETTE, STYLE
+from wearlaw_apps.output.style import PALETTE, STYLE
 
 
 def conventions() -> Figure:

@@ -25,7 +25,7 @@ from wearlaw import Array, Q
 from wearlaw.loader import discovered
 from wearlaw_apps.output.style import PAGE, PALETTE, STYLE
 
-DPI = 110
+DPI = 150
 TABLE = Path(__file__).parent / "laws-compared.csv"
 PICTURE = Path(__file__).parent / "pictures" / "laws_compared.png"
 

@@ -28,8 +28,8 @@ from docs.wheelset_benchmark import picture as wheelsets_beside_contact
 from docs.wheelset_benchmark import wheelset
 from wearlaw import Q
 from wearlaw_apps.output.curves import BLACK
-from wearlaw_apps.output.drawing import LINES, PALETTE, STYLE
 from wearlaw_apps.output.drawing import draw as drawing_of
+from wearlaw_apps.output.style import COLUMN, LINES, PALETTE, STYLE
 from wearlaw_apps.studies.written import write
 
 FOLDER = Path(__file__).parent / "pictures"
@@ -60,22 +60,12 @@ def draw() -> None:
         save(drawing_of(figure), FOLDER / f"{figure.name}.png")
     for script in sorted(GALLERY.glob("*.py")):
         with tempfile.TemporaryDirectory() as folder:
-            style = Path(folder) / "matplotlibrc"  # matplotlib reads it there
-            style.write_text(matplotlibrc(), encoding="utf-8")
             subprocess.run([sys.executable, script], cwd=folder, env={**os.environ, "MPLBACKEND": "agg"}, check=True)
             shutil.copy(Path(folder) / f"{script.stem}.png", FOLDER / f"gallery_{script.stem}.png")
     if shutil.which("chromium") is None or shutil.which("chromedriver") is None:
         return
     with tempfile.TemporaryDirectory() as folder:
         photograph(Path(folder) / write(study, Path(folder), figure_formats=())[0])
-
-
-def matplotlibrc() -> str:
-    """Return the style of all other pictures for those of the gallery."""
-    colours = ", ".join(f"'{colour.removeprefix('#')}'" for colour in PALETTE)
-    return "\n".join(
-        [*(f"{key}: {value}" for key, value in STYLE.items()), f"axes.prop_cycle: cycler('color', [{colours}])"]
-    )
 
 
 def save(figure: Figure, path: Path) -> None:
@@ -88,14 +78,16 @@ def photograph(page: Path) -> None:
     from selenium import webdriver
     from selenium.webdriver import ActionChains
     from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.support.ui import WebDriverWait
 
     options = webdriver.ChromeOptions()
-    for flag in ("--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1200,900"):
+    for flag in ("--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--window-size=1200,1180"):
         options.add_argument(flag)
     browser = webdriver.Chrome(options, Service(shutil.which("chromedriver")))
     try:
         browser.get(page.resolve().as_uri())
-        plot = browser.find_element("css selector", ".main .draglayer .xy .nsewdrag")
+        drag = "css selector", ".main .draglayer .xy .nsewdrag"
+        plot = WebDriverWait(browser, 60.0).until(lambda _: browser.find_element(*drag))
         ActionChains(browser).move_to_element_with_offset(plot, -150, -20).pause(1).perform()
         browser.save_screenshot(str(FOLDER / "report.png"))
     finally:
@@ -116,7 +108,7 @@ def cost_against_error() -> Figure:
     with BENCHMARKS.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 4.8), layout="constrained")
+        figure = Figure(figsize=(COLUMN, 3.2), layout="constrained")
         axes = figure.subplots()
         for number, method in enumerate(dict.fromkeys(row["method"] for row in rows)):
             points = [row for row in rows if row["method"] == method]

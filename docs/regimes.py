@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_apps.output.drawing import LINES, PALETTE, STYLE
+from wearlaw_apps.output.style import LINES, PAGE, PALETTE, STYLE
 
 DENSITY, RATE = "N/mm^2", "ug/m/mm^2"
 ENDS = (0.15, 140.0)
@@ -49,7 +49,7 @@ def tested() -> wl.Array:
 
 def picture() -> Figure:
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(7.4, 4.8), layout="constrained")
+        figure = Figure(figsize=(PAGE, 4.2), layout="constrained")
         axes = figure.subplots()
         low, high = borders()
         names = {"mild": (ENDS[0], low), "severe": (low, high), "catastrophic": (high, ENDS[1])}

@@ -13,7 +13,8 @@ low, middle, high = (
     for law in wl.wear_law("kth").band()
 )
 
-figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+plt.style.use("wearlaw_apps.output.wearlaw")
+figure, axes = plt.subplots()
 axes.fill_between(creepage.m, low.m, high.m, alpha=0.2, label="published range of the coefficient")
 axes.plot(creepage.m, middle.m, label="middle of the range")
 

@@ -23,7 +23,8 @@ class EnergyLaw(wl.WearLaw):
 solve = wl.TwinDisc.suros() | wl.contact_model("exact")
 creepage = Q(np.geomspace(0.1, 20, 400), "%")
 
-figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+plt.style.use("wearlaw_apps.output.wearlaw")
+figure, axes = plt.subplots()
 for law, line, name in ((wl.wear_law("usfd", fitted_for="exact"), "-", "USFD"), (EnergyLaw(), "--", "energy law")):
     result = (solve | law)(normal_force=Q(7.4, "kN"), creepage=creepage, friction_coefficient=0.46)
     axes.plot(creepage.m, result.wear_rate.m_as("ug/m/mm^2"), line, label=name)

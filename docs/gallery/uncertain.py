@@ -17,7 +17,8 @@ low, high = u.interval(0.95)
 shares = u.sobol()["first_order"].sort_values()
 names = {"normal_force": "load", "creepage": "creepage", "friction_coefficient": "friction", "m_m": "slope $m_m$"}
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 3.4), layout="constrained")
+plt.style.use("wearlaw_apps.output.wearlaw")
+figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 2.6))
 left.ecdf(u.wear_rate.m)
 left.axvspan(low.m, high.m, alpha=0.2)
 left.set(xlabel=f"wear rate [{low.u:~P}]", ylabel="probability of less wear [-]")

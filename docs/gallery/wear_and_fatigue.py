@@ -14,7 +14,8 @@ points = {"threshold": "20 N", "peak": "65 N", "balance": "175 N", "peak_damage"
 fatigue = wl.law("wlrm", **points, beyond="falls", traction="driving")
 predict = rig | wl.contact_model("strip_theory") | wl.wear_law("usfd", fitted_for="exact") | fatigue
 
-figure, (above, below) = plt.subplots(2, 1, figsize=(6.4, 5.6), sharex=True, layout="constrained")
+plt.style.use("wearlaw_apps.output.wearlaw")
+figure, (above, below) = plt.subplots(2, 1, figsize=(3.54, 4.0), sharex=True)
 creepage = np.linspace(0.0, 1.5, 301)
 for friction, line in ((0.35, "-"), (0.15, "--")):
     r = predict(normal_force="80 kN", longitudinal_creepage=Q(-creepage, "%"), friction_coefficient=friction)

@@ -13,7 +13,8 @@ creepage = np.geomspace(0.1, 18, 400)  # %
 result = predict(normal_force=Q(load, "kN"), creepage=Q(creepage[:, None], "%"), friction_coefficient=0.46)
 rate = result.wear_rate.m_as("ug/m/mm^2")
 
-figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+plt.style.use("wearlaw_apps.output.wearlaw")
+figure, axes = plt.subplots()
 levels = [0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]
 filled = axes.contourf(load, creepage, rate, levels, norm=LogNorm(), cmap="viridis", extend="both")
 figure.colorbar(filled, label="wear rate [µg/m/mm²]", ticks=levels, format="{x:g}")

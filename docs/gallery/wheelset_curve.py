@@ -10,7 +10,8 @@ wheel, sizes = wl.Profile.s1002(), {"nominal_radius": "460 mm", "flange_back_dis
 sizes |= {"rail": wl.Profile.uic60(), "rail_cant": "1:40", "material": wl.steel()}
 pair = wl.Wheelset(wheel=wheel, **sizes, rolling_speed="20 m/s")
 predict = pair | wl.contact_model("strip_theory") | wl.wear_law("energy", mass_per_energy="5.3 ug/J")
-form = {"figsize": (6.4, 5.0), "layout": "constrained", "gridspec_kw": {"height_ratios": (2, 3)}}
+plt.style.use("wearlaw_apps.output.wearlaw")
+form = {"figsize": (5.0, 4.0), "gridspec_kw": {"height_ratios": (2, 3)}}
 figure, (shape, loss) = plt.subplots(2, 1, sharex=True, **form)
 places = np.arange(-60.0, 45.0, 0.25)
 y, z, angle, _ = np.array(wheel.curve.at(1e-3 * places)) * np.array([[1e3], [1e3], [1.0], [1.0]])

@@ -45,7 +45,7 @@ SYMBOLS = dict(
     zip("os^DvPX", ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross", "x"), strict=True)
 )
 GAP = 0.14
-"""Between two panels, as a share of the figure."""
+"""Between two panels, as a share of the figure, and less between many."""
 ROW_HEIGHT = 380
 """Of a row of panels, in pixels."""
 GREY = "rgb(128, 128, 128)"
@@ -325,8 +325,9 @@ def _places(count: int) -> list[tuple[Ends, Ends]]:
 
 def _spans(count: int) -> list[Ends]:
     """Return the ends of equal spans, as shares of the figure, with gaps between them."""
-    size = (1.0 - GAP * (count - 1)) / count
-    return [(number * (size + GAP), min(number * (size + GAP) + size, 1.0)) for number in range(count)]
+    gap = min(GAP, 0.32 / count)
+    size = (1.0 - gap * (count - 1)) / count
+    return [(number * (size + gap), min(number * (size + gap) + size, 1.0)) for number in range(count)]
 
 
 def _numbers(values: Any) -> list[float | None]:
