@@ -17,6 +17,7 @@ MARK = "(The build writes the entries of this page here.)"
 """Line of a page in whose place its entries stand."""
 
 OTHERS = (
+    "wearlaw_apps.sweeps",
     "wearlaw_apps.fits",
     "wearlaw_apps.studies",
     "wearlaw_apps.life",

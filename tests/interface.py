@@ -14,7 +14,7 @@ from typing import Any
 import wearlaw
 import wearlaw_kit
 from wearlaw import hookspecs  # private: hooks are an interface by name
-from wearlaw_apps import fits, life, studies
+from wearlaw_apps import fits, life, studies, sweeps
 
 AGREED = Path(__file__).with_suffix(".txt")
 FIRST = f"INTERFACE_VERSION = {wearlaw.INTERFACE_VERSION}"
@@ -26,7 +26,7 @@ def interface() -> list[str]:
     names = (line for name in wearlaw.__all__ for line in described(name, getattr(wearlaw, name)))
     faces = (
         line
-        for face in (wearlaw_kit, fits, studies, life)
+        for face in (wearlaw_kit, fits, studies, life, sweeps)
         for name in face.__all__
         for line in described(f"{face.__name__}.{name}", getattr(face, name))
     )

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from wearlaw_apps.fits.fit import fit
     from wearlaw_apps.fits.read_tests import read_tests
     from wearlaw_apps.fits.uncertainty import uncertainty
-    from wearlaw_apps.fits.wear_tests import WearTests
     from wearlaw_apps.life.over_distance import wear_out
     from wearlaw_apps.output.curves import Curve, FigureData, Limit, Panel, PlotAxis
     from wearlaw_apps.output.datasets import to_dataframe
@@ -51,7 +50,6 @@ __all__ = [
     "Study",
     "TwinDisc",
     "Verdict",
-    "WearTests",
     "WheelRail",
     "Wheelset",
     "compare",
@@ -87,7 +85,6 @@ PUBLIC = {
     "wearlaw_apps.fits.fit": ("fit",),
     "wearlaw_apps.fits.read_tests": ("read_tests",),
     "wearlaw_apps.fits.uncertainty": ("uncertainty",),
-    "wearlaw_apps.fits.wear_tests": ("WearTests",),
     "wearlaw_apps.life.over_distance": ("wear_out",),
     "wearlaw_apps.output.curves": ("Curve", "FigureData", "Limit", "Panel", "PlotAxis"),
     "wearlaw_apps.output.datasets": ("to_dataframe",),

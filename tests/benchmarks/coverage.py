@@ -18,6 +18,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw_apps.fits import FitWarning, WearTests
 
 DOCS = Path(__file__).parents[2] / "docs"
 CONTACTS = ("global", "exact")
@@ -32,7 +33,7 @@ def pipeline(contact: str) -> wl.Pipeline[...]:
     return wl.TwinDisc.suros() | wl.contact_model(contact) | wl.wear_law("usfd", fitted_for=contact)
 
 
-def made_up(predict: wl.Pipeline[...], scatter: float, seed: int) -> wl.WearTests:
+def made_up(predict: wl.Pipeline[...], scatter: float, seed: int) -> WearTests:
     """Return tests that follow a law but for lognormal scatter."""
     conditions: Any = {
         "creepage": Q(CREEPAGE, "%"),
@@ -40,7 +41,7 @@ def made_up(predict: wl.Pipeline[...], scatter: float, seed: int) -> wl.WearTest
         "friction_coefficient": np.full(CREEPAGE.size, 0.46),
     }
     factor = np.exp(scatter * np.random.default_rng(seed).standard_normal(CREEPAGE.size))
-    return wl.WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * factor, source="made up")
+    return WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * factor, source="made up")
 
 
 def coverage(contact: str, fits: int, bootstrap: int, first_seed: int = 0) -> dict[str, dict[str, float]]:
@@ -50,7 +51,7 @@ def coverage(contact: str, fits: int, bootstrap: int, first_seed: int = 0) -> di
     for seed in range(first_seed, first_seed + fits):
         tests = made_up(predict, SCATTER, seed)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wl.FitWarning)
+            warnings.simplefilter("ignore", FitWarning)
             fit = wl.fit(predict, tests, free=FREE, bootstrap=bootstrap, seed=seed)
         for name in FREE:
             true = getattr(predict.wear_law, name)

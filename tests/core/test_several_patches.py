@@ -29,6 +29,7 @@ from tests.core.axles import (
 )
 from tests.strategies import EPS
 from wearlaw import Array, Q
+from wearlaw_apps.fits import WearTests
 
 
 def alone(name: str) -> Array:
@@ -137,7 +138,7 @@ def test_applications_that_take_one_patch_say_so() -> None:
     ):
         wl.uncertainty(PREDICT, **{**GIVEN, "load": wl.uniform("60 kN", "80 kN")}, samples=4).interval()
     varied = {"displacement": Q([0.0, 1.0, 7.0], "mm"), "longitudinal_creepage": Q([0.1, 0.2, 0.3], "%")}
-    tests = wl.WearTests.from_arrays(
+    tests = WearTests.from_arrays(
         friction_coefficient=0.3,
         other_conditions={"load": "80 kN", "spin": "0.3 1/m", **varied},
         wear_rate=Q([1.0, 2.0, 3.0], "ug/m/mm^2"),

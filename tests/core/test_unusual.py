@@ -13,6 +13,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw_apps.fits import FitWarning, WearTests
 from wearlaw_models.laws.archard import Archard
 
 STEEL = wl.steel(shear_yield_stress=None)
@@ -216,7 +217,7 @@ def test_a_sweep_warns_once_for_all_blocks_and_keeps_the_note(tmp_path: Path) ->
         assert text in found[0].attrs["notes"]
 
 
-def measured(**columns: Any) -> wl.WearTests:
+def measured(**columns: Any) -> WearTests:
     """Return twelve tests with a wear rate and a traction in full slip, with columns in other units."""
     creepage = np.linspace(1.0, 12.0, 12)
     scatter = np.random.default_rng(3).normal(1.0, 0.02, 12)
@@ -267,7 +268,7 @@ def test_a_column_of_tests_in_the_wrong_unit_is_told_by_its_median(
     law = wl.wear_law("energy", mass_per_energy="1 ug/J")
 
     def run() -> None:
-        with warnings.catch_warnings(action="ignore", category=wl.FitWarning):
+        with warnings.catch_warnings(action="ignore", category=FitWarning):
             if application == "compare":
                 assert any(sentence in note for note in wl.compare([rig | EXACT | law], tests).notes)
             else:
@@ -291,7 +292,7 @@ def test_models_compared_say_once_what_is_unusual_for_all_of_them() -> None:
 def test_ordinary_tests_get_no_warning() -> None:
     rig = wl.TwinDisc.suros(material=STEEL)
     law = wl.wear_law("energy", mass_per_energy="1 ug/J")
-    with warnings.catch_warnings(action="ignore", category=wl.FitWarning):
+    with warnings.catch_warnings(action="ignore", category=FitWarning):
         assert not said(lambda: wl.fit(rig | EXACT | law, measured(), ["mass_per_energy"], bootstrap=0))
     assert not said(lambda: wl.compare([rig | EXACT | law], measured()))
 
@@ -306,7 +307,7 @@ def test_a_fitted_friction_beyond_two_is_told() -> None:
         creepage=("creepage [-]", creepage),
         traction_coefficient=("traction_coefficient", traction * np.tile([1.0001, 0.9999], 6)),
     )
-    with warnings.catch_warnings(action="ignore", category=wl.FitWarning):
+    with warnings.catch_warnings(action="ignore", category=FitWarning):
         (found,) = said(lambda: wl.fit(rig | EXACT, tests, ["friction_coefficient"], bootstrap=0))
     assert found.startswith("friction_coefficient: the fit gives ")
 

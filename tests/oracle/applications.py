@@ -14,6 +14,7 @@ import pandas as pd
 import wearlaw as wl
 from tests.oracle.cases import CONTACTS, HOLLOW, LAWS, POINT, RIGS, STAGES, seen, thinned
 from wearlaw import Q
+from wearlaw_apps.fits import WearTests
 
 FILES = Path(__file__).parents[2] / "docs" / "examples"
 EXACT, FASTSIM = RIGS["twin_disc"] | CONTACTS["exact"], RIGS["wheel_rail"] | CONTACTS["fastsim"]
@@ -43,7 +44,7 @@ RATE = [
     1210,
     1340,
 ]
-TESTS = wl.WearTests.from_arrays(
+TESTS = WearTests.from_arrays(
     max_pressure="1500 MPa", creepage=Q(CREEPAGE, "%"), traction_coefficient=0.001 * np.array(TRACTION),
     wear_rate=Q(RATE, "ug/m/mm^2"),
 )  # fmt: skip

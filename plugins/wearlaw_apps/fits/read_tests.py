@@ -111,7 +111,9 @@ def tests_of(tests: WearTests | Source, columns: Columns) -> WearTests:
     if not isinstance(tests, WearTests):
         if isinstance(tests, str | os.PathLike) or hasattr(tests, "to_numpy"):
             return read_tests(tests, columns=columns)
-        raise InputError(f"tests: must be wearlaw.WearTests, as from wl.read_tests, or a table; got {shown(tests)}")
+        raise InputError(
+            f"tests: must be wearlaw_apps.fits.WearTests, as from wl.read_tests, or a table; got {shown(tests)}"
+        )
     if columns is not None:
         raise InputError("columns: the tests are read already; give columns to wl.read_tests")
     return tests

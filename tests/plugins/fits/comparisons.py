@@ -8,7 +8,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_apps.fits import Comparison
+from wearlaw_apps.fits import Comparison, WearTests
 from wearlaw_apps.fits.comparison import Compared  # private: for its type
 
 RIG = wl.TwinDisc.suros()
@@ -23,7 +23,7 @@ def usfd(**options: Any) -> wl.WearLaw:
     return wl.wear_law("usfd", **{"fitted_for": "exact", **options})
 
 
-def made(**columns: Any) -> wl.WearTests:
+def made(**columns: Any) -> WearTests:
     """Return tests whose wear rates are those of the USFD law on the exact contact, unless others are given."""
     conditions: dict[str, Any] = {
         "creepage": Q(CREEPAGE, "%"),
@@ -31,10 +31,10 @@ def made(**columns: Any) -> wl.WearTests:
         "friction_coefficient": 0.46,
     }
     rates = (EXACT | usfd())(**conditions).wear_rate
-    return wl.WearTests.from_arrays(**{**conditions, "wear_rate": rates, **columns})
+    return WearTests.from_arrays(**{**conditions, "wear_rate": rates, **columns})
 
 
-def scattered(**columns: Any) -> wl.WearTests:
+def scattered(**columns: Any) -> WearTests:
     return made(wear_rate=made().wear_rate * SCATTER, **columns)
 
 

@@ -9,6 +9,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw_apps.fits import FitError, WearTests
 
 RIG = wl.TwinDisc.suros()
 EXACT, GLOBAL = RIG | wl.contact_model("exact"), RIG | wl.contact_model("global")
@@ -21,7 +22,7 @@ def usfd(contact: str) -> Any:
     return RIG | wl.contact_model(contact) | wl.wear_law("usfd", fitted_for=contact)
 
 
-def made_up(predict: Any, scatter: float = 0.0, seed: int = 0, creepage: Any = CREEPAGE, **more: Any) -> wl.WearTests:
+def made_up(predict: Any, scatter: float = 0.0, seed: int = 0, creepage: Any = CREEPAGE, **more: Any) -> WearTests:
     """Return tests that follow a pipeline but for lognormal scatter."""
     conditions: Any = {
         "creepage": Q(creepage, "%"),
@@ -29,11 +30,11 @@ def made_up(predict: Any, scatter: float = 0.0, seed: int = 0, creepage: Any = C
         "friction_coefficient": np.full(len(creepage), FRICTION),
     }
     factor = np.exp(scatter * np.random.default_rng(seed).standard_normal(len(creepage)))
-    return wl.WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * factor, **more)
+    return WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * factor, **more)
 
 
-def traction_tests(traction: Any, creepage: Any, **more: Any) -> wl.WearTests:
-    return wl.WearTests.from_arrays(
+def traction_tests(traction: Any, creepage: Any, **more: Any) -> WearTests:
+    return WearTests.from_arrays(
         creepage=Q(creepage, "%"), max_pressure=PRESSURE, traction_coefficient=traction, **more
     )
 
@@ -67,6 +68,6 @@ USFD = GLOBAL | wl.wear_law("usfd")
 FULL_SLIP: Any = {"max_pressure": Q(1500, "MPa"), "creepage": Q(3, "%"), "friction_coefficient": 0.4}
 
 
-def refused(says: str, predict: Any, tests: wl.WearTests, free: Any, **settings: Any) -> None:
-    with pytest.raises(wl.FitError, match=says):
+def refused(says: str, predict: Any, tests: WearTests, free: Any, **settings: Any) -> None:
+    with pytest.raises(FitError, match=says):
         wl.fit(predict, tests, free=free, **{"bootstrap": 0, **settings})

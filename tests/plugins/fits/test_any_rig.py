@@ -13,7 +13,7 @@ from tests.core.test_own_rigs import Roller
 from tests.plugins.fits.fits import sloping
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_apps.fits import Fit
+from wearlaw_apps.fits import Fit, WearTests
 
 WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 KTH = wl.wear_law("kth")
@@ -76,21 +76,21 @@ ON_RAIL: Any = {
 }
 
 
-def on_roller(**changes: Any) -> wl.WearTests:
+def on_roller(**changes: Any) -> WearTests:
     """Return tests of a roller that follow a law, and their tractions."""
     found = (Roller() | wl.contact_model("exact") | LAW)(**MASSES, **CREEPAGES, friction_coefficient=0.35)
     measured: Any = {"traction_coefficient": abs(found.traction_coefficient.magnitude), "wear_rate": found.wear_rate}
-    return wl.WearTests.from_arrays(**{**CREEPAGES, **measured, "other_conditions": MASSES, **changes})
+    return WearTests.from_arrays(**{**CREEPAGES, **measured, "other_conditions": MASSES, **changes})
 
 
-def on_rail(model: str, **changes: Any) -> wl.WearTests:
+def on_rail(model: str, **changes: Any) -> WearTests:
     """Return tests of a wheel on a rail that follow a law, and their tractions."""
     found = (WHEEL | wl.contact_model(model) | LAW)(**LOADS, **ON_RAIL, friction_coefficient=0.35)
     measured: Any = {"traction_coefficient": found.traction_coefficient.magnitude, "wear_rate": found.wear_rate}
-    return wl.WearTests.from_arrays(**{**LOADS, **measured, "other_conditions": ON_RAIL, **changes})
+    return WearTests.from_arrays(**{**LOADS, **measured, "other_conditions": ON_RAIL, **changes})
 
 
-def fitted(predict: Any, tests: wl.WearTests, **more: Any) -> Fit:
+def fitted(predict: Any, tests: WearTests, **more: Any) -> Fit:
     free = ["bend", "slope", "friction_coefficient"]
     return wl.fit(predict, tests, free=free, starts=4, bootstrap=0, **{"friction_coefficient": 0.3, **more})
 
@@ -130,7 +130,7 @@ def test_a_law_fitted_on_a_rail_belongs_to_ellipses() -> None:
 def test_tests_on_a_rail_that_differ_in_creepage_alone_are_drawn_as_a_curve(along: list[float], x: str) -> None:
     given: Any = {**ON_ELLIPSE, "longitudinal_creepage": Q(along, "%"), "lateral_creepage": "0.1 %", "spin": "0.3 1/m"}
     predict: Any = FASTSIM | LAW
-    tests = wl.WearTests.from_arrays(
+    tests = WearTests.from_arrays(
         normal_force="80 kN",
         friction_coefficient=0.3,
         wear_rate=predict(**given).wear_rate,
@@ -183,7 +183,7 @@ class Greased(wl.Rig):
 def test_a_rig_is_not_given_the_friction_and_the_traction_that_it_does_not_take() -> None:
     predict: Any = Greased() | wl.contact_model("global") | LAW
     given: Any = {"normal_force": Q([5.0, 6.0], "kN"), "creepage": "1 %"}
-    tests = wl.WearTests.from_arrays(**given, traction_coefficient=0.04, wear_rate=predict(**given).wear_rate)
+    tests = WearTests.from_arrays(**given, traction_coefficient=0.04, wear_rate=predict(**given).wear_rate)
     found = wl.compare([predict], tests)
     assert found.compared[0].agreement.rms_factor == pytest.approx(1.0, abs=64 * EPS)
     assert not found.notes

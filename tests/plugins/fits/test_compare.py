@@ -24,10 +24,12 @@ from tests.plugins.fits.comparisons import (
 )
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_apps.fits import Comparison, Fit
+from wearlaw_apps.fits import Comparison, Fit, FitWarning, WearTests
 from wearlaw_apps.fits.agreement import agreement  # private: errors of made-up rates, without a law
 
-pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")  # most compare fits to the tests themselves
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::wearlaw_apps.fits.FitWarning"
+)  # most compare fits to the tests themselves
 
 
 def test_tests_without_a_wear_rate_are_left_out_for_all() -> None:
@@ -78,7 +80,7 @@ def test_two_predictors_of_one_name_are_refused() -> None:
     assert len(wl.compare({"10 mm": twice[0], "8 mm": twice[1]}, made()).compared) == 2
 
 
-NO_RATE = wl.WearTests.from_arrays(
+NO_RATE = WearTests.from_arrays(
     creepage=Q(CREEPAGE, "%"), max_pressure="1500 MPa", friction_coefficient=0.46, traction_coefficient=TRACTION
 )
 
@@ -122,7 +124,7 @@ def test_notes_of_one_kind_are_one_warning_and_statements_are_none() -> None:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         notes = wl.compare({"a": predict, "b": predict}, data).notes
-    (message,) = [str(one.message) for one in caught if one.category is wl.FitWarning]
+    (message,) = [str(one.message) for one in caught if one.category is FitWarning]
     zero = "either the predicted or the measured wear rate is zero in 1 of 6 tests"
     assert message.startswith(f"2 of 8 tests have no wear rate and are left out\n  a, b: {zero}")
     assert len([note for note in notes if zero in note]) == 2

@@ -11,14 +11,17 @@ import wearlaw as wl
 from tests.core.outcome_laws import CONDITIONS, Damage, Heat
 from tests.plugins.fits.fits import EXACT
 from tests.plugins.fits.test_fit_stages import SOFT, Softer, made_up
+from wearlaw_apps.fits import WearTests
 
-pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")  # most compare fits to the tests themselves
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::wearlaw_apps.fits.FitWarning"
+)  # most compare fits to the tests themselves
 
 FASTSIM = wl.contact_model("fastsim")
 
 
-def measured(outcomes: Any, **more: Any) -> wl.WearTests:
-    return wl.WearTests.from_arrays(**CONDITIONS, outcomes=outcomes, **more)
+def measured(outcomes: Any, **more: Any) -> WearTests:
+    return WearTests.from_arrays(**CONDITIONS, outcomes=outcomes, **more)
 
 
 def test_predictions_of_heat_are_compared_in_its_unit() -> None:
@@ -61,7 +64,7 @@ def test_one_of_several_outcomes_is_chosen_by_name() -> None:
 def test_stages_are_named_and_a_fitted_stage_predicts() -> None:
     kth = wl.wear_law("kth")
     soft, stiff = (EXACT.model_copy(update={"stages": (Softer(reduction=part),)}) for part in (0.5, 1.0))
-    tests = wl.WearTests.from_arrays(**CONDITIONS, wear_rate=(soft | kth)(**CONDITIONS).wear_rate)
+    tests = WearTests.from_arrays(**CONDITIONS, wear_rate=(soft | kth)(**CONDITIONS).wear_rate)
     found = wl.compare([stiff | kth, soft | kth], tests)
     names = [one.names.label for one in found.compared]
     assert names == ["kth on exact, softer(reduction=0.5)", "kth on exact, softer(reduction=1.0)"]

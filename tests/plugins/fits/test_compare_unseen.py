@@ -12,9 +12,11 @@ import wearlaw as wl
 from tests.plugins.fits.comparisons import EXACT, GLOBAL, SCATTER, by_label, made, scattered, usfd
 from tests.plugins.fits.fits import sloping
 from wearlaw import Q
-from wearlaw_apps.fits import Comparison
+from wearlaw_apps.fits import Comparison, FitError, WearTests
 
-pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")  # most compare fits to the tests themselves
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::wearlaw_apps.fits.FitWarning"
+)  # most compare fits to the tests themselves
 
 MARK = "fitted to these tests, which flatters their rank: "
 
@@ -48,7 +50,7 @@ def test_a_law_knows_the_tests_that_it_was_fitted_to_also_from_a_file(tmp_path: 
 def test_some_of_the_tests_of_a_fit_are_known_again_under_other_labels_and_units() -> None:
     tests = scattered()
     fit = wl.fit(EXACT | usfd(), tests[:5], ["m_m"], bootstrap=0)
-    again = wl.WearTests.from_arrays(
+    again = WearTests.from_arrays(
         creepage=Q(tests.creepage.to("").magnitude, ""),
         max_pressure="1.5 GPa",
         friction_coefficient=0.46,
@@ -79,7 +81,7 @@ def test_leaving_one_out_is_the_closed_form_of_a_linear_law(within: float) -> No
     conditions: Any = {"creepage": creepage, "max_pressure": "1500 MPa", "friction_coefficient": 0.46}
     density = (GLOBAL | sloping)(**conditions).wear_index_density.to("N/mm^2").magnitude
     y = 1.0 + 2.0 * density * [1.1, 0.9, 1.05, 0.97, 1.02, 0.93]
-    tests = wl.WearTests.from_arrays(**conditions, wear_rate=Q(y, "ug/m/mm^2"))
+    tests = WearTests.from_arrays(**conditions, wear_rate=Q(y, "ug/m/mm^2"))
     fit = wl.fit(GLOBAL | sloping, tests, ["offset", "slope"], scatter="absolute", bootstrap=0, bounds=WIDE)
     design = np.stack([np.ones(6), density], axis=-1)
     hat = design @ np.linalg.pinv(design)
@@ -110,7 +112,7 @@ def test_each_fold_is_predicted_by_the_mean_factor_of_the_others(creepage: Any, 
     """
     conditions: Any = {"creepage": Q(creepage, "%"), "max_pressure": "1500 MPa", "friction_coefficient": 0.46}
     truth = (EXACT | usfd())(**conditions).wear_rate
-    tests = wl.WearTests.from_arrays(
+    tests = WearTests.from_arrays(
         **conditions, traction_coefficient=0.1 * SCATTER, wear_rate=truth * SCATTER, labels=list("abcdefgh")
     )
     fit = wl.fit(EXACT | usfd(), tests, ["m_m"], bootstrap=0)
@@ -144,5 +146,5 @@ def test_cross_validation_needs_two_operating_points_and_a_fit() -> None:
 def test_a_fold_without_which_a_parameter_is_not_determined_is_named() -> None:
     """Only the last two tests depend on the catastrophic regime."""
     fit = wl.fit(EXACT | usfd(), scattered(), ["m_m", "m_c"], bootstrap=0)
-    with pytest.raises(wl.FitError, match=r"usfd fitted on exact: cannot be fitted without tests number .*8.*m_c"):
+    with pytest.raises(FitError, match=r"usfd fitted on exact: cannot be fitted without tests number .*8.*m_c"):
         wl.compare([fit], scattered(), cross_validate=2)

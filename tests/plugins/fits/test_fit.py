@@ -25,11 +25,12 @@ from tests.plugins.fits.fits import (
     usfd,
 )
 from wearlaw import Q
+from wearlaw_apps.fits import FitError, FitWarning, WearTests
 
 KTH = GLOBAL | wl.wear_law("kth")
 
 
-def slow_tests(**more: Any) -> tuple[wl.WearTests, Any, Any]:
+def slow_tests(**more: Any) -> tuple[WearTests, Any, Any]:
     """Return tests slower than 0.2 m/s, where KTH has one field, the rates that they measured and those predicted."""
     tests = made_up(KTH, 0.3, seed=1, creepage=np.linspace(1.0, 15.0, 9), **more)
     predicted = KTH(**tests.conditions(KTH.contact_model)).wear_rate
@@ -130,7 +131,7 @@ def test_one_factor_is_fitted_as_a_weighted_mean(stated: bool, within: float) ->
     more: Any = {"wear_rate_uncertainty": Q(uncertainty, "ug/m/mm^2")} if stated else {}
     tests, measured, predicted = slow_tests(**more)
     # The scatter is three times the stated uncertainty, χ²/ν = 9.1.
-    with pytest.warns(wl.FitWarning, match="lack of fit: .* the stated uncertainty") if stated else nullcontext():
+    with pytest.warns(FitWarning, match="lack of fit: .* the stated uncertainty") if stated else nullcontext():
         fit = wl.fit(KTH, tests, free=["coefficient.low_speed"], scatter="relative" if stated else "absolute")
     factor = np.sum(predicted * measured / uncertainty**2) / np.sum(predicted**2 / uncertainty**2)
     assert fit.parameters["coefficient.low_speed"].magnitude == pytest.approx(5.5e-4 * factor, rel=within)
@@ -161,7 +162,7 @@ def test_tests_without_a_wear_rate_have_no_say() -> None:
     rate = tests.wear_rate.magnitude.copy()
     rate[[3, 9]] = np.nan
     conditions: Any = {"creepage": tests.creepage, "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
-    gaps = wl.WearTests.from_arrays(**conditions, wear_rate=Q(rate, "ug/m/mm^2"))
+    gaps = WearTests.from_arrays(**conditions, wear_rate=Q(rate, "ug/m/mm^2"))
     rest = tests[~np.isnan(rate)]
     first, second = (wl.fit(predict, some, free=ALL, bootstrap=50) for some in (gaps, rest))
     assert first.parameters == second.parameters
@@ -214,7 +215,7 @@ def test_friction_in_full_slip_is_the_mean_of_the_traction(value: float, interva
     assert relative.parameters["friction_coefficient"].magnitude == pytest.approx(stats.gmean(TRACTION), rel=value)
     assert relative.law is None
     assert relative.predict == EXACT
-    with pytest.raises(wl.FitError, match=r"one law, .* has 0"):
+    with pytest.raises(FitError, match=r"one law, .* has 0"):
         relative.to_toml("nowhere.toml")
 
 

@@ -15,6 +15,7 @@ from tests.core.distributions import RUBBED_AND_TIRED, Install
 from tests.core.outcome_laws import CONDITIONS, MIXED, Damage, Heat, Volume
 from tests.plugins.fits.fits import EXACT, refused, sloping
 from wearlaw import Q
+from wearlaw_apps.fits import FitError, WearTests
 
 TRUE_HEAT, TRUE_DAMAGE = Heat(share=0.3), Damage(threshold=Q(40.0, "N"), slope=Q(2e-6, "1/N"))
 SLOPING = sloping.model_copy(update={"offset": Q(0.0, "ug/m/mm^2")})
@@ -30,8 +31,8 @@ def outcomes_of(*laws: wl.Law, scatter: float = 0.0, seed: int = 0, contact: Any
     return {name: found[name] * np.exp(scatter * generator.standard_normal(found[name].shape)) for name in names}
 
 
-def measured_tests(outcomes: Any, **more: Any) -> wl.WearTests:
-    return wl.WearTests.from_arrays(**CONDITIONS, outcomes=outcomes, **more)
+def measured_tests(outcomes: Any, **more: Any) -> WearTests:
+    return WearTests.from_arrays(**CONDITIONS, outcomes=outcomes, **more)
 
 
 @pytest.mark.parametrize(
@@ -46,7 +47,7 @@ def test_a_fitted_law_of_any_author_records_its_contact_and_warns_beyond_its_tes
     start: wl.Law, true: wl.Law, free: str
 ) -> None:
     outcomes = outcomes_of(true)
-    tests = measured_tests(outcomes) if start.kind == "law" else wl.WearTests.from_arrays(**CONDITIONS, **outcomes)
+    tests = measured_tests(outcomes) if start.kind == "law" else WearTests.from_arrays(**CONDITIONS, **outcomes)
     law = wl.fit(EXACT | start, tests, free=[free], bootstrap=0).law
     assert law is not None
     assert law.calibration is not None
@@ -91,7 +92,7 @@ def test_several_laws_are_fitted_together_as_each_alone() -> None:
     assert fit.law is None
     assert fit.predict.laws[1].numbers == {"share": fit.parameters["heat.share"].magnitude}
     assert fit.provenance["laws"].keys() == {"usfd", "heat", "damage"}
-    with pytest.raises(wl.FitError, match=r"one law, .* has 3"):
+    with pytest.raises(FitError, match=r"one law, .* has 3"):
         fit.to_toml("nowhere.toml")
 
 
@@ -108,7 +109,7 @@ def test_wear_of_one_body_is_fitted_by_its_law() -> None:
         [2.0, 3.0] * stats.gmean(scatter, axis=1), rel=1e-7
     )
     # With one law, the measured wear rate is that of the body of the law.
-    tests = wl.WearTests.from_arrays(**CONDITIONS, wear_rate=both["wear_rate_disc_2"])
+    tests = WearTests.from_arrays(**CONDITIONS, wear_rate=both["wear_rate_disc_2"])
     alone = wl.fit(pipeline.with_law(Volume(body="disc_2")), tests, ["factor"], bootstrap=0)
     assert alone.parameters["factor"].magnitude == pytest.approx(3.0, rel=1e-7)
     refused("write 'volume_disc_1.factor' or 'volume_disc_2.factor'", predict, tests, ["factor"])
@@ -141,7 +142,7 @@ creepage [%],normal_force [kN],friction_coefficient,heat_flux [kW/mm^2],crack_gr
 """
 
 
-def read(folder: Path, text: str, **more: Any) -> wl.WearTests:
+def read(folder: Path, text: str, **more: Any) -> WearTests:
     path = folder / "tests.csv"
     path.write_text(text)
     return wl.read_tests(path, **more)

@@ -26,6 +26,7 @@ from tests.plugins.fits.fits import (
     usfd,
 )
 from wearlaw import Q
+from wearlaw_apps.fits import FitWarning, WearTests
 
 
 def test_tests_for_which_the_best_fit_predicts_no_wear_are_refused() -> None:
@@ -37,7 +38,7 @@ def test_tests_for_which_the_best_fit_predicts_no_wear_are_refused() -> None:
 
 def test_a_pressure_beyond_first_yield_is_warned_of() -> None:
     predict = usfd("global")
-    tests = wl.WearTests.from_arrays(
+    tests = WearTests.from_arrays(
         creepage=Q([1.0, 2.0, 3.0], "%"),
         max_pressure="1.9 GPa",
         friction_coefficient=0.4,
@@ -80,7 +81,7 @@ def test_a_fit_stays_within_the_limits_of_a_field(free: str, start: Any, true: A
     steeper = dataclasses.replace(
         steeper, columns={**steeper.columns, "wear_rate": steeper.columns["wear_rate"] * (creepage / 0.5) ** 0.2}
     )
-    with pytest.warns(wl.FitWarning, match=f"at a bound of {free}"):
+    with pytest.warns(FitWarning, match=f"at a bound of {free}"):
         at_limit = wl.fit(predict, steeper, free=[free], bootstrap=0).parameters[free]
     assert at_limit.magnitude == pytest.approx(getattr(limit, "magnitude", limit), rel=1e-12)
     refused(f"bounds: '{free}'", predict, tests, [free], bounds={free: beyond})
@@ -117,14 +118,14 @@ def test_rates_of_zero_are_refused_where_scatter_is_by_a_factor() -> None:
     rate = tests.wear_rate.magnitude.copy()
     rate[[2, 4]] = 0.0
     conditions: Any = {"creepage": tests.creepage, "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
-    zeros = wl.WearTests.from_arrays(
+    zeros = WearTests.from_arrays(
         **conditions, wear_rate=Q(rate, "ug/m/mm^2"), labels=[f"T{number}" for number in range(20)]
     )
     refused('^wear_rate: .* T2, T4.*scatter="absolute"', predict, zeros, ["q_s"])
     wl.fit(predict, zeros, free=["q_s"], scatter="absolute", bootstrap=0)
     still = np.where(np.arange(20) == 5, 0.0, CREEPAGE)
     conditions["creepage"] = Q(still, "%")
-    stuck = wl.WearTests.from_arrays(**conditions, wear_rate=tests.wear_rate)
+    stuck = WearTests.from_arrays(**conditions, wear_rate=tests.wear_rate)
     refused("predicts no wear rate in test number 6", predict, stuck, ["q_s"])
     refused("no traction .* in test number 6", GLOBAL, traction_tests(0.3, still), ["friction_coefficient"])
 
@@ -137,7 +138,7 @@ def test_measurements_that_are_not_there_are_refused() -> None:
     with pytest.raises(wl.ConditionsError, match=r"friction_coefficient=0\.46"):
         wl.fit(predict, traction_tests(np.full(5, 0.4), np.arange(1.0, 6.0), wear_rate="5 ug/m/mm^2"), free=["q_s"])
     uncertainty = Q([1.0, np.nan, 1.0, 1.0, 1.0], "ug/m/mm^2")
-    gap = wl.WearTests.from_arrays(
+    gap = WearTests.from_arrays(
         creepage=Q(np.arange(1.0, 6.0), "%"),
         max_pressure=PRESSURE,
         friction_coefficient=0.4,
@@ -165,7 +166,7 @@ def test_parameters_that_the_tests_leave_open_are_refused(predict: Any, creepage
     refused(f"do not determine {open_}[,;] ", predict, made_up(predict, 0.1, 0, creepage), free)
 
 
-@pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")
+@pytest.mark.filterwarnings("ignore::wearlaw_apps.fits.FitWarning")
 def test_an_interval_ends_at_the_bounds() -> None:
     # The scatter is that of the largest rates, which hides the mild regime; the interval of its slope has no ends.
     law = wl.wear_law("usfd", fitted_for="exact", m_c="61.9 ug/m/N", tr_sc="77.26 N/mm^2")

@@ -15,7 +15,7 @@ import wearlaw as wl
 from tests.plugins.fits.fits import ALL, CREEPAGE, EXACT, FRICTION, PRESSURE, RIG, made_up, usfd
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_apps.fits import Fit
+from wearlaw_apps.fits import Fit, WearTests
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +131,7 @@ def test_tests_at_several_loads_are_drawn_against_the_fit() -> None:
         "max_pressure": Q(np.tile([900.0, 1500.0], 4), "MPa"),
         "friction_coefficient": np.full(8, 0.4),
     }
-    tests = wl.WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * np.linspace(0.9, 1.1, 8))
+    tests = WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * np.linspace(0.9, 1.1, 8))
     fit = wl.fit(predict, tests, free=["m_m"], bootstrap=0)
     (panel,) = fit.figure_data().panels
     *guides, shown = panel.curves
@@ -154,7 +154,7 @@ def test_tests_that_differ_in_one_condition_have_a_curve_over_it(varied: str) ->
         "max_pressure": Q([1500.0, 600.0, 900.0, 1200.0], "MPa"), "friction_coefficient": np.array([0.3, 0.2, 0.5, 0.4])
     }[varied]  # fmt: skip
     factor = np.array([1.1, 0.9, 1.05, 0.95])
-    tests = wl.WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * factor)
+    tests = WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * factor)
     fit = wl.fit(predict, tests, free=["m_m"], bootstrap=0)
     (panel,) = fit.figure_data().panels
     curve, points = panel.curves
@@ -171,7 +171,7 @@ def test_tests_that_differ_in_one_condition_have_a_curve_over_it(varied: str) ->
     np.testing.assert_allclose(curve.y, expected, rtol=1e-9)
 
 
-@pytest.mark.filterwarnings("ignore::wearlaw.FitWarning")
+@pytest.mark.filterwarnings("ignore::wearlaw_apps.fits.FitWarning")
 def test_a_notebook_shows_a_fit_and_a_comparison_as_tables(exact_fit: Fit) -> None:
     html = exact_fit._repr_html_()
     assert html.count("<tr>") == len(exact_fit.parameters) + 2

@@ -14,6 +14,7 @@ from scipy import stats
 import wearlaw as wl
 from tests.plugins.fits.fits import EXACT, PRESSURE, RIG, refused, traction_tests
 from wearlaw import Array, Q
+from wearlaw_apps.fits import WearTests
 
 CREEPAGE = np.array([0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 2.0, 3.0])
 
@@ -54,7 +55,7 @@ def traction(reduction: float) -> Array:
     return values
 
 
-def made_up(reduction: float = 0.6, scatter: float = 0.0, seed: int = 0, **more: Any) -> wl.WearTests:
+def made_up(reduction: float = 0.6, scatter: float = 0.0, seed: int = 0, **more: Any) -> WearTests:
     factor = np.exp(scatter * np.random.default_rng(seed).standard_normal(CREEPAGE.size))
     return traction_tests(traction(reduction) * factor, CREEPAGE, **{"friction_coefficient": 0.4, **more})
 

@@ -11,26 +11,26 @@ from scipy import stats
 import wearlaw as wl
 from tests.plugins.fits.fits import FRICTION, PRESSURE, usfd
 from wearlaw import Q
-from wearlaw_apps.fits import Fit
+from wearlaw_apps.fits import Fit, FitWarning, WearTests
 from wearlaw_apps.fits.lack_of_fit import lack_of_fit, repeats  # private: the example of a textbook
 
 CREEPAGE = [0.2, 0.4, 0.6, 0.8]
 """All within the mild regime of USFD, where wear is m_m times the wear-index density."""
 
 
-def repeated(effect: Any, each: int, scatter: float, **more: Any) -> wl.WearTests:
+def repeated(effect: Any, each: int, scatter: float, **more: Any) -> WearTests:
     """Return repeated tests in the mild regime, off a law by the logarithms `effect` at each creepage."""
     creepage = np.repeat(CREEPAGE, each)
     conditions: Any = {"creepage": Q(creepage, "%"), "max_pressure": PRESSURE, "friction_coefficient": FRICTION}
     scattered = scatter * np.random.default_rng(5).standard_normal(creepage.size)
     factor = np.exp(np.repeat(effect, each) + scattered)
-    return wl.WearTests.from_arrays(**conditions, wear_rate=usfd("exact")(**conditions).wear_rate * factor, **more)
+    return WearTests.from_arrays(**conditions, wear_rate=usfd("exact")(**conditions).wear_rate * factor, **more)
 
 
-def fitted(tests: wl.WearTests, poor: bool, **options: Any) -> Fit:
+def fitted(tests: WearTests, poor: bool, **options: Any) -> Fit:
     """Return the fit of m_m, which warns if it is poor."""
     if poor:
-        with pytest.warns(wl.FitWarning, match="lack of fit.*wear rate"):
+        with pytest.warns(FitWarning, match="lack of fit.*wear rate"):
             return wl.fit(usfd("exact"), tests, ["m_m"], bootstrap=0, **options)
     return wl.fit(usfd("exact"), tests, ["m_m"], bootstrap=0, **options)
 
@@ -102,7 +102,7 @@ def test_each_kind_of_measurement_is_tested() -> None:
     given: Any = {"creepage": Q(creepage, "%"), "max_pressure": PRESSURE}
     found = predict(**given, friction_coefficient=FRICTION)
     one, two = np.exp(0.05 * np.random.default_rng(3).standard_normal((2, creepage.size)))
-    tests = wl.WearTests.from_arrays(
+    tests = WearTests.from_arrays(
         **given, wear_rate=found.wear_rate * one, traction_coefficient=found.traction_coefficient * two
     )
     fit = wl.fit(predict, tests, ["m_m", "friction_coefficient"], bootstrap=0)

@@ -14,6 +14,7 @@ from tests.environments import ROOT
 from tests.plugins.fits.fits import EXACT, RIG, refused
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw_apps.fits import FitWarning, WearTests
 
 CREEPAGE = Q([0.5, 1.0, 2.0, 4.0], "%")
 TEST: Any = {"creepage": CREEPAGE, "normal_force": Q([5.0, 6.0, 7.0, 8.0], "kN"), "friction_coefficient": 0.45}
@@ -32,11 +33,11 @@ def mass() -> Any:
     return 5e-9 * tangential * XI * DISTANCE
 
 
-def weighed(**measured: Any) -> wl.WearTests:
-    return wl.WearTests.from_arrays(**TEST, **measured)
+def weighed(**measured: Any) -> WearTests:
+    return WearTests.from_arrays(**TEST, **measured)
 
 
-def found(tests: wl.WearTests, predict: Any = ENERGY, **more: Any) -> float:
+def found(tests: WearTests, predict: Any = ENERGY, **more: Any) -> float:
     fit = wl.fit(predict, tests, ["mass_per_energy"], bootstrap=0, starts=4, **more)
     return fit.parameters["mass_per_energy"].m_as("ug/J")  # type: ignore[no-any-return]
 
@@ -81,7 +82,7 @@ def test_tests_of_different_measures_are_one_fit() -> None:
     assert "converted             mass_loss in 1 of 4 tests, of disc_1, over revolutions times πD" in repr(fit)
     again = wl.fit(tests=fit.tests, bootstrap=0, **fit.settings)
     assert again.parameters == fit.parameters
-    with pytest.warns(wl.FitWarning, match=r"fitted to these tests.*4 of 4"):
+    with pytest.warns(FitWarning, match=r"fitted to these tests.*4 of 4"):
         wl.compare([fit], tests)
 
 
@@ -233,11 +234,11 @@ def test_a_rail_makes_no_revolutions() -> None:
     predict = wheel | wl.contact_model("fastsim") | wl.wear_law("energy", mass_per_energy="5 ug/J", body="rail")
     given: Any = {"normal_force": "80 kN", "friction_coefficient": 0.3}
     others: Any = {"longitudinal_creepage": Q([0.1, 0.2, 0.3], "%"), "lateral_creepage": "0 %", "spin": "0 1/m"}
-    tests = wl.WearTests.from_arrays(**given, other_conditions=others, mass_loss="1 mg", cycles=1e4)
+    tests = WearTests.from_arrays(**given, other_conditions=others, mass_loss="1 mg", cycles=1e4)
     with pytest.raises(wl.DataError, match="cycles: rail makes no revolutions; give mass_loss with the distance"):
         wl.fit(predict, tests, ["mass_per_energy"], bootstrap=0)
     lost = Q(predict(**given, **others).wear_index.m_as("N") * 5e-9 * 1e3, "kg")
-    tests = wl.WearTests.from_arrays(**given, other_conditions=others, mass_loss=lost, distance="1 km")
+    tests = WearTests.from_arrays(**given, other_conditions=others, mass_loss=lost, distance="1 km")
     # The energy of the nodes is that of the creepages but for FASTSIM's grid: without spin the error is that of strips.
     assert found(tests, predict) == pytest.approx(5.0, rel=0.02)
 
@@ -275,7 +276,7 @@ OF_CAMPAIGN = {
 }
 
 
-def is_campaign(tests: wl.WearTests) -> None:
+def is_campaign(tests: WearTests) -> None:
     for name, values in OF_CAMPAIGN.items():
         np.testing.assert_allclose(tests.columns[name], values, rtol=4 * EPS)
     assert tests.labels == ("1", "2", "3", "4", "5")

@@ -12,6 +12,7 @@ from scipy import optimize, stats
 import wearlaw as wl
 from tests.plugins.fits.fits import EXACT
 from wearlaw import Q
+from wearlaw_apps.fits import FitError, FitWarning, WearTests
 from wearlaw_apps.fits.intervals import studentised  # private: of any least squares
 from wearlaw_apps.fits.least_squares import LOSSES  # private: the losses that there are
 
@@ -61,10 +62,10 @@ ERRORS = 0.05 * np.random.default_rng(2).standard_normal(15)
 ERRORS[[3, 11]] += 0.8, 0.5
 
 
-def scattered(errors: Any = ERRORS, **more: Any) -> wl.WearTests:
+def scattered(errors: Any = ERRORS, **more: Any) -> WearTests:
     labels = [f"run {number}" for number in range(15)]
     rate = PREDICT(**TEST).wear_rate * np.exp(errors)
-    return wl.WearTests.from_arrays(**TEST, wear_rate=rate, labels=labels, **more)
+    return WearTests.from_arrays(**TEST, wear_rate=rate, labels=labels, **more)
 
 
 def fitted(**options: Any) -> Any:
@@ -72,7 +73,7 @@ def fitted(**options: Any) -> Any:
 
 
 def test_outliers_are_named_and_stay() -> None:
-    with pytest.warns(wl.FitWarning, match=r"outliers: test run 3 \(wear rate, -\d.*at a level of 1% over all tests"):
+    with pytest.warns(FitWarning, match=r"outliers: test run 3 \(wear rate, -\d.*at a level of 1% over all tests"):
         fit = fitted()
     assert fit.most == pytest.approx(stats.t.ppf(1.0 - 0.005 / 15, 13), rel=1e-12)
     assert fit.outliers["label"].tolist() == ["run 3"]  # it hides the smaller one
@@ -84,7 +85,7 @@ def test_outliers_are_named_and_stay() -> None:
 
 @pytest.mark.parametrize("loss", [name for name in LOSSES if name != "linear"])
 def test_a_robust_fit_is_that_of_scipy(loss: Any) -> None:
-    with pytest.warns(wl.FitWarning, match="run 3 .* run 11"):
+    with pytest.warns(FitWarning, match="run 3 .* run 11"):
         fit = fitted(robust=loss)
     theta = math.log(fit.parameters["mass_per_energy"].magnitude / 5.0)
     scale = 2.0 * 1.4826 * np.median(np.abs(theta - ERRORS))
@@ -96,7 +97,7 @@ def test_a_robust_fit_is_that_of_scipy(loss: Any) -> None:
 
 def test_the_interval_of_a_robust_fit_is_that_of_huber() -> None:
     """V = s² Σψ²/(n - p)/(mean ψ')²/n for a mean, with ψ(u) = u (1 + u²)^-1/2 and ψ' = (1 + u²)^-3/2."""
-    with pytest.warns(wl.FitWarning, match="outliers"):
+    with pytest.warns(FitWarning, match="outliers"):
         fit, boot = (fitted(robust="soft_l1", bootstrap=count) for count in (0, 1000))
     theta = math.log(fit.parameters["mass_per_energy"].magnitude / 5.0)
     scale = 2.0 * 1.4826 * np.median(np.abs(theta - ERRORS))
@@ -112,7 +113,7 @@ def test_the_interval_of_a_robust_fit_is_that_of_huber() -> None:
 
 def test_stated_uncertainties_are_the_scale_of_a_robust_fit() -> None:
     tests = scattered(wear_rate_uncertainty=0.05 * PREDICT(**TEST).wear_rate)
-    with pytest.warns(wl.FitWarning):
+    with pytest.warns(FitWarning):
         fit = wl.fit(PREDICT, tests, ["mass_per_energy"], bootstrap=0, robust="cauchy")
     truth = 1.0 / 0.05
     measured = truth * np.exp(ERRORS)
@@ -122,5 +123,5 @@ def test_stated_uncertainties_are_the_scale_of_a_robust_fit() -> None:
 
 
 def test_an_unknown_loss_is_refused() -> None:
-    with pytest.raises(wl.FitError, match="robust: must be one of 'linear', 'huber'"):
+    with pytest.raises(FitError, match="robust: must be one of 'linear', 'huber'"):
         fitted(robust="hubert")

@@ -14,11 +14,12 @@ from hypothesis import given
 import wearlaw as wl
 from tests.strategies import EPS, log_uniform
 from wearlaw import Q
+from wearlaw_apps.fits import WearTests
 
 NAN = np.nan
 
 
-def made(**changes: Any) -> wl.WearTests:
+def made(**changes: Any) -> WearTests:
     """Return three tests, the second without wear and the third without traction, with some columns changed."""
     columns: dict[str, Any] = {
         "creepage": Q([0.5, 1.0, 5.0], "%"),
@@ -28,7 +29,7 @@ def made(**changes: Any) -> wl.WearTests:
         "labels": ["a", "b", "c"],
         "source": "a test",
     }
-    return wl.WearTests.from_arrays(**{k: v for k, v in (columns | changes).items() if v is not None})
+    return WearTests.from_arrays(**{k: v for k, v in (columns | changes).items() if v is not None})
 
 
 RIG = wl.TwinDisc.suros()
@@ -55,7 +56,7 @@ def test_columns_come_out_with_the_units_and_gaps_they_went_in_with() -> None:
 
 def test_one_value_stands_for_all_tests_and_one_test_is_a_table_too() -> None:
     np.testing.assert_array_equal(made(normal_force="7 kN").columns["normal_force"], [7000.0] * 3)
-    one = wl.WearTests.from_arrays(creepage="1 %", max_pressure="1.5 GPa", wear_rate="30 ug/m/mm^2")
+    one = WearTests.from_arrays(creepage="1 %", max_pressure="1.5 GPa", wear_rate="30 ug/m/mm^2")
     assert len(one) == 1
     assert one.labels == ("",)
     assert one.source == ""
@@ -176,7 +177,7 @@ def test_the_repr_is_a_short_summary() -> None:
         "  wear_rate              10 to 50 µg/m/mm² in 2",
         "from a test",
     ]
-    one = wl.WearTests.from_arrays(creepage="1 %", normal_force_per_width="700 kN/m", wear_rate=Q(NAN, "ug/m/mm^2"))
+    one = WearTests.from_arrays(creepage="1 %", normal_force_per_width="700 kN/m", wear_rate=Q(NAN, "ug/m/mm^2"))
     assert repr(one).splitlines() == [
         "1 test",
         "  creepage               1 %",
@@ -211,7 +212,7 @@ GOOD = f"{HEAD}\na,1,7.4,30\nb,-2,7.4,40\n"
 HEAT = "creepage [%],normal_force [kN],frictional_heat [W],rolling_speed [km/h]"
 
 
-def read(text: str, folder: Path, **options: Any) -> wl.WearTests:
+def read(text: str, folder: Path, **options: Any) -> WearTests:
     """Return the tests of a file."""
     path = folder / "mine.csv"
     path.write_text(text, encoding="utf-8")

@@ -17,6 +17,7 @@ from tests.cases import load, table
 from tests.plugins.kit.cells import Cells
 from tests.strategies import EPS, LINE_MODELS, log_uniform, saturation_creepage, with_creepage
 from wearlaw import Q
+from wearlaw_apps.studies import CaseError
 from wearlaw_kit import checks, line_problems
 
 SUROS = wl.TwinDisc.suros()
@@ -104,7 +105,7 @@ def test_a_model_that_solves_no_lines_cannot_give_the_total(name: str) -> None:
 
 def test_a_case_whose_total_is_of_a_model_that_solves_no_lines_is_refused_at_its_path(tmp_path: Path) -> None:
     models = [{"model": "global", "total_from": {"model": "linear"}}]
-    with pytest.raises(wl.CaseError, match=r"contact_models\.0\.total_from: must be .* line contacts, .* 'linear'"):
+    with pytest.raises(CaseError, match=r"contact_models\.0\.total_from: must be .* line contacts, .* 'linear'"):
         load(tmp_path, table(contact_models=models))
 
 

@@ -11,6 +11,7 @@ import pytest
 import wearlaw as wl
 from tests import cases
 from tests.cases import OWN_TESTS, changed, load, table
+from wearlaw_apps.studies import CaseError
 
 WRONG: list[tuple[str, Any, str]] = [
     ("title", None, "title"),
@@ -60,7 +61,7 @@ WRONG_TO_THE_LOADER: list[tuple[str, Any, str]] = [
 
 @pytest.mark.parametrize(("path", "value", "named"), WRONG + WRONG_TO_THE_LOADER)
 def test_a_wrong_field_is_named_by_its_path(tmp_path: Path, path: str, value: Any, named: str) -> None:
-    with pytest.raises(wl.CaseError) as refusal:
+    with pytest.raises(CaseError) as refusal:
         load(tmp_path, changed(path, value))
     assert str(refusal.value).startswith(f"case '{tmp_path / 'my.toml'}' is wrong in:\n  ")
     assert f"\n  {named}: " in str(refusal.value)
@@ -73,7 +74,7 @@ def test_the_schema_refuses_what_the_loader_refuses(validator: Any, path: str, v
 
 def places(content: Any, tmp_path: Path) -> list[str]:
     """Return the paths of the wrong fields of a case, in alphabetical order."""
-    with pytest.raises(wl.CaseError) as refusal:
+    with pytest.raises(CaseError) as refusal:
         load(tmp_path, content)
     return sorted(line.strip().split(":")[0] for line in str(refusal.value).splitlines()[1:])
 
@@ -106,7 +107,7 @@ def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Pat
     content = table(measured={"label": "m", "tests": "own.csv"})
     assert places(content, tmp_path) == ["measured"]
     path.write_text(OWN_TESTS.replace("7.4,NA", "-1,NA"), encoding="utf-8")
-    with pytest.raises(wl.CaseError, match="line 3, column 'normal_force"):
+    with pytest.raises(CaseError, match="line 3, column 'normal_force"):
         load(tmp_path, content)
 
 
@@ -114,5 +115,5 @@ def test_tests_that_are_missing_or_wrong_are_refused_with_the_case(tmp_path: Pat
 def test_a_file_that_is_no_case_is_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "wrong.toml"
     path.write_bytes(content)
-    with pytest.raises(wl.CaseError, match=re.escape(str(path))):
+    with pytest.raises(CaseError, match=re.escape(str(path))):
         wl.load_case(str(path))

@@ -17,6 +17,8 @@ import wearlaw as wl
 from wearlaw import Q, loader  # private: plugins of a test are forgotten after it
 from wearlaw.cli import main  # private: the program in this process
 from wearlaw_apps.explore.page import Page, named  # private: the page without a browser
+from wearlaw_apps.fits import WearTests
+from wearlaw_apps.studies import CaseError
 from wearlaw_apps.studies.case import case_schema  # private: the schema of the command `schema`
 
 LAW = '''
@@ -120,13 +122,13 @@ def predict() -> Any:
     return RIG | wl.contact_model("exact") | wl.wear_law("humid")
 
 
-def measured_by_hand() -> wl.WearTests:
+def measured_by_hand() -> WearTests:
     """Return tests whose wear is 4 µg/m/N exp(-1.5 RH) of Tγ/A, which is Tξ/A."""
     random = np.random.default_rng(1)
     creepage, humidity = Q(random.uniform(0.5, 3.0, 12), "%"), Q(random.uniform(10.0, 90.0, 12), "%")
     contact = (RIG | wl.contact_model("exact"))(**{**AT, "creepage": creepage})
     density = contact.tangential_force.m_as("N") * creepage.m_as("") / contact.patch_area.m_as("mm^2")
-    return wl.WearTests.from_arrays(
+    return WearTests.from_arrays(
         creepage=creepage, max_pressure=AT["max_pressure"], friction_coefficient=0.4,
         wear_rate=Q(4.0 * np.exp(-1.5 * humidity.m_as("")) * density, "ug/m/mm^2"),
         other_conditions={"relative_humidity": humidity},
@@ -146,7 +148,7 @@ def test_a_fit_takes_the_column_of_the_condition(tmp_path: Path) -> None:
 
 
 def test_tests_without_the_column_are_an_error_that_names_it(predict: Any) -> None:
-    tests = wl.WearTests.from_arrays(
+    tests = WearTests.from_arrays(
         creepage="1 %", max_pressure=Q([600, 700], "MPa"), friction_coefficient=0.4, wear_rate="4 ug/m/mm^2"
     )
     with pytest.raises(wl.DataError, match=r"no column 'relative_humidity \[%\]', which wear law 'humid' needs"):
@@ -181,10 +183,10 @@ def test_a_case_has_the_condition_as_an_axis_for_all_its_laws(tmp_path: Path, fi
 def test_a_case_without_the_condition_is_refused_when_it_is_read(tmp_path: Path) -> None:
     path = tmp_path / "case.toml"
     path.write_text(CASE.replace('relative_humidity = "40 %"', ""), encoding="utf-8")
-    with pytest.raises(wl.CaseError, match=r"profiles.patch.relative_humidity: is missing; wear law 'humid' needs it"):
+    with pytest.raises(CaseError, match=r"profiles.patch.relative_humidity: is missing; wear law 'humid' needs it"):
         wl.load_case(str(path))
     path.write_text(CASE.replace('"humid", ', ""), encoding="utf-8")
-    with pytest.raises(wl.CaseError, match=r"sweeps.air.relative_humidity: unknown condition"):
+    with pytest.raises(CaseError, match=r"sweeps.air.relative_humidity: unknown condition"):
         wl.load_case(str(path))
 
 

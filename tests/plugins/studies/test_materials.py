@@ -16,7 +16,7 @@ import wearlaw as wl
 from tests.cases import POINT, case, load, table
 from tests.core.distributions import Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
-from wearlaw_apps.studies import Case
+from wearlaw_apps.studies import Case, CaseError
 from wearlaw_apps.studies.case import case_schema, load_case, written  # private: a case without its files
 from wearlaw_apps.studies.report.tables import parameters  # private: a part of the report, without its page
 from wearlaw_apps.studies.study import provenance, run  # private: a case run without its files
@@ -140,7 +140,7 @@ def test_a_material_of_a_script_works_everywhere_but_in_files(tmp_path: Path) ->
     assert provenance(study.case)["material_types"] == {"Own": "not installed"}
     assert "disc_2.material.hardness" in set(parameters(study).frame["parameter"])
     (tmp_path / "case.toml").write_text(written(study.case)["case.toml"], encoding="utf-8")
-    with pytest.raises(wl.CaseError) as error:
+    with pytest.raises(CaseError) as error:
         load_case(str(tmp_path / "case.toml"))
     assert "rig.disc_1.material: no material is called 'Own'. Installed: R200, " in str(error.value)
 

@@ -12,6 +12,7 @@ import xarray as xr
 import wearlaw as wl
 from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, deadly, ending, predictor
 from tests.plugins.sweeps.test_sweep_tables import BY_PATTERN, FRICTION, wheels
+from wearlaw_apps.sweeps import SweepError
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -68,5 +69,5 @@ def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers
 
 def test_a_block_at_which_every_worker_of_the_cluster_dies_is_given_up(client: Any, tmp_path: Path) -> None:
     client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
-    with pytest.raises(wl.SweepError, match="given up by the cluster, since its workers died"):
+    with pytest.raises(SweepError, match="given up by the cluster, since its workers died"):
         wl.sweep(deadly(tmp_path / "marker", always=True), **CONDITIONS, client=client)

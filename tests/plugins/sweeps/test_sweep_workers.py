@@ -16,6 +16,7 @@ from wearlaw import (
     Q,
     kernels,  # private: which kernels a worker chose
 )
+from wearlaw_apps.sweeps import SweepError, WorkerWarning
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -36,15 +37,15 @@ def test_several_processes_give_the_same_bytes_as_one() -> None:
 
 def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: Path) -> None:
     predict = deadly(tmp_path / "die once")
-    with pytest.warns(wl.WorkerWarning, match="died"):
+    with pytest.warns(WorkerWarning, match="died"):
         swept = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
     xr.testing.assert_equal(swept, wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
 
 
-@pytest.mark.filterwarnings("ignore::wearlaw.WorkerWarning")
+@pytest.mark.filterwarnings("ignore::wearlaw_apps.sweeps.WorkerWarning")
 def test_a_sweep_whose_workers_die_again_and_again_is_given_up(tmp_path: Path) -> None:
     predict = deadly(tmp_path / "die always", always=True)
-    with pytest.raises(wl.SweepError, match="given up"):
+    with pytest.raises(SweepError, match="given up"):
         wl.sweep(predict, **{**CONDITIONS, "normal_force": Q([2.0, 5.0], "kN"), "friction_coefficient": 0.3}, workers=2)
 
 

@@ -10,6 +10,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw_apps.studies import CaseError
 
 RIG = """
 title = "A worn wheel"
@@ -76,9 +77,7 @@ def test_paths_of_profiles_are_relative_to_the_case_file(worn: Path, monkeypatch
 def test_a_missing_profile_is_looked_for_beside_the_case_file(worn: Path) -> None:
     case = worn.parent / "missing.toml"
     case.write_text(RIG.replace("worn.prw", "missing.prw"), encoding="utf-8")
-    with pytest.raises(
-        wl.CaseError, match=r"rig\.wheel: 'profiles/missing\.prw' is neither .* nor a file in '.*study'"
-    ):
+    with pytest.raises(CaseError, match=r"rig\.wheel: 'profiles/missing\.prw' is neither .* nor a file in '.*study'"):
         wl.load_case(str(case))
 
 

@@ -14,6 +14,7 @@ from scipy import stats
 import wearlaw as wl
 from tests.plugins.ellipses import EPS
 from wearlaw import Array, Q
+from wearlaw_apps.fits import WearTests
 from wearlaw_models.laws.wlrm import WLRM
 
 POINTS: dict[str, Any] = {"threshold": Q(20, "N"), "peak": Q(65, "N"), "balance": Q(175, "N"), "peak_damage": 1e-5}
@@ -163,7 +164,7 @@ def test_its_points_can_be_fitted() -> None:
     given: dict[str, Any] = {**DISCS, "creepage": Q([1.0, 1.5, 2.0, 3.0, 4.0], "%")}
     contacts = SUROS | wl.contact_model("exact")
     measured = (contacts | law(threshold=Q(15, "N"), peak_damage=2e-5))(**given)["rcf_damage"]
-    tests = wl.WearTests.from_arrays(**given, outcomes={"rcf_damage": measured})
+    tests = WearTests.from_arrays(**given, outcomes={"rcf_damage": measured})
     fit = wl.fit(contacts | law(), tests, free=["threshold", "peak_damage"], bootstrap=0)
     # The search stops at a relative step of 1e-8.
     assert fit.parameters["threshold"].m_as("N") == pytest.approx(15.0, rel=1e-6)

@@ -11,6 +11,7 @@ import pandas as pd
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw_apps.fits import WearTests
 from wearlaw_apps.papers.tassini2010.bench import WEAR_RATE, Bench
 from wearlaw_apps.papers.tassini2010.claims import SIMILAR, verdict
 from wearlaw_apps.papers.tassini2010.tables import USFD_UNITS, number, shown_unit, usfd_parameters
@@ -73,7 +74,7 @@ def fitted(bench: Bench, model: str, highest: float, norm: Norm) -> Fitted:
     creepage = np.linspace(highest / POINTS, highest, POINTS)
     target = bench.rate("global", wl.wear_law("usfd"), creepage)
     published = wl.wear_law("usfd", fitted_for=model)
-    tests = wl.WearTests.from_arrays(
+    tests = WearTests.from_arrays(
         creepage=Q(creepage, "%"),
         normal_force_per_width=bench.normal_force_per_width,
         friction_coefficient=bench.friction_coefficient,
