@@ -108,6 +108,24 @@ def test_wear_at_one_point_is_told_as_mass_and_as_a_depth_that_a_disc_has() -> N
     assert headline(study).startswith(f"Wear rate: kth on global {parts}; ")
 
 
+def test_the_tables_are_all_but_the_main_one(page: Page) -> None:
+    points = {"threshold": "20 N", "peak": "65 N", "balance": "175 N", "peak_damage": 1e-5}
+    fatigue = {"model": "wlrm", **points, "beyond": "falls", "traction": "driving"}
+    both = Page(page_of(wl.run(cases.case(contact_models=["global"], laws=[fatigue], profiles={}))))
+    of_wear = "wear rate [µg/m/mm²] by creepage [%]"
+    heads = [head for head in both.within("thead/tr/th") if " by " in head]
+    assert heads[0] == of_wear
+    assert heads.count(of_wear) == 1
+    assert any("damage" in head for head in heads[1:])
+    assert not any(" by " in head for head in page.within("section/div/table/thead/tr/th"))
+
+
+def test_long_lists_of_a_case_are_shortened(study: wl.Study) -> None:
+    numbers = ",\n    ".join(f"{number}.5" for number in range(100))
+    (shown,) = Page(page_of(study, f"values = [\n    {numbers},\n]\nfew = [1.0, 2.0]")).within("pre")
+    assert shown == "values = [0.5, 1.5, 2.5, … 96 more …, 99.5]\nfew = [1.0, 2.0]"
+
+
 def test_the_contents_lead_to_every_part(page: Page) -> None:
     identifiers = page.attributes("id")
     assert len(set(identifiers)) == len(identifiers)

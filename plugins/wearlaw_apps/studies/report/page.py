@@ -47,7 +47,11 @@ def report(study: Study, case_text: str) -> str:
         main=main,
         figures=[figure for figure in study.figures if figure is not main],
         beyond_shakedown=any(map(has_strip, study.figures)),
-        summaries=[one for one in (*summaries(study), *profiles(study)) if one.title != first.title],
+        summaries=[
+            table
+            for table in (*summaries(study), *profiles(study))
+            if (table.title, table.frame.columns[0]) != (first.title, first.frame.columns[0])
+        ],
         parameters=parameters(study),
         models=models(study),
         used=[(kind, name, origin) for kind, names in used(study.case).items() for name, origin in names.items()],
