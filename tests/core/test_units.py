@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import wearlaw as wl
 from tests.core.units import LENGTH, TO_SI
+from tests.strategies import EPS
 from wearlaw import Q, coefficient
 from wearlaw.units.quantities import from_si, in_unit  # private: texts and floats at the rim
 
@@ -32,6 +33,7 @@ def test_every_unit_becomes_coherent_si(unit: str, factor: float) -> None:
         ([1.0, 2.0], "got [1.0, 2.0], which has no unit"),
         ("47", "'47' is not a number with a unit"),
         ("47 foo", "'foo' is not a known unit"),
+        ("40 HRC", "HRC measures a depth of indentation, which is no pressure; find HB or HV in the tables"),
         ("47 kN", "got 47.00 kN, which does not have the dimension of 'mm'"),
         ("nan mm", "must be a number, got nan mm"),
         ("inf mm", "must be finite, got inf mm"),
@@ -182,3 +184,9 @@ def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
         wl.FallingFriction(static_coefficient=Q([0.2, 0.3], ""), **given)
     with pytest.raises(wl.ConfigurationError, match=r"static_coefficient: input should be a valid number, got '0\.25'"):
         wl.FallingFriction(static_coefficient="0.25", **given)
+
+
+@pytest.mark.parametrize("scale", ["HB", "HBW", "HBW 10/3000", "HV", "HV30"])
+def test_a_hardness_is_the_load_over_the_surface_of_its_indentation(scale: str) -> None:
+    """In kgf/mm², with standard gravity of 9.80665 m/s² (ISO 6506-1 and 6507-1 print 0.102 as its reciprocal)."""
+    assert wl.parse(f"260 {scale}").m_as("Pa") == pytest.approx(260.0 * 9.80665e6, rel=4 * EPS)

@@ -35,6 +35,9 @@ _POWER = re.compile(
 )
 """A number or a ratio as the power of a unit, to which no other power belongs."""
 
+_HARDNESS = re.compile(r"H(BW?|V|R[A-Z]*)[\d\s./]*")
+"""A scale of hardness in place of a unit, such as "HB", "HBW 10/3000", "HV30" or "HRC"."""
+
 _ready: object = None
 """The last registry in force, which is certain to be complete."""
 
@@ -53,7 +56,14 @@ def application_registry() -> pint.UnitRegistry[Any]:
 
 @functools.lru_cache(maxsize=512)
 def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
-    """Return the unit of a text, or raise a `UnitError`."""
+    """Return the unit of a text, or raise a `UnitError`; for the scales of Brinell and Vickers kgf/mm²."""
+    if scale := _HARDNESS.fullmatch(str(unit)):
+        if scale[1].startswith("R"):
+            raise UnitError(
+                f"{unit} measures a depth of indentation, which is no pressure; find HB or HV in the tables of ISO"
+                ' 18265 for your steel, and give that, such as "260 HB"'
+            )
+        unit = "kgf/mm^2"
     if not _has_small_powers(str(unit)):
         raise UnitError(f"{shown(unit)} is not a unit that can be computed; powers are numbers, as in mm^2 or MPa^0.5")
     try:

@@ -14,7 +14,7 @@ import scipy
 
 from wearlaw.arrays import Array, steadily
 from wearlaw.configuration import known_name
-from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown, warn
+from wearlaw.errors import ConfigurationError, FitError, FitWarning, shown, warn, with_problems
 from wearlaw.models.law import Calibration, named_outcomes
 from wearlaw.numerics.integrate import integrate_forces
 from wearlaw.numerics.totals import Totals
@@ -223,8 +223,8 @@ def fit(
     if overload:
         overload.warn()
     poor = (test.warning for test in result.lack_of_fit if test.poor)
-    for text in (*poor, *_outliers(result), *_at_bounds(task, best), *_unreliable(task, replicates)):
-        warn(text, FitWarning)
+    if texts := [*poor, *_outliers(result), *_at_bounds(task, best), *_unreliable(task, replicates)]:
+        warn(with_problems(texts[0], texts[1:]), FitWarning)
     _warn_of_kept(task)
     return result
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -18,7 +19,7 @@ import tomli_w
 from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import FitError, OutputError, shown
+from wearlaw.errors import FitError, InputError, OutputError, did_you_mean, shown
 from wearlaw.fields import specification
 from wearlaw.models.law import WEAR, Law
 from wearlaw.text_files import reason_of
@@ -32,13 +33,16 @@ from wearlaw_apps.fits.wear_tests import WearTests
 from wearlaw_apps.output.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw_apps.output.labels import label
 from wearlaw_apps.output.parity import parity_panels
-from wearlaw_apps.output.plot import plot
+from wearlaw_apps.output.plot import Log, plotted
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
     from wearlaw.pipeline.pipeline import Pipeline
+
+WEAR_INDEX_DENSITY = "wear_index_density"
+"""The variable over which wear is drawn if creepage alone varies."""
 
 BETWEEN = 8
 """Points of a curve between two tests."""
@@ -239,19 +243,39 @@ class Fit:
             temporary.unlink(missing_ok=True)
             raise OutputError(f"cannot write {shown(target)}: {reason_of(error)}") from None
 
-    def figure_data(self) -> FigureData:
+    def figure_data(self, x: str | None = None) -> FigureData:
         """Return measured and fitted values, a panel for each kind of measurement.
 
-        They are drawn over Tγ/A or over the one condition that varies, with the band of the bootstrap replicates. If
-        several vary, measured values are drawn against fitted ones.
+        They are drawn over `x`, a condition of the tests or "wear_index_density", Tγ/A. Without it, they are drawn over
+        Tγ/A or over the one condition that varies; if several vary, measured values are drawn against fitted ones. The
+        fitted values are a line with the band of the bootstrap replicates if one condition varies, and else points.
         """
-        panels = tuple(_panel(self, observed) for observed in self.observations)
+        panels = tuple(_panel(self, observed, x) for observed in self.observations)
         names, band = ", ".join(self.parameters), f"{self.confidence:.0%} of the bootstrap replicates"
         return FigureData("fit", f"Fit of {names}", panels, f"{names} fitted to {self.tests.source or 'tests'}.", band)
 
-    def plot(self) -> Figure:
-        """Return a drawing of `figure_data`."""
-        return plot(self.figure_data())
+    def plot(
+        self,
+        *,
+        ax: Axes | Sequence[Axes] | None = None,
+        x: str | None = None,
+        log: Log | None = None,
+        title: str | None = None,
+    ) -> Axes:
+        """Draw `figure_data`, and return the axes of its first panel; their `figure` is the whole.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes or sequence of these, optional
+            Axes to draw into, one for each panel. Default: those of a new figure of `matplotlib.pyplot`.
+        x : str, optional
+            The condition along the horizontal axis, or "wear_index_density", as for `figure_data`.
+        log : {"", "x", "y", "xy"}, optional
+            The logarithmic axes. Default: by what is drawn.
+        title : str, optional
+            The title.
+        """
+        return plotted(self.figure_data(x), ax, log, title)
 
     @property
     def contact_parameters(self) -> tuple[str, ...]:
@@ -307,33 +331,42 @@ def _plural(observable: str) -> str:
     return f"{observable.replace('_', ' ')}s" if observable in (WEAR, TRACTION) else f"values of {name_of(observable)}"
 
 
-def _panel(fit: Fit, observed: Observations) -> Panel:
+def _panel(fit: Fit, observed: Observations, x: str | None) -> Panel:
     """Return measured and fitted values: along the one condition that varies, with a band, or else side by side."""
     numbers = {name: _numbers(value) for name, value in observed.conditions.items() if name != TRACTION}
     varied = [name for name, values in numbers.items() if np.ptp(values) > SAME * np.abs(values).mean()]
-    if len(varied) != 1:
+    if x is None and len(varied) != 1:
         return _parity(observed, fit.fitted(observed))
-    name, values = varied[0], numbers[varied[0]]
-    order = np.argsort(values, kind="stable")
-    conditions = {other: _finer(value, order) for other, value in observed.conditions.items()}
+    if x not in (None, WEAR_INDEX_DENSITY, *numbers):
+        known = [*numbers, WEAR_INDEX_DENSITY]
+        raise InputError(f"x: there is no {shown(x)}{did_you_mean(str(x), known)} There are: {', '.join(known)}")
+    conditions = dict(observed.conditions)
+    if len(varied) == 1:
+        order = np.argsort(numbers[varied[0]], kind="stable")
+        conditions = {other: _finer(value, order) for other, value in conditions.items()}
     problem = observed.pipeline.posed(conditions, of_one_patch="fit")
-    if "creepage" in name and observed.law is not None and (abs(np.sign(values).sum()) == values.size):
-        axis = "wear_index_density"
+    name = x or varied[0]
+    values = numbers.get(name, np.zeros(1))
+    by_creepage = "creepage" in name and observed.law is not None
+    if name == WEAR_INDEX_DENSITY or (x is None and by_creepage and abs(np.sign(values).sum()) == np.size(values)):
+        name = WEAR_INDEX_DENSITY
         at_tests, along = (
-            in_unit(wear_index_density(fit.predict, some), UNITS[axis]) for some in (observed.problem, problem)
+            in_unit(wear_index_density(fit.predict, some), UNITS[name]) for some in (observed.problem, problem)
         )
-        x = PlotAxis(label(axis), "log" if (observed.measured > 0.0).all() else "linear")
+        axis = PlotAxis(label(name), "log" if (observed.measured > 0.0).all() else "linear")
     else:
         condition = observed.conditions[name]
         unit = f"{condition.units:~P}" if isinstance(condition, pint.Quantity) else ""
-        at_tests, along = values, _numbers(conditions[name])
-        x = PlotAxis(label(name, units={name: unit}))
+        at_tests, along = (
+            np.broadcast_to(_numbers(some), (size,))
+            for some, size in ((condition, observed.measured.size), (conditions[name], problem.size))
+        )
+        axis = PlotAxis(label(name, units={name: unit}))
     measured = Curve("measured", at_tests, in_unit(observed.measured, observed.unit), colour=BLACK, points=True)
-    return Panel(
-        x,
-        PlotAxis(observed.label, x.scale),
-        (_curve(fit, observed, problem, along), measured),
-    )
+    fitted = _curve(fit, observed, problem, along)
+    if len(varied) != 1:
+        fitted = dataclasses.replace(fitted, points=True, hollow=True)
+    return Panel(axis, PlotAxis(observed.label, axis.scale), (fitted, measured))
 
 
 def _parity(observed: Observations, fitted: Array) -> Panel:

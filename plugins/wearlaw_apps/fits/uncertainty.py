@@ -36,11 +36,11 @@ from wearlaw_apps.fits.uncertain_inputs import (
 from wearlaw_apps.output.conditions import Known
 from wearlaw_apps.output.curves import Curve, FigureData, Panel, PlotAxis, Shade
 from wearlaw_apps.output.labels import label
-from wearlaw_apps.output.plot import plot
+from wearlaw_apps.output.plot import Log, plotted
 from wearlaw_apps.sweeps.evaluation import expect_pipeline
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
     from wearlaw.contact.conditions import FrictionLaw
@@ -339,9 +339,21 @@ class Uncertainty:
         samples, band = f"{self.samples} samples of {inputs}", f"{CONFIDENCE:.0%} of the samples"
         return FigureData("uncertainty", self.title, (panel,), f"{samples}.", band, samples)
 
-    def plot(self) -> Figure:
-        """Return a drawing of `figure_data`."""
-        return plot(self.figure_data())
+    def plot(
+        self, *, ax: Axes | Sequence[Axes] | None = None, log: Log | None = None, title: str | None = None
+    ) -> Axes:
+        """Draw `figure_data`, and return the axes of its first panel; their `figure` is the whole.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes or sequence of these, optional
+            Axes to draw into, one for each panel. Default: those of a new figure of `matplotlib.pyplot`.
+        log : {"", "x", "y", "xy"}, optional
+            The logarithmic axes. Default: by what is drawn.
+        title : str, optional
+            The title.
+        """
+        return plotted(self.figure_data(), ax, log, title)
 
     def _quantile(self, probability: float) -> Quantity:
         samples = self[self._only]

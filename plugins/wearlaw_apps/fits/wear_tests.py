@@ -325,13 +325,16 @@ class WearTests:
         columns |= {
             name: condition for name, condition in self.other_conditions.items() if isinstance(condition, pint.Quantity)
         }
-        remarks: dict[str, str] = {}
+        medians: dict[str, tuple[Unit, float, str]] = {}
         for name, values in columns.items():
             sizes = np.abs(values.magnitude[~np.isnan(values.magnitude)])
             unit = USUAL.get(name, units.get(name))
             if sizes.size and unit is not None:
-                text = unit.unusual(name, Q(float(np.median(sizes)), str(values.units)))
-                remarks |= {f"column {name}": f"its median {text}"} if text else {}
+                medians[name] = unit, float(np.median(sizes)), str(values.units)
+        remarks: dict[str, str] = {}
+        for name, (unit, median, shown_in) in medians.items():
+            if text := unit.unusual(name, Q(median, shown_in)):
+                remarks[f"column {name}"] = f"its median {text}{_swapped(name, medians)}"
         return remarks
 
     def digests(self, name: str, unit: str) -> tuple[str, ...]:
@@ -449,6 +452,17 @@ class WearTests:
     def _quantity(self, name: str) -> Quantity:
         missing = np.full(len(self), np.nan)
         return from_si(self.columns.get(name, missing), COLUMNS[name].unit)
+
+
+def _swapped(name: str, medians: Mapping[str, tuple[Unit, float, str]]) -> str:
+    """Return the question whether an unusual column is another one, if both are usual with each other's numbers."""
+    unit, median, shown_in = medians[name]
+    for other, (its_unit, its_median, its) in medians.items():
+        if other != name and not (
+            unit.unusual(name, Q(its_median, shown_in)) or its_unit.unusual(other, Q(median, its))
+        ):
+            return f"; are the columns {name} and {other} swapped?"
+    return ""
 
 
 def is_way(name: str) -> bool:

@@ -24,6 +24,7 @@ from wearlaw.models.law import Law
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.text_files import read_toml
 from wearlaw.units.registry import symbol
+from wearlaw_apps.output.notes import grouped
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -209,10 +210,10 @@ def _plain(value: Any) -> Any:
 
 
 def print_notes(notes: Iterable[str]) -> None:
-    """Print notes on standard error: without sources and as far as a line goes, or the whole with `--verbose`."""
+    """Print notes on standard error, one a kind, as far as a line goes and without sources, or whole by `--verbose`."""
     whole, cut = click.get_current_context().meta.get("verbose", False), False
     width = max(shutil.get_terminal_size((LINE, 24)).columns, LINE)
-    for note in notes:
+    for note in grouped(notes):
         text = f"note: {note}"
         if not whole and (len(text) > width or "\n" in text):
             text, cut = textwrap.shorten(_SOURCE.sub("", text), width, placeholder=" …"), True

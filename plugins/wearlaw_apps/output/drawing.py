@@ -7,6 +7,7 @@ no curve.
 
 from __future__ import annotations
 
+import dataclasses
 import textwrap
 from typing import TYPE_CHECKING, Any
 
@@ -66,8 +67,11 @@ TICKS = 3
 """Fewest labelled ticks on a logarithmic axis."""
 
 
-def draw(figure: FigureData) -> Figure:
-    """Draw a figure as wide as a column, or as a page: panels in rows of two, an odd first panel over a whole row."""
+def draw(figure: FigureData, managed: bool = False) -> Figure:
+    """Draw a figure as wide as a column, or as a page: panels in rows of two, an odd first panel over a whole row.
+
+    A `managed` one is of `matplotlib.pyplot`, which shows it.
+    """
     count = len(figure.panels)
     width = COLUMN if count == 1 else PAGE
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
@@ -79,7 +83,7 @@ def draw(figure: FigureData) -> Figure:
         textwrap.wrap(text, round(LETTERS * width)) for text in (figure.conditions, head_of_legend(figure))
     )
     with mpl.rc_context(STYLE):
-        drawn = Figure(layout="constrained")
+        drawn = _managed() if managed else Figure(layout="constrained")
         axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
         styles, maps = line_styles(figure), [panel.map for panel in figure.panels if panel.map is not None]
         norm: Any = None
@@ -112,6 +116,22 @@ def draw(figure: FigureData) -> Figure:
                 **look,
             )  # fmt: skip
     return drawn
+
+
+def draw_into(axes: list[Axes], figure: FigureData) -> None:
+    """Draw the panels of a figure into axes, in the style in force."""
+    styles = line_styles(figure)
+    for one, panel in zip(axes, figure.panels, strict=True):
+        _fill(one, panel, styles, None, round(LETTERS * COLUMN))
+        entries = _entries(dataclasses.replace(figure, panels=(panel,)), [one])
+        if entries:
+            one.legend(list(entries.values()), list(entries))
+
+
+def _managed() -> Figure:
+    from matplotlib import pyplot  # loads a backend
+
+    return pyplot.figure(layout="constrained")
 
 
 def panel_height(panel: Panel, width: float) -> float:

@@ -9,10 +9,13 @@ from dataclasses import dataclass, field
 from threading import RLock, get_ident
 from typing import TextIO
 
-from wearlaw.errors import UnusualWarning, WearlawWarning, warn, with_problems
+from wearlaw.errors import FitWarning, UnusualWarning, WearlawWarning, warn, with_problems
 from wearlaw.units.usual import OneWarning, apart
 
 _CATCHING = RLock()
+
+NAMED = 3
+"""Most subjects that a note names."""
 
 
 @contextmanager
@@ -74,9 +77,9 @@ class Notes:
         with caught_warnings() as caught, OneWarning():
             yield
         for warning in caught:
-            texts = str(warning).splitlines() if isinstance(warning, UnusualWarning) else [str(warning)]
-            for text in texts:
-                self.add(f"{subject}: {text}", type(warning))
+            several = isinstance(warning, UnusualWarning | FitWarning)
+            for text in str(warning).splitlines() if several else [str(warning)]:
+                self.add(f"{subject}: {text.strip()}", type(warning))
 
     def warn(self) -> None:
         """Raise the notes that are warnings, one warning a kind."""
@@ -86,7 +89,10 @@ class Notes:
 
 
 def grouped(texts: Iterable[str]) -> list[str]:
-    """Return notes with one in place of those that say the same of several subjects, up to their last semicolon."""
+    """Return notes with one in place of those that say the same of several subjects, up to their last semicolon.
+
+    It names the first subjects and counts the others.
+    """
     groups: dict[str, list[tuple[str, str]]] = {}
     for text in texts:
         subject, _, remark = text.partition(": ")
@@ -98,7 +104,8 @@ def grouped(texts: Iterable[str]) -> list[str]:
         if subjects == (head,):
             notes.append(head)
         elif len({*tails}) == 1:
-            notes.append(f"{', '.join(subjects)}: {head}{tails[0]}")
+            named, more = ", ".join(subjects[:NAMED]), len(subjects) - NAMED
+            notes.append(f"{named}{f' and {more} more' if more > 0 else ''}: {head}{tails[0]}")
         else:
             notes.append(head + "".join(f"; {subject}: {tail[2:]}" for subject, tail in members))
     return notes

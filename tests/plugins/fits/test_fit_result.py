@@ -121,7 +121,7 @@ def test_the_figure_holds_the_measurements_and_a_curve_through_the_fit_with_a_ba
     # The curve passes through what is predicted for the tests.
     predicted = exact_fit.residuals["predicted"].to_numpy()
     assert np.interp(points.x, curve.x, curve.y) == pytest.approx(predicted, rel=1e-9)
-    assert isinstance(exact_fit.plot(), Figure)
+    assert isinstance(exact_fit.plot().figure, Figure)
 
 
 def test_tests_at_several_loads_are_drawn_against_the_fit() -> None:

@@ -319,3 +319,18 @@ def test_a_row_of_units_holds_units_alone(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("creepage,normal_force,traction_coefficient\n%,kN,-\n1,7,0.3\n2,x,0.3\n")
     with pytest.raises(wl.DataError, match="line 4, column 'normal_force \\[kN\\]': 'x' is not a number"):
         wl.read_tests(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize(
+    ("creepage", "traction", "says"),
+    [
+        (Q([0.3, 0.4, 0.45], "%"), [1.0, 5.0, 10.0], "are the columns traction_coefficient and creepage swapped"),
+        (Q([1.0, 5.0, 10.0], "%"), [30.0, 40.0, 45.0], "did you mean 40 %"),
+        (Q([1.0, 5.0, 10.0], "%"), [0.3, 0.4, 0.45], ""),
+    ],
+)
+def test_columns_that_look_swapped_are_told_before_the_fit(creepage: Any, traction: Any, says: str) -> None:
+    tests = wl.WearTests.from_arrays(creepage=creepage, normal_force="7 kN", traction_coefficient=traction)
+    remarks = tests.unusual(EXACT)
+    assert says in remarks.get("column traction_coefficient", "")
+    assert bool(remarks) == bool(says)

@@ -162,7 +162,7 @@ def test_the_figure_shows_median_and_interval() -> None:
     assert span == pytest.approx([in_microgram(end) for end in u.interval()])
     assert u.figure_data().conditions == "64 samples of friction_coefficient uniform(0.3, 0.5)"
     assert panel.x.label == "wear rate [µg/m/mm²]"
-    assert u.plot().axes[0].get_xlabel() == panel.x.label
+    assert u.plot().get_xlabel() == panel.x.label
 
 
 def test_the_figure_of_several_points_is_a_band_in_their_order() -> None:
