@@ -19,9 +19,10 @@ DEFERRED = {
     ("wearlaw.kernels", "numba"): "is optional, and takes a second to load",
     (
         "wearlaw_apps.output.plot",
-        "wearlaw_apps.output.drawing",
+        "wearlaw_apps.output",
     ): "matplotlib takes longer to load than all else; few plot",
     ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
+    ("wearlaw_apps.output.drawing", "matplotlib"): "pyplot loads a backend, which commands do without",
     ("wearlaw_apps.output.datasets", "xarray"): "takes as long to load as the rest of wearlaw; for datasets alone",
     (
         "wearlaw_apps.sweeps.several",

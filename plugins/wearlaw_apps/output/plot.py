@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from wearlaw.errors import InputError, shown
 from wearlaw_apps.output.curves import FigureData, PlotAxis
@@ -19,9 +19,14 @@ Log: TypeAlias = Literal["", "x", "y", "xy"]
 
 def plot(figure: FigureData) -> Figure:
     """Draw a figure with `wearlaw_apps.output.drawing.draw`."""
-    from wearlaw_apps.output.drawing import draw
+    drawn: Figure = _drawing().draw(figure)
+    return drawn
 
-    return draw(figure)
+
+def _drawing() -> Any:
+    from wearlaw_apps.output import drawing
+
+    return drawing
 
 
 def plotted(
@@ -45,8 +50,6 @@ def plotted(
     InputError
         If `log` is unknown, or there are not as many axes as panels.
     """
-    from wearlaw_apps.output.drawing import draw, draw_into
-
     if log not in (None, "", "x", "y", "xy"):
         raise InputError(f'log: must be "x", "y", "xy" or "", got {shown(log)}')
     if log is not None:
@@ -56,11 +59,13 @@ def plotted(
         )
         figure = dataclasses.replace(figure, panels=tuple(panels))
     if ax is None:
-        return draw(figure if title is None else dataclasses.replace(figure, title=title), managed=True).axes[0]
+        figure = figure if title is None else dataclasses.replace(figure, title=title)
+        first: Axes = _drawing().draw(figure, managed=True).axes[0]
+        return first
     axes = [*ax] if isinstance(ax, Sequence) else list(getattr(ax, "flat", [ax]))
     if len(axes) != len(figure.panels):
         raise InputError(f"ax: the figure has {len(figure.panels)} panels; give axes for each, got {len(axes)}")
-    draw_into(axes, figure)
+    _drawing().draw_into(axes, figure)
     if title is not None:
         axes[0].set_title(title)
     return axes[0]

@@ -330,7 +330,7 @@ def test_a_row_of_units_holds_units_alone(tmp_path: Path) -> None:
     ],
 )
 def test_columns_that_look_swapped_are_told_before_the_fit(creepage: Any, traction: Any, says: str) -> None:
-    tests = wl.WearTests.from_arrays(creepage=creepage, normal_force="7 kN", traction_coefficient=traction)
+    tests = WearTests.from_arrays(creepage=creepage, normal_force="7 kN", traction_coefficient=traction)
     remarks = tests.unusual(EXACT)
     assert says in remarks.get("column traction_coefficient", "")
     assert bool(remarks) == bool(says)

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 import wearlaw as wl
 from tests.plugins.fits.fits import EXACT
 from wearlaw import Q
+from wearlaw_apps.fits import WearTests
 
 TEST: Any = {"creepage": Q([0.5, 1.0, 2.0, 4.0], "%"), "friction_coefficient": 0.45}
 PREDICT = EXACT | wl.wear_law("energy", mass_per_energy="5 ug/J")
@@ -26,7 +27,7 @@ def closed() -> Iterator[None]:
 
 
 def fitted(load: Any) -> Any:
-    tests = wl.WearTests.from_arrays(
+    tests = WearTests.from_arrays(
         **TEST, normal_force=load, wear_rate=PREDICT(**TEST, normal_force=load).wear_rate * RATES
     )
     return wl.fit(PREDICT, tests, ["mass_per_energy"], bootstrap=0), tests
