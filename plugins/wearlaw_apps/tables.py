@@ -248,14 +248,14 @@ class Table:
             if self._hint(wrong[0][2]):  # all others of the column are alike
                 wrong = wrong[:1]
             places = self._rows_in_words({first + row for row, _, _ in wrong})
-            raise DataError(
-                f"{self.label} is wrong in:",
-                [
-                    f"{places[first + row]}, column '{column.head}': "
-                    + (f"{shown(text)} is not a number{self._hint(text)}" if text else "is missing")
-                    for row, column, text in wrong
-                ],
-            )
+            problems = [
+                f"{places[first + row]}, column '{column.head}': "
+                + (f"{shown(text)} is not a number{self._hint(text)}" if text else "is missing")
+                for row, column, text in wrong
+            ]
+            if first + wrong[0][0] == 0 and (begin := self.as_read()):  # wrong from the first row on
+                problems.append(begin)
+            raise DataError(f"{self.label} is wrong in:", problems)
         return arrays
 
     def _hint(self, text: str) -> str:
@@ -322,7 +322,7 @@ def read_table(
         the sign. State the unit in brackets if the table does not. Default: all, by their heads without units.
     sep : str, optional
         What separates the cells of a CSV file; " " for any number of spaces. Default: the first of semicolon, tab and
-        comma that the header has, and spaces for numbers without any of them.
+        comma that the header has, and spaces for numbers or heads without any of them.
     decimal : {".", ","}
         The decimal mark of a CSV file.
     comment : str
@@ -429,7 +429,8 @@ class CsvTable(Table):
         if not header:
             raise DataError(f"{label} is empty")
         marks = [mark for mark in ";\t," if mark in header]
-        self.sep = sep or next(iter(marks), " " if _is_number(header.split()[0], decimal) else ",")
+        spaced = len(header.split()) > 1 and any(_are_numbers(line.split(), header.split(), decimal) for line in head)
+        self.sep = sep or next(iter(marks), " " if spaced or _is_number(header.split()[0], decimal) else ",")
         cells, below = map(self._split, (header, units))
         while cells and not cells[-1]:
             cells.pop()
@@ -606,6 +607,11 @@ def _joined(label: str, lines: Sequence[str]) -> str:
             raise DataError(f"{label}: the blocks '{first}' and '{name}' have other x; export them at the same steps")
         columns[name] = [pair[1] for pair in pairs]
     return "\n".join(map("\t".join, [("x", *columns), *zip(x, *columns.values(), strict=True)])) + "\n"
+
+
+def _are_numbers(cells: Sequence[str], heads: Sequence[str], decimal: str) -> bool:
+    """Return whether cells are numbers, one for each head."""
+    return len(cells) == len(heads) and all(_is_number(cell, decimal) for cell in cells)
 
 
 def _is_number(text: str, decimal: str) -> bool:

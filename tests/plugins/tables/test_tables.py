@@ -181,6 +181,13 @@ def test_a_row_of_units_below_the_heads(units: str, expected: bool) -> None:
             wl.read_table(io.StringIO(f"s{mark}Fz\n[m]{mark}kN\n1{mark}2\nx{mark}5\n"))["s"]
 
 
+def test_heads_and_numbers_may_stand_between_spaces() -> None:
+    found = text("# a run\nt   Fz  xi\ns\tkN  -\n0   7.1  0.01\n1 7.2 0.02\n", columns={"force": "Fz", "time": "t"})
+    assert (found.numbers("force").tolist(), found.columns["force"].unit) == ([7.1, 7.2], "kN")
+    single = text("Track position\n5\n6\n", columns={"s": "Track position [m]"})
+    assert single.numbers("s").tolist() == [5.0, 6.0]
+
+
 BLOCKS = """made up
 Mon Jan 1 2024
 

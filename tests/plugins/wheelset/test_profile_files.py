@@ -336,6 +336,13 @@ def test_repair_does_what_the_errors_suggest_and_lists_it(tmp_path: Path, change
     assert values(profile)[[0, -1]] == pytest.approx(points[[0, -1]], abs=1e-4)
 
 
+def test_a_case_may_name_the_same_options(tmp_path: Path) -> None:
+    path = saved(tmp_path, "a.csv", rows(table() * [-1.0, 1.0], ","))
+    with pytest.warns(wl.UnusualWarning, match="repaired: mirror_y=True"):
+        profile = wl.Profile.model_validate({"file": str(path), "kind": "wheel", "turn": "0.5 deg", "repair": True})
+    assert values(profile) == pytest.approx(turned(table() * [-1.0, 1.0], np.deg2rad(0.5)) * [-1.0, 1.0], abs=1e-5)
+
+
 def test_repair_leaves_points_alone_that_are_in_no_order(tmp_path: Path) -> None:
     mixed = np.random.default_rng(1).permutation(table())
     with pytest.raises(wl.DataError, match="runs back on itself"):
@@ -405,7 +412,7 @@ def test_two_columns_are_read_as_programs_write_them(
     "text",
     [
         "y z\n{}", "Wheel of car 7, worn\n\n{}", "y [mm]\tz [mm]\n{}", "! measured\n# by hand\n{}", "y z angle\n{}",
-        "date 2024\n y  [mm]   z [mm]\n{}",
+        "date 2024\n y  [mm]   z [mm]\n{}", "Y (mm)  Z (mm)\n{}", "Rail 60E1 (worn)\n{}",
     ],
 )  # fmt: skip
 def test_white_space_titles_and_remarks_between_columns(tmp_path: Path, text: str) -> None:
@@ -466,6 +473,8 @@ PARTS += "\n[Profile2Info]\nColumnDef=Y,X\n[Profile2Points]\n" + rows(table()[::
         ("a.csv", "y,z\n1.0,x\n", "line 2, column 'z': 'x'"),
         ("a.csv", "y,z\n1.0,2\n2.0,\n", "line 3, column 'z': is missing"),
         ("a.csv", "y [kg],z [mm]\n1.0,2.0\n", "kg"),
+        ("a.csv", "# y z\n1,5 2,5\n", "line 2: '1,5' has a decimal comma; give decimal=\",\""),
+        ("a.csv", "1,5;2,5\n", "line 1: '1,5' has a decimal comma; give decimal=\",\""),
         ("a.csv", "z\n1.0\n", "line 1: a profile has two columns, y and z, found 1"),
         ("a.xlsx", b"PK\x03\x04\x14\0\x06\0", r"is no spreadsheet in \.xlsx \(.*\); save its sheet as CSV"),
         ("a.csv", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "it is a spreadsheet, not text; save its sheet as CSV"),

@@ -56,7 +56,8 @@ TEXTS = ("file", "file.mtime", "comment", "type", "units.len", "units.ang")
 READ = 40
 """Lines at the top of a file that show its format."""
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
-HEAD = re.compile(r"[yz]|.*\[.*\]")
+DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+", re.ASCII)
+HEAD = re.compile(r"[yz]\s*([\[(].*)?|.*\[.*\]")
 """The head of a column of coordinates."""
 TAPING = "WheelDiameterTaperline"
 """Key of a MiniProf file for the distance of the taping line from the back of the flange."""
@@ -382,24 +383,28 @@ def _tabbed(lines: Sequence[str], sep: str | None, decimal: str) -> str:
     if sep is None:
         points = [text for text in texts if NUMBER.match(text)] or texts
         sep = next((mark for mark in ";,".replace(decimal, "") if any(mark in text for text in points)), " ")
+        for number, text in enumerate(texts, 1):
+            cells = [cell for cell in re.split(r"[\s;]+", text) if DECIMAL_COMMA.fullmatch(cell)]
+            if decimal == "." and len(cells) > 1:
+                raise FileError(f"line {number}: '{cells[0]}' has a decimal comma; give decimal=\",\"")
 
     def cells_of(text: str) -> list[str]:
         if sep == " ":
-            return re.findall(r'[^\s"\[]+(?:\s*\[[^\]]*\])?', text)
+            return re.findall(r'[^\s"\[(]+(?:\s*[\[(][^\])]*[\])])?', text)
         return [" ".join(cell.split()) for cell in next(csv.reader([text], delimiter=sep, skipinitialspace=True), [])]
 
-    def are_numbers(cells: Sequence[str]) -> list[bool]:
-        return [bool(NUMBER.fullmatch(cell.replace(decimal, "."))) for cell in cells]
+    def are_numbers(cells: Sequence[str]) -> bool:
+        return all(NUMBER.fullmatch(cell.replace(decimal, ".")) for cell in cells)
 
     rows, width = [], 0
     for cells in map(cells_of, texts):
-        if not width and cells and not are_numbers(cells[:1])[0]:  # a header or a title
+        if not width and cells and not are_numbers(cells[:1]):  # a header or a title
             names = [HEAD.fullmatch(cell.lower()) for cell in cells]
             cells = cells if any(names) else []
             width = len(cells)
         elif cells:
             width = width or 2
-            cells = cells[:width] if all(are_numbers(cells[:2])) else cells
+            cells = cells[:width] if are_numbers(cells[:2]) else cells
         rows.append("\t".join(cells))
     return "\n".join(rows)
 
