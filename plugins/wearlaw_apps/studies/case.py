@@ -7,6 +7,8 @@ contact model and a law is evaluated. `load_case` reads one from a file, or by t
 from __future__ import annotations
 
 import os
+import re
+import textwrap
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -464,4 +466,10 @@ def written(case: Case) -> dict[str, str]:
     if case.measured is not None and not case.measured.shipped:
         fields["measured"]["tests"] = TESTS_FILE
         files[TESTS_FILE] = without_formulas(case.measured.text)
-    return {CASE_FILE: tomli_w.dumps(fields), **files}
+    text = re.sub(r"\[\n((?: +-?[\d.e+-]+,\n){9,})\]", _on_full_lines, tomli_w.dumps(fields))
+    return {CASE_FILE: text, **files}
+
+
+def _on_full_lines(numbers: re.Match[str]) -> str:
+    """Return a long list of numbers, such as the points of a profile, with as many on a line as fit."""
+    return f"[\n{textwrap.fill(numbers[1], 118, initial_indent='  ', subsequent_indent='  ')}\n]"

@@ -12,7 +12,7 @@ import tomli_w
 
 import wearlaw as wl
 from tests import cases
-from tests.cases import OWN_TESTS, STEEL, case, changed, load, table
+from tests.cases import OWN_TESTS, STEEL, SWEEP, case, changed, load, table
 from wearlaw_apps.output.labels import labels  # private: the names of models in results, without running them
 from wearlaw_apps.studies import Case
 from wearlaw_apps.studies.case import written  # private: a case without its files
@@ -39,6 +39,16 @@ def test_tests_of_a_lab_are_found_from_the_folder_of_the_case_file(
         np.testing.assert_allclose(measured.data.wear_rate.to("ug/m/mm^2").magnitude, [10.0, 40.0], rtol=1e-14)
         assert measured.data.source == "own.csv"
         assert not measured.shipped
+
+
+def test_long_lists_of_a_written_case_stand_on_full_lines_and_are_the_same(tmp_path: Path) -> None:
+    loads = [1.0 / 3.0 * number for number in range(1, 400)]
+    read = load(tmp_path, table(sweeps={"c": {**SWEEP, "friction_coefficient": loads}}))
+    (tmp_path / "again.toml").write_text(written(read)["case.toml"], encoding="utf-8")
+    lines = written(read)["case.toml"].splitlines()
+    assert len(lines) < 150
+    assert max(map(len, lines)) <= 120
+    assert wl.load_case(str(tmp_path / "again.toml")) == read
 
 
 def test_a_case_can_be_written_with_its_tests_to_run_again_anywhere(tmp_path: Path) -> None:
