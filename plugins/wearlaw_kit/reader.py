@@ -15,7 +15,7 @@ from wearlaw.arrays import Array
 from wearlaw.contact import hertz
 from wearlaw.contact.contact import Contact
 from wearlaw.models.reader import Reader
-from wearlaw.units.quantities import Quantity, parse
+from wearlaw.units.quantities import Quantity, parse, scalar_si
 from wearlaw_kit.examples import assert_close
 from wearlaw_kit.reduced import parts_of_power
 from wearlaw_kit.rules import rule
@@ -31,7 +31,7 @@ COARSE = 0.2
 in its simplified theory."""
 
 ASIDE = 0.1
-"""Share of traction times slip that may be across each other, where a program solves dry friction to its tolerance."""
+"""Share of traction times slip by which they may break dry friction, which a program solves to its tolerance."""
 
 FASTEST = 300.0
 """The highest rolling speed that is tried [m/s]."""
@@ -88,6 +88,17 @@ def slip_lies_along_the_traction(reader: Reader) -> None:
     assert (energy >= -PRINTED * energy.max()).all(), "the slip points against the traction"
 
 
+@rule(Reader, "stick")
+def traction_slips_at_its_bound(reader: Reader) -> None:
+    """Where the bodies slip, the traction is at its bound, if that is known."""
+    contact = contact_of(reader)
+    if np.isfinite(contact.traction_bound).all():
+        lacking = np.abs(contact.slip) * (contact.traction_bound - np.abs(contact.traction))
+        whole = contact.integral(np.abs(contact.slip), contact.traction_bound)
+        share = contact.integral(lacking) / whole
+        assert (share <= ASIDE).all(), f"where the bodies slip, {share.max():.2g} of the traction bound is missing"
+
+
 @rule(Reader, always=True)
 def wear_index_is_forces_times_creepages_of_the_file(reader: Reader) -> None:
     """The wear index is ξFx + ηFy + φMz with the creepages of the problem."""
@@ -116,6 +127,9 @@ def problem_is_that_of_the_file(reader: Reader) -> None:
     assert_close(contact.pressure.max(axis=nodes), problem.max_pressure, "the largest pressure", 0.25)
     assert (problem.rolling_speed <= FASTEST).all(), f"the rolling speed is {problem.rolling_speed.max():g} m/s"
     bodies = [*problem.bodies.values()]
+    for body in bodies[:1]:
+        density = np.asarray(scalar_si(body.material.density, "kg/m^3"))
+        assert_close(problem.density, density, "the density of the problem, against its first body", PRINTED)
     if len(bodies) == 2:
         constants = [constant for body in bodies for constant in (body.youngs_modulus, body.material.poisson_ratio)]
         due: Array = np.asarray(hertz.effective_modulus(*constants))

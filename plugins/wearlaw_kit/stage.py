@@ -21,7 +21,17 @@ from wearlaw_kit.contact import assert_digits
 from wearlaw_kit.examples import assert_close
 from wearlaw_kit.reduced import creeping, parts_of_power, random_lines
 from wearlaw_kit.rules import rule
-from wearlaw_kit.shapes import INSIDE, LINE, Shape, assert_same_forces, forces_as, kept_shapes, of_stage, with_bodies
+from wearlaw_kit.shapes import (
+    ELLIPSE,
+    INSIDE,
+    LINE,
+    Shape,
+    assert_same_forces,
+    forces_as,
+    kept_shapes,
+    of_stage,
+    with_bodies,
+)
 
 POINTS = 24
 """Operating points at which a stage is tried."""
@@ -169,17 +179,16 @@ def _same_bodies(after: Problem, before: Problem) -> bool:
 
 @rule(Stage)
 def stages_act_on_each_shape(stage: Stage) -> None:
-    """A stage that changes the contact on a line changes that on an ellipse and on strips too."""
-    acts = {}
-    for shape in kept_shapes():
+    """A stage that changes the contact on a line changes that on an ellipse too; strips have a given pressure."""
+    acts = []
+    for shape in (LINE, ELLIPSE):
         problem = shape.draw(POINTS)
         before = loader.contact_model(INSIDE[shape.geometry]).solve(problem)
         after = _kept(stage, shape, problem)[-1]
-        acts[shape] = any(
-            not np.array_equal(getattr(before, name), getattr(after, name)) for name in (*TOTALS, "pressure", "slip")
-        )
-    for shape, acted in acts.items():
-        assert acted or not acts.get(LINE), f"{shape.where}the stage changes nothing, but on a line it does"
+        names = (*TOTALS, "pressure", "slip")
+        acts.append(any(not np.array_equal(getattr(before, name), getattr(after, name)) for name in names))
+    on_line, on_ellipse = acts
+    assert on_ellipse or not on_line, "on an ellipse the stage changes nothing, but on a line it does"
 
 
 @rule(Stage, "continuity")

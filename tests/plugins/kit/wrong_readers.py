@@ -37,6 +37,14 @@ CHANGES: dict[str, tuple[str, Callable[[wl.Contact], wl.Contact]]] = {
     "SwappedSlip": ("slip_lies_along_the_traction", lambda c: c.replaced(slip_x=c.slip_y, slip_y=c.slip_x)),
     "HalfTheIndex": ("wear_index_is_forces_times_creepages_of_the_file", lambda c: scaled(c, 0.5, "wear_index")),
     "HalfTheSlip": ("elements_dissipate_the_wear_index", lambda c: scaled(c, 0.5, "slip", "slip_x", "slip_y")),
+    "HalfTheTraction": (
+        "traction_slips_at_its_bound",
+        lambda c: scaled(c, 0.5, "traction", "traction_x", "traction_y", "tangential_force", "force_x", "force_y"),
+    ),
+    "OtherDensity": (
+        "problem_is_that_of_the_file",
+        lambda c: scaled(of_problem(c, 1.1, "density"), 1.1, "density"),
+    ),
     "OtherLoad": ("problem_is_that_of_the_file", lambda c: of_problem(c, 1.1, "normal_force")),
     "OtherStiffness": ("problem_is_that_of_the_file", lambda c: of_problem(c, 0.5, "effective_modulus")),
     "KilometresPerHour": (
