@@ -23,9 +23,9 @@ JUMP = 1e-6
 """Share of the function's value that counts as a jump. A square root, the steepest onset in theories of contact,
 changes by √(2^-46) = 1.2e-7 over the last interval."""
 
-FIRST_HALVINGS = 3
-"""Halvings after which an interval is given up whose two halves change alike: a jump lies in one of them. To hide it, a
-curved function would have to undo it to a share of `jump`, in this half as in those before."""
+FIRST_HALVINGS = 1
+"""Halvings after which an interval is given up whose two halves change alike, in this halving and in the one before: a
+jump lies in one of them. To hide it, a curved function would have to undo it twice, to a share of `jump`."""
 
 HALVINGS_OF_KINKS = 24
 """From 1/128 to h = 4.7e-10. There the slope of a smooth function whose logarithm has the slope n changes by the share
@@ -73,6 +73,7 @@ def find_jumps(
     low, high = np.tile(edges[:-1], count), np.tile(edges[1:], count)
     at_low, at_high = function(index, low), function(index, high)
     size = np.maximum(jump * np.maximum(np.abs(at_low), np.abs(at_high)), np.broadcast_to(least, count)[index])
+    uneven_before = np.full_like(low, np.inf)
     for halving in range(HALVINGS):
         middle = 0.5 * (low + high)
         at_middle = function(index, middle)
@@ -81,9 +82,10 @@ def find_jumps(
         low, at_low = np.where(left, low, middle), np.where(left, at_low, at_middle)
         high, at_high = np.where(left, middle, high), np.where(left, at_middle, at_high)
         if halving >= FIRST_HALVINGS:
-            kept = np.flatnonzero((uneven > size) & (np.abs(at_high - at_low) > size))
-            index, size = index[kept], size[kept]
+            kept = np.flatnonzero((np.maximum(uneven, uneven_before) > size) & (np.abs(at_high - at_low) > size))
+            index, size, uneven = index[kept], size[kept], uneven[kept]
             low, high, at_low, at_high = low[kept], high[kept], at_low[kept], at_high[kept]
+        uneven_before = uneven
         if not index.size:
             break
     return list(zip(index.tolist(), high.tolist(), at_low.tolist(), at_high.tolist(), strict=True))

@@ -162,7 +162,8 @@ def of_the_documentation(tmp_path_factory: pytest.TempPathFactory) -> Iterator[d
     """Return the models that the pages about plugins write, by their modules."""
     folder, docs = tmp_path_factory.mktemp("plugins"), Path(__file__).parents[3] / "docs"
     text = "\n".join((docs / f"{page}.md").read_text(encoding="utf-8") for page in PAGES)
-    for name, block in re.findall(r":caption: (?:[\w-]+/)?(\w+\.py)\n\n(.*?)\n```", text, re.DOTALL):
+    for name, block in re.findall(r":caption: (?:[\w-]+-\w+/)?((?:\w+/)?\w+\.py)\n\n(.*?)\n```", text, re.DOTALL):
+        (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(block, encoding="utf-8")
     with pytest.MonkeyPatch.context() as patched:
         patched.syspath_prepend(str(folder))
