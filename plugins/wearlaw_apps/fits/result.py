@@ -25,7 +25,7 @@ from wearlaw.models.law import WEAR, Law
 from wearlaw.text_files import reason_of
 from wearlaw.units.quantities import Q, Quantity, from_si, in_unit, real_array
 from wearlaw.units.registry import si_factor, symbol
-from wearlaw.units.variables import UNITS, name_of
+from wearlaw.units.variables import UNITS, VARIABLES, name_of
 from wearlaw.version import __version__
 from wearlaw_apps.fits.lack_of_fit import SAME, LackOfFit
 from wearlaw_apps.fits.observations import TRACTION, Observations, Scatter, wear_index_density
@@ -34,6 +34,7 @@ from wearlaw_apps.output.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw_apps.output.labels import label
 from wearlaw_apps.output.parity import parity_panels
 from wearlaw_apps.output.plot import Log, plotted
+from wearlaw_apps.output.styled import latex_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,6 +44,9 @@ if TYPE_CHECKING:
 
 WEAR_INDEX_DENSITY = "wear_index_density"
 """The variable over which wear is drawn if creepage alone varies."""
+
+LONGEST = 6
+"""Most letters of a parameter's name that is its symbol, such as "tr_sc"."""
 
 BETWEEN = 8
 """Points of a curve between two tests."""
@@ -216,6 +220,18 @@ class Fit:
         }
         return pd.DataFrame(columns)
 
+    def to_latex(self) -> str:
+        """Return the parameters by their symbols, with their intervals, as a tabular of LaTeX with booktabs."""
+        rows = {
+            "parameter": [symbol_of(name) for name in self.parameters],
+            "value": [f"{value.magnitude:.4g}" for value in self.parameters.values()],
+            f"{self.confidence:.0%} interval": [
+                f"{low.magnitude:.3g} to {high.magnitude:.3g}" for low, high in self.intervals.values()
+            ],
+            "unit": [symbol(value.units, "~P") for value in self.parameters.values()],
+        }
+        return latex_table(pd.DataFrame(rows))
+
     def to_toml(self, path: str | os.PathLike[str]) -> None:
         """Write the fitted law and its provenance to a file that `read_law` reads.
 
@@ -251,7 +267,7 @@ class Fit:
         fitted values are a line with the band of the bootstrap replicates if one condition varies, and else points.
         """
         panels = tuple(_panel(self, observed, x) for observed in self.observations)
-        names, band = ", ".join(self.parameters), f"{self.confidence:.0%} of the bootstrap replicates"
+        names, band = ", ".join(map(symbol_of, self.parameters)), f"{self.confidence:.0%} of the bootstrap replicates"
         return FigureData("fit", f"Fit of {names}", panels, f"{names} fitted to {self.tests.source or 'tests'}.", band)
 
     def plot(
@@ -325,6 +341,12 @@ class Fit:
         for text in self.conversions:
             yield "converted", text
         yield "intervals", f"{self.confidence:.0%}, {self.interval_method}"
+
+
+def symbol_of(parameter: str) -> str:
+    """Return the symbol of a parameter, such as "μ", or else its name, which of laws is the symbol, or words."""
+    known = VARIABLES.get(parameter)
+    return (known and known.symbol) or (parameter if len(parameter) <= LONGEST else parameter.replace("_", " "))
 
 
 def _plural(observable: str) -> str:

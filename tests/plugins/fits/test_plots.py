@@ -82,3 +82,18 @@ def test_a_fit_of_several_conditions_is_drawn_as_points_over_one_of_them() -> No
     assert fitted_points.hollow
     assert measured.x == pytest.approx([5.0, 6.0, 7.0, 8.0])
     assert fitted_points.y / measured.y == pytest.approx(fit.residuals["predicted/measured"], rel=1e-9)
+
+
+def test_parameters_are_shown_by_their_symbols() -> None:
+    fit, _ = fitted("7 kN")
+    assert fit.figure_data().title == "Fit of mass per energy"
+    traction = WearTests.from_arrays(
+        **TEST | {"friction_coefficient": None}, normal_force="7 kN", traction_coefficient=[0.2, 0.31, 0.33, 0.32]
+    )
+    of_friction = wl.fit(EXACT, traction, ["friction_coefficient"], bootstrap=0)
+    assert of_friction.figure_data().title == "Fit of μ"
+    low, high = (f"{end.magnitude:.3g}" for end in fit.intervals["mass_per_energy"])
+    table = fit.to_latex()
+    assert r"95\% interval" in table
+    assert f"mass per energy & {fit.parameters['mass_per_energy'].magnitude:.4g} & {low} to {high} &" in table
+    assert r"\toprule" in table
