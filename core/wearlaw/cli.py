@@ -29,10 +29,6 @@ def commands() -> dict[str, Command]:
     return dict(sorted((from_plugins | {command.name: command for command in OWN}).items()))
 
 
-PLUGIN = "--plugin"
-"""The option of all commands that uses a file as a plugin."""
-
-
 class Stopped(click.ClickException):
     """The line that an interrupted command prints."""
 
@@ -76,12 +72,17 @@ class _Commands(click.Group):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Use the files of `--plugin`, which may stand anywhere, before anything is looked up."""
-        for place in [place for place, arg in enumerate(args) if arg == PLUGIN][::-1]:
-            if place + 1 == len(args):
-                raise click.UsageError(f"{PLUGIN} needs a file", ctx)
-            args[:0] = [f"{PLUGIN}={args.pop(place + 1)}"]
-            del args[place + 1]
-        return super().parse_args(ctx, args)
+        others, left = [], iter(args)
+        for arg in left:
+            option, _, file = arg.partition("=")
+            if option != "--plugin":
+                others.append(arg)
+                continue
+            try:
+                loader.use(file or next(left))
+            except (StopIteration, WearlawError) as error:
+                raise click.UsageError(str(error) or "--plugin needs a file", ctx) from None
+        return super().parse_args(ctx, others)
 
     def invoke(self, ctx: click.Context) -> Any:
         before = warnings.formatwarning  # it shows the place in the code, which helps nobody at a prompt
@@ -96,15 +97,6 @@ class _Commands(click.Group):
             warnings.formatwarning = before
 
 
-def _use(ctx: click.Context, _: click.Parameter, files: tuple[str, ...]) -> None:
-    """Use files as plugins."""
-    for file in files:
-        try:
-            loader.use(file)
-        except WearlawError as error:
-            raise click.UsageError(str(error), ctx) from None
-
-
 class _Missing(click.Command):
     """A command whose packages are not installed: its help says so, and an error if it is called."""
 
@@ -116,8 +108,6 @@ class _Missing(click.Command):
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="wearlaw")
-@click.option(PLUGIN, "plugins", multiple=True, metavar="FILE", is_eager=True, callback=_use, expose_value=False,
-              help="Use a Python file as a plugin, as wl.use does; may stand after the command, too.")  # fmt: skip
 def main() -> None:
     """Predict rolling-contact wear of wheels and rails.
 
@@ -133,6 +123,8 @@ def main() -> None:
       wearlaw wear case.0001.mat --law usfd the wear of a contact that another program solved
       wearlaw life my.toml line.csv --help  how a wheel wears on a line
       wearlaw new-plugin NAME --wear-law    your own wear law
+
+    --plugin my_law.py, in any command, uses a Python file as a plugin.
     """  # noqa: D301  (\b tells click to keep the lines)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):

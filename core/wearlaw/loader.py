@@ -112,11 +112,8 @@ class Shelf:
 
     def distribution(self, name: str, item: object = None) -> str:
         """Return distribution and version of the item with a name; if `item` is given, it must be that item."""
-        try:
-            origin = self.origin(name, item)
-        except StopIteration:
-            return "not installed"
-        return f"{origin.distribution} {origin.version}"
+        found = (f"{one.distribution} {one.version}" for it, one in self.named(name) if item is None or it is item)
+        return next(found, "not installed")
 
     def items(self) -> dict[str, Any]:
         """Return all items by name; of items that share one, that of wearlaw or none."""

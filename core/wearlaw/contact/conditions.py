@@ -61,6 +61,10 @@ Creepage: TypeAlias = Annotated[QuantityLike, Unit("", positive=False, limit=1.0
 """A creepage: a ratio or in percent, of magnitude at most 1."""
 
 
+UNKNOWN = (-np.inf, np.inf)
+"""The usual range of a condition that states none."""
+
+
 @dataclass(frozen=True)
 class Condition:
     """A condition that a rig takes, or that a contact model, a stage or a law declares.
@@ -97,14 +101,6 @@ class Condition:
         middle = 1.0 if self.unit is None or self.unit.usual is None else 0.5 * sum(self.unit.usual)
         return middle if self.unit is None else f"{middle:.6g} {self.unit.unit or 'dimensionless'}"
 
-    @property
-    def range(self) -> tuple[float, float]:
-        """The range in SI that is both possible and usual."""
-        unit = self.unit or Unit("", positive=self.check is not None)
-        low = 0.0 if unit.positive or not unit.negative else -unit.limit
-        factor, (least, most) = unit_in_si(unit.unit), unit.usual or (-np.inf, np.inf)
-        return max(low, least) * factor, min(unit.limit, most) * factor
-
     def __str__(self) -> str:
         unit = self.unit or Unit("")
         usual = "" if unit.usual is None else ", usually {:g} to {:g}".format(*unit.usual)
@@ -119,9 +115,11 @@ class Condition:
         """Return whether a value can be both this condition and another one of the same name."""
         if None in (self.check, other.check):  # the rig does not declare it
             return True
-        if not alike(*(one.unit.unit if one.unit else "" for one in (self, other))):
+        first, second = (one.unit or Unit("") for one in (self, other))
+        if not alike(first.unit, second.unit):
             return False
-        (low, high), (least, most) = self.range, other.range
+        usual = ((end * unit_in_si(unit.unit) for end in unit.usual or UNKNOWN) for unit in (first, second))
+        (low, high), (least, most) = usual
         return low <= most and least <= high
 
     @property

@@ -10,6 +10,7 @@ from typing import Any
 
 import jsonschema  # type: ignore[import-untyped]
 import numpy as np
+import pandas as pd
 import pytest
 from click.testing import CliRunner
 
@@ -24,6 +25,7 @@ from wearlaw_apps.studies.case import case_schema  # private: the schema of the 
 LAW = '''
 from typing import Annotated, ClassVar, TypedDict
 import numpy as np
+import pandas as pd
 import wearlaw as wl
 
 
@@ -96,10 +98,7 @@ friction_coefficient = 0.4
 relative_humidity = {uniform = ["20 %", "80 %"]}
 """
 
-pytestmark = [
-    pytest.mark.filterwarnings(f"ignore::wearlaw.{kind}")
-    for kind in ("CalibrationWarning", "PlasticityWarning", "RangeWarning", "FitWarning")
-]
+pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 
 RIG: Any = wl.TwinDisc.suros()
 AT: dict[str, Any] = {"max_pressure": "600 MPa", "creepage": "1 %", "friction_coefficient": 0.4}
@@ -230,3 +229,18 @@ def test_a_wheelset_has_the_condition_in_all_its_patches_and_balances_its_loads_
     assert by_stage == pytest.approx(by_hand.longitudinal_force.m_as("N")[:, 0], rel=1e-3)  # of the balance
     with pytest.raises(wl.ConditionsError, match="relative_humidity: must be one value"):
         moist(**at, relative_humidity=Q([20, 60], "%"))
+
+
+def test_the_states_of_a_life_have_the_condition_as_a_column() -> None:
+    """Half of the distance at RH = 0, half at 50 %, in one state: the mass is (1 + 1/e)/2 of that in dry air."""
+    rig: Any = wl.installed("rig")["wheelset"]
+    wheelset = wl.rig("wheelset", **rig.example_fields)
+    predict = wheelset | wl.contact_model("strip_theory") | wl.wear_law("humid")
+    given: Any = {"vertical_load": "60 kN", "friction_coefficient": 0.3, "yaw": "4 mrad"}
+    mass = []
+    for humidity in (0.0, 50.0):
+        head = {"lateral_displacement [mm]": [3.0, 3.0], "share": [0.5, 0.5]}
+        states = pd.DataFrame({**head, "relative_humidity [%]": [0.0, humidity]})
+        life = wl.wear_out(predict, states, over="1 km", **given)
+        mass.append(float(life.table["mass [kg]"].iloc[-1]))
+    assert mass[1] / mass[0] == pytest.approx(0.5 * (1.0 + np.exp(-1.0)), rel=1e-3)  # the profiles wear differently
