@@ -148,6 +148,7 @@ MODELS_OF_THE_DOCUMENTATION = {
     "wearlaw_rigid_ellipse": "RigidEllipse",
     "wearlaw_wet": "Wet",
     "wearlaw_roller": "Roller",
+    "wearlaw_patches": "Patches",
 }
 """Classes of models by their modules."""
 FIELDS_OF_THE_DOCUMENTATION = {
