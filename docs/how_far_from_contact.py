@@ -1,4 +1,4 @@
-"""Writes the tables of the page "How far from CONTACT": each pressure and each contact model beside CONTACT, by place.
+"""Writes the tables of the page "How far from CONTACT": strips and ellipses with each contact model beside CONTACT.
 
 `python -m docs.how_far_from_contact` does so. Where CONTACT has no result, the reference is wearlaw's `half_space`.
 Signs are CONTACT's.
@@ -20,13 +20,17 @@ import pandas as pd
 from scipy.interpolate import PchipInterpolator
 
 import wearlaw as wl
-from docs.wheelset_benchmark import DATA, in_track, reference, wheelset
+from docs.wheelset_benchmark import DATA, Patch, in_track, reference, wheelset
 from wearlaw import Array, Q
 
 FOLDER = Path(__file__).parent / "how-far-from-contact"
-Pressure = Literal["hertz", "kpec", "half_space"]
-PRESSURES: tuple[Pressure, ...] = ("hertz", "kpec", "half_space")
-MODELS = ("fastsim", "strip_theory", "half_space")
+CELLS = 60
+CHOICES: tuple[tuple[Patch, str], ...] = (
+    ("ellipse", "fastsim"), ("ellipse", "half_space"),
+    ("strips", "fastsim"), ("strips", "strip_theory"), ("strips", "half_space"),
+)  # fmt: skip
+"""What contact models get of a patch, and the models."""
+EXACT = CHOICES[-1]
 FRICTION, RIGHT, SPEED, RADIUS = 0.3, 1, 2.0, 0.46
 CONTACT, HALF_SPACE = "CONTACT", "`half_space`"
 BEYOND = 1e3
@@ -122,13 +126,13 @@ def manchester_rows() -> list[int]:
     return [round(2.0 * case.displacement) for case in MANCHESTER]
 
 
-def computed(group: tuple[Case, ...], pressure: Pressure, model: str) -> tuple[list[Result], float]:
+def computed(group: tuple[Case, ...], patch: Patch, model: str) -> tuple[list[Result], float]:
     """Return wearlaw's results of a group of cases, and the processor time that they took [s]."""
-    rig = wheelset(pressure)
-    predict: Any = rig | wl.contact_model(model)
+    rig = wheelset(patch)
+    predict: Any = rig | wl.contact_model(model, **{"cells": CELLS} if model == "half_space" else {})
     frictionless: Any = rig | wl.contact_model("fastsim")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)  # wheels climb, steel yields, strips have two humps
+        warnings.simplefilter("ignore", wl.WearlawWarning)  # wheels climb
         start = time.process_time()
         r = predict(**conditions(group))
         taken = time.process_time() - start
@@ -170,6 +174,7 @@ def rows_of(rig: Any, r: Any, case: int) -> Iterator[Rows]:
         at = case, RIGHT, patch
         y, width = 1e3 * contact.y[at][0], 1e3 * contact.strip_width[at]
         order, cosine = np.argsort(y), np.cos(problem.contact_angle[at])
+        order = order[width[order] > 0.0]  # patches with fewer rows than others are filled up
         yield Rows(
             (middle[patch] + cosine * y)[order],
             (cosine * width)[order],
@@ -259,29 +264,23 @@ def differences(ours: Result, due: Result) -> tuple[float, ...]:
 
 
 class Computed(NamedTuple):
-    """The references of the cases, wearlaw's results by pressure and model, and the time of a wheel [s]."""
+    """The references of the cases, wearlaw's results by patch and model, and the time of a wheel [s]."""
 
     due: dict[Case, Result]
-    ours: dict[tuple[Pressure, str], dict[Case, Result]]
-    taken: dict[tuple[Pressure, str], float]
+    ours: dict[tuple[Patch, str], dict[Case, Result]]
+    taken: dict[tuple[Patch, str], float]
 
 
 def compute() -> Computed:
-    """Return all results: a minute's work."""
+    """Return all results: some minutes' work."""
     due = {case: one for group in (SERVICE, MANCHESTER) for case, one in zip(group, of_contact(group), strict=True)}
-    ours: dict[tuple[Pressure, str], dict[Case, Result]] = {}
-    taken: dict[tuple[Pressure, str], float] = {}
-    for pressure in PRESSURES:
-        for model in MODELS:
-            found, spent = zip(*(computed(group, pressure, model) for group in GROUPS), strict=True)
-            ours[pressure, model] = {
-                case: one
-                for group, results in zip(GROUPS, found, strict=True)
-                for case, one in zip(group, results, strict=True)
-            }
-            taken[pressure, model] = sum(spent) / (2 * len(CASES))
-    exact = ours["half_space", "half_space"]
-    return Computed(due | {case: exact[case] for case in OTHERS}, ours, taken)
+    ours: dict[tuple[Patch, str], dict[Case, Result]] = {}
+    taken: dict[tuple[Patch, str], float] = {}
+    for choice in CHOICES:
+        found, spent = zip(*(computed(group, *choice) for group in GROUPS), strict=True)
+        ours[choice] = dict(zip(itertools.chain(*GROUPS), itertools.chain(*found), strict=True))
+        taken[choice] = sum(spent) / (2 * len(CASES))
+    return Computed(due | {case: ours[EXACT][case] for case in OTHERS}, ours, taken)
 
 
 Table = list[tuple[str, ...]]
@@ -302,37 +301,28 @@ def tables(found: Computed) -> dict[str, str]:
         ))  # fmt: skip
     by_place = {"cases": lines, "summary": summary(found)}
     for place in PLACES:
-        lines = [("load [kN]", "displacement [mm]", "yaw [mrad]", "`pressure`", "model", *DIFFERENCES)]
+        lines = [("load [kN]", "displacement [mm]", "yaw [mrad]", "`patch`", "model", *DIFFERENCES)]
         for case in CASES:
             if case.place != place:
                 continue
-            for (pressure, model), results in found.ours.items():
-                if case.reference == HALF_SPACE and pressure == model == "half_space":
+            for choice, results in found.ours.items():
+                if case.reference == HALF_SPACE and choice == EXACT:
                     continue
                 values = zip(differences(results[case], found.due[case]), DIFFERENCES.values(), strict=True)
                 cells = ("" if np.isnan(value) else f"{round(value, n) + 0.0:+.{n}f}" for value, n in values)
-                lines.append((*named(case), f"`{pressure}`", f"`{model}`", *cells))
+                lines.append((*named(case), *(f"`{name}`" for name in choice), *cells))
         by_place[place] = lines
-    by_place["times"] = [("`pressure`", *(f"`{model}` [ms]" for model in MODELS))]
-    for pressure in PRESSURES:
-        taken = (f"{1e3 * found.taken[pressure, model]:.2g}" for model in MODELS)
-        by_place["times"].append((f"`{pressure}`", *taken))
+    by_place["times"] = [("`patch`", "model", "time [ms]")]
+    by_place["times"] += [(*(f"`{name}`" for name in choice), f"{1e3 * t:.2g}") for choice, t in found.taken.items()]
     return {name: as_csv(rows) for name, rows in by_place.items()}
-
-
-SUMMED: tuple[tuple[Pressure, str], ...] = (
-    ("hertz", "fastsim"), ("kpec", "fastsim"), ("kpec", "strip_theory"), ("half_space", "strip_theory"),
-    ("half_space", "half_space"),
-)  # fmt: skip
-"""Pressures and models of the summary."""
 
 
 def summary(found: Computed) -> Table:
     """Return the largest differences at each place from the cases that CONTACT solved, or else `half_space`."""
-    lines: Table = [("place", "`pressure`", "model", "cases", *DIFFERENCES)]
-    for place, chosen in itertools.product(PLACES, SUMMED):
+    lines: Table = [("place", "`patch`", "model", "cases", *DIFFERENCES)]
+    for place, chosen in itertools.product(PLACES, CHOICES):
         cases = [case for case in CASES if case.place == place and (case.reference == CONTACT or place == "yaw")]
-        if place == "yaw" and chosen == ("half_space", "half_space"):
+        if place == "yaw" and chosen == EXACT:
             continue
         each = [np.abs(differences(found.ours[chosen][case], found.due[case])) for case in cases]
         most = zip(np.fmax.reduce(each), DIFFERENCES.values(), strict=True)  # NaN where CONTACT's rows are not known

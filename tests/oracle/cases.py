@@ -21,7 +21,7 @@ RIGS: dict[str, wl.Rig] = {
     "twin_disc": wl.TwinDisc.suros(),
     "wheel_rail": wl.rig("wheel_rail", **WHEEL_RAIL),
     "wheelset": wl.rig("wheelset", **WHEELSET),
-    "wheelset of ellipses": wl.rig("wheelset", **WHEELSET, pressure="hertz"),
+    "wheelset of ellipses": wl.rig("wheelset", **WHEELSET, patch="ellipse"),
 }
 OTHER_RIGS: dict[str, wl.Rig] = {
     "twin_disc, mean speed": wl.TwinDisc.suros(speed_of="mean", track_width="8 mm"),
@@ -30,7 +30,7 @@ OTHER_RIGS: dict[str, wl.Rig] = {
     "wheel_rail, hollow": wl.rig("wheel_rail", **WHEEL_RAIL, wheel_profile_radius="-400 mm"),
     "wheel_rail, at an angle": wl.rig("wheel_rail", **WHEEL_RAIL, contact_angle="40 deg"),
     "wheel_rail, on bronze": wl.rig("wheel_rail", **WHEEL_RAIL, rail_material=BRONZE),
-    "wheelset, worn": wl.rig("wheelset", **WHEELSET | {"wheel": HOLLOW, "strips": 31}),
+    "wheelset, worn": wl.rig("wheelset", **WHEELSET | {"wheel": HOLLOW}),
     "wheelset, on bronze": wl.rig("wheelset", **WHEELSET | {"rail_material": BRONZE, "rail_cant": "1:20"}),
 }  # fmt: skip
 

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import csv
 import io
-import warnings
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
-import wearlaw as wl
 from docs import how_far_from_contact as page
 from docs.how_far_from_contact import SERVICE, Case, Computed, Rows, compute, of_contact, placed, service
-from docs.wheelset_benchmark import wheelset
 from tests import wheel_on_rail
-from wearlaw_models.rigs.wheelset.half_space import pressed  # private: the normal problem, against its theory
+from tests.normal_half_space import pressed
 
 MODULUS = 82e9 / (1.0 - 0.28)
 
@@ -56,7 +52,7 @@ def test_the_tables_are_what_the_script_writes_within_a_last_digit(computed: Com
 
 @pytest.mark.validates(
     "wheelset",
-    '`pressure="half_space"` with `strip_theory` and `half_space`: power by row in full slip, 80 kN a wheel, at seven'
+    "`strip_theory` and `half_space` on strips: power by row in full slip, 80 kN a wheel, at seven"
     " positions from the tread over two humps to the root",
     source="CONTACT (Vollebregt), half-space theory, rows of 0.4 mm",
     held_to="{misplaced:.0%} of the power in other rows, and {peak:.0%} of the largest row, but where CONTACT has eight"
@@ -67,7 +63,7 @@ def test_the_tables_are_what_the_script_writes_within_a_last_digit(computed: Com
 def test_power_by_row_is_contacts(computed: Computed, misplaced: float, peak: float) -> None:
     for model in ("strip_theory", "half_space"):
         for case in SERVICE[:-1]:
-            rows = placed(computed.ours["half_space", model][case], computed.due[case])
+            rows = placed(computed.ours["strips", model][case], computed.due[case])
             assert rows.misplaced < misplaced, (model, case)
             assert abs(rows.peak) < peak or case in NARROW, (model, case)
 
@@ -85,33 +81,12 @@ def test_strips_in_full_slip_have_the_power_by_row_of_half_spaces(
 ) -> None:
     for case in SERVICE:
         ours, due = (
-            np.concatenate([rows.width * rows.energy for rows in computed.ours["half_space", model][case].rows])
+            np.concatenate([rows.width * rows.energy for rows in computed.ours["strips", model][case].rows])
             for model in ("strip_theory", "half_space")
         )
         ours, due = ours / ours.sum(), due / due.sum()
         assert 0.5 * np.abs(ours - due).sum() < misplaced, case
         assert ours.max() == pytest.approx(due.max(), rel=peak), case
-
-
-@pytest.mark.validates(
-    "wheelset",
-    "Maximum pressure and area on half-spaces at the positions of the page beside CONTACT, on 40 rows",
-    source="the same on 80 rows",
-    held_to="{within:.0%}",
-    within=0.01,
-)
-def test_pressures_of_half_spaces_are_those_of_a_finer_grid(within: float) -> None:
-    for group in page.GROUPS:
-        found = []
-        for strips in (20, 40):
-            rig = wheelset("half_space").model_copy(update={"strips": strips})
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", wl.WearlawWarning)  # wheels climb, and steel yields
-                problem = (rig | wl.contact_model("fastsim")).posed(page.conditions(group))
-            assert problem.strips is not None
-            found.append((problem.max_pressure[:, 1, 0], problem.strips.area[:, 1, 0].sum(axis=-1)))
-        for one, other in zip(*found, strict=True):
-            assert one == pytest.approx(other, rel=within)
 
 
 def in_space(case: Case, row: float) -> tuple[Any, Rows]:
@@ -127,12 +102,8 @@ def in_space(case: Case, row: float) -> tuple[Any, Rows]:
         border=wheel_on_rail.UIC_60,
     )  # fmt: skip
     every = round(row / 0.1)
-    height, cell = 1e-3 * np.ascontiguousarray(gap.height[::4, ::every]), 0.4e-3 * 1e-3 * row
-
-    def solved(depth: float) -> Any:
-        return pressed(height, 0.4e-3, 1e-3 * row, MODULUS, depth)
-
-    pressure = solved(brentq(lambda depth: solved(depth).sum() * cell - contact.fn, 3e-5, 3e-4, xtol=1e-10))
+    height = 1e-3 * np.ascontiguousarray(gap.height[::4, ::every])
+    pressure = pressed(height, 0.4e-3, 1e-3 * row, MODULUS, contact.fn).pressure
     cosine, force = np.cos(contact.delta), 1e-3 * 0.4e-3 * pressure.sum(axis=0)
     across = contact.y + cosine * gap.t[::every]
     return pressure, Rows(across, np.full(across.size, row * cosine), force / cosine, np.nan * force)
@@ -150,7 +121,7 @@ def test_where_a_hump_is_narrow_the_difference_is_that_of_contacts_rows(computed
     area = (fine > 0.0).sum() * 0.04
     assert area < 0.98 * contact.area
     for model in ("strip_theory", "half_space"):
-        ours = computed.ours["half_space", model][case]
+        ours = computed.ours["strips", model][case]
         # The area of strips is that of half ellipses with their force and greatest pressure.
         assert ours.area == pytest.approx(area, rel=0.03)
         found = placed(ours, contact._replace(rows=(merged(rows),)), "force")
@@ -169,6 +140,6 @@ def merged(rows: Rows) -> Rows:
 def test_fastsim_misplaces_a_sixteenth_of_the_power_on_the_tread(computed: Computed) -> None:
     tread = [case for case in SERVICE if case.place == "tread"]
     for case in tread:
-        rows = placed(computed.ours["half_space", "fastsim"][case], computed.due[case])
+        rows = placed(computed.ours["strips", "fastsim"][case], computed.due[case])
         assert 0.05 < rows.misplaced < 0.09
         assert 0.13 < rows.peak < 0.20

@@ -151,9 +151,11 @@ def _patterns(table: Table, columns: Columns) -> tuple[dict[str, Pattern], dict[
         fits[name] = {}
         for column in table.heads:
             if match := re.fullmatch(expression, column.name):
-                fits[name][tuple(match[dim] for dim in dims[name])] = PLACE.sub(lambda place: match[place[1]], text)
+                label = match.groupdict()
+                head = PLACE.sub(lambda place, label=label: label[place[1]], text)  # type: ignore[misc]
+                fits[name][tuple(label[dim] for dim in dims[name])] = head
                 for dim in dims[name]:
-                    labels.setdefault(dim, {})[match[dim]] = None
+                    labels.setdefault(dim, {})[label[dim]] = None
         if not fits[name]:
             heads = ", ".join(f"'{column.head}'" for column in table.heads[:LISTED])
             raise DataError(f"{table.label}: {name}: no column fits '{text}'. The columns are {heads}")

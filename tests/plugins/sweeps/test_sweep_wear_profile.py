@@ -125,8 +125,8 @@ def test_a_sweep_names_the_verb_for_profiles() -> None:
 
 
 def test_a_row_without_a_balance_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Few steps balance the loads in the middle of the track, and fail where the load jumps."""
-    monkeypatch.setattr("wearlaw_models.rigs.wheelset.loads.STEPS", 3)  # private: the steps of a search
+    """Few rounds balance the loads in the middle of the track, and do not on a flange."""
+    monkeypatch.setattr("wearlaw_models.rigs.wheelset.stand.STEPS", 3)  # private: the rounds of a search
     table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 6.31], "share": 0.5})
     with pytest.raises(wl.DataError, match=r"row 1 .*lateral_displacement = 6.31 mm.*no normal forces balance"):
         wl.wear_profiles(PREDICT, table, share="share", **GIVEN)

@@ -229,6 +229,7 @@ def difference(problem: Any, side: int, due: Pressed, load: float) -> Difference
     for place, y, width, force in zip(
         middle, strips.y[side][exists], strips.width[side][exists], strips.normal_force[side][exists], strict=True
     ):
+        y, width, force = (array[width > 0.0] for array in (y, width, force))  # without strips that only fill up
         order = np.argsort(way * y)
         borders = place + way * y[order][0] + np.concatenate([[0.0], np.cumsum(width[order])]) - 0.5 * width[order][0]
         sums.append((borders, np.concatenate([[0.0], np.cumsum(force[order])])))

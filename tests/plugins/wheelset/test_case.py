@@ -96,7 +96,8 @@ def test_a_study_of_a_wheelset_reports_contact_points_forces_and_wear(study: wl.
     assert [*table["side"]] == ["left", "right"]
     load = table["normal force [kN]"] * np.cos(np.radians(table["contact angle [deg]"]))
     load += table["lateral force [kN]"] * np.sin(np.radians(table["contact angle [deg]"]))
-    np.testing.assert_allclose(load, 50.0, rtol=1e-7)
+    # Rows that bend by 0.05 rad carry less than their sum, by half of the square of that.
+    np.testing.assert_allclose(load, 50.0, rtol=0.05**2 / 2.0)
 
 
 def test_wear_in_the_report_is_that_of_the_prediction(study: wl.Study) -> None:

@@ -255,7 +255,10 @@ def test_narrow_heads_are_rails_too() -> None:
 @pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
 @pytest.mark.parametrize("seed", range(12))
 def test_plausible_wheelsets_get_no_word(seed: int) -> None:
-    """From trams to freight; an `UnusualWarning` is an error here."""
+    """From trams to freight, on the tread: an `UnusualWarning` is an error here.
+
+    On the flange root, 125 kN press beyond the hardness of some laws.
+    """
     random = np.random.default_rng(seed)
     axle = wheelset(
         rail=wl.Profile.named(str(random.choice(["rail_60e1", "rail_54e1", "uic60"]))),
@@ -265,7 +268,7 @@ def test_plausible_wheelsets_get_no_word(seed: int) -> None:
     )
     predict = axle | wl.contact_model("strip_theory") | wl.wear_law(str(random.choice(["usfd", "kth"])))
     predict(
-        lateral_displacement=Q(random.uniform(-6.0, 6.0), "mm"),
+        lateral_displacement=Q(random.uniform(-4.5, 4.5), "mm"),
         yaw=Q(random.uniform(-5.0, 8.0), "mrad"),
         vertical_load=Q(random.uniform(15.0, 125.0), "kN"),
         friction_coefficient=random.uniform(0.05, 0.6),

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.wheelset.wheelsets import through, wheelset
+from tests.plugins.wheelset.wheelsets import borne, through, wheelset
 from wearlaw import Array, Q
 from wearlaw_models.rigs.wheelset.guidance import BORNE  # private: the accuracy that a search ends at
-from wearlaw_models.rigs.wheelset.loads import BALANCED  # private: the accuracy that a search ends at
+from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
 
 PAIR = wheelset(rolling_speed="20 m/s") | wl.contact_model("strip_theory")
 RESULTS = ["lateral_displacement", "guiding_force", "wheel_load", "derailment_quotient"]
@@ -56,10 +56,7 @@ def found() -> wl.Prediction:
 
 def test_forces_on_the_rails_balance_those_on_the_wheelset(found: wl.Prediction) -> None:
     # From the patches alone, whose forces the balance does not share with the results.
-    angle, normal = np.asarray(found.problem.contact_angle), found.normal_force.to("N").magnitude
-    along = found.lateral_force.to("N").magnitude
-    lateral = np.nansum(along * np.cos(angle) - normal * np.sin(angle), axis=-1)
-    vertical = np.nansum(along * np.sin(angle) + normal * np.cos(angle), axis=-1)
+    vertical, lateral = borne(found.problem, found.lateral_force.to("N").magnitude)
     loads = np.stack([GIVEN["vertical_load_left"], GIVEN["vertical_load_right"]], axis=-1)
     axle = loads.sum(axis=-1)
     assert (np.abs(lateral.sum(axis=-1) - GIVEN["lateral_force"]) < 1.01 * BORNE * axle).all()
@@ -145,9 +142,9 @@ def plane_flange() -> wl.Profile:
     share=0.01,
 )
 @pytest.mark.parametrize(("friction", "limit"), [(0.3, 1.342), (0.1, 2.077)])
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
-def test_a_plane_flange_has_the_quotient_of_nadal(pressure: Any, friction: float, limit: float, share: float) -> None:
-    rig = wheelset(wheel=plane_flange(), pressure=pressure, rolling_speed="20 m/s")
+@pytest.mark.parametrize("patch", ["strips", "ellipse"])
+def test_a_plane_flange_has_the_quotient_of_nadal(patch: Any, friction: float, limit: float, share: float) -> None:
+    rig = wheelset(wheel=plane_flange(), patch=patch, rolling_speed="20 m/s")
     contact = rig | wl.contact_model("strip_theory")
     places = rig.geometry(lateral_displacement=Q(np.arange(10.0, 14.0, 0.05), "mm"), roll="0 mrad").dataset
     g = places.sel(side="right", patch=1)

@@ -10,7 +10,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_models.rigs.wheelset import loads  # private: the accuracy that a search ends at
+from wearlaw_models.rigs.wheelset import stand  # private: the accuracy that a search ends at
 
 FIELDS: dict[str, Any] = {
     "wheel": wl.Profile.s1002(),
@@ -41,8 +41,9 @@ def pair(**changed: Any) -> wl.Wheelset:
         ({"gauge_depth": "80 mm"}, "gauge_depth: 80 mm is below the gauge side of the rail"),
         *(({"rail_cant": cant}, "rail_cant") for cant in ("1:4", "steep", "40", "1:0", "1:4.0.0")),
         *(({"rail_cant": cant}, "rail_cant.* such as '1:40'") for cant in (20, 0.025, "-1:40", " -1/40", "1:-40")),
-        ({"pressure": "carter"}, "pressure"),
-        ({"strips": 2}, "strips"),
+        ({"pressure": "kpec"}, 'pressure: .* always that of half-spaces.* patch = "ellipse"'),
+        ({"strips": 20}, "strips: .* leave strips out"),
+        ({"patch": "carter"}, "patch"),
         ({"wheel": "s1200"}, "s1200.*did you mean 's1002'"),
     ],
 )
@@ -114,7 +115,7 @@ def test_contact_models_that_do_not_solve_strips_are_refused_at_once() -> None:
         wl.CompositionError, match="'polach' solves elliptic contacts only, but a Wheelset makes patches"
     ):
         pair() | wl.contact_model("polach")
-    predict: Any = pair(pressure="hertz") | wl.contact_model("polach")
+    predict: Any = pair(patch="ellipse") | wl.contact_model("polach")
     assert np.isfinite(predict(**GIVEN).lateral_force.magnitude[:, 0]).all()
 
 
@@ -124,7 +125,7 @@ def test_positions_without_a_balance_have_no_result_and_a_warning(monkeypatch: p
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", wl.WearlawWarning)
         balanced = predict(**given)
-    monkeypatch.setattr(loads, "STEPS", 3)  # enough for the first position alone
+    monkeypatch.setattr(stand, "STEPS", 3)  # enough for the first position alone
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         found = predict(**given)

@@ -86,7 +86,7 @@ def test_a_pressure_of_single_points_is_told_from_one_of_the_shape(smoothing: st
     keep = np.unique(np.round(y / 0.25).astype(int), return_index=True)[1]
     noisy = z[keep] + np.random.default_rng(3).normal(scale=0.01, size=keep.size)
     wheel = wl.Profile.from_points(y=Q(y[keep], "mm"), z=Q(noisy, "mm"), kind="wheel", smoothing=smoothing)
-    pipeline = wheelset(wheel=wheel, pressure="hertz") | wl.contact_model("fastsim")
+    pipeline = wheelset(wheel=wheel) | wl.contact_model("fastsim")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         pipeline(lateral_displacement="2 mm", vertical_load="80 kN", friction_coefficient=0.3)

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import wearlaw as wl
-from tests.plugins.wheelset.wheelsets import cone, on_round_heads, wheelset
+from tests.plugins.wheelset.wheelsets import borne, cone, on_round_heads, wheelset
 from wearlaw import Array, Q
-from wearlaw_models.rigs.wheelset import normal  # private: the normal problem, against its theory
-from wearlaw_models.rigs.wheelset.loads import BALANCED  # private: the accuracy that a search ends at
+from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
 
 FASTSIM = wl.contact_model("fastsim")
-Pressure = Literal["kpec", "hertz"]
-PAIRS: dict[Any, wl.Wheelset] = {name: wheelset(pressure=name, rolling_speed="20 m/s") for name in ("kpec", "hertz")}
+PAIR = wheelset(rolling_speed="20 m/s")
 SIDE = np.array([-1.0, 1.0])[:, None]
 
 
@@ -39,9 +37,8 @@ def newtons(quantity: Any, unit: str = "N") -> Array:
 
 def carried(result: wl.Prediction) -> Array:
     """Return the vertical load of each wheel [N]."""
-    angle = np.nan_to_num(np.asarray(result.problem.contact_angle))
-    load = newtons(result.normal_force) * np.cos(angle) + newtons(result.lateral_force) * np.sin(angle)
-    return np.asarray(load.sum(axis=-1))
+    load, _ = borne(result.problem, newtons(result.lateral_force))
+    return load.reshape(result.problem.exists.shape[:-1])  # type: ignore[union-attr]
 
 
 def powers(result: wl.Prediction, speed: float) -> tuple[Array, Array]:
@@ -68,32 +65,12 @@ conditions = st.fixed_dictionaries(
 )
 
 
-JUMP = {
-    "displacement": -0.005998351846555614, "yaw": 0.001221284304299016, "load": 37496.80849218945,
-    "friction": 0.12339373322908935, "share": -0.4340616730616391, "curvature": -0.0018174763629788164,
-}  # fmt: skip
-"""Conditions under which FASTSIM's forces jump by 3e-4 of the load."""
-
-SLOW = [
-    ("kpec", {"displacement": -0.0062, "yaw": -0.01540756195341, "load": 37788.0, "friction": 0.25, "share": 0.484375}),
-    ("hertz", {
-        "displacement": -0.00617449514599, "yaw": -0.01643274945306, "load": 32865.25795147,
-        "friction": 0.07242787782078, "share": 0.39512837404633,
-    }),
-    ("hertz", {
-        "displacement": 0.00619741018068, "yaw": 0.01778119122705, "load": 67028.17566976,
-        "friction": 0.32313998429788, "share": 0.03098676046704, "curvature": 0.00218766046118,
-    }),
-]  # fmt: skip
-"""Conditions near a jump, under which Newton's method takes more than twenty steps."""
-
-
-def at_random(pressure: Pressure, drawn: dict[str, float]) -> tuple[wl.Prediction, float]:
+def at_random(drawn: dict[str, float]) -> tuple[wl.Prediction, float]:
     """Return the prediction of drawn conditions, and the torque [N m]."""
     load, friction, turn = drawn["load"], drawn["friction"], drawn.get("curvature", 0.0)
     torque = drawn["share"] * friction * 2.0 * load * 0.46
     result = predicted(
-        PAIRS[pressure],
+        PAIR,
         lateral_displacement=Q(drawn["displacement"], "m"),
         yaw=Q(drawn["yaw"], "rad"),
         vertical_load=Q(load, "N"),
@@ -104,12 +81,6 @@ def at_random(pressure: Pressure, drawn: dict[str, float]) -> tuple[wl.Predictio
     return result, torque
 
 
-@pytest.mark.parametrize(("pressure", "drawn"), SLOW)
-def test_loads_balance_where_newtons_method_converges_slowly(pressure: Pressure, drawn: dict[str, float]) -> None:
-    result, _ = at_random(pressure, drawn)
-    assert carried(result) == pytest.approx(np.full(2, drawn["load"]), rel=2.0 * BALANCED)
-
-
 @pytest.mark.validates(
     "wheelset",
     "Each wheel carries its load with the normal and the lateral forces of all its patches",
@@ -117,12 +88,10 @@ def test_loads_balance_where_newtons_method_converges_slowly(pressure: Pressure,
     held_to="{share:g} of the load, or `imbalance` where creep forces jump",
     share=1e-6,
 )
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
 @given(drawn=conditions)
-@example(drawn=JUMP)
-def test_each_wheel_carries_its_load(pressure: Pressure, drawn: dict[str, float], share: float) -> None:
+def test_each_wheel_carries_its_load(drawn: dict[str, float], share: float) -> None:
     load, friction, turn = drawn["load"], drawn["friction"], drawn.get("curvature", 0.0)
-    result, torque = at_random(pressure, drawn)
+    result, torque = at_random(drawn)
     # Where FASTSIM's forces jump, no penetration carries the load; `imbalance` is the greatest share of the load and
     # of the torque of full slip that is left over.
     problem: Any = result.problem
@@ -140,7 +109,7 @@ def test_each_wheel_carries_its_load(pressure: Pressure, drawn: dict[str, float]
     assert (force <= (1.0 + 1e-9) * friction * newtons(result.normal_force)).all()
 
 
-CONES = on_round_heads(cone(0.05), 0.3, pressure="hertz", rolling_speed="20 m/s")
+CONES = on_round_heads(cone(0.05), 0.3, patch="ellipse", rolling_speed="20 m/s")
 
 
 def test_driving_and_braking_have_opposite_creepages() -> None:
@@ -184,12 +153,11 @@ def test_a_torque_beyond_friction_is_an_error() -> None:
 # ---------------------------------------------------------------------------------------------------- several patches
 
 
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
-def test_friction_falls_with_the_creep_speed_of_each_patch(pressure: Pressure) -> None:
+def test_friction_falls_with_the_creep_speed_of_each_patch() -> None:
     tread = wl.FallingFriction(static_coefficient=0.5, limit_ratio=0.4, decay="2 s/m")
     flange = wl.FallingFriction(static_coefficient=0.2, limit_ratio=0.5, decay="4 s/m")
     found = predicted(
-        PAIRS[pressure],
+        PAIR,
         lateral_displacement=Q([3.0, 6.9], "mm"),
         yaw="10 mrad",
         friction_coefficient=tread,
@@ -209,47 +177,9 @@ def test_friction_falls_with_the_creep_speed_of_each_patch(pressure: Pressure) -
     np.testing.assert_allclose(carried(found), 60e3, rtol=1e-6)  # as with one coefficient
 
 
-@pytest.mark.parametrize("displacement", [0.0, 4.8, 4.9, 4.95])
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
-def test_patches_share_the_load_by_their_penetration(pressure: Pressure, displacement: float) -> None:
-    pair = PAIRS[pressure]
-    where: dict[str, Any] = {"lateral_displacement": Q(displacement, "mm")}
-    result = predicted(pair, **where, vertical_load="10 kN")
-    problem: Any = result.problem
-    one = pair.geometry(**where, roll=Q(problem.roll[1, 0], "rad"), within="1 mm").dataset.sel(side="right")
-    exists = problem.exists[1]
-    assert exists[:2].all()
-    gap, cosine = 1e-3 * one.gap.values[exists], np.cos(np.radians(one.contact_angle.values[exists]))
-    force = problem.normal_force[1][exists]
-    # The approach of each patch alone under its own force, by the other direction of the normal problem.
-    approach = alone(pair, problem, force)
-    assert approach / cosine + gap == pytest.approx(np.full(gap.size, approach[0] / cosine[0]), rel=2.0 * BALANCED)
-
-
-def alone(pair: wl.Wheelset, problem: Any, force: Array) -> Array:
-    """Return the approach of the patches of the right wheel, each under its force [m]."""
-    found = problem.balance.found
-    rows = np.flatnonzero(found.side == 1)[: force.size]
-    rows = rows[np.argsort(found.number[rows])]
-    if pair.pressure == "hertz":
-        a, b = problem.a[1, : force.size], problem.b[1, : force.size]
-        return np.asarray(wl.hertz_ellipse.approach(force, a, b, pair._elastic.modulus))
-    part = found.part(rows)
-    gaps = part.start, part.step, part.gaps, part.curvature_x, pair._elastic.modulus
-    low, high = 0.5 * problem.penetration[1, : force.size], 2.0 * problem.penetration[1, : force.size]
-    for _ in range(60):  # bisection
-        middle = 0.5 * (low + high)
-        deep = normal.penetrated(*gaps, middle, 20).normal_force > force
-        low, high = np.where(deep, low, middle), np.where(deep, middle, high)
-    return np.asarray(low)
-
-
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
-def test_patches_that_lift_off_do_not_exist(pressure: Pressure) -> None:
+def test_patches_that_lift_off_do_not_exist() -> None:
     # At 4.8 mm the gap of the second place of the right wheel is 9 µm: more than the penetration of 0.5 kN.
-    light, heavy = (
-        predicted(PAIRS[pressure], lateral_displacement="4.8 mm", vertical_load=load) for load in ("0.5 kN", "15 kN")
-    )
+    light, heavy = (predicted(PAIR, lateral_displacement="4.8 mm", vertical_load=load) for load in ("0.5 kN", "15 kN"))
     assert np.asarray(light.problem.exists)[1].tolist() == [True, False, False]
     assert np.asarray(heavy.problem.exists)[1, :2].tolist() == [True, True]
     for field in ("normal_force", "contact_angle", "longitudinal_creepage", "spin"):
@@ -260,10 +190,9 @@ def test_patches_that_lift_off_do_not_exist(pressure: Pressure) -> None:
         assert carried(result) == pytest.approx(np.full(2, load), rel=2.0 * BALANCED)
 
 
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
-def test_loads_are_continuous_as_a_patch_touches(pressure: Pressure) -> None:
+def test_loads_are_continuous_as_a_patch_touches() -> None:
     load = np.linspace(0.5e3, 15e3, 30)
-    result = predicted(PAIRS[pressure], lateral_displacement="4.8 mm", vertical_load=Q(load, "N"))
+    result = predicted(PAIR, lateral_displacement="4.8 mm", vertical_load=Q(load, "N"))
     exists = np.asarray(result.problem.exists)[:, 1, 1]
     assert not exists[0]
     assert exists[-1]
@@ -277,7 +206,7 @@ def test_loads_are_continuous_as_a_patch_touches(pressure: Pressure) -> None:
 
 def test_loads_are_balanced_as_humps_join_patches() -> None:
     displacement = Q(np.arange(-10.0, 10.1, 0.25), "mm")
-    result = predicted(PAIRS["kpec"], lateral_displacement=displacement, vertical_load="10 kN")
+    result = predicted(PAIR, lateral_displacement=displacement, vertical_load="10 kN")
     assert carried(result) == pytest.approx(np.full((81, 2), 10e3), rel=2.0 * BALANCED)
 
 
@@ -289,7 +218,7 @@ def test_loads_are_balanced_as_humps_join_patches() -> None:
     "Wear of cones on round rail heads: that of `WheelRail` with the same radii, creepages and load",
     source="the rig of a single contact",
     held_to="{share:g}",
-    share=1e-8,
+    share=0.03,
 )
 @pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning")
 def test_cones_wear_like_single_wheels(share: float) -> None:
@@ -298,7 +227,7 @@ def test_cones_wear_like_single_wheels(share: float) -> None:
         lateral_displacement="2 mm", yaw="3 mrad", vertical_load="60 kN", friction_coefficient=0.3,
         axle_torque="3 kN*m",
     )  # fmt: skip
-    # The curvature of the spline through the rail's points is off by (56 µm/300 mm)²/12 = 3e-9.
+    # The grid of the pressure is off by 1 % of the maximum and 3 % of the area.
     problem: Any = result.problem
     roll = Q(problem.roll[0, 0], "rad")
     one = CONES.geometry(lateral_displacement="2 mm", yaw="3 mrad", roll=roll).dataset.sel(patch=1)
@@ -325,13 +254,12 @@ def test_cones_wear_like_single_wheels(share: float) -> None:
             assert found == pytest.approx(getattr(expected, name).to_base_units().magnitude, rel=share), name
 
 
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
 @given(displacement=st.floats(1e-3, 4.5e-3) | st.floats(5.2e-3, 6e-3), yaw=st.floats(-20e-3, 20e-3))
 @settings(max_examples=4)
-def test_mirrored_wheelsets_wear_alike(pressure: Pressure, displacement: float, yaw: float) -> None:
+def test_mirrored_wheelsets_wear_alike(displacement: float, yaw: float) -> None:
     one, other = (
         predicted(
-            PAIRS[pressure],
+            PAIR,
             lateral_displacement=Q(sign * displacement, "m"),
             yaw=Q(sign * yaw, "rad"),
             curve_radius=Q(sign * 500.0, "m"),
@@ -345,7 +273,3 @@ def test_mirrored_wheelsets_wear_alike(pressure: Pressure, displacement: float, 
     ):  # fmt: skip
         found, expected = newtons(getattr(other, name)), newtons(getattr(one, name))
         assert sign * found[::-1] == pytest.approx(expected, rel=1e-5, abs=1e-5 * 60e3), name
-    if pressure == "kpec":
-        strips = one.problem.strips
-        assert strips is not None
-        assert (np.diff(strips.y[one.problem.exists]) > 0.0).all()  # on both sides

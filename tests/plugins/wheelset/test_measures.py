@@ -78,9 +78,12 @@ def test_vertical_and_side_wear_of_a_rail_are_what_was_cut_off(vertical: float, 
 
 def test_the_plot_has_the_measures_and_the_depth_beside_a_new_profile() -> None:
     new, worn = cut_rail(1.5e-3, 0.0)
-    upper, lower = worn.plot(new=new).get_figure().axes
+    figure = worn.plot(new=new).get_figure()
+    assert figure is not None
+    upper, lower = figure.axes
     assert "vertical wear 1.50 mm" in upper.texts[0].get_text()
-    y, depth = lower.get_lines()[0].get_data()
+    y, depth = (np.asarray(values, np.float64) for values in lower.get_lines()[0].get_data())
     assert np.interp(0.0, y, depth) == pytest.approx(1.5, abs=1e-6)
     assert "flange height 28.00 mm" in wl.Profile.s1002().plot().texts[0].get_text()
-    assert len(worn.plot(upper, new=new).get_figure().axes) == 2
+    worn.plot(upper, new=new)
+    assert len(figure.axes) == 2

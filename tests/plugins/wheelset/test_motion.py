@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import R0, cone, on_round_heads, wheelset
 from wearlaw import Array, Q
+from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # loads so small that nothing gives way
 
@@ -22,8 +23,8 @@ STENCIL = {1: 4.0 / 5.0, 2: -1.0 / 5.0, 3: 4.0 / 105.0, 4: -1.0 / 280.0}
 SPEED = 20.0
 """V [m/s]."""
 
-STANDARD = wheelset(pressure="hertz", rolling_speed=Q(SPEED, "m/s"))
-CONES = on_round_heads(cone(0.1), 0.2, pressure="hertz", rolling_speed=Q(SPEED, "m/s"))
+STANDARD = wheelset(rolling_speed=Q(SPEED, "m/s"))
+CONES = on_round_heads(cone(0.1), 0.2, rolling_speed=Q(SPEED, "m/s"))
 
 
 class State(NamedTuple):
@@ -70,21 +71,18 @@ def moved(pair: wl.Wheelset, state: State) -> Callable[[float], tuple[Rotation, 
 
 
 def slips(
-    pair: wl.Wheelset, state: State, side: str, ahead: float = 0.0, across: float = 0.0
+    pair: wl.Wheelset, state: State, arm: Array, angle: float, ahead: float = 0.0, across: float = 0.0
 ) -> tuple[float, float, float, float]:
     """Return ξ, η, φ and the velocity of the wheel into the rail over V.
 
-    They are those of the material point of the wheel at the contact point, or beside it on the plane of contact [m].
+    They are those of the material point of the wheel at an arm from the middle of the axle [m], on a plane at a contact
+    angle [rad], or beside it on that plane [m].
     """
-    found = pair.geometry(lateral_displacement=Q(state.displacement, "m"), yaw=Q(state.yaw, "rad")).dataset
-    found = found.sel(side=side, patch=1)
-    point = 1e-3 * np.array([found[name].item() for name in "xyz"])
-    angle = np.radians(found.contact_angle.item())
     tangent, normal = np.array([0.0, np.cos(angle), np.sin(angle)]), np.array([0.0, -np.sin(angle), np.cos(angle)])
-    point = point + ahead * np.array([1.0, 0.0, 0.0]) + across * tangent
+    arm = arm + ahead * np.array([1.0, 0.0, 0.0]) + across * tangent
     position = moved(pair, state)
-    turned, origin = position(0.0)
-    material = turned.inv().apply(point - origin)
+    turned, _ = position(0.0)
+    material = turned.inv().apply(arm)
 
     def place(time: float) -> Array:
         now, middle = position(time)
@@ -97,6 +95,26 @@ def slips(
         float(velocity[0] / SPEED), float(velocity @ tangent / SPEED), float(spin @ normal / SPEED),
         float(velocity @ normal / SPEED),
     )  # fmt: skip
+
+
+class Row(NamedTuple):
+    """A row: its arm from the middle of the axle [m] and contact angle [rad] in the track, and ξ, η and φ [1/m]."""
+
+    arm: Array
+    angle: float
+    creepage: Array
+
+
+def most_pressed(problem: Any) -> tuple[Row, Row]:
+    """Return the rows of the left and the right wheel that carry most."""
+    stand = problem.loads.stands[-1]
+    rows, sliding = stand.rows, stand.sliding.at(problem.loads.rotation[0])
+    pressed = []
+    for wheel, sign in ((0, -1.0), (1, 1.0)):
+        row = int(np.where(rows.wheel == wheel, stand._row_force(), -1.0).argmax())
+        x, y, z, angle = (float(array[row]) for array in rows.place[:4])
+        pressed.append(Row(np.array([x, sign * y, z]), sign * angle, np.array([one[row] for one in sliding])))
+    return pressed[0], pressed[1]
 
 
 def creepages(pair: wl.Wheelset, state: State) -> wl.Problem:
@@ -139,7 +157,7 @@ CURVES = [
     source="numerical differentiation of the motion of its material points in space, along a circle too (scipy)",
     held_to="{relative:g} of V, and per metre; {moving:g} as it moves sideways or yaws",
     relative=1e-9,
-    moving=1e-7,
+    moving=1.2e-5,
 )
 @pytest.mark.parametrize(
     ("pair", "state"),
@@ -150,30 +168,27 @@ def test_creepages_are_the_velocities_of_material_points(
     pair: wl.Wheelset, state: State, relative: float, moving: float
 ) -> None:
     # Rounding of places of some cm over a step of 0.1 ms is 1e-13 m/s; the eighth order leaves (Ω 0.1 ms)^8. The roll
-    # is known to 2e-12, which is 2e-8 rad/s over the steps of time.
+    # is known to 2e-12, which is 2e-8 rad/s over the steps of time. As it moves, the roll follows rows: these lie up to
+    # half of 1/16 mm from the contact point, where 13 mm of radius turn them by 2.4e-3 of a velocity of V/200.
     bound = moving if state.lateral_velocity or state.yaw_velocity else relative
     problem = creepages(pair, state)
-    angle = np.asarray(problem.contact_angle)
-    for number, side in enumerate(("left", "right")):
-        xi, eta, phi, into = slips(pair, state, side)
-        if np.isfinite(state.curve_radius):
-            # The rails of the contact search are straight, so that the point at x enters a curved rail at V x sin δ/R.
-            # The vertical motion that takes this away also moves along the tangent, by tan δ of it.
-            eta, into = eta - into * np.tan(angle[number, 0]), 0.0
-        found = (problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
-        assert [one[number, 0] for one in found] == pytest.approx([xi, eta, phi], rel=0.0, abs=bound)
-        assert into == pytest.approx(0.0, abs=bound)
+    for row in most_pressed(problem):
+        xi, eta, phi, into = slips(pair, state, row.arm, row.angle)
+        # The vertical motion that keeps the row on the rail also moves it along the tangent, by tan δ of it.
+        eta -= into * np.tan(row.angle)
+        assert row.creepage == pytest.approx([xi, eta, phi], rel=0.0, abs=bound)
 
 
 @pytest.mark.parametrize("state", [STATES[2], STATES[4], CURVES[2]], ids=str)
 def test_spin_is_the_change_of_slip_across_and_along_the_patch(state: State) -> None:
     # w = (ξ - φ y, η - φ x) with x backwards. Places 1 mm away add a thousandth of a relative error of 1e-9.
     step = 1e-3
-    problem = creepages(STANDARD, state)
-    for number, side in enumerate(("left", "right")):
-        spin = problem.spin[number, 0]
+    for row in most_pressed(creepages(STANDARD, state)):
+        spin = row.creepage[2]
         for ahead, across, expected in ((0.0, step, (-spin, 0.0)), (step, 0.0, (0.0, spin))):
-            far, near = (slips(STANDARD, state, side, sign * ahead, sign * across) for sign in (1.0, -1.0))
+            far, near = (
+                slips(STANDARD, state, row.arm, row.angle, sign * ahead, sign * across) for sign in (1.0, -1.0)
+            )
             found = [(far[axis] - near[axis]) / (2.0 * step) for axis in (0, 1)]
             assert found == pytest.approx(expected, rel=0.0, abs=2e-6)
 
@@ -210,33 +225,35 @@ class Balanced(NamedTuple):
 
 
 def balanced(pair: wl.Wheelset, displacement: float, yaw: float, **conditions: Any) -> Balanced:
-    """Return all patches of a wheelset under load, at places found by its geometry, with the roll of rigid wheels."""
+    """Return all patches of a wheelset under load, at the means of their rows, with the roll of rigid wheels."""
     where = {"lateral_displacement": Q(displacement, "m"), "yaw": Q(yaw, "rad")}
     where["roll"] = Q(pair.geometry(**where).dataset["roll"].item(), "mrad")
     result = (pair | wl.contact_model("fastsim"))(
         **where, vertical_load="60 kN", friction_coefficient=0.35, **conditions
     )
-    data = pair.geometry(**where, within="1 mm").dataset
-    exists = result.problem.exists
-    assert exists is not None
-    angle = np.radians(data.contact_angle.values)[exists]
-    roll, height = 1e-3 * data["roll"].item(), 1e-3 * data["vertical_displacement"].item() - R0
-    point = 1e-3 * np.stack([data[name].values[exists] for name in "xyz"], axis=-1)
+    problem: Any = result.problem
+    stand, roll = problem.loads.stands[-1], problem.roll[0, 0]
+    place, (row, patch) = stand.rows.place, stand.of_row
+    patches = problem.loads.patches
+    exists = patches.point, patches.side, patches.number
+    weight = stand._row_force()[row]
+
+    def mean(values: Array) -> Array:
+        return np.asarray(np.bincount(patch, weight * values[row]) / np.bincount(patch, weight))
+
+    arm = np.stack([mean(place.x), patches.sign * mean(place.y), mean(place.z)], axis=-1)
+    angle = patches.sign * patches.angle
     nothing = np.zeros_like(angle)
     quantities = (result.normal_force, result.longitudinal_force, result.lateral_force, result.spin_moment)
-    problem = result.problem
     creepage = (problem.longitudinal_creepage, problem.lateral_creepage, problem.spin)
-    first = problem.longitudinal_creepage[0, 0], data.rolling_radius.values[0, 0] * 1e-3
     axle = Rotation.from_euler("xz", [roll, yaw]).apply([0.0, 1.0, 0.0])
-    arm = point - np.array([0.0, displacement, height])
-    # ξ = 1 + (-Ω e × r)_x/V gives Ω.
-    rotation = SPEED * (1.0 - first[0]) / float(np.cross(axle, arm[0])[0])
+    rotation = float(problem.loads.rotation[0])
     return Balanced(
         arm,
         np.stack([nothing, np.cos(angle), np.sin(angle)], axis=-1),
         np.stack([nothing, -np.sin(angle), np.cos(angle)], axis=-1),
-        np.stack([one.to_base_units().magnitude[exists] for one in quantities]),
-        np.stack([one[exists] for one in creepage]),
+        np.stack([one.to_base_units().magnitude[exists[1:]] for one in quantities]),
+        np.stack([one[exists[1:]] for one in creepage]),
         rotation,
         axle,
     )
@@ -247,7 +264,7 @@ def balanced(pair: wl.Wheelset, displacement: float, yaw: float, **conditions: A
     "Torque on the axle: moments of all forces on the wheels about it",
     source="static equilibrium in space",
     held_to="{share:g} of the torque that friction transmits",
-    share=1e-7,
+    share=1e-3,
 )
 @pytest.mark.parametrize(
     ("displacement", "yaw", "torque"),
@@ -262,6 +279,7 @@ def test_forces_balance_the_torque_on_the_axle(displacement: float, yaw: float, 
     about = (np.cross(found.arm, on_wheel) - moment[:, None] * found.normal) @ found.axle
     # A torque that drives turns about -e.
     grip = 0.35 * 120e3 * R0
+    # Rows of a patch turn by up to 0.05 rad, and the square of that is left of their means.
     assert about.sum() == pytest.approx(torque, rel=0.0, abs=share * grip)
 
 
@@ -272,4 +290,4 @@ def test_torque_and_traction_do_the_work_that_friction_dissipates(torque: float)
     dissipated = SPEED * (found.creepage * found.force[1:]).sum()
     work = torque * found.rotation + SPEED * found.force[1].sum()
     assert dissipated > 0.0
-    assert work == pytest.approx(dissipated, rel=0.0, abs=1e-7 * 0.35 * 120e3 * SPEED)
+    assert work == pytest.approx(dissipated, rel=0.0, abs=BALANCED * 0.35 * 120e3 * SPEED)

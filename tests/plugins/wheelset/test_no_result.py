@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.wheelset.wheelsets import through, wheelset
+from tests.plugins.wheelset.wheelsets import borne, through, wheelset
 from wearlaw import Array, Q
 from wearlaw_models.rigs import wheelset as ws
 
@@ -33,9 +33,9 @@ def worn() -> ws.Profile:
 WHEELS = {"new": ws.Profile.s1002(), "worn": worn()}
 
 
-def predicted(wheel: str, pressure: Any = "kpec", **conditions: Any) -> wl.Prediction:
+def predicted(wheel: str, **conditions: Any) -> wl.Prediction:
     """Return the contact of a new or worn wheel."""
-    contact: Any = wheelset(wheel=WHEELS[wheel], pressure=pressure, rolling_speed="20 m/s")
+    contact: Any = wheelset(wheel=WHEELS[wheel], rolling_speed="20 m/s")
     found: wl.Prediction = (contact | wl.contact_model("fastsim"))(**COMMON | conditions)
     return found
 
@@ -45,56 +45,41 @@ def missing(found: wl.Prediction) -> Any:
     return np.asarray(found["status"].magnitude != "balanced").all(axis=(1, 2))
 
 
-def left_over(found: wl.Prediction, load: float, pair: ws.Wheelset) -> dict[str, Array]:
-    """Return what the patches leave over at positions without yaw, in shares of the load of a wheel.
-
-    The level is the difference between the heights at which both wheels carry the axle, over their penetration.
-    """
+def left_over(found: wl.Prediction, load: float) -> dict[str, Array]:
+    """Return what the patches leave over at positions without yaw, in shares of the load of a wheel."""
     problem: Any = found.problem
     angle, normal = np.asarray(problem.contact_angle), found.normal_force.m_as("N")
     along, across = found.longitudinal_force.m_as("N"), found.lateral_force.m_as("N")
     radius, roll = np.asarray(problem.bodies["wheel"].rolling_radius), problem.roll
     # Without yaw the creepages change with the speed of rotation by -r/V, 0 and sin(δ - ρ)/V.
     torque = np.nansum(found.spin_moment.m_as("N*m") * np.sin(angle - roll) - along * radius, axis=(1, 2))
-    carried = []
-    for place, one in zip(problem.lateral_displacement[:, 0, 0], roll[:, 0, 0], strict=True):
-        g = pair.geometry(lateral_displacement=Q(place, "m"), roll=Q(one, "rad")).dataset.sel(patch=1)
-        out = 1e-3 * g.wheel_y.values + 0.75
-        carried.append(1e-3 * (g.z.values - g.rolling_radius.values * np.cos(one)) - [-1.0, 1.0] * out * np.sin(one))
-    sunk = problem.penetration[:, :, 0]
-    height = np.asarray(carried) + sunk
+    vertical, lateral = borne(problem, across)
     return {
-        "load": np.abs(np.nansum(normal * np.cos(angle) + across * np.sin(angle), axis=2) / load - 1.0).max(axis=1),
+        "load": np.abs(vertical / load - 1.0).max(axis=1),
         "torque": np.abs(torque) / np.nansum(problem.friction_coefficient * normal * radius, axis=(1, 2)),
-        "level": np.abs(height[:, 1] - height[:, 0]) / sunk.mean(axis=1),
-        "lateral force": np.nansum(across * np.cos(angle) - normal * np.sin(angle), axis=(1, 2)) / load,
+        "lateral force": lateral.sum(axis=1) / load,
     }
 
 
 @pytest.mark.validates(
     "wheelset",
-    "Loads, torque and level of every result balance from the tread to the flange, of a new and a worn wheel",
-    source="equilibrium, from the patches and the geometry of rigid bodies",
+    "Loads and torque of every result balance from the tread to the flange, of a new and a worn wheel",
+    source="equilibrium, from rows and patches",
     held_to="{share:g} of the load",
     share=SHARE,
 )
-@pytest.mark.parametrize("pressure", ["kpec", "hertz"])
 @pytest.mark.parametrize(("wheel", "most"), [("new", 6.6), ("worn", 7.2)])
-def test_what_does_not_balance_has_no_result(wheel: str, most: float, pressure: Any, share: float) -> None:
+def test_what_does_not_balance_has_no_result(wheel: str, most: float, share: float) -> None:
     place = np.concatenate([np.arange(-6.0, 6.0, 1.0), np.arange(6.0, most, 0.01)])
-    found = predicted(wheel, pressure, lateral_displacement=Q(place, "mm"))
+    found = predicted(wheel, lateral_displacement=Q(place, "mm"))
     none = missing(found)
-    assert none.sum() < 0.2 * place.size  # where the flange takes the load from the tread
+    assert not none.any()
     for name in ("normal_force", "wear_index", "guiding_force", "wheel_load", "lateral_displacement"):
         assert np.isnan(found[name].magnitude[none]).all(), name
         assert np.isfinite(found[name].magnitude[~none]).any(axis=(1, 2)).all(), name
-    there = found[np.flatnonzero(~none)]
-    pair = wheelset(wheel=WHEELS[wheel], rolling_speed="20 m/s")
-    left = left_over(there, 80e3, pair)
+    left = left_over(found, 80e3)
     for name in ("load", "torque"):
         assert (left[name] <= 1.001 * share).all(), name
-    # A load that would level the axle grows with the power 3/2 of the penetration. Heights are known to some 2e-9 m.
-    assert (left["level"] <= share / 1.5 + 5e-9 / there.problem.penetration[:, :, 0].mean(axis=1)).all()  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(
@@ -104,10 +89,8 @@ def test_each_position_has_the_lateral_force_asked_for_or_none(wheel: str, force
     found = predicted(wheel, lateral_force=Q(np.array(forces), "kN"))
     none = missing(found)
     assert not none.all()
-    pair = wheelset(wheel=WHEELS[wheel], rolling_speed="20 m/s")
-    there = np.flatnonzero(~none)
-    left = left_over(found[there], 80e3, pair)
-    assert (np.abs(left["lateral force"] - np.array(forces)[there] / 80.0) <= SHARE).all()
+    left = left_over(found, 80e3)
+    assert (np.abs(left["lateral force"] - np.array(forces) / 80.0) <= SHARE)[~none].all()
     assert np.isnan(found["guiding_force"].magnitude[none]).all()
 
 
@@ -118,7 +101,7 @@ FORCES: dict[str, Any] = {"lateral_force": Q([10.0, 300.0], "kN"), **COMMON}
 def begins(status: Any) -> bool:
     """Return whether the first position is balanced, and the second one states the greatest force."""
     first, second = map(str, np.asarray(status).ravel())
-    return first == "balanced" and second.startswith("the greatest lateral force found is")
+    return first == "balanced" and second.startswith("the greatest lateral force is ")
 
 
 def test_a_warning_counts_the_positions_without_a_result_and_status_says_why() -> None:

@@ -164,3 +164,15 @@ def least_gap(body: Body, move: Rotation, shift: Array) -> tuple[float, Array]:
         if found.fun < best:
             best, place = float(found.fun), body.surface(found.x[0], found.x[1], move, shift)
     return best, place
+
+
+def borne(problem: Any, lateral_force: Array) -> tuple[Array, Array]:
+    """Return the vertical and the lateral forces of wheels on rails, (positions, 2), by rows and creep forces [N]."""
+    patches, angle = problem.loads.patches, np.nan_to_num(problem.contact_angle).reshape(-1, 2, 3)
+    across, wheel = np.nan_to_num(lateral_force).reshape(angle.shape), 2 * patches.point + patches.side
+    there = np.asarray(problem.exists).reshape(angle.shape)[patches.point, patches.side, patches.number]
+    sums = [
+        np.bincount(wheel, there * patches.force * part, angle.size // 3).reshape(-1, 2)
+        for part in (patches.upright, patches.sign * patches.across)
+    ]
+    return sums[0] + (across * np.sin(angle)).sum(axis=-1), sums[1] + (across * np.cos(angle)).sum(axis=-1)

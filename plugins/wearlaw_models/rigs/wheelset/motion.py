@@ -19,6 +19,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.search import Position, Section, gaps
@@ -90,12 +91,17 @@ def roll_rate(place: Place, lateral_velocity: Array, yaw_velocity: Array) -> Arr
 class Creepages(NamedTuple):
     """ξ [-], η [-] and φ [1/m] as linear functions of the speed of rotation: `still` + Ω `turning`."""
 
-    still: tuple[Array, Array, Array]
-    turning: tuple[Array, Array, Array]
+    still: tuple[Array, ...]
+    turning: tuple[Array, ...]
 
     def at(self, speed: Array) -> list[Array]:
         """Return the creepages at speeds of rotation [rad/s]."""
         return [creepage + speed * rate for creepage, rate in zip(self.still, self.turning, strict=True)]
+
+    def part(self, some: NDArray[np.bool_]) -> Creepages:
+        """Return those of some points."""
+        still, turning = (tuple(array[some] for array in arrays) for arrays in self)
+        return Creepages(still, turning)
 
 
 def creepages(

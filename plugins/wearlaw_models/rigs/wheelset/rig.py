@@ -18,11 +18,13 @@ from wearlaw_models.rigs.wheelset.conicity import NOTHING, equivalent_conicity
 from wearlaw_models.rigs.wheelset.doubts import warn
 from wearlaw_models.rigs.wheelset.geometry import Geometry, geometry, patches, profiles
 from wearlaw_models.rigs.wheelset.guidance import FARTHEST, guided
-from wearlaw_models.rigs.wheelset.loads import BALANCE, Balance, Elastic, Friction, Pressure, Task
+from wearlaw_models.rigs.wheelset.loads import BALANCE, Loads
 from wearlaw_models.rigs.wheelset.pictures import Profiles, contact_figure, wear_figure
 from wearlaw_models.rigs.wheelset.profile import Profile, faults, unlikely
+from wearlaw_models.rigs.wheelset.rows import Lattice, lattice
 from wearlaw_models.rigs.wheelset.search import Section, Touching, both_sides, searched, section
 from wearlaw_models.rigs.wheelset.search_loops import PATCHES
+from wearlaw_models.rigs.wheelset.task import Elastic, Friction, Patch, Task
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -108,9 +110,6 @@ JUST_TOUCHING = 1e-3
 HIGH_PRESSURE = 3.5e9
 """Maximum pressure that only the noise of points gives [Pa]: new flanges have up to about 3."""
 
-GRID_ERROR = 0.03
-"""Estimated error of the maximum pressure of half-spaces from which it is warned of."""
-
 MARGIN = 1e-3
 """Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
 
@@ -168,7 +167,7 @@ class WheelsetProblem(wl.Problem):
     wheel_load: Array
     derailment_quotient: Array
     status: NDArray[np.object_]
-    balance: Balance
+    loads: Loads
     shape: tuple[int, ...]
 
     results: ClassVar[tuple[wl.Variable, ...]] = RESULTS
@@ -176,9 +175,7 @@ class WheelsetProblem(wl.Problem):
     @property
     def climbs(self) -> NDArray[np.bool_]:
         """Whether each wheel stands on its flange beyond the steepest place, (positions, sides)."""
-        over, climbs = _climbing(self.balance), np.zeros(self.balance.roll.size * 2, dtype=np.bool_)
-        climbs[self.balance.found.wheel[over]] = True
-        return climbs.reshape(-1, 2)
+        return self.loads.climbs
 
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
@@ -199,15 +196,16 @@ class Wheelset(wl.Rig):
     the same profile unless `left_wheel` gives that of the left one; so do the rails with `left_rail`.
 
     Axes are those of the track: x forwards, y to the right, z down. Results have the axes "side" and "patch". Patch 1
-    is the place where rigid bodies touch first; missing patches are NaN.
+    has the greatest vertical approach; missing patches are NaN.
 
     Materials of wheels and rails may differ. The rig then takes E* and Kalker's means of G and ν.
     """
 
     name: ClassVar[str] = "wheelset"
     source: ClassVar[str] = (
-        "locus of contact: A. D. de Pater, Vehicle System Dynamics 17 (1988) 127-140; strips: J. Piotrowski and W. Kik,"
-        " Vehicle System Dynamics 46 (2008) 27-48; half-spaces: I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206-219"
+        "locus of contact: A. D. de Pater, Vehicle System Dynamics 17 (1988) 127-140; half-spaces: A. E. H. Love, Phil."
+        " Trans. R. Soc. Lond. A 228 (1929) 377-420, with J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling"
+        " Contact, Kluwer 1990; rows at different angles: derived for wearlaw"
     )
     creepage: ClassVar = "lateral_displacement"
     choices: ClassVar = [("lateral_displacement", "lateral_force")]
@@ -250,13 +248,9 @@ class Wheelset(wl.Rig):
     """Angle by which the rails lean inwards, such as "1:40" [rad]."""
     flange_angle: Annotated[wl.Quantity, wl.Unit("deg")] = Field(default="30 deg", validate_default=True)
     """Contact angle beyond which a patch takes `flange_friction_coefficient` [rad]."""
-    pressure: Pressure = "kpec"
-    """Normal problem. "kpec": strips by the method of Kik and Piotrowski with elliptic correction, for any profile.
-    "hertz": ellipses with the curvatures where rigid bodies touch, for curvatures that hardly vary over the patch.
-    "half_space": elastic half-spaces, element by element, for patches with two humps and for reference; slow."""
-    strips: Annotated[int, Field(ge=5, le=500, strict=True)] = 20
-    """Number of strips of a patch with `pressure = "kpec"`; "half_space" has twice as many rows of elements over the
-    width in which the undeformed bodies overlap."""
+    patch: Patch = "strips"
+    """What contact models get of a patch. "strips": the rows of its pressure, with creepages of their own. "ellipse":
+    the ellipse of the same force, length and area, for models of ellipses, such as `half_space`."""
     material: wl.MaterialField
     """Material of wheels and rails; a file may also give the name of an installed material."""
     rail_material: wl.MaterialField | None = None
@@ -280,8 +274,7 @@ class Wheelset(wl.Rig):
             gauge_depth: wl.QuantityLike = "14 mm",
             rail_cant: wl.QuantityLike = "0 rad",
             flange_angle: wl.QuantityLike = "30 deg",
-            pressure: Pressure = "kpec",
-            strips: int = 20,
+            patch: Patch = "strips",
             material: wl.Material,
             rail_material: wl.Material | None = None,
             rolling_speed: wl.QuantityLike,
@@ -289,8 +282,18 @@ class Wheelset(wl.Rig):
 
     @property
     def patch_geometry(self) -> wl.Geometry:
-        """Strips, or ellipses by Hertz's theory."""
-        return "ellipse" if self.pressure == "hertz" else "strips"
+        """Strips, or ellipses that stand for them."""
+        return self.patch
+
+    @model_validator(mode="before")
+    @classmethod
+    def _has_one_pressure(cls, fields: Any) -> Any:
+        if isinstance(fields, Mapping) and (old := {"pressure", "strips"} & set(fields)):
+            raise ValueError(
+                f"{min(old)}: the pressure is always that of half-spaces, on rows that follow the profiles; leave"
+                f' {" and ".join(sorted(old))} out. Contact models of ellipses take patch = "ellipse"'
+            )
+        return fields
 
     @model_validator(mode="after")
     def _fits(self) -> Wheelset:
@@ -490,25 +493,23 @@ class Wheelset(wl.Rig):
         friction: Mapping[str, Any] = {**conditions, **flat}
         tread, on_flange = friction["friction_coefficient"], friction.get("flange_friction_coefficient")
         task = self._task(flat, (tread, tread if on_flange is None else on_flange))
-        balance = self._balance(task, flat.get("roll"))
+        loads = self._loads(task, flat.get("roll"))
         if task.torque.any():
-            balance.check_torque()
-        status = np.full(balance.roll.shape, BALANCE, dtype=object)  # as soon as there are creep forces
-        return self._whole(balance, status, shape)
+            loads.check_torque()
+        status = np.full(task.yaw.shape, BALANCE, dtype=object)  # as soon as there are creep forces
+        return self._whole(loads, status, shape)
 
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, WheelsetProblem)
-        if problem.balance.task.lateral_force is None:
-            balance = problem.balance.solved(forces)
-            status = balance.status
-            self._warn_of_climbing(balance)
+        if problem.loads.task.lateral_force is None:
+            loads = problem.loads.solved(forces)
+            status = loads.status
         else:
-            balance, status = self._guided(problem.balance, forces)
-        self._warn_of_missing(balance, status)
-        self._warn_of_humps(balance)
-        self._warn_of_grids(balance)
-        whole = self._whole(balance, status, problem.shape)
+            loads, status = self._guided(problem.loads, forces)
+        self._warn_of_climbing(loads)
+        self._warn_of_missing(loads, status)
+        whole = self._whole(loads, status, problem.shape)
         self._warn_of_points(whole)
         return whole
 
@@ -525,7 +526,7 @@ class Wheelset(wl.Rig):
             conditions.get("lateral_displacement", none), conditions["yaw"], speed, conditions["lateral_velocity"],
             conditions["yaw_velocity"], conditions["yaw_velocity"] + speed / conditions["curve_radius"],
             np.where(bears, loads, touching), bears, friction, wl.scalar_si(self.flange_angle, "rad"),
-            conditions.get("axle_torque", none), conditions.get("angular_speed"), "roll" not in conditions,
+            conditions.get("axle_torque", none), conditions.get("angular_speed"), conditions.get("roll"),
             conditions.get("lateral_force"),
         )  # fmt: skip
 
@@ -537,70 +538,82 @@ class Wheelset(wl.Rig):
         which = which.reshape(-1)
         return rolls[which], Touching(*(array[which] for array in touching))
 
-    def _balance(self, task: Task, roll: Array | None) -> Balance:
+    def _loads(self, task: Task, roll: Array | None) -> Loads:
         """Return the loads of a task without creep forces."""
         rolls, touching = self._rigid(task.displacement, task.yaw, roll)
         self._check_contact(task.displacement, touching)
-        return Balance.begun(self._section, self._elastic, task, rolls, touching, self.pressure, self.strips)
+        return Loads.begun(self._section, self._lattice, self._elastic, task, rolls, touching, self.patch)
 
     def _guided(
-        self, balance: Balance, forces: Callable[[wl.Problem], wl.CreepForces]
-    ) -> tuple[Balance, NDArray[np.object_]]:
+        self, loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces]
+    ) -> tuple[Loads, NDArray[np.object_]]:
         """Return the loads of wheelsets where the rails bear their lateral forces, and the status of each."""
-        task = balance.task
+        task = loads.task
         assert task.lateral_force is not None
-        roll = None if task.free else balance.roll
+        rolls = None if task.free else loads.roll
 
-        def solved(part: Task, rows: NDArray[np.intp]) -> Balance:
-            return self._balance(part, None if roll is None else roll[rows]).solved(forces, bounds=False)
+        def solved(part: Task) -> Loads:
+            return self._loads(part, part.roll).solved(forces)
 
         steepest = np.array([pair.steepest for pair in self._section.sides])
 
-        def stands(displacement: Array, rows: NDArray[np.intp], below: bool) -> NDArray[np.bool_]:
-            _, touching = self._rigid(displacement, task.yaw[rows], None if roll is None else roll[rows])
+        def stands(displacement: Array, points: NDArray[np.intp], below: bool) -> NDArray[np.bool_]:
+            _, touching = self._rigid(displacement, task.yaw[points], None if rolls is None else rolls[points])
             return np.asarray((touching.arc[..., 0] >= (steepest if below else -np.inf)).all(axis=-1))
 
-        place, climbs, greatest = guided(task, solved, stands)
-        every = np.arange(place.size)
-        balance = solved(task.part(every, place), every)
-        left = np.abs(balance.lateral.sum(axis=-1) - task.lateral_force)
-        balance.left[:, 4] = left / task.load.mean(axis=-1)
-        status = balance.status
+        place, climbs, greatest = guided(task, solved, stands, self._begins)
+        loads = solved(replace(task, displacement=place)).guided(forces, ~climbs)
+        status = loads.status
         for point in np.flatnonzero(climbs):
             side = DIMS["side"][int(place[point] > 0.0)]
             status[point] = (
-                f"the greatest lateral force found is {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm;"
+                f"the greatest lateral force is {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm;"
                 f" beyond it the {side} wheel climbs its rail or leaves it"
             )
-        return balance, status
+        return loads, status
 
-    def _whole(self, balance: Balance, status: NDArray[np.object_], shape: tuple[int, ...]) -> wl.Problem:
+    def _begins(self, share: Array) -> Array:
+        """Return distances from the middle at which tan δ of rigid wheels passes half of a share [m]."""
+        distance, slope = self._slopes
+        return np.asarray(np.interp(0.5 * share, slope, distance))
+
+    @cached_property
+    def _slopes(self) -> tuple[Array, Array]:
+        """Distances from the middle [m], and the greatest tan δ of rigid right wheels up to there."""
+        distance = np.arange(0.0, FARTHEST, 0.1e-3)
+        distance = distance[np.logical_and.accumulate(self.on_rails(distance))]
+        roll, touching = searched(self._section, distance, np.zeros_like(distance))
+        angle = patches(self._section, both_sides(distance, roll, np.zeros_like(distance)), touching)["contact_angle"]
+        slope = np.maximum.accumulate(np.tan(np.abs(angle[:, 1, 0])))
+        return distance, np.asarray(slope + 1e-9 * np.arange(distance.size), np.float64)
+
+    def _whole(self, loads: Loads, status: NDArray[np.object_], shape: tuple[int, ...]) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
-        candidates = balance.found
-        flat, patch = balance.posed()
-        size = balance.roll.size
-        exists = np.zeros((size, 2, PATCHES), dtype=np.bool_)
-        place = candidates.point, candidates.side, candidates.number
-        bears, balanced = balance.task.bears, status == BALANCE
-        exists[place] = patch.touch & balanced[candidates.point] & bears[candidates.point, candidates.side]
+        task, patches = loads.task, loads.patches
+        flat = patches.posed(task, self._elastic, loads.rotation, self.patch)
+        point, wheel = patches.point, (patches.point, patches.side)
+        exists = np.zeros((task.yaw.size, 2, PATCHES), dtype=np.bool_)
+        place = point, patches.side, patches.number
+        bears, balanced = task.bears, status == BALANCE
+        exists[place] = balanced[point] & bears[wheel]
         lifted = balanced[:, None] & ~bears
         unloaded = np.repeat(lifted[..., None], PATCHES, axis=-1).reshape(*shape, 2, PATCHES) if lifted.any() else None
 
         def wide(array: Array) -> Array:
-            full = np.full(exists.shape, np.nan)
+            full = np.full((*exists.shape, *array.shape[1:]), np.nan)
             full[place] = array
-            return full.reshape(*shape, 2, PATCHES)
+            return full.reshape(*shape, 2, PATCHES, *array.shape[1:])
 
-        problem = flat.mapped(wide)
+        problem = flat.mapped(wide, wide)
         side = np.broadcast_to(np.array([-1.0, 1.0])[:, None], exists.shape).reshape(*shape, 2, PATCHES)
         bodies = {
             "wheel": wl.Body(
-                self.material, wide(patch.place.radius), profile_position=wide(patch.arc), profile_direction=side
+                self.material, wide(patches.radius), profile_position=wide(patches.arc), profile_direction=side
             ),
             "rail": wl.Body(
                 self.rail_material or self.material,
                 np.inf,
-                profile_position=wide(patch.place.rail_arc),
+                profile_position=wide(patches.rail_arc),
                 profile_direction=side,
             ),
         }
@@ -611,16 +624,16 @@ class Wheelset(wl.Rig):
             "unloaded": unloaded,
         }
         fields |= {
-            "roll": wide(balance.roll[candidates.point]),
-            "penetration": wide(balance.penetration[candidates.wheel] - candidates.gap),
-            "imbalance": wide(balance.imbalance[candidates.point]),
-            "lateral_displacement": wide(balance.task.displacement[candidates.point]),
-            "guiding_force": wide(balance.lateral[candidates.point, candidates.side]),
-            "wheel_load": wide(balance.vertical[candidates.point, candidates.side]),
-            "derailment_quotient": wide((balance.lateral / balance.vertical)[candidates.point, candidates.side]),
+            "roll": wide(loads.roll[point]),
+            "penetration": wide(patches.approach),
+            "imbalance": wide(loads.left.max(axis=-1)[point]),
+            "lateral_displacement": wide(loads.displacement[point]),
+            "guiding_force": wide(loads.lateral[wheel]),
+            "wheel_load": wide(loads.vertical[wheel]),
+            "derailment_quotient": wide((loads.lateral / loads.vertical)[wheel]),
             "status": np.broadcast_to(status[:, None, None], exists.shape).reshape(*shape, 2, PATCHES),
         }
-        return WheelsetProblem.of(problem, **fields, balance=balance, shape=shape)
+        return WheelsetProblem.of(problem, **fields, loads=loads, shape=shape)
 
     def _check_contact(self, displacement: Array, touching: Touching) -> None:
         """Raise an error where a wheel does not stand on its rail."""
@@ -633,47 +646,15 @@ class Wheelset(wl.Rig):
                 + (f", or single points of {' or '.join(self._rough)} are off: give smoothing" if self._rough else "")
             )
 
-    def _warn_of_climbing(self, balance: Balance) -> None:
+    def _warn_of_climbing(self, loads: Loads) -> None:
         """Warn of a wheel that stands on the top of its flange."""
-        candidates = balance.found
-        over = _climbing(balance)
+        over = loads.climbs
         if over.any():
-            point, side = (int(index[over][0]) for index in (candidates.point, candidates.side))
-            displacement = 1e3 * balance.task.displacement[point]
+            point, side = (int(index[0]) for index in np.nonzero(over))
+            displacement = 1e3 * loads.task.displacement[point]
             warnings.warn(
                 f"at a lateral displacement of {displacement:.4g} mm the {DIMS['side'][side]} wheel climbs its rail: it"
                 " stands on its flange beyond the steepest point",
-                wl.RangeWarning,
-                stacklevel=5,
-            )
-
-    def _warn_of_humps(self, balance: Balance) -> None:
-        """Warn of patches with two humps, which strips by virtual penetration get wrong."""
-        if self.pressure != "kpec" or not (humps := balance.humps()).any():
-            return
-        first = int(np.argmax(humps))
-        point, side = balance.found.point[first], DIMS["side"][balance.found.side[first]]
-        warnings.warn(
-            f"{np.count_nonzero(humps)} of {humps.size} patches have two humps, the first on the {side} wheel at a"
-            f" lateral displacement of {1e3 * balance.task.displacement[point]:.4g} mm: the maximum pressure of 'kpec'"
-            ' may be a third too low there; take pressure="half_space"',
-            wl.RangeWarning,
-            stacklevel=5,
-        )
-
-    def _warn_of_grids(self, balance: Balance) -> None:
-        """Warn of patches with a hump that is too narrow for the rows of half-spaces."""
-        if self.pressure != "half_space":
-            return
-        error = balance.shapes["error"]
-        if (error > GRID_ERROR).any():
-            worst = int(error.argmax())
-            point, side = balance.found.point[worst], DIMS["side"][balance.found.side[worst]]
-            warnings.warn(
-                f"{np.count_nonzero(error > GRID_ERROR)} of {error.size} patches have a hump that is too narrow for"
-                f" their rows, the worst on the {side} wheel at a lateral displacement of"
-                f" {1e3 * balance.task.displacement[point]:.4g} mm, where the maximum pressure may be off by"
-                f" {100.0 * error[worst]:.0f} %; give more than {self.strips} strips",
                 wl.RangeWarning,
                 stacklevel=5,
             )
@@ -690,20 +671,18 @@ class Wheelset(wl.Rig):
                 stacklevel=5,
             )
 
-    def _warn_of_missing(self, balance: Balance, status: NDArray[np.object_]) -> None:
+    def _warn_of_missing(self, loads: Loads, status: NDArray[np.object_]) -> None:
         """Warn of positions that have no result, and say why the first one has none."""
         missing = np.flatnonzero(status != BALANCE)
         if missing.size:
-            task, first = balance.task, missing[0]
+            task, first = loads.task, missing[0]
             if task.lateral_force is None:
                 where = f"at a lateral displacement of {1e3 * task.displacement[first]:.4g} mm"
             else:
                 where = f"with a lateral force of {1e-3 * task.lateral_force[first]:.4g} kN"
-            gradual = self.pressure == "half_space" or "climbs" in status[first]
-            advice = "" if gradual else ', or take pressure="half_space"'
             warnings.warn(
                 f"{missing.size} of {status.size} positions have no result, the first {where}: {status[first]}; see"
-                f" status of the problem{advice}",
+                " status of the problem",
                 wl.RangeWarning,
                 stacklevel=5,
             )
@@ -740,6 +719,10 @@ class Wheelset(wl.Rig):
         return replace(right, left=of(self.left_wheel or self.wheel, self.left_rail or self.rail))
 
     @cached_property
+    def _lattice(self) -> Lattice:
+        return lattice(self._section)
+
+    @cached_property
     def _elastic(self) -> Elastic:
         pair = [body.material for body in self.bodies.values()]
         (e1, n1), (e2, n2) = (
@@ -751,14 +734,6 @@ class Wheelset(wl.Rig):
             wl.hertz.mean_poisson_ratio(e1, n1, e2, n2),
             wl.scalar_si(self.material.density, "kg/m^3"),
         )
-
-
-def _climbing(balance: Balance) -> NDArray[np.bool_]:
-    """Return which places are the first of a wheel and on its flange beyond the steepest place."""
-    steepest = np.array([pair.steepest for pair in balance.section.sides])
-    candidates = balance.found
-    over = (candidates.number == 0) & (candidates.arc < steepest[candidates.side])
-    return np.asarray(over & balance.task.bears[candidates.point, candidates.side])
 
 
 def _scalar(unit: wl.Unit, value: wl.QuantityLike, name: str) -> float:

@@ -1,0 +1,507 @@
+"""Loads of a wheelset on its rails, and their balance with the creep forces.
+
+On each wheel the pressure carries the vertical load together with the lateral creep forces, and the torque about the
+axle is the given one:
+
+    ∑ (N cos δ + Fy sin δ) = Q,  V ∑ (Fx ∂ξ/∂Ω + Fy ∂η/∂Ω + Mz ∂φ/∂Ω) = M.
+
+The unknowns are the height of the axle and, unless it is given, its roll, or the heights of both wheels; and the speed
+of rotation Ω. The overlap of the bodies is linear in heights and roll, so the pressure and they are found together. Of
+the creep forces only Fy/N of each patch enters there. It hardly depends on the load, so a few rounds of pressure and
+creep forces are enough; the rates of the creep forces with Ω are estimated.
+
+Rows are laid where the wheel stands under its load alone. Where creep forces move it along the rail by more than
+`SHIFT`, they are laid again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import wearlaw as wl
+from wearlaw import Array
+from wearlaw_models.rigs.wheelset.motion import Creepages, Place, creepages, roll_rate
+from wearlaw_models.rigs.wheelset.patches import Patches
+from wearlaw_models.rigs.wheelset.pressure import Pressed
+from wearlaw_models.rigs.wheelset.rows import SPARE, Lattice, Near, Rows, near, rows
+from wearlaw_models.rigs.wheelset.search import Position, Section, both_sides
+from wearlaw_models.rigs.wheelset.search_loops import LEAST_LEVER, PATCHES
+from wearlaw_models.rigs.wheelset.task import Elastic, Patch, Task
+
+BALANCED = 1e-6
+"""Greatest imbalance, as a share of the load, and of the torque of full slip, after which the search ends."""
+
+STEPS, DEPTH = 30, 3
+"""Most rounds of pressure and creep forces, of which four or five are usual, and those before by which one is improved.
+"""
+
+SCALE = 100.0
+"""Change of Fy/N that counts as much as a change of the speed of rotation by all of it."""
+
+SHIFT = 5e-5
+"""Distance along the rail by which a wheel moves before its rows are laid again [m]."""
+
+LEAST_WEIGHT = 0.02
+"""Least part of a normal force that bears a wheel in the search; a flange that friction holds bears nothing."""
+
+MOST_TURN = 0.01
+"""Greatest step of the speed of rotation, as a share of it."""
+
+LOST, DEEP = 0.8, 4.0
+"""Shares of the estimated approach by which a wheel may lack or exceed it before it is put back on its rail."""
+
+WIDEST_ROLL = 1e-3
+"""Greatest change of the roll by the estimated approach of both wheels [rad]."""
+
+TOUCH = 1e-3
+"""Force of a wheel that is lost for a while [N]."""
+
+STILL = 0.05
+"""Imbalance of the vertical loads, over that of the torque, below which bounds of the speed of rotation hold."""
+
+POWER = 0.3
+"""Exponent of 1 - f, the share of full slip that is missing, in the creepage of FASTSIM on an ellipse."""
+
+FULL = 0.999
+"""Greatest share of full slip that the rates of creep forces count with, so that they never vanish."""
+
+TINY = 1e-300
+"""Keeps divisors from zero."""
+
+
+def _held(
+    section: Section, lattice: Lattice, elastic: Elastic, task: Task, height: Array, roll: Array, position: Position,
+    around: Near,
+) -> tuple[Array, Array, Position, Near]:  # fmt: skip
+    """Return heights and rolls at which no wheel is lost, as one may be by a step that was too long."""
+    for _ in range(2):
+        least = around.gap.min(axis=-1)
+        least = np.where(np.isfinite(least), least, height.reshape(-1))  # beside the rail
+        depth = around.sunk(task.load.reshape(-1), least, elastic.modulus)
+        lacks = (depth - (height.reshape(-1) - least)).reshape(-1, 2)
+        share = lacks / depth.reshape(-1, 2)
+        lacks = np.where(((share > LOST) | (share < -DEEP)).any(axis=-1, keepdims=True), lacks, 0.0)
+        if not lacks.any():
+            break
+        if task.free:
+            lowest = around.gap.argmin(axis=-1)
+            lever = around.lean[np.arange(lowest.size), lowest].reshape(-1, 2)
+            change = (lacks[:, 1] - lacks[:, 0]) / np.maximum(np.abs(lever.sum(axis=-1)), LEAST_LEVER)
+            change = np.clip(change, -WIDEST_ROLL, WIDEST_ROLL)
+            roll = roll + change
+            lacks = (lacks - lever * change[:, None] * (-1.0, 1.0)).mean(axis=-1, keepdims=True) + np.zeros(2)
+            pairs = both_sides(task.displacement, roll, task.yaw)
+            position = Position(*(np.ascontiguousarray(array).reshape(-1) for array in pairs))
+            around = near(section, position, lattice)
+        height = height + lacks
+    return height, roll, position, around
+
+
+class Sequence:
+    """Fixed points of several functions, by D. G. Anderson's extrapolation, J. ACM 12 (1965) 547-560."""
+
+    def __init__(self) -> None:
+        self.steps: list[tuple[Array, Array]] = []
+
+    def next(self, now: Array, new: Array) -> Array:
+        """Return the next arguments, of shape (functions, arguments), where the functions of these are `new`."""
+        self.steps = [*self.steps[-DEPTH:], (new - now, new)]
+        rest = new - now
+        if len(self.steps) == 1:
+            return new
+        changes, moves = (
+            np.stack([step[k] for step in self.steps[1:]], axis=1)
+            - np.stack([step[k] for step in self.steps[:-1]], axis=1)
+            for k in (0, 1)
+        )
+        square = changes @ changes.transpose(0, 2, 1)
+        least = 1e-12 * np.trace(square, axis1=1, axis2=2) + TINY
+        square += least[:, None, None] * np.eye(square.shape[1])
+        share = np.linalg.solve(square, changes @ rest[..., None])
+        return np.asarray(new - (share * moves).sum(axis=1))
+
+
+@dataclass(eq=False)
+class Stand:
+    """Wheelsets on their rails at some positions, whose rows stay while their loads are balanced.
+
+    Attributes
+    ----------
+    points : ndarray of int
+        Which positions of the whole task these are.
+    height : ndarray, (positions, 2)
+        Height of the axle at which the rows were laid, for each wheel, positive down [m].
+    roll : ndarray
+        Roll there [rad].
+    ratio, sine : ndarray, (rows,)
+        Lateral creep force over the normal force of the patch of each row, and the patch's sin δ, in the track's axes.
+    rotation : ndarray
+        Speed of rotation, Ω [rad/s].
+    left : ndarray, (positions, 4)
+        What is left over: shares of the loads of both wheels, of the torque of full slip, and of the load of a wheel as
+        a lateral force.
+    """
+
+    section: Section
+    elastic: Elastic
+    task: Task
+    points: NDArray[np.intp]
+    height: Array
+    roll: Array
+    rows: Rows
+    pressed: Pressed
+    sliding: Creepages
+    ratio: Array
+    sine: Array
+    rotation: Array
+    left: Array
+    vertical: Array
+    lateral: Array
+    patches: Patches = field(init=False)
+    of_row: tuple[NDArray[np.intp], NDArray[np.intp]] = field(init=False)
+
+    @classmethod
+    def laid(
+        cls, section: Section, lattice: Lattice, elastic: Elastic, task: Task, points: NDArray[np.intp], height: Array,
+        roll: Array, least: Array | None = None, before: Stand | None = None,
+    ) -> Stand:  # fmt: skip
+        """Return wheelsets with rows at heights and rolls; with the least gaps of rigid wheels, at those under load."""
+        pairs = both_sides(task.displacement, roll, task.yaw)
+        position = Position(*(np.ascontiguousarray(array).reshape(-1) for array in pairs))
+        around = near(section, position, lattice)
+        if least is not None:
+            depth = around.sunk(task.load.reshape(-1), height.reshape(-1), elastic.modulus).reshape(-1, 2)
+            if task.free:
+                lever = np.maximum(np.abs(least.sum(axis=-1)), LEAST_LEVER)
+                change = np.clip((depth[:, 1] - depth[:, 0]) / lever, -WIDEST_ROLL, WIDEST_ROLL)
+                roll = roll + change
+                depth = (depth - least * change[:, None] * (-1.0, 1.0)).mean(axis=-1, keepdims=True) + np.zeros(2)
+                pairs = both_sides(task.displacement, roll, task.yaw)
+                position = Position(*(np.ascontiguousarray(array).reshape(-1) for array in pairs))
+                around = around.rolled((change[:, None] * (-1.0, 1.0)).reshape(-1))
+            height = height + depth
+        else:
+            height, roll, position, around = _held(section, lattice, elastic, task, height, roll, position, around)
+        laid = rows(section, lattice, position, height.reshape(-1), around)
+        side = np.where(laid.wheel % 2 == 1, 1.0, -1.0)
+        right = laid.wheel % 2
+        if task.free:
+            rates: Any = [laid.down, side * laid.lean]
+        else:
+            rates = [laid.down * (1 - right), laid.down * right]
+        if task.lateral_force is not None:
+            rates.append(side * laid.out)
+        rates = np.stack(rates, axis=-1)
+        pressed = Pressed.begun(laid, elastic.modulus, rates)
+        none, count = np.zeros(side.shape), roll.size
+        stand = cls(
+            section, elastic, task, points, height, roll, laid, pressed, Creepages((none,) * 3, (none,) * 3), none,
+            none, np.zeros(count), np.zeros((count, 4)), np.zeros((count, 2)), np.zeros((count, 2)),
+        )  # fmt: skip
+        if before is not None:  # with the creep forces that it had
+            old = np.searchsorted(points, before.points)
+            old = np.where(points[np.minimum(old, points.size - 1)] == before.points, old, -1)[before.rows.wheel // 2]
+            keys = 20.0 * old + 10.0 * (before.rows.wheel % 2) + before.rows.place.rail_arc
+            some = np.flatnonzero(old >= 0)
+            near_ = np.searchsorted(keys[some], 10.0 * laid.wheel + laid.place.rail_arc)
+            near_ = some[np.minimum(near_, some.size - 1)]
+            stand.ratio, stand.sine = before.ratio[near_], before.sine[near_]
+        stand._carry()
+        force = stand._row_force()
+        turn = np.zeros(count)
+        if task.free:
+            turn = stand._roll_rate(force)
+        point = laid.wheel // 2
+        stand.sliding = creepages(
+            Position(*(array[laid.wheel] for array in position)), laid.place, task.speed[point],
+            side * task.lateral_velocity[point], side * task.turn_rate[point], side * turn[point], side,
+        )  # fmt: skip
+        if before is not None:
+            stand.rotation = before.rotation[np.isin(before.points, points)]
+        elif task.rotation is not None:
+            stand.rotation = task.rotation.copy()
+        else:
+            mean = np.bincount(point, force * laid.place.radius, count) / np.bincount(point, force, count)
+            stand.rotation = task.speed / mean
+        stand.patches = stand._found()
+        stand._sum(None, stand.patches)
+        return stand
+
+    def copy(self) -> Stand:
+        """Return a copy whose loads change on their own."""
+        copy = replace(self, pressed=self.pressed.copy())
+        for name in ("ratio", "sine", "left", "vertical", "lateral"):
+            setattr(copy, name, getattr(self, name).copy())
+        copy.patches, copy.of_row = self.patches, self.of_row
+        return copy
+
+    def _row_force(self) -> Array:
+        point = self.rows.wheel // 2
+        forces = self.pressed.forces
+        force: Array = forces[:, 0] + (forces[:, 1:] * self.pressed.moved[point]).sum(axis=-1)
+        return np.maximum(force, 0.0)
+
+    def _carry(self) -> None:
+        """Find the pressure that carries the loads with the creep forces as they are."""
+        rows = self.rows
+        right, angle = np.where(rows.wheel % 2 == 1, 1.0, 0.0), rows.place.angle
+        weight = np.maximum(np.cos(angle) + self.ratio * self.sine, LEAST_WEIGHT)
+        weights: list[Array] = [weight * (1 - right), weight * right]
+        load = self.task.load
+        if self.task.guided:
+            assert self.task.lateral_force is not None
+            weights.append(self._across())
+            load = np.append(load, self.task.lateral_force[:, None], axis=-1)
+        self.pressed.weights = np.stack(weights, axis=-1)
+        self.pressed.carry(load)
+
+    def _across(self) -> Array:
+        """Return what the force of each row adds to the sum of the lateral forces [-]."""
+        angle, side = self.rows.place.angle, np.where(self.rows.wheel % 2 == 1, 1.0, -1.0)
+        return np.asarray(-side * np.sin(angle) + self.ratio * np.sqrt(np.maximum(1.0 - self.sine**2, 0.0)))
+
+    def _roll_rate(self, force: Array) -> Array:
+        """Return the roll velocity at which both wheels stay on their rails [rad/s]."""
+        rows, count = self.rows, self.roll.size
+
+        def mean(values: Array) -> Array:
+            weight = force + TOUCH  # a wheel may be lost for a while
+            sums = np.bincount(rows.wheel, weight * values, 2 * count) / np.bincount(rows.wheel, weight, 2 * count)
+            return np.asarray(sums).reshape(-1, 2)
+
+        x, y, z, angle = (mean(array) for array in rows.place[:4])
+        place = Place(x, y, z, angle, np.zeros(0), np.zeros(0))
+        return roll_rate(place, self.task.lateral_velocity, self.task.yaw_velocity)
+
+    def _found(self) -> Patches:
+        """Return the patches: rows that touch and lie beside each other, at most `PATCHES` of them on each side."""
+        rows, force = self.rows, self._row_force()
+        most, crest = self.pressed.peaks()
+        touches = (force > 0.0) & (most > 0.0)
+        lost = ~np.logical_or.reduceat(touches, rows.start[:-1])
+        if lost.any():  # for a while, while loads are balanced
+            overlap = self.pressed.overlap()
+            lowest = [
+                first + overlap[first:last].argmax()
+                for first, last in zip(rows.start[:-1][lost], rows.start[1:][lost], strict=True)
+            ]
+            force[lowest], most[lowest], touches[lowest] = TOUCH, 1.0, True
+        at = np.flatnonzero(touches)
+        wheel, arc = rows.wheel[at], rows.place.rail_arc[at]
+        gap = np.diff(arc, prepend=-np.inf) - 0.5 * (rows.width[at] + np.roll(rows.width[at], 1))
+        begins = (np.diff(wheel, prepend=-1) != 0) | (gap > 0.25 * rows.width[at])
+        for crowded in np.flatnonzero(np.bincount(wheel[begins]) > PATCHES):  # join those that are nearest
+            inner = np.flatnonzero(begins & (wheel == crowded))[1:]
+            begins[inner[np.argsort(gap[inner])[: 1 - PATCHES]]] = False
+        first, patch = np.flatnonzero(begins), np.cumsum(begins) - 1
+        self.of_row = at, patch
+        count, size = first.size, np.diff(np.append(np.flatnonzero(begins), at.size))
+        of, point = wheel[first], wheel[first] // 2
+        side = np.where(of % 2 == 1, 1.0, -1.0)
+        force, most, crest, width, angle = force[at], most[at], crest[at], rows.width[at], rows.place.angle[at]
+        whole = np.add.reduceat(force, first)
+
+        def mean(values: Array) -> Array:
+            return np.asarray(np.add.reduceat(force * values, first) / whole)
+
+        sunk = self.pressed.overlap()[at] / np.cos(angle)
+        approach = np.maximum.reduceat(sunk, first)
+        order = np.lexsort((-approach, of))
+        number = np.empty(count, dtype=np.intp)
+        number[order] = (
+            np.arange(count)
+            - np.flatnonzero(np.diff(of[order], prepend=-1))[np.cumsum(np.diff(of[order], prepend=-1) != 0) - 1]
+        )
+        middle, half_length = mean(arc), 2.0 / np.pi * force / (width * most)
+        a = np.maximum.reduceat(half_length, first)
+        b = 2.0 / np.pi * np.add.reduceat(half_length * width, first) / a
+        slot = np.arange(at.size) - first[patch]
+        slot = np.where(side[patch] > 0.0, slot, size[patch] - 1 - slot)
+        strips = {name: np.zeros((count, size.max())) for name in ("y", "width", "half_length", "max_pressure", "x")}
+        values = side[patch] * (arc - middle[patch]), width, half_length, most, crest - mean(crest)[patch]
+        for array, value in zip(strips.values(), values, strict=True):
+            array[patch, slot] = value
+        moved = [np.zeros((count, size.max())) for _ in range(6)]
+        means = []
+        for array, rate in zip(moved, (*self.sliding.still, *self.sliding.turning), strict=True):
+            array[patch, slot] = rate[at]
+            means.append(mean(rate[at]))
+        across, upright = -mean(np.sin(angle)), mean(np.cos(angle))
+        return Patches(
+            point, of % 2, number, whole, across, upright, mean(rows.wheel_arc[at]), middle,
+            mean(rows.place.radius[at]), approach, mean(np.where(np.abs(angle) > self.task.flange_angle, 1.0, 0.0)),
+            Creepages(tuple(means[:3]), tuple(means[3:])), a, b, strips, Creepages(tuple(moved[:3]), tuple(moved[3:])),
+        )  # fmt: skip
+
+    def _sum(self, force: wl.CreepForces | None, patches: Patches, friction: Array | None = None) -> Array:
+        """Note the loads of some patches and what they leave over at their positions; return excess torques [N m].
+
+        `friction` are the friction coefficients of the patches.
+        """
+        count, task = self.roll.size, self.task
+        wheel, sign = 2 * patches.point + patches.side, patches.sign
+        vertical, lateral = patches.force * patches.upright, sign * patches.force * patches.across
+        torque: Any = np.zeros(count)
+        grip: Any = np.ones(count)
+        if force is not None:
+            vertical = vertical + sign * np.sin(patches.angle) * force.lateral
+            lateral = lateral + np.cos(patches.angle) * force.lateral
+            parts = zip((force.longitudinal, force.lateral, force.spin_moment), patches.sliding.turning, strict=True)
+            power = task.speed[patches.point] * sum(part * rate for part, rate in parts)
+            assert friction is not None
+            torque = np.bincount(patches.point, power, count)
+            grip = np.bincount(patches.point, friction * patches.force * patches.radius, count)
+        some = np.bincount(patches.point, minlength=count) > 0
+        sums = (np.bincount(wheel, of, 2 * count).reshape(-1, 2) for of in (vertical, lateral))
+        for array, values in zip((self.vertical, self.lateral), sums, strict=True):
+            array[some] = values[some]
+        self.left[some, :2] = np.abs(self.vertical / task.load - 1.0)[some]
+        if force is not None and task.rotation is None:
+            self.left[some, 2] = np.abs((torque - task.torque) / np.maximum(grip, TINY))[some]
+        if task.guided:
+            lacks = self.lateral.sum(axis=-1) - task.lateral_force
+            self.left[some, 3] = np.abs(lacks / task.load.mean(axis=-1))[some]
+        return np.asarray(torque - task.torque)
+
+    def balance(self, forces: Callable[[wl.Problem], wl.CreepForces], patch: Patch, last: bool) -> None:
+        """Balance the loads with the creep forces, in place."""
+        task, count = self.task, self.roll.size
+        going, scale = np.ones(count, dtype=np.bool_), SCALE / self.rotation
+        sequence = Sequence()
+        low, high = np.full(count, -np.inf), np.full(count, np.inf)
+        best = np.full(count, np.inf)
+        kept = self.ratio.copy(), self.sine.copy(), self.rotation.copy()
+        for step in range(STEPS + 1):
+            if step == STEPS:  # creep forces jump; the nearest state that was met stays
+                rows = going[self.rows.wheel // 2]
+                self.ratio, self.sine = (
+                    np.where(rows, *pair) for pair in zip(kept[:2], (self.ratio, self.sine), strict=True)
+                )
+                self.rotation = np.where(going, kept[2], self.rotation)
+            if step:
+                self._carry()
+                self.patches = self._found()
+            some = self.patches.part(going[self.patches.point])
+            problem = some.posed(task, self.elastic, self.rotation, patch)
+            force = forces(problem)
+            excess = self._sum(force, some, problem.friction_coefficient)
+            most = self.left.max(axis=-1)
+            nearer, best = most < best, np.minimum(most, best)
+            rows = nearer[self.rows.wheel // 2]
+            kept = (
+                np.where(rows, self.ratio, kept[0]), np.where(rows, self.sine, kept[1]),
+                np.where(nearer, self.rotation, kept[2]),
+            )  # fmt: skip
+            going = going & (most > BALANCED)
+            if step and not last:
+                going &= self.shift <= 1.0
+            if not going.any() or step == STEPS:
+                return
+            rate, drift = self._rates(some, problem, force)
+            turn = np.zeros(count)
+            if task.rotation is None:
+                widest = MOST_TURN * self.rotation
+                turn = np.clip(-excess / np.maximum(rate, TINY), -widest, widest)
+            row, of = self.of_row
+            used = self.ratio[row[np.flatnonzero(np.diff(of, prepend=-1))]]
+            slot = some.point, 1 + some.side * PATCHES + some.number
+            now, new = np.zeros((2, count, 1 + 2 * PATCHES))
+            now[:, 0] = self.rotation * scale
+            new[:, 0] = (self.rotation + turn) * scale
+            now[slot] = used[np.isin(self.patches.point, some.point)]
+            new[slot] = (force.lateral + drift * turn[some.point]) / some.force
+            new = sequence.next(now, new)
+            if task.rotation is None:
+                ahead = new[:, 0] / scale
+                # The torque grows with Ω, steeply at first and then hardly, so bounds help once the loads hardly move.
+                still = self.left[:, :2].max(axis=-1) < STILL * self.left[:, 2]
+                low = np.where(still, np.where(excess < 0.0, self.rotation, low), -np.inf)
+                high = np.where(still, np.where(excess > 0.0, self.rotation, high), np.inf)
+                ahead = np.where((ahead <= low) | (ahead >= high), self.rotation + turn, ahead)
+                beyond = ((ahead <= low) | (ahead >= high)) & np.isfinite(low) & np.isfinite(high)
+                ahead[beyond] = 0.5 * (low[beyond] + high[beyond])
+                self.rotation = np.where(going, ahead, self.rotation)
+            bound = problem.friction_coefficient
+            ratio = np.zeros(self.patches.force.size)
+            ratio[np.isin(self.patches.point, some.point)] = np.clip(new[slot], -bound, bound)
+            self._push(ratio, going)
+
+    def _push(self, ratio: Array, going: NDArray[np.bool_]) -> None:
+        """Set the lateral creep forces of rows by those of patches over their normal forces, in place."""
+        row, patch = self.of_row
+        place = np.searchsorted(row, np.arange(self.ratio.size))  # rows that do not touch take what the next ones have
+        place = np.minimum(place, row.size - 1)
+        wheel = self.rows.wheel
+        place = np.where((wheel[row[place]] != wheel) & (place > 0), place - 1, place)
+        mine, some = patch[place], going[wheel // 2]
+        sine = self.patches.sign * np.sin(self.patches.angle)
+        self.ratio, self.sine = np.where(some, ratio[mine], self.ratio), np.where(some, sine[mine], self.sine)
+
+    def _rates(self, patches: Patches, problem: wl.Problem, force: wl.CreepForces) -> tuple[Array, Array]:
+        """Return estimates of the rates with Ω of the torques of axles, and of the lateral forces of patches.
+
+        The creep forces start with Kalker's rates. As f, their share of μN, grows, the rate along the force falls to
+        (1 - f)^0.7, and that across it to f/x with 1 - f = (1 - 0.3 x)^(10/3). This is FASTSIM on an ellipse within
+        1 %, x being the force of the linear theory over μN; in full slip, that at the present creepages.
+        """
+        size, bound = np.maximum(force.tangential, TINY), problem.friction_coefficient * patches.force
+        x, y = force.longitudinal / size, force.lateral / size
+        share = np.minimum(size / bound, FULL)
+        c = wl.kalker.coefficients(patches.a / patches.b, self.elastic.poisson_ratio)
+        stiffness, width = self.elastic.shear_modulus * patches.a * patches.b, np.sqrt(patches.a * patches.b)
+        whole = np.hypot(
+            c.c11 * problem.longitudinal_creepage, c.c22 * problem.lateral_creepage + c.c23 * width * problem.spin
+        )
+        slope, linear = (1.0 - share) ** (1.0 - POWER), -np.expm1(POWER * np.log1p(-share)) / POWER
+        across = share / np.maximum(np.maximum(linear, stiffness * whole / bound), TINY)
+        slope = np.minimum(slope, across)
+        xi, eta, phi = patches.sliding.turning
+        linear_x, linear_y = stiffness * c.c11 * xi, stiffness * (c.c22 * eta + c.c23 * width * phi)
+        along = (slope - across) * (x * linear_x + y * linear_y)
+        force_x, force_y = across * linear_x + along * x, across * linear_y + along * y
+        power = problem.rolling_speed * (xi * force_x + eta * force_y)
+        return np.asarray(np.bincount(patches.point, power, self.roll.size), np.float64), force_y
+
+    @property
+    def shift(self) -> Array:
+        """How far wheels have moved since their rows were laid, over what these allow: along the rail, and into it."""
+        rows, point = self.rows, self.rows.wheel // 2
+        height, roll = self.now
+        side = np.where(rows.wheel % 2 == 1, 1.0, -1.0)
+        lowered = (height - self.height)[point, rows.wheel % 2]
+        leaned = side * (roll - self.roll)[point]
+        angle = rows.place.angle
+        aside = side * (self.displacement - self.task.displacement)[point] - rows.place.z * leaned
+        moved = aside * np.cos(angle) + (lowered + rows.place.y * leaned) * np.sin(angle)
+        shift = np.zeros(self.roll.size)
+        np.maximum.at(shift, point, np.where(self._row_force() > 0.0, np.abs(moved) / SHIFT, 0.0))
+        sunk = (self.pressed.overlap() - rows.overlap) / (SPARE * rows.deepest[rows.wheel])
+        np.maximum.at(shift, point, sunk)
+        return shift
+
+    @property
+    def now(self) -> tuple[Array, Array]:
+        """Heights of the axle at both wheels, (positions, 2) [m], and the roll [rad]."""
+        moved = self.pressed.moved
+        if self.task.free:
+            return self.height + moved[:, :1], self.roll + moved[:, 1]
+        return self.height + moved[:, :2], self.roll
+
+    @property
+    def displacement(self) -> Array:
+        """Lateral displacement of the wheelset, positive to the right [m]."""
+        return self.task.displacement + (self.pressed.moved[:, 2] if self.task.guided else 0.0)
+
+    @property
+    def stiffness(self) -> Array:
+        """Rate of the sum of the lateral forces with the lateral displacement, without slip's change [N/m]."""
+        rows, forces = self.rows, self.pressed.forces[:, 1:]
+        weights = np.concatenate([self.pressed.weights[:, :2], self._across()[:, None]], axis=-1)
+        rates = np.add.reduceat(weights[:, :, None] * forces[:, None, :], rows.start[:-1:2])
+        moves = np.linalg.solve(rates[:, :2, :2], rates[:, :2, 2:])
+        return np.asarray((rates[:, 2:, 2:] - rates[:, 2:, :2] @ moves)[:, 0, 0])
