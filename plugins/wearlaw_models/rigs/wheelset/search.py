@@ -357,15 +357,12 @@ class Touching(NamedTuple):
         Arc length of the wheel's profile at the contact point [m]; NaN where there is none.
     gap : ndarray
         Vertical gap there when the first point touches [m]; zero for the first one.
-    saddle : ndarray
-        Greatest vertical gap between this point and the first one when the first one touches [m].
     least : ndarray, (positions, sides)
         Gap of the first point plus a constant: minus the height of the wheelset's centre above the rail [m].
     """
 
     arc: Array
     gap: Array
-    saddle: Array
     least: Array
 
 
@@ -400,12 +397,11 @@ def touching(section: Section, position: Position, every: int = 1) -> Touching:
     arc[place] = _root(section, there, begin, end)
     height[place] = gaps(section, there, arc[place]).gap
     order = np.argsort(height, axis=-1)
-    arc, height, index = (np.take_along_axis(one, order, axis=-1) for one in (arc, height, index))
+    arc, height = (np.take_along_axis(values, order, axis=-1) for values in (arc, height))
     least = height[..., 0]
     none = np.isnan(arc)
     above = np.where(none, np.nan, height) - np.where(none[..., 0], np.nan, least)[..., None]
-    saddle = _saddles(gap, index) - least[..., None]
-    return Touching(arc, above, np.where(none, np.nan, saddle), least)
+    return Touching(arc, above, least)
 
 
 def _smallest(values: Array) -> NDArray[np.intp]:
@@ -417,17 +413,6 @@ def _smallest(values: Array) -> NDArray[np.intp]:
         np.put_along_axis(values, index, np.inf, axis=-1)
         found.append(index)
     return np.concatenate(found, axis=-1)
-
-
-def _saddles(gap: Array, index: NDArray[np.intp]) -> Array:
-    """Return the greatest gap between the coarse cell of each contact point and that of the first one."""
-    place = np.arange(gap.shape[-1])
-    first, found = index[..., :1], []
-    for patch in range(PATCHES):
-        other = index[..., patch : patch + 1]
-        between = (place > np.minimum(first, other)) & (place <= np.maximum(first, other))
-        found.append(np.where(between, gap, -np.inf).max(axis=-1))
-    return np.stack(found, axis=-1)
 
 
 def _root(section: Section, position: Position, left: Array, right: Array) -> Array:
@@ -449,9 +434,7 @@ def _root(section: Section, position: Position, left: Array, right: Array) -> Ar
     return right
 
 
-def searched(
-    section: Section, displacement: Array, yaw: Array, roll: Array | None = None, among: int = 0
-) -> tuple[Array, Touching]:
+def searched(section: Section, displacement: Array, yaw: Array, roll: Array | None = None) -> tuple[Array, Touching]:
     """Return the roll at which both wheels touch [rad], positive if it lowers the right one, and where they touch.
 
     Parameters
@@ -463,14 +446,12 @@ def searched(
         Yaw [rad], positive if the right wheel moves backwards.
     roll : ndarray, (positions,), optional
         The roll, if it is given; each wheel then touches at a height of its own.
-    among : int
-        Number of positions of the task, if these are some of them: compiled loops pay for the last few as well.
 
     Notes
     -----
     Where a wheel stands on the end of a profile, its own or the rail's, there is no contact point.
     """
-    if wl.accelerated(LOOPS * max(displacement.size, among)):
+    if wl.accelerated(LOOPS * displacement.size):
         rolls, found = _compiled(section, displacement, yaw, roll)
     else:
         rolls = np.empty(displacement.shape)
@@ -489,14 +470,14 @@ def searched(
 def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
     shape = (displacement.size, 2, PATCHES)
     roll_found = np.zeros(displacement.size) if roll is None else roll.copy()
-    arc, above, saddle = (np.empty(shape) for _ in range(3))
+    arc, above = np.empty(shape), np.empty(shape)
     least = np.empty(shape[:2])
     compiled_search(
         np.ascontiguousarray(displacement), np.ascontiguousarray(yaw), roll is not None,
         tuple(tuple(one.coarse) for one in section.sides), tuple(one.tables for one in section.sides),
-        roll_found, arc, above, saddle, least,
+        roll_found, arc, above, least,
     )  # fmt: skip
-    return roll_found, Touching(arc, above, saddle, least)
+    return roll_found, Touching(arc, above, least)
 
 
 def _searched(section: Section, displacement: Array, yaw: Array, given: Array | None) -> tuple[Array, Touching]:
@@ -562,27 +543,6 @@ def _followed(section: Section, position: Position, arc: Array) -> tuple[Array, 
     moved, gap = np.full((2, *arc.shape), np.nan)
     moved[known], gap[known] = np.where(lost | going, np.nan, place), at.gap
     return moved, gap
-
-
-def searched_again(
-    section: Section, displacement: Array, yaw: Array, roll: Array, found: Touching, among: int
-) -> Touching:
-    """Return where wheels touch at a roll [rad] close to that of places found; `among` as in `searched`.
-
-    Saddles stay. Where a place is lost, or another one touches first, the whole wheel is searched again.
-    """
-    position = both_sides(displacement, roll, yaw).widened()
-    arc, height = _followed(section, position, found.arc)
-    least = height[..., 0]
-    gap = height - least[..., None]
-    lost = ((np.isnan(arc) != np.isnan(found.arc)) | (gap < 0.0)).any(axis=(-2, -1))
-    again = Touching(arc, gap, found.saddle, least)
-    if lost.any():
-        _, new = searched(section, displacement[lost], yaw[lost], roll[lost], among)
-        again = Touching(*(array.copy() for array in again))
-        for array, values in zip(again, new, strict=True):
-            array[lost] = values
-    return again
 
 
 def both_sides(displacement: Array, roll: Array, yaw: Array) -> Position:

@@ -97,39 +97,6 @@ def cubic(t: Any, step: float, coefficients: Any) -> tuple[Any, Any]:
     return value + t * (first + t * (square + t * cube)), (first + t * (2.0 * square + 3.0 * t * cube)) / step
 
 
-def normal_gap(rise: Any, slope: Any, own_slope: Any) -> tuple[Any, Any]:
-    """Return the gap normal to the surface around a contact point [m], and whether the rail turns by less than 60°.
-
-    Parameters
-    ----------
-    rise : float or ndarray
-        Vertical gap above that at the contact point [m].
-    slope, own_slope : float or ndarray
-        Slope of the rail, and that at the contact point [-].
-    """
-    own = np.sqrt(1.0 + own_slope * own_slope)
-    along, half = 1.0 + slope * own_slope, 0.5 * own * np.sqrt(1.0 + slope * slope)
-    return rise * own / np.maximum(along, half), along > half
-
-
-def tangential(across: Any, down: Any, own_slope: Any) -> Any:
-    """Return the distance from the contact point across the track, in the plane of contact [m]."""
-    return (across + own_slope * down) / np.sqrt(1.0 + own_slope * own_slope)
-
-
-def lagrange(x: Any, places: Any) -> tuple[Any, Any, Any, Any]:
-    """Return the weights of four values, at four places, whose sum is the cubic through them at x."""
-    x0, x1, x2, x3 = places
-    t0, t1, t2, t3 = x - x0, x - x1, x - x2, x - x3
-    d01, d02, d03, d12, d13, d23 = x0 - x1, x0 - x2, x0 - x3, x1 - x2, x1 - x3, x2 - x3
-    return (
-        t1 * t2 * t3 / (d01 * d02 * d03),
-        -t0 * t2 * t3 / (d01 * d12 * d13),
-        t0 * t1 * t3 / (d02 * d12 * d23),
-        -t0 * t1 * t2 / (d03 * d13 * d23),
-    )
-
-
 def at(x: float, table: tuple[float, float, Array]) -> tuple[float, float]:
     """Return the value and the slope of a table at x; beyond its ends those of the outermost cubic."""
     start, step, cubics = table
@@ -168,7 +135,6 @@ def touch(
     place: Array,
     found: Array,
     above: Array,
-    saddle: Array,
 ) -> tuple[float, float]:
     """Find the contact points of one wheel, and return its least gap and the lever of a roll [m].
 
@@ -254,16 +220,12 @@ def touch(
     for patch in range(PATCHES):
         found[patch] = place[patch]
         above[patch] = height[patch] - height[0] if cell[patch] >= 0 else np.nan
-        highest = -np.inf
-        for k in range(min(cell[0], cell[patch]) + 1, max(cell[0], cell[patch]) + 1):
-            highest = max(highest, gap[k])
-        saddle[patch] = highest - height[0] if cell[patch] >= 0 else np.nan
     return height[0], lever
 
 
 @wl.compiled_loop(
     f"void({VECTOR}, {VECTOR}, boolean, UniTuple(UniTuple({VECTOR}, 4), 2), UniTuple({TABLES}, 2), {VECTOR},"
-    " float64[:, :, ::1], float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1])"
+    " float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1])"
 )
 def compiled_search(
     displacement: Array,
@@ -274,7 +236,6 @@ def compiled_search(
     roll: Array,
     found: Array,
     above: Array,
-    saddle: Array,
     least: Array,
 ) -> None:
     """Find the roll, unless it is given, and the contact points of both wheels at each position.
@@ -294,7 +255,7 @@ def compiled_search(
                 least[point, side], lever = touch(
                     out * displacement[point], (out * sin_roll, cos_roll, out * sin_yaw, cos_yaw), every,
                     points[side], tables[side], gap, rise, height, cell, place,
-                    found[point, side], above[point, side], saddle[point, side],
+                    found[point, side], above[point, side],
                 )  # fmt: skip
                 levers += lever
             excess = least[point, 1] - least[point, 0]
@@ -305,55 +266,3 @@ def compiled_search(
             every = 1 if lost or level else 0
             if not every:
                 roll[point] += roll_step(excess, levers)
-
-
-@wl.compiled_loop(f"void({VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {VECTOR}, {TABLES}, {ROWS}, {ROWS})")
-def compiled_samples(
-    displacement: Array,
-    roll: Array,
-    yaw: Array,
-    arc: Array,
-    spacings: Array,
-    tables: Any,
-    samples: Array,
-    arcs: Array,
-) -> None:
-    """Fill in the gaps around contact points and the arc lengths there, for wheels in outward coordinates.
-
-    Both are of shape (points, samples), at even steps across the track in the plane of contact.
-    """
-    count = samples.shape[1]
-    height, tangent = np.empty(count), np.empty(count)
-    (begin, end), (rail_begin, rail_end) = ends(tables[0]), ends(tables[2])
-    for point in range(arc.size):
-        turn = math.sin(roll[point]), math.cos(roll[point]), math.sin(yaw[point]), math.cos(yaw[point])
-        spacing = spacings[point]
-        own = own_slope = own_across = own_down = 0.0
-        first, last = 0, count - 1
-        for step in range(count + 1):
-            k = step - 1 if step else count // 2  # the contact point first
-            place = arc[point] + spacing * (k - count // 2)
-            across, down, _, rail, slope = below(place, tables, displacement[point], turn)
-            if not step:
-                own, own_slope, own_across, own_down = rail - down, slope, across, down
-                continue
-            height[k], facing = normal_gap(rail - down - own, slope, own_slope)
-            tangent[k] = tangential(across - own_across, down - own_down, own_slope)
-            outside = place < begin or place > end or across < rail_begin or across > rail_end or not facing
-            turns = k > 0 and tangent[k] <= tangent[k - 1]  # behind its own horizon
-            if k <= count // 2 and (outside or turns):
-                first = k + 1 if outside else k
-            elif outside or turns:
-                last = min(last, k - 1)
-        cell = first
-        for k in range(count):
-            offset = spacing * (k - count // 2)
-            if last - first < 3 or offset < tangent[first] or offset > tangent[last]:
-                samples[point, k], arcs[point, k] = np.inf, arc[point] + offset
-                continue
-            while cell < last - 1 and tangent[cell + 1] <= offset:
-                cell += 1
-            i = min(max(cell - 1, first), last - 3)
-            w0, w1, w2, w3 = lagrange(offset, (tangent[i], tangent[i + 1], tangent[i + 2], tangent[i + 3]))
-            samples[point, k] = w0 * height[i] + w1 * height[i + 1] + w2 * height[i + 2] + w3 * height[i + 3]
-            arcs[point, k] = arc[point] + spacing * (i - count // 2 + w1 + 2.0 * w2 + 3.0 * w3)
