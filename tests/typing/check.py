@@ -20,7 +20,7 @@ from pathlib import Path
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 CASES = sorted((HERE / "cases").glob("*.py"))
-PLUGIN = re.compile(r":caption: (?:[\w-]+/)?(\w+\.py)\n\n(.*?)\n```", re.DOTALL)
+PLUGIN = re.compile(r":caption: (?:[\w-]+/)?((?:\w+/)?\w+\.py)\n\n(.*?)\n```", re.DOTALL)
 """The name and the text of a module on a page."""
 PAGES = ("write-a-law", "validate-in-ci", "other-models")
 MARK = "# expect-error"
@@ -69,8 +69,9 @@ def plugins(folder: Path) -> list[Path]:
     text = "\n".join((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8") for page in PAGES)
     modules = {folder / name: module for name, module in PLUGIN.findall(text) if not name.startswith("test_")}
     for path, module in modules.items():
+        path.parent.mkdir(exist_ok=True)
         path.write_text(f"{module}\n", encoding="utf-8")
-    return [*modules]
+    return sorted(modules, key=lambda path: -len(path.parts))  # packages first, so that the last file is in the folder
 
 
 def expected() -> set[tuple[str, int]]:

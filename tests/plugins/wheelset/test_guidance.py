@@ -172,7 +172,7 @@ def test_a_force_that_no_flange_bears_is_warned_of_with_the_greatest_one(sign: f
     said = next(str(one.message) for one in caught if "no result" in str(one.message))
     assert ("right" if sign > 0.0 else "left") + " wheel climbs" in said
     # Displacements 0.1 mm apart miss the top of a sum that falls by 1 % over 0.05 mm on either side of it.
-    assert abs(float(said.split("found is ")[1].split(" kN")[0])) == pytest.approx(greatest, rel=0.02)
+    assert abs(float(said.split("force is ")[1].split(" kN")[0])) == pytest.approx(greatest, rel=0.02)
     assert np.isnan(si(found, "guiding_force")[1]).all()
     assert np.isfinite(si(found, "guiding_force")[0]).all()
 

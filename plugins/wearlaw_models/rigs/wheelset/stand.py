@@ -208,9 +208,9 @@ class Stand:
             old = np.where(points[np.minimum(old, points.size - 1)] == before.points, old, -1)[before.rows.wheel // 2]
             keys = 20.0 * old + 10.0 * (before.rows.wheel % 2) + before.rows.place.rail_arc
             some = np.flatnonzero(old >= 0)
-            near_ = np.searchsorted(keys[some], 10.0 * laid.wheel + laid.place.rail_arc)
-            near_ = some[np.minimum(near_, some.size - 1)]
-            stand.ratio, stand.sine = before.ratio[near_], before.sine[near_]
+            nearest = np.searchsorted(keys[some], 10.0 * laid.wheel + laid.place.rail_arc)
+            nearest = some[np.minimum(nearest, some.size - 1)]
+            stand.ratio, stand.sine = before.ratio[nearest], before.sine[nearest]
         stand._carry()
         force = stand._row_force()
         turn = np.zeros(count)
