@@ -89,7 +89,7 @@ RIGS: dict[str, wl.Rig] = {
     "conical_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields),
     "hollow_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields, wheel_profile_radius="-400 mm"),
     "wheelset": wl.rig("wheelset", **Wheelset.example_fields),
-    "wheelset_of_ellipses": wl.rig("wheelset", **Wheelset.example_fields, pressure="hertz"),
+    "wheelset_of_ellipses": wl.rig("wheelset", **Wheelset.example_fields, patch="ellipse"),
 }
 
 

@@ -25,7 +25,7 @@ NAMES_OF_SEVERAL_SYMBOLS = {
     "wear_index_density": "q·s at a point, and Tγ/A as its mean over the patch",
     "lateral_force": "that of a patch along its surface, and the condition of a wheelset",
 }
-OF_OTHER_KINDS = {"geometry", "problem", "strips", "bodies", "dims", "exists", "unloaded"}
+OF_OTHER_KINDS = {"geometry", "problem", "strips", "bodies", "dims", "exists", "unloaded", "conditions"}
 """Fields of records that are no numbers with a unit."""
 
 

@@ -66,7 +66,7 @@ FIT_START = ("fit", "tests.csv", "--contact", "exact")
         ((*FIT_START, "--law", "usdf", "--free", "q_s"), "'usfd'", 1),
         ((*FIT_START, "--law", "usfd", "--free", "q_s", "--fixed", "q_s=9 ug/m/mm^2"), "--fixed: 'q_s'", 2),
         ((*FIT_START, "--law", "usfd", "--free", ","), "--free: ", 2),
-        ((*FIT_START, "--law", "usfd:exact", "--free", "q_s"), "usfd:exact: ", 2),
+        ((*FIT_START, "--law", "usfd:exact", "--free", "q_s"), "usfd:exact", 1),
         ((*FIT_START, "--free", "friction_coefficient"), "traction", 1),
         ((*FIT, "--rig", "rig.toml"), "rig.track: ", 1),
         ((*COMPARE[:-1], ","), "--laws: ", 2),

@@ -148,6 +148,7 @@ def read(folder: Path, text: str, **more: Any) -> WearTests:
     return wl.read_tests(path, **more)
 
 
+@pytest.mark.filterwarnings("ignore:outliers")  # of three tests, two of which are alike
 def test_columns_of_outcomes_are_read_where_a_law_predicts_them(tmp_path: Path) -> None:
     tests = read(tmp_path, CSV.format("0.004"))
     fit = wl.fit(EXACT | Heat(), tests.measuring(["crack_growth"]), ["share"], bootstrap=0)

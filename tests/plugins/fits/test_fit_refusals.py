@@ -113,6 +113,7 @@ def test_wrong_arguments_are_refused_by_name(predict: Any, free: Any, settings: 
     refused(f"^{names}", predict, made_up(usfd("global"), 0.1), free, **settings)
 
 
+@pytest.mark.filterwarnings("ignore:outliers")  # the rate of zero
 def test_rates_of_zero_are_refused_where_scatter_is_by_a_factor() -> None:
     predict, tests = usfd("global"), made_up(usfd("global"))
     rate = tests.wear_rate.magnitude.copy()

@@ -79,6 +79,7 @@ def test_the_known_number_of_a_stage_comes_back(free: list[str], scatter: Any) -
     level=0.95,
     chance=0.001,
 )
+@pytest.mark.filterwarnings("ignore:outliers")  # at 1 % some of 100 sets have one
 def test_intervals_hold_the_known_number_as_often_as_they_say(level: float, chance: float) -> None:
     fits, held = 100, np.zeros(2)
     for seed in range(fits):
