@@ -105,6 +105,8 @@ class Loads:
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces]) -> Loads:
         """Return the loads that balance the creep forces of a problem with one entry for each patch."""
         stands = [each for stand in self.stands for each in self.until_near(stand.copy(), forces)]
+        for stand in stands:
+            stand.pressed.influence = np.empty(0)  # results keep their loads, and need no influences any more
         return replace(self, stands=stands)
 
     def guided(self, forces: Callable[[wl.Problem], wl.CreepForces], some: NDArray[np.bool_]) -> Loads:
