@@ -24,14 +24,14 @@ from wearlaw import Array
 from wearlaw_models.rigs.wheelset.loads import ROUGH, Loads
 from wearlaw_models.rigs.wheelset.task import Task
 
-STEP = 0.25e-3
+STEP = 1e-3
 """Steps in which rigid wheels are looked at [m]."""
 
 FARTHEST = 60e-3
 """Greatest displacement that is tried [m]: the play of flanges is at most 40 mm."""
 
 HALVINGS = 10
-"""How often a step is halved to find where a rigid wheel climbs, to 0.25 µm."""
+"""How often a step is halved to find where a rigid wheel climbs, to 1 µm."""
 
 BEYOND = 0.5e-3
 """Distance from there on that is searched too [m]: elastic flanges take the whole load some 0.1 mm later."""
@@ -133,7 +133,7 @@ def guided(
 
 def _last(stands: Callable[[Array, NDArray[np.intp], bool], NDArray[np.bool_]], count: int) -> Array:
     """Return the farthest distances that are searched [m]."""
-    last, step = np.zeros(count), 1e-3
+    last, step = np.zeros(count), STEP
     points = np.arange(count)
     while points.size and last[points[0]] < FARTHEST:
         points = points[stands(last[points] + step, points, True)]

@@ -105,9 +105,7 @@ class Loads:
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces]) -> Loads:
         """Return the loads that balance the creep forces of a problem with one entry for each patch."""
         stands = [each for stand in self.stands for each in self.until_near(stand.copy(), forces)]
-        for stand in stands:
-            stand.pressed.influence = np.empty(0)  # results keep their loads, and need no influences any more
-        return replace(self, stands=stands)
+        return self._kept(stands)
 
     def guided(self, forces: Callable[[wl.Problem], wl.CreepForces], some: NDArray[np.bool_]) -> Loads:
         """Return the loads with displacements near by at which the rails bear the lateral forces, at some positions."""
@@ -122,6 +120,12 @@ class Loads:
                     stand,
                 )  # fmt: skip
                 stands += self.until_near(again, forces)
+        return self._kept(stands)
+
+    def _kept(self, stands: list[Stand]) -> Loads:
+        """Return the loads of stands as results keep them, which need no influences any more."""
+        for stand in stands:
+            stand.pressed.influence = np.empty(0)
         return replace(self, stands=stands)
 
     @property

@@ -39,8 +39,8 @@ class Patches:
         Semi-axes of the ellipse with the length and the area of the patch [m].
     strips : dict of str to ndarray, (patches, strips)
         Rows as strips, with y and x from the middle of the patch; those behind the last row have no width.
-    still, turning : list of ndarray, (patches, strips)
-        Creepages of the rows, as in `Creepages`.
+    rows : Creepages
+        Creepages of the rows, (patches, strips).
     """
 
     point: NDArray[np.intp]

@@ -78,8 +78,6 @@ class Pressed:
         Whether the elements that touch have changed since the response was found.
     moved : ndarray, (positions, unknowns)
         The displacements.
-    solutions : int
-        Number of solutions so far.
     """
 
     rows: Rows
@@ -97,7 +95,6 @@ class Pressed:
     response: Array
     fresh: NDArray[np.bool_]
     moved: Array
-    solutions: int = 0
 
     @classmethod
     def begun(cls, rows: Rows, modulus: float, rates: Array) -> Pressed:
@@ -216,7 +213,6 @@ class Pressed:
     def _respond(self) -> None:
         """Find the responses of wheels whose elements in touch have changed, in place."""
         wheels, rows = np.flatnonzero(self.fresh), self.rows
-        self.solutions += wheels.size
         given = (
             wheels, rows.start, rows.width, self.rates, rows.columns, rows.half, self.first, self.table,
             self._influence(), self.row, self.column, self.shape, self.moved, self.on, self.response,

@@ -167,10 +167,6 @@ class Rows:
     own: NDArray[np.intp]
     deepest: Array
 
-    def part(self, wheels: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return which rows belong to some of the wheels."""
-        return wheels[self.wheel]
-
 
 @dataclass(frozen=True)
 class Near:
