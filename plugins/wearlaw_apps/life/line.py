@@ -7,7 +7,7 @@ import json
 import os
 import re
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from wearlaw.errors import warn
 from wearlaw_apps.output.notes import caught_warnings
 from wearlaw_apps.sweeps.located import posed
 from wearlaw_apps.sweeps.points import Points
-from wearlaw_apps.sweeps.provenance import provenance_of
+from wearlaw_apps.sweeps.provenance import check_same, digest, provenance_of
 from wearlaw_apps.sweeps.sweep import check_importable, run
 from wearlaw_apps.sweeps.wear_profile import ProfileJob, Sum
 
@@ -40,10 +40,20 @@ class Wear(NamedTuple):
 
 
 class Line:
-    """The states of a line, whose wear at positions `at` along the profile [m] is summed with their shares."""
+    """The states of a line, whose wear at positions `at` along the profile [m] is summed with their shares.
+
+    `points` are those of the first step. Where they follow from the profiles, `renewed` returns those of a rig.
+    """
 
     def __init__(
-        self, predict: wl.Pipeline[...], points: Points, body: str, at: Array, workers: int, client: Any
+        self,
+        predict: wl.Pipeline[...],
+        points: Points,
+        body: str,
+        at: Array,
+        workers: int,
+        client: Any,
+        renewed: Callable[[wl.Rig], Points] | None = None,
     ) -> None:
         with caught_warnings():  # the first step gives them
             first = posed(
@@ -53,7 +63,7 @@ class Line:
         self.job = ProfileJob.of(predict, first, body, wl.Q(1e3 * at, "mm"), True)
         self.sides = len(self.job.dims.get("side", "-"))
         self.points = dataclasses.replace(points, weight=self.job.weight(first))
-        self._workers, self._client = workers, client
+        self._workers, self._client, self._renewed = workers, client, renewed
         self._kept: Parts | None = None
         self._said: set[str] = set()
 
@@ -77,18 +87,29 @@ class Line:
         ------
         DataError
             If a state has no result, or its wheel climbs; the message names the row.
+        OutputError
+            If the states of this step are not those in the store.
         """
+        points, table, remarks = self.points, {}, []
+        if self._renewed is not None:
+            with caught_warnings() as remarks:
+                points = self._renewed(predict.rig) if step else points
+            points = dataclasses.replace(points, weight=self.points.weight)
+            table = points.coordinates()
+        states = {name: digest(column.values, column.unit) for name, column in table.items()}
         part = None if self._kept is None else self._kept[step]
-        if part is not None:
-            wear, notes = Wear(**part.arrays), part.record["notes"]
+        if self._kept is not None and part is not None:
+            check_same(self._kept.path, {f"step {step + 1}": part.record["states"]}, {f"step {step + 1}": states})
+            wear, notes = Wear(*(part.arrays[name] for name in Wear._fields)), part.record["notes"]
         else:
-            total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at), self.points)
-            remarks = run(total, lambda _: None, self._workers, self._client)
+            total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at), points)
+            remarks += run(total, lambda _: None, self._workers, self._client)
             notes = [[type(remark).__name__, str(remark)] for remark in remarks]
             depth, mass = (wl.Q(total.arrays()[name], self.job.units[name]).to_base_units() for name in Wear._fields)
             wear = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude))
             if self._kept is not None:
-                self._kept.add(step, wear._asdict(), {"notes": notes})
+                arrays = {f"line_{name}": column.values for name, column in table.items()}
+                self._kept.add(step, {**wear._asdict(), **arrays}, {"notes": notes, "states": states})
         for kind, text in notes:
             if (words := NUMBER.sub("", text)) not in self._said:
                 self._said.add(words)

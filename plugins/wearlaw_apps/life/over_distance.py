@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack, closing
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pandas as pd
+import xarray
 
 import wearlaw as wl
 from wearlaw_apps.life.life import Life
 from wearlaw_apps.life.line import Line
 from wearlaw_apps.life.removal import even, positions
-from wearlaw_apps.life.steps import Limits, Steps
+from wearlaw_apps.life.steps import Limits, Steps, with_profiles
 from wearlaw_apps.sweeps.evaluation import expect_pipeline
+from wearlaw_apps.sweeps.points import Points
 from wearlaw_apps.sweeps.progress import Bar
 from wearlaw_apps.sweeps.tables import operating_points
 from wearlaw_apps.sweeps.wear_profile import SHARE
@@ -65,9 +67,11 @@ def wear_out(
     predict : Pipeline
         A rig whose field of the body's name is its profile, such as a `wearlaw.Wheelset`, a contact model that resolves
         the patch, and a wear law.
-    line : pandas.DataFrame, xarray.Dataset or path
+    line : pandas.DataFrame, xarray.Dataset, path or callable
         Operating states in rows, conditions in columns with units, and a column with the share of the distance. A file
-        is read in pieces, as in `wearlaw.sweep`; one of any length needs no more memory than a short one.
+        is read in pieces, as in `wearlaw.sweep`; one of any length needs no more memory than a short one. States that
+        follow from the profiles come from a function, which takes the rig at each step and returns such a DataFrame or
+        Dataset.
     over : Quantity, str or float
         The distance [m], or the number of passages for a rail.
     share : str
@@ -100,9 +104,9 @@ def wear_out(
     client : distributed.Client, optional
         A cluster of dask.distributed, instead of `workers`.
     store : path, optional
-        A folder that keeps the finished steps.
+        A folder that keeps the finished steps, with the states that a function returned.
     resume : bool
-        Whether to go on with the life in `store`, if there is one.
+        Whether to go on with the life in `store`, if there is one. A function must return the same states again.
     progress : bool
         Whether to show the distance and the time left.
     **conditions
@@ -121,7 +125,7 @@ def wear_out(
     InputError
         If an argument is wrong, the new profile is beyond a limit, or it is too short for the wear.
     OutputError
-        If `store` holds anything but the same life.
+        If `store` holds anything but the same life, or a function returns other states for a finished step.
     """
     expect_pipeline(predict)
     length = wl.Unit("mm")
@@ -136,15 +140,33 @@ def wear_out(
         raise wl.InputError(f"conicity_step: must be positive, or math.inf for no limit; got {conicity_step:g}")
     distance = _distance(over, body)
     new = tuple(even(profile) for profile in _profiles(predict.rig, body, sides))
+    predict = with_profiles(predict, body, new)
     longest = max(np.ptp(profile.curve.s) for profile in new)
     at = positions(new, math.ceil(longest / length.si(spacing, "spacing")) + 1)
+    reading = (conditions, columns, {SHARE: share}, {"sep": sep, "decimal": decimal})
+
+    def of_rig(rig: wl.Rig) -> Points:
+        """Return the states that a function gives."""
+        table = line(rig)
+        if not isinstance(table, pd.DataFrame | xarray.Dataset):
+            raise wl.DataError(f"line: must return a pandas.DataFrame or an xarray.Dataset, got {wl.shown(table)}")
+        with operating_points(predict, table, *reading, None, True, True) as points:
+            return points
+
+    renewed: Callable[[wl.Rig], Points] | None = of_rig if callable(line) else None
     with ExitStack() as stack:
-        points = stack.enter_context(
-            operating_points(
-                predict, line, conditions, columns, {SHARE: share}, {"sep": sep, "decimal": decimal}, store, True, True
+        try:
+            points = (
+                stack.enter_context(operating_points(predict, line, *reading, store, True, True))
+                if renewed is None
+                else renewed(predict.rig)
             )
-        )
-        steps = Steps(Line(predict, points, body, at, workers, client), body, new, **settings)
+            of_line = Line(predict, points, body, at, workers, client, renewed)
+        except wl.InputError as error:
+            if renewed is None:
+                raise
+            raise type(error)(f"step 1: {error}") from None
+        steps = Steps(of_line, body, new, **settings)
         now = steps.begin(predict)
         rows, profiles = [now.row], [now.profiles]
         notes: list[tuple[str, ...]] = []

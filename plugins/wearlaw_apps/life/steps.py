@@ -215,8 +215,8 @@ class Steps:
     ) -> State:
         """Return the state of profiles, with their measures."""
         sides = SIDES[len(profiles)]
-        fields = {self.body: profiles[-1]} | ({f"left_{self.body}": profiles[0]} if len(profiles) == 2 else {})
-        rig: Any = predict.rig.model_copy(update=fields)
+        predict = with_profiles(predict, self.body, profiles)
+        rig: Any = predict.rig
         row = {self.along[0]: done}
         if len(profiles) == 1:
             row["mass [kg]"] = float(mass.mean())
@@ -233,7 +233,13 @@ class Steps:
         except (AttributeError, wl.InputError):  # the rig has none, or these profiles
             row[CONICITY] = math.nan
         row |= {f"factor{side}": factor for side, factor in zip(sides, factors, strict=True)}
-        return State(predict.model_copy(update={"rig": rig}), profiles, mass, row)
+        return State(predict, profiles, mass, row)
+
+
+def with_profiles(predict: wl.Pipeline[...], body: str, profiles: tuple[Profile, ...]) -> wl.Pipeline[...]:
+    """Return a pipeline with profiles of a body: one for both sides, or those of the left and the right side."""
+    fields = {body: profiles[-1]} | ({f"left_{body}": profiles[0]} if len(profiles) == 2 else {})
+    return predict.model_copy(update={"rig": predict.rig.model_copy(update=fields)})
 
 
 @np.errstate(over="ignore")  # where hardly any wear is left, the exponential is zero
