@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import Annotated, Any, ClassVar, TypedDict
 
 import numpy as np
 import pytest
 
 import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import borne, wheelset
-from wearlaw import Q
+from wearlaw import Array, Q
 from wearlaw.numerics.integrate import integrate_forces  # private: forces of a problem of its own
 from wearlaw_models.rigs.wheelset.loads import ROUGH  # private: the accuracy that a search ends at
 from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
@@ -66,3 +66,101 @@ def test_a_flange_that_friction_holds_warns() -> None:
             "vertical_load": Q(24.14399725188602, "kN"), "friction_coefficient": 0.4907271308702819,
             "angular_speed": Q(18.806972104059227, "rad/s"),
         })  # fmt: skip
+
+
+class Temperature(TypedDict):
+    """Temperature of the surfaces."""
+
+    surface_temperature: Annotated[wl.QuantityLike, wl.Unit("K", usual=(250.0, 700.0))]
+    """Temperature of the surfaces, T [K]."""
+
+
+def hot(problem: wl.Problem) -> wl.Problem:
+    """Return a problem with friction that falls with the square root of the temperature, from 300 K on."""
+    temperature = problem.conditions["surface_temperature"]
+    assert temperature.shape == problem.batch_shape
+    return problem.replaced(friction_coefficient=problem.friction_coefficient * np.sqrt(300.0 / temperature))
+
+
+class Hot(wl.Stage):
+    """Friction of hot surfaces."""
+
+    name: ClassVar[str] = "hot"
+    source: ClassVar[str] = "made up for tests"
+    conditions: ClassVar[Any] = Temperature
+
+    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
+        return hot(problem)
+
+
+class HotModel(wl.ContactModel):
+    """FASTSIM with friction of hot surfaces."""
+
+    name: ClassVar[str] = "hot_fastsim"
+    source: ClassVar[str] = "made up for tests"
+    conditions: ClassVar[Any] = Temperature
+
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
+        return MODEL.solve(hot(problem))
+
+    def solve_strips(self, problem: wl.Problem) -> wl.Contact:
+        return MODEL.solve(hot(problem))
+
+
+class HotLaw(wl.WearLaw):
+    """Wear in proportion to temperature and wear-index density."""
+
+    name: ClassVar[str] = "hot_law"
+    source: ClassVar[str] = "made up for tests"
+    conditions: ClassVar[Any] = Temperature
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return 1e-12 * contact.per_node(contact.conditions["surface_temperature"]) * contact.wear_index_density
+
+    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
+        return {}
+
+
+@pytest.mark.parametrize(("patch", "lateral_force"), [("strips", False), ("ellipse", False), ("ellipse", True)])
+@pytest.mark.parametrize("parts", [(MODEL, Hot()), (HotModel(),)], ids=["stage", "contact model"])
+def test_loads_are_balanced_under_conditions_of_models_that_vary(patch: Any, lateral_force: bool, parts: Any) -> None:
+    """As with the friction that follows from the temperature, given to the rig at each position."""
+    rig, temperature = wheelset(patch=patch), np.array([[300.0, 450.0, 700.0]])
+    given: dict[str, Any] = {"vertical_load": "80 kN", "yaw": Q([2.0], "mrad")}
+    if lateral_force:
+        given |= {"lateral_force": Q([[8.0], [-15.0]], "kN")}
+    else:
+        given |= {"lateral_displacement": Q([[2.0], [-6.0]], "mm")}
+    pipeline: Any = rig
+    for part in parts:
+        pipeline = pipeline | part
+    problem = pipeline.posed({**given, "friction_coefficient": 0.4, "surface_temperature": Q(temperature, "K")})
+    by_hand = (rig | MODEL).posed({**given, "friction_coefficient": 0.4 * np.sqrt(300.0 / temperature)})
+    same = (rig | MODEL).posed({**given, "friction_coefficient": np.full_like(temperature, 0.4)})
+    same = same.replaced(conditions=problem.conditions)
+    np.testing.assert_array_equal(
+        problem.conditions["surface_temperature"][problem.resolved],
+        np.broadcast_to(temperature[..., None, None], problem.batch_shape)[problem.resolved],
+    )
+    # Each balance leaves at most this share of the loads and of the torque of full slip with the friction of the rig,
+    # and both wheels' forces change with the speed of rotation in the same sense.
+    left = 2.0 * (ROUGH if lateral_force else BALANCED) * np.nanmax(problem.normal_force)
+    due = integrate_forces(MODEL, by_hand).longitudinal
+    np.testing.assert_allclose(problem.normal_force, by_hand.normal_force, rtol=0.0, atol=left)
+    np.testing.assert_allclose(integrate_forces(MODEL, hot(problem)).longitudinal, due, rtol=0.0, atol=left)
+    assert np.nanmax(np.abs(integrate_forces(MODEL, hot(same)).longitudinal - due)) > 10.0 * left, (
+        "its friction does not matter"
+    )
+
+
+def test_a_sweep_of_wheelsets_has_the_temperature_of_laws_and_stages_as_an_axis() -> None:
+    pipeline: wl.Pipeline[...] = wheelset() | MODEL | Hot() | HotLaw()
+    temperature = np.array([300.0, 600.0])
+    given: dict[str, Any] = {"lateral_displacement": Q([0.0, 5.0], "mm"), "vertical_load": "80 kN", "yaw": "2 mrad"}
+    swept = wl.sweep(pipeline, **given, friction_coefficient=0.4, surface_temperature=Q(temperature, "K"))
+    assert swept.wear_rate.dims[:2] == ("lateral_displacement", "surface_temperature")
+    for number, kelvin in enumerate(temperature):
+        alone = pipeline(**given, friction_coefficient=0.4, surface_temperature=Q(kelvin, "K"))
+        found = swept.wear_rate.isel(surface_temperature=number).values
+        # The steps are the same but for rounding, which FASTSIM and the normal problem may sum in another order.
+        np.testing.assert_allclose(found, alone.wear_rate.to(swept.wear_rate.attrs["units"]).magnitude, rtol=1e-9)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -101,6 +102,14 @@ class Loads:
                 height[far], roll[far], None,
                 None if forces is None else stand,
             )  # fmt: skip
+
+    def under(self, conditions: Mapping[str, Array]) -> Loads:
+        """Return the loads under conditions of contact models and stages, (positions,)."""
+        task = replace(self.task, conditions=conditions)
+        stands = [copy(stand) for stand in self.stands]
+        for stand in stands:
+            stand.task = replace(stand.task, conditions=task.part(stand.points).conditions)
+        return replace(self, task=task, stands=stands)
 
     def solved(self, forces: Callable[[wl.Problem], wl.CreepForces]) -> Loads:
         """Return the loads that balance the creep forces of a problem with one entry for each patch."""

@@ -95,6 +95,7 @@ class Patches:
             "spin": spin,
             "rolling_speed": speed,
             "contact_angle": self.sign * self.angle,
+            "conditions": {name: array[self.point] for name, array in task.conditions.items()},
         }
         if patch == "ellipse":
             return wl.Problem.ellipse_from_si(normal_force=self.force, **fields)

@@ -502,11 +502,13 @@ class Wheelset(wl.Rig):
     def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> wl.Problem:
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, WheelsetProblem)
-        if problem.loads.task.lateral_force is None:
-            loads = problem.loads.solved(forces)
+        # A position has the same condition on both sides.
+        loads = problem.loads.under({name: array[..., 0, 0].ravel() for name, array in problem.conditions.items()})
+        if loads.task.lateral_force is None:
+            loads = loads.solved(forces)
             status = loads.status
         else:
-            loads, status = self._guided(problem.loads, forces)
+            loads, status = self._guided(loads, forces)
         self._warn_of_climbing(loads)
         self._warn_of_missing(loads, status)
         whole = self._whole(loads, status, problem.shape)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -55,6 +56,8 @@ class Task:
         Given sum of the lateral forces on the rails, H [N]; the displacement then follows.
     guided : bool
         Whether the displacement is sought with that force, near the given displacement.
+    conditions : mapping of str to ndarray
+        Conditions of contact models and stages.
     """
 
     displacement: Array
@@ -72,6 +75,7 @@ class Task:
     roll: Array | None
     lateral_force: Array | None = None
     guided: bool = False
+    conditions: Mapping[str, Array] = field(default_factory=dict)
 
     @property
     def free(self) -> bool:
@@ -84,6 +88,7 @@ class Task:
             name: array[points] for name, array in vars(self).items() if isinstance(array, np.ndarray)
         }
         some["friction"] = tuple(mu[points] if isinstance(mu, np.ndarray) else mu for mu in self.friction)
+        some["conditions"] = {name: array[points] for name, array in self.conditions.items()}
         return replace(self, **some | ({} if displacement is None else {"displacement": displacement}))
 
     def friction_of(self, point: NDArray[np.intp], flange: Array, creep_speed: Array) -> Array:
