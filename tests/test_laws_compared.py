@@ -10,10 +10,8 @@ import pytest
 
 from docs import laws_compared
 from docs.laws_compared import CASES, DENSITIES, DISCS, VEHICLE, Case, Curve, curves, solved
-from tests.environments import ROOT
 from wearlaw import Array
 
-PAGE = " ".join((ROOT / "docs" / "choosing.md").read_text(encoding="utf-8").split())
 AREA = {DISCS: 6.2934532e-6, VEHICLE: float(solved(VEHICLE).patch_area[0])}
 """That of the discs is Hertz's, 2ab with a = 2 p0 R/E*; wearlaw's ellipses have tests of their own."""
 SETS = {"global": (5.3, 55.0, 61.9, 77.26), "exact": (5.3, 55.0, 83.7, 95.0), "fastsim": (5.3, 56.5, 83.7, 107.0)}
