@@ -635,4 +635,5 @@ def _floats(cells: Any, decimal: str) -> tuple[Array, NDArray[np.bool_]]:
     missing |= texts.isin(MISSING)
     if decimal == ",":
         texts = texts.str.replace(".", "?", regex=False).str.replace(",", ".")
-    return pd.to_numeric(texts, errors="coerce").to_numpy(dtype=np.float64), missing.to_numpy()
+    there = pd.to_numeric(texts, errors="coerce").notna()  # but pandas before 3 may miss the last bit
+    return texts.where(there, "nan").map(float).to_numpy(dtype=np.float64), missing.to_numpy()

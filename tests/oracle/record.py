@@ -39,8 +39,9 @@ OF_INTERVALS = 1e-7
 """Greatest relative change of a bound of an interval of a fit: it comes from difference quotients with steps of √eps,
 whose rounding is some √eps too."""
 
-CANCELS = 1e-9
-"""A change of a force or moment by less is none [N, N m]: those of 10⁴ N that cancel leave some 1e-12 of rounding."""
+CANCELS = 1e-8
+"""A change of a force or moment by less is none [N, N m]: those of 10⁵ N that cancel leave the rounding of some hundred
+operations of 1e-16 each."""
 
 
 def recorded(call: Callable[[], Any], field: str | None = None) -> Row:

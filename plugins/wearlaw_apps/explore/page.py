@@ -28,10 +28,10 @@ from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_apps.explore.subject import Subject, code_of, numbered
 from wearlaw_apps.output.commands import values
 from wearlaw_apps.output.conditions import Known
-from wearlaw_apps.output.curves import BLACK, Map
+from wearlaw_apps.output.curves import BLACK
 from wearlaw_apps.output.labels import in_words, label, readable
 from wearlaw_apps.output.notes import Notes, caught_warnings
-from wearlaw_apps.output.pictures import fields_of, raster
+from wearlaw_apps.output.pictures import of_patch
 from wearlaw_apps.show import LAWS, completed
 from wearlaw_apps.studies.case import load_case
 from wearlaw_apps.studies.report.interactive import plotly_figure
@@ -42,6 +42,9 @@ CURVE = 41
 
 SLOW = 0.5
 """Time beyond which a prediction gets no curve, and figures wait until a slider is released [s]."""
+
+PIXELS = (81, 51)
+"""Points of a map along and across a patch."""
 
 STRETCHED: dict[str, Any] = {"sizing_mode": "stretch_width"}
 
@@ -74,17 +77,11 @@ def patch_figures(predictions: Mapping[str, wl.Prediction], patch: str = "") -> 
     )
     if prediction is None:
         return []
-    fields = fields_of(prediction)
     (wear,) = named_outcomes(prediction.laws)  # such as "wear_rate_rail", of a law for the rail alone
-    figures, along = [], wl.PlotAxis(label("x"))
+    figures = []
     for name, of in (("pressure", "pressure"), ("slip", "slip"), ("wear_rate", wear)):
-        if prediction.problem.geometry == "line":
-            panel = wl.Panel(along, wl.PlotAxis(label(name)), (wl.Curve(law, fields["x"].values, fields[of].values),))
-        else:
-            drawn = Map("", *raster(prediction, fields[of].values))
-            panel = wl.Panel(along, wl.PlotAxis("y [mm]"), (), equal=True, map=drawn)
         title = f"{label(name)}{f' by {law}' if name == 'wear_rate' else ''}{f', {patch}' if patch else ''}"
-        figures.append(wl.FigureData(name, title, (panel,)))
+        figures.append(wl.FigureData(name, title, (of_patch(prediction, of, PIXELS),)))
     return figures
 
 
@@ -96,7 +93,8 @@ def largest(prediction: wl.Prediction) -> Any:
 def by_patch(predictions: Mapping[str, wl.Prediction]) -> dict[str, dict[str, wl.Prediction]]:
     """Return predictions by law for each existing patch, by its label, "" for the only one of a rig."""
     for first in predictions.values():
-        rows: Any = first.to_dataframe(["wear_rate"])[[*first.problem.dims]].to_dict("records")
+        dims = [*first.problem.dims]
+        rows: Any = first.to_dataframe(["wear_rate"])[dims].to_dict("records") if dims else [{}]
         return {in_words(row): {law: prediction.sel(**row) for law, prediction in predictions.items()} for row in rows}
     return {}
 

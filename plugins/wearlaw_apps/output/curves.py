@@ -202,6 +202,9 @@ FEW = 25
 MARKS = 7
 """Markers along a line of more points, which tell it from others in a print without colours."""
 
+DECADES = 30.0
+"""Ratio of the largest to the smallest value beyond which a scale that nobody chose is logarithmic."""
+
 
 def head_of_legend(figure: FigureData) -> str:
     """Return the title of the legend of a figure, which explains bands and hollow markers; "" without them."""
@@ -258,6 +261,13 @@ def marked_points(curve: Curve, style: int, panel: Panel | None = None) -> list[
         at = (np.arange(MARKS) + style / 7.0) / MARKS * length[-1]  # marks of lines that coincide stand apart
         chosen[there[np.searchsorted(length, at)]] = True
     return list(map(int, np.flatnonzero(chosen)))
+
+
+def fit_for_log(*values: Array) -> bool:
+    """Return whether values that nobody chose a scale for are better seen on a logarithmic one."""
+    numbers = np.concatenate([np.ravel(array) for array in values]) if values else np.zeros(0)
+    seen = numbers[np.isfinite(numbers) & (numbers != 0.0)]
+    return bool(seen.size and seen.min() > 0.0 and seen.max() > DECADES * seen.min())
 
 
 def map_range(figure: FigureData) -> tuple[float, float]:

@@ -85,18 +85,7 @@ def draw(figure: FigureData, managed: bool = False) -> Figure:
     with mpl.rc_context(STYLE):
         drawn = _managed() if managed else Figure(layout="constrained")
         axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
-        styles, maps = line_styles(figure), [panel.map for panel in figure.panels if panel.map is not None]
-        norm: Any = None
-        if maps:
-            low, high = map_range(figure)
-            norm = LogNorm(low, high) if maps[0].scale == "log" and low < high else Normalize(low, high)
-        for number, panel in enumerate(figure.panels):
-            _fill(axes[number], panel, styles, norm, round(LETTERS * 0.9 * widths[number]))
-        if maps:
-            bar = drawn.colorbar(ScalarMappable(norm, COLOURS), ax=list(axes.values()), label=_literal(maps[0].label))
-            if isinstance(norm, LogNorm):
-                _label_ticks(bar.ax.yaxis)
-        entries = _entries(figure, list(axes.values()))
+        entries = _fill(figure, list(axes.values()), [round(LETTERS * 0.9 * widths[number]) for number in axes])
         widths_of = [len(name) + SAMPLE for name in entries] or [1]
         room = round(LETTERS * width)
         columns = len(widths_of) if sum(widths_of) <= room else max(1, room // max(widths_of))
@@ -120,12 +109,11 @@ def draw(figure: FigureData, managed: bool = False) -> Figure:
 
 def draw_into(axes: list[Axes], figure: FigureData) -> None:
     """Draw the panels of a figure into axes, in the style in force."""
-    styles = line_styles(figure)
-    for one, panel in zip(axes, figure.panels, strict=True):
-        _fill(one, panel, styles, None, round(LETTERS * COLUMN))
-        entries = _entries(dataclasses.replace(figure, panels=(panel,)), [one])
+    for drawn_axes, panel in zip(axes, figure.panels, strict=True):
+        entries = _fill(dataclasses.replace(figure, panels=(panel,)), [drawn_axes], [round(LETTERS * COLUMN)])
         if entries:
-            one.legend(list(entries.values()), list(entries))
+            framed = panel.map is not None
+            drawn_axes.legend(list(entries.values()), list(entries), frameon=framed)
 
 
 def _managed() -> Figure:
@@ -163,7 +151,24 @@ def line_styles(figure: FigureData) -> dict[tuple[int, int], int]:
     return {kind: numbers.get(kind, kind[1]) % len(LINES) for of_panel in kinds for kind in of_panel}
 
 
-def _fill(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: Any, letters: int) -> None:
+def _fill(figure: FigureData, axes: list[Axes], letters: list[int]) -> dict[str, Any]:
+    """Draw panels into axes, maps with a bar of their colours, and return the entries of the legend."""
+    styles, maps = line_styles(figure), [panel.map for panel in figure.panels if panel.map is not None]
+    norm: Any = None
+    if maps:
+        low, high = map_range(figure)
+        norm = LogNorm(low, high) if maps[0].scale == "log" and low < high else Normalize(low, high)
+    for drawn_axes, panel, room in zip(axes, figure.panels, letters, strict=True):
+        _fill_panel(drawn_axes, panel, styles, norm, room)
+    if maps:
+        drawn: Any = axes[0].get_figure(root=True)
+        bar = drawn.colorbar(ScalarMappable(norm, COLOURS), ax=axes, label=_literal(maps[0].label))
+        if isinstance(norm, LogNorm):
+            _label_ticks(bar.ax.yaxis)
+    return _entries(figure, axes)
+
+
+def _fill_panel(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], norm: Any, letters: int) -> None:
     if panel.map is not None:
         _draw_map(axes, panel.map, norm)
     for shade in panel.shades:
@@ -266,12 +271,18 @@ def plot_curve(axes: Axes, curve: Curve, style: int = 0, panel: Panel | None = N
 
 
 def _draw_map(axes: Axes, drawn: Map, norm: Any) -> None:
-    """Draw a map as a cell around each point, so that a jump stays one, with borders, white below black."""
+    """Draw a map as a cell around each point, so that a jump stays one, with borders, white below black.
+
+    What lies outside the range of a law is hatched.
+    """
     mesh = axes.pcolormesh(drawn.x, drawn.y, drawn.values, norm=norm, cmap=COLOURS, shading="nearest", zorder=0)
     mesh.set_rasterized(True)
     axes.set_axisbelow(False)
     axes.grid(visible=False)
-    for number, region in borders_of(drawn).values():
+    for name, (number, region) in borders_of(drawn).items():
+        if name == OUTSIDE:  # whose side a border alone would not tell
+            hatched = axes.contourf(drawn.x, drawn.y, region.astype(float), [0.5, 1.5], colors="none", hatches=["///"])
+            hatched.set(edgecolor="white", linewidth=0.0)
         for width, colour, line in ((2.2, "white", "-"), (1.0, "black", LINES[number])):
             axes.contour(
                 drawn.x, drawn.y, region.astype(float), [0.5], colors=colour, linewidths=width, linestyles=[line]
@@ -283,7 +294,7 @@ def _entries(figure: FigureData, axes: list[Axes]) -> dict[str, Any]:
     entries: dict[str, Any] = {}
     for drawn_axes, panel in zip(axes, figure.panels, strict=True):
         labelled = ((artist, str(artist.get_label())) for artist in drawn_axes.get_lines())
-        entries |= {label: artist for artist, label in labelled if not label.startswith("_")}
+        entries |= {label: artist for artist, label in labelled if label and not label.startswith("_")}
         for shade in panel.shades:
             entries[_literal(shade.label)] = Patch(facecolor=_grey(shade), edgecolor="0.6", linewidth=0.5)
         for label, (number, _) in borders_of(panel.map).items():

@@ -1,14 +1,14 @@
 """Pictures of a prediction: curves, a map or bars over its operating points, and the fields of a single patch.
 
-xarray and pandas draw, and matplotlib the cells of a patch.
+The panels are those of all figures; pandas draws bars.
 """
 
 from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import numpy as np
@@ -23,11 +23,11 @@ from wearlaw.pipeline.solution import Solution
 from wearlaw.pipeline.variables import OUTSIDE_RANGE, default_variables
 from wearlaw.units.variables import name_of
 from wearlaw_apps.output.conditions import Conditions
-from wearlaw_apps.output.curves import OUTSIDE, Curve
+from wearlaw_apps.output.curves import OUTSIDE, Curve, FigureData, Map, Panel, PlotAxis, fit_for_log
 from wearlaw_apps.output.datasets import data_of, dataset, fields, labelled
-from wearlaw_apps.output.drawing import plot_curve
+from wearlaw_apps.output.drawing import draw_into
 from wearlaw_apps.output.labels import in_words, label, readable
-from wearlaw_apps.output.style import MARKERS, OUTSIDE_LINE, STYLE
+from wearlaw_apps.output.style import STYLE
 
 if TYPE_CHECKING:
     import xarray
@@ -51,24 +51,31 @@ PIXELS = (401, 301)
 
 def draw(prediction: Prediction, solution: Solution, name: str | None, x: str | None, ax: Axes | None) -> Axes:
     """Draw a prediction; see `Prediction.plot`."""
-    with mpl.rc_context(STYLE if ax is None else {}):
-        return _drawn(prediction, Conditions.of(solution), name, x, ax)
-
-
-def _drawn(prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None) -> Axes:
-    problem = prediction.problem
+    conditions, problem = Conditions.of(solution), prediction.problem
     points = problem.batch_shape[: len(problem.batch_shape) - len(problem.dims)]
-    if math.prod(points) == 1 and x is None:
-        several = math.prod(problem.batch_shape) > 1
-        drawn = _bars(prediction, conditions, name, ax) if several else _of_patch(prediction, name, ax)
-        return _titled(drawn, conditions, ())
-    return _over_points(prediction, conditions, name, x, ax)
+    single = math.prod(points) == 1 and x is None
+    shown_here: tuple[str, ...] = ()
+    with mpl.rc_context(STYLE if ax is None else {}):
+        if single and math.prod(problem.batch_shape) > 1:
+            axes = _bars(prediction, conditions, name, ax)
+        else:
+            panel, shown_here = (
+                (of_patch(prediction, name), ()) if single else _over_points(prediction, conditions, name, x)
+            )
+            axes = pyplot.subplots()[1] if ax is None else ax
+            draw_into([axes], FigureData("", "", (panel,)))
+        lines = textwrap.wrap(conditions.text(without=shown_here), TITLE)
+        axes.set_title("\n".join(lines), fontsize="small", loc="left")
+    return axes
 
 
 def _over_points(
-    prediction: Prediction, conditions: Conditions, name: str | None, x: str | None, ax: Axes | None
-) -> Axes:
-    """Draw a variable over the operating points: a map over two axes of many values, otherwise curves."""
+    prediction: Prediction, conditions: Conditions, name: str | None, x: str | None
+) -> tuple[Panel, tuple[str, ...]]:
+    """Return a panel of a variable over the operating points, and the conditions that it shows.
+
+    It is a map over two axes of many values, otherwise curves.
+    """
     problem = prediction.problem
     data, variable = _found(prediction, conditions, name, x)
     dims = [str(dim) for dim in data[variable].dims if dim not in problem.dims]
@@ -83,10 +90,11 @@ def _over_points(
     along = x if x in dims else max(dims, key=lambda dim: data.sizes[dim])
     others = [dim for dim in dims if dim != along]
     if x is None and others and data.sizes[others[0]] > MOST_CURVES:
-        return _titled(_map(data, variable, along, others[0], problem, ax), conditions, dims)
+        return _map(data, variable, along, others[0], problem), tuple(dims)
     together = [name for name in conditions.numbers if name in data and data[name].dims == (along,)]
     across = x or (along if along in together or not together else together[0])
-    return _titled(_curves(data, variable, across, others, problem, ax), conditions, (across, *others))
+    curves = _curves(data, variable, across, others, problem)
+    return Panel(_axis(data[across]), _axis(data[variable]), curves), (across, *others)
 
 
 def _found(
@@ -106,9 +114,9 @@ def _found(
 
 
 def _curves(
-    data: xarray.Dataset, variable: str, across: str, others: Sequence[str], problem: Problem, ax: Axes | None
-) -> Axes:
-    """Draw a curve for each value of the other axes and for each patch."""
+    data: xarray.Dataset, variable: str, across: str, others: Sequence[str], problem: Problem
+) -> tuple[Curve, ...]:
+    """Return a curve for each value of the other axes and for each patch."""
     apart = [*others, *(dim for dim in problem.dims if dim in data.dims)]
     curves: list[Curve] = []
     for index in np.ndindex(*(data.sizes[dim] for dim in apart)):
@@ -118,37 +126,23 @@ def _curves(
         there = np.isfinite(x) & np.isfinite(y)
         outside = np.atleast_1d(here[OUTSIDE_RANGE].values > 0.0)[there] if OUTSIDE_RANGE in here else None
         if there.any():
-            label_here = _series(data, place, problem)
-            curves.append(Curve(label_here, x[there], y[there], colour=len(curves), outside=outside))
+            number = len(curves)
+            curves.append(Curve(_series(data, place, problem), x[there], y[there], number, number, outside=outside))
     if not curves:
         raise InputError(f"plot: {variable} has no value at these operating points")
-    drawn: Axes = ax if ax is not None else pyplot.subplots()[1]
-    for number, curve in enumerate(curves):
-        plot_curve(drawn, curve, number % len(MARKERS))
-    dashed = any(curve.outside is not None and curve.outside.any() for curve in curves)
-    if dashed:
-        drawn.plot([], [], color="black", linestyle=OUTSIDE_LINE, label=OUTSIDE)
-    if apart or dashed:
-        drawn.legend()
-    drawn.set(xlabel=_label(data[across]), ylabel=_label(data[variable]))
-    return drawn
+    return tuple(curves)
 
 
-def _map(data: xarray.Dataset, variable: str, along: str, up: str, problem: Problem, ax: Axes | None) -> Axes:
-    """Draw a map over two axes; hatching marks what lies outside the range of the law."""
+def _map(data: xarray.Dataset, variable: str, along: str, up: str, problem: Problem) -> Panel:
+    """Return a map over two axes; a border shows what lies outside the range of the law."""
     values = data[variable]
     if values.ndim > 2:
         patches = " and ".join(f"{dim} {labels}" for dim, labels in problem.dims.items())
         raise InputError(f"plot: a map shows one patch; choose one of {patches}, as in r.sel(...).plot()")
-    bar = {"label": _label(values)}
-    drawn: Axes = values.plot.pcolormesh(x=along, y=up, cbar_kwargs=bar, **_look(ax)).axes
-    if OUTSIDE_RANGE in data and (data[OUTSIDE_RANGE] > 0.0).any():
-        marks = data[OUTSIDE_RANGE].transpose(up, along)
-        drawn.contourf(marks[along], marks[up], marks, levels=[0.5, 1.5], colors="none", hatches=["///"])
-        drawn.fill_between([], [], facecolor="none", edgecolor="black", hatch="///", label=OUTSIDE)
-        drawn.legend()
-    drawn.set(xlabel=_label(data[along]), ylabel=_label(data[up]))
-    return drawn
+    outside = {OUTSIDE: data[OUTSIDE_RANGE].transpose(up, along).values > 0.0} if OUTSIDE_RANGE in data else {}
+    x, y, shown_here = data[along].values, data[up].values, values.transpose(up, along).values
+    drawn = Map(_label(values), x, y, shown_here, "log" if fit_for_log(shown_here) else "linear", outside)
+    return Panel(_axis(data[along]), _axis(data[up]), (), map=drawn)
 
 
 def _bars(prediction: Prediction, conditions: Conditions, name: str | None, ax: Axes | None) -> Axes:
@@ -158,7 +152,7 @@ def _bars(prediction: Prediction, conditions: Conditions, name: str | None, ax: 
     table = data.to_dataframe(dim_order=dims).dropna(subset=variable)
     labels = [row if isinstance(row, tuple) else (row,) for row in table.index.tolist()]
     names = [in_words(dict(zip(dims, row, strict=True))) for row in labels]
-    drawn: Axes = table[[variable]].set_axis(names).plot.bar(legend=False, rot=0, **_look(ax))
+    drawn: Axes = table[[variable]].set_axis(names).plot.bar(legend=False, rot=0, ax=ax)
     marks = table[OUTSIDE_RANGE].tolist() if OUTSIDE_RANGE in table else []
     outside = [place for place, mark in enumerate(marks) if mark > 0.0]
     for place in outside:
@@ -170,8 +164,8 @@ def _bars(prediction: Prediction, conditions: Conditions, name: str | None, ax: 
     return drawn
 
 
-def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes:
-    """Draw the fields of the only patch: along a line, otherwise as a map."""
+def of_patch(prediction: Prediction, name: str | None, pixels: tuple[int, int] = PIXELS) -> Panel:
+    """Return a panel of a field of the only patch, or of its stresses: along a line, otherwise a map."""
     if prediction.scale == "patch":
         raise InputError(
             "plot: there is one operating point, and the contact model gives means of its patch; give a condition"
@@ -188,18 +182,14 @@ def _of_patch(prediction: Prediction, name: str | None, ax: Axes | None) -> Axes
         )
     if not line:
         variable = name or FIELDS[0]
-        axes: Axes = ax if ax is not None else pyplot.subplots()[1]
-        mesh = axes.pcolormesh(*raster(prediction, data[variable].values, *PIXELS), rasterized=True)
-        axes.figure.colorbar(mesh, ax=axes, shrink=0.8, label=_label(data[variable]))
-        axes.set(xlabel=_label(data["x"]), ylabel=_label(data["y"]), aspect="equal")
-        return axes
+        drawn = Map(_label(data[variable]), *raster(prediction, data[variable].values, *pixels))
+        return Panel(_axis(data["x"]), _axis(data["y"]), (), equal=True, map=drawn)
     names = list(ALONG) if name is None else [name]
-    table = data.to_dataframe().reset_index()
-    style = ["--" if variable == "traction_bound" else "-" for variable in names]
-    labels = [name_of(variable) for variable in names]
-    drawn: Axes = table.plot(x="x", y=names, style=style, label=labels, legend=len(names) > 1, **_look(ax))
-    drawn.set(xlabel=_label(data["x"]), ylabel=_label(data[names[0]]) if name else label("pressure", "traction"))
-    return drawn
+    words = [name_of(variable) if name is None else "" for variable in names]
+    curves = (Curve(word, data["x"].values, data[variable].values, number, number)
+              for number, (word, variable) in enumerate(zip(words, names, strict=True)))  # fmt: skip
+    up = _axis(data[name]) if name else PlotAxis(label("pressure", "traction"))
+    return Panel(_axis(data["x"]), up, tuple(curves))
 
 
 def fields_of(prediction: Prediction) -> xarray.Dataset:
@@ -282,10 +272,6 @@ def _ends(strips: Array, width: Array) -> tuple[Array, Array]:
     return after - width, after
 
 
-def _look(ax: Axes | None) -> dict[str, Any]:
-    return {} if ax is None else {"ax": ax}
-
-
 def _series(data: xarray.Dataset, place: Mapping[str, int], problem: Problem) -> str:
     """Return the name of a curve: the value of each other condition, and the patch."""
     of_points = [_value(data[dim].isel({dim: at})) for dim, at in place.items() if dim not in problem.dims]
@@ -298,12 +284,8 @@ def _value(condition: xarray.DataArray) -> str:
     return f"{name_of(str(condition.name))} {condition.item():.4g} {_unit(condition)}".rstrip()
 
 
-def _titled(drawn: Axes, conditions: Conditions, variable: Collection[str]) -> Axes:
-    """Write the conditions that a picture does not show above it, and return its axes."""
-    drawn.set_title("")  # xarray's
-    lines = textwrap.wrap(conditions.text(without=variable), TITLE)
-    drawn.set_title("\n".join(lines), fontsize="small", loc="left")
-    return drawn
+def _axis(variable: xarray.DataArray) -> PlotAxis:
+    return PlotAxis(_label(variable))
 
 
 def _label(variable: xarray.DataArray) -> str:

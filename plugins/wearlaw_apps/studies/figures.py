@@ -20,7 +20,18 @@ from wearlaw.models.law import WEAR
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.quantities import Q, Unit, from_si
 from wearlaw.units.variables import UNITS, name_of
-from wearlaw_apps.output.curves import BLACK, OUTSIDE, Curve, FigureData, Limit, Map, Panel, PlotAxis, Shade
+from wearlaw_apps.output.curves import (
+    BLACK,
+    OUTSIDE,
+    Curve,
+    FigureData,
+    Limit,
+    Map,
+    Panel,
+    PlotAxis,
+    Shade,
+    fit_for_log,
+)
 from wearlaw_apps.output.labels import in_words, label, readable
 from wearlaw_apps.studies.figure_spec import ACROSS, COMMON, OF_PROFILE, FigureSpec, Range, Scale, Window
 from wearlaw_apps.studies.measured import known_variables, measured_points
@@ -58,9 +69,6 @@ MOST_POINTS, MOST_VALUES = 4000, 300
 
 LEAST = 4
 """Fewest values of each axis of a map that is made without being asked for."""
-
-DECADES = 30.0
-"""Ratio of the largest to the smallest value beyond which a scale that nobody chose is logarithmic."""
 
 ALONG = (("pressure", "traction", "traction_bound"), ("slip",))
 """The panels of the usual figure along the patch of a line."""
@@ -179,13 +187,6 @@ def _plane(sweep: xarray.Dataset, creepage: str | None) -> tuple[str, str] | Non
     others = [axis for axis in axes_of(sweep) if axis != first]
     second = max(others, key=lambda axis: sweep.sizes[axis], default=None)
     return (first, second) if second and min(sweep.sizes[first], sweep.sizes[second]) >= LEAST else None
-
-
-def fit_for_log(*values: Array) -> bool:
-    """Return whether values that nobody chose a scale for are better seen on a logarithmic one."""
-    numbers = np.concatenate([np.ravel(array) for array in values]) if values else np.zeros(0)
-    seen = numbers[np.isfinite(numbers) & (numbers != 0.0)]
-    return bool(seen.size and seen.min() > 0.0 and seen.max() > DECADES * seen.min())
 
 
 def _title(spec: FigureSpec, results: Results) -> str:

@@ -271,7 +271,7 @@ def test_two_axes_are_curves_over_the_longer_one_or_a_map() -> None:
     shown = mesh.get_array().data.reshape(9, 12)
     np.testing.assert_array_equal(shown, fine.wear_rate.magnitude)
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("creepage [%]", "normal force [kN]")
-    assert mesh.colorbar.ax.get_ylabel() == "wear rate [µg/m/mm²]"
+    assert axes.get_figure().axes[1].get_ylabel() == "wear rate [µg/m/mm²]"
     assert axes.get_title() == ""
     assert axes.get_title(loc="left") == "friction coefficient 0.4"
 
@@ -292,7 +292,7 @@ def test_what_lies_outside_the_range_of_a_law_is_dashed() -> None:
     assert outside.any()
     assert not outside.all()
     axes = found.plot()
-    dashed, inside, _ = axes.get_lines()
+    dashed, inside = axes.get_lines()
     assert (dashed.get_linestyle(), inside.get_linestyle()) == ("--", "-")
     assert (dashed.get_color(), dashed.get_alpha()) == (inside.get_color(), None)
     np.testing.assert_array_equal(np.isnan(inside.get_ydata()), outside)

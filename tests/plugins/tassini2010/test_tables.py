@@ -145,7 +145,8 @@ def made(model: str, highest: float, norm: Any, **parameters: float) -> table_4.
 def test_the_fits_are_listed_behind_the_papers_set_of_their_model() -> None:
     parameters = {"q_s": 53.2468, "m_c": 84.9753, "tr_sc": 92.1357}
     fits = [table_4.Fitted("exact", 22.0, "absolute", parameters, 1.23456, 2.34567)]
-    of_paper, fit, other = (tuple(row) for row in table_4.table(fits).astype(object).fillna("").to_numpy())
+    table = table_4.table(fits)
+    of_paper, fit, other = (tuple(row) for row in table.astype(object).where(table.notna(), "").to_numpy())
     assert of_paper == ("exact theory", "paper", "", *CORRECTED["exact"][1:], "", "")
     assert fit == ("exact theory", "absolute [µg/m/mm²]", 22.0, 53.25, 84.98, 92.14, 1.2346, 2.3457)
     assert other[:2] == ("simplified theory", "paper")
