@@ -17,10 +17,10 @@ MARK = "(The build writes the entries of this page here.)"
 """Line of a page in whose place its entries stand."""
 
 OTHERS = (
-    "wearlaw_apps.sweeps",
     "wearlaw_apps.fits",
     "wearlaw_apps.studies",
     "wearlaw_apps.life",
+    "wearlaw_apps.output",
     "wearlaw_models.rigs.wheelset",
     "wearlaw_kit",
 )
@@ -83,9 +83,10 @@ class Entry(NamedTuple):
 
 
 def members(module: ModuleType) -> Iterator[tuple[str, str]]:
-    """Give the names of the public functions and classes of a module, and which of the two they are."""
-    for name, value in vars(module).items():
-        if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__:
+    """Give the names of a module's functions and classes that `wearlaw` has not, and which of the two they are."""
+    for name in getattr(module, "__all__", vars(module)):
+        value = getattr(module, name)
+        if name[0] != "_" and name not in wl.__all__ and getattr(value, "__module__", "") == module.__name__:
             yield name, "class" if inspect.isclass(value) else "function"
 
 
@@ -127,7 +128,7 @@ def entries() -> Iterator[Entry]:
         for name in one.names
     }
     for name in sorted(wl.__all__, key=list(sources).index):
-        section = sources[name].removeprefix("wearlaw.")
+        section = f"{sources[name]}.{name}".removeprefix("wearlaw.")
         while section not in TITLES and section not in TOGETHER:
             section = section.rpartition(".")[0]
         yield Entry("wearlaw", name, TOGETHER.get(section, section), sources[name])
@@ -148,7 +149,7 @@ def pages() -> dict[str, str]:
     written = {}
     for package, title in TITLES.items():
         home = package if package.startswith("wearlaw_") else f"wearlaw.{package}"
-        about = cleaned(importlib.import_module(home))[0]
+        about = "" if package in wl.__all__ else cleaned(importlib.import_module(home))[0]  # its entry says it
         rst = "\n".join(entry.rst() for entry in every if entry.package == package)
         written[place(title)] = f"{about}\n\n```{{eval-rst}}\n{rst}\n```\n"
     return written

@@ -14,10 +14,10 @@ from typing import Any
 import wearlaw
 import wearlaw_kit
 from wearlaw import hookspecs  # private: hooks are an interface by name
-from wearlaw_apps import fits, life, studies, sweeps
+from wearlaw_apps import fits, life, output, studies
 
 AGREED = Path(__file__).with_suffix(".txt")
-FIRST = f"INTERFACE_VERSION = {wearlaw.INTERFACE_VERSION}"
+FIRST = f"INTERFACE_VERSION = {hookspecs.INTERFACE_VERSION}"
 
 
 def interface() -> list[str]:
@@ -26,11 +26,11 @@ def interface() -> list[str]:
     names = (line for name in wearlaw.__all__ for line in described(name, getattr(wearlaw, name)))
     faces = (
         line
-        for face in (wearlaw_kit, fits, studies, life, sweeps)
+        for face in (wearlaw_kit, fits, studies, life, output)
         for name in face.__all__
         for line in described(f"{face.__name__}.{name}", getattr(face, name))
     )
-    return [FIRST, *sorted({*hooks, *names, *faces} - {"INTERFACE_VERSION"})]
+    return [FIRST, *sorted({*hooks, *names, *faces})]
 
 
 def described(name: str, value: Any) -> Iterator[str]:
@@ -38,8 +38,10 @@ def described(name: str, value: Any) -> Iterator[str]:
     if inspect.isroutine(value):
         yield name + arguments(value)
     elif inspect.ismodule(value):
-        own = {key: one for key, one in vars(value).items() if getattr(one, "__module__", "") == value.__name__}
-        yield from (line for key, one in own.items() if key[0] != "_" for line in described(f"{name}.{key}", one))
+        public = getattr(value, "__all__", vars(value))
+        defined = {key: getattr(value, key) for key in public if key[0] != "_" and key not in wearlaw.__all__}
+        here = {key: member for key, member in defined.items() if getattr(member, "__module__", "") == value.__name__}
+        yield from (line for key, member in here.items() for line in described(f"{name}.{key}", member))
     elif not (inspect.isclass(value) and is_ours(value)):
         yield name
     else:

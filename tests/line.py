@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 import wearlaw as wl
@@ -27,7 +29,7 @@ def crossings_meet(model: wl.LineContactModel, problem: wl.Problem) -> None:
     a, start = problem.half_width, slip_zone(model, problem)[0]
     x = start + (a - start) * np.linspace(0.05, 0.9, 12)
     known = fields_at(model, problem, x[:, None])
-    names: list[wl.FieldVariable] = ["slip", "pressure"]
+    names: list[Literal["slip", "pressure"]] = ["slip", "pressure"]
     for name in names:
         found = model.crossings(problem, name, getattr(known, name)[:, 0])
         assert found is not None

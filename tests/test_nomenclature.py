@@ -12,6 +12,7 @@ import pytest
 import wearlaw as wl
 from docs import nomenclature
 from docs.nomenclature import Documented
+from wearlaw.errors import CompositionError
 
 SYMBOLS_OF_SEVERAL_NAMES = {
     "k": "KTH's map has a wear coefficient in each of its four fields",
@@ -50,7 +51,7 @@ def quantities(result: object, cls: type) -> dict[tuple[str, str], wl.Quantity]:
     """Return the properties of a class that are quantities, by its name and theirs, without those of another patch."""
     found = {}
     for name in nomenclature.own(cls):
-        with contextlib.suppress(wl.CompositionError):
+        with contextlib.suppress(CompositionError):
             if not name.startswith("_") and isinstance(getattr(result, name), wl.Quantity):
                 found[cls.__name__, name] = getattr(result, name)
     return found

@@ -10,6 +10,7 @@
 import sys as _sys
 from typing import TYPE_CHECKING
 
+from wearlaw import errors
 from wearlaw import late as _late
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
@@ -21,35 +22,26 @@ from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem, Strips
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import (
     CalibrationWarning,
-    CompositionError,
     ConditionsError,
     ConfigurationError,
-    DataError,
     InputError,
-    ModelError,
-    OutputError,
     PlasticityWarning,
-    PluginWarning,
     RangeWarning,
-    ResumeWarning,
     UnitError,
-    UnknownModelError,
     UnusualWarning,
     WearlawError,
     WearlawWarning,
     shown,
 )
 from wearlaw.fields import ContactModelField, MaterialField, WearLawField, read_law
-from wearlaw.hookspecs import INTERFACE_VERSION, Command, ResourceKind, hookimpl
+from wearlaw.hookspecs import Command, ResourceKind, hookimpl
 from wearlaw.kernels import accelerate, accelerated, compiled_loop
 from wearlaw.loader import contact_model, installed, law, material, patch_mean, rig, stage, use, wear_law
 from wearlaw.models.contact_model import (
     ContactModel,
     CreepForceModel,
-    FieldVariable,
     Forces,
     LineContactModel,
-    Scale,
     Solve,
     Stage,
 )
@@ -76,18 +68,16 @@ from wearlaw.units.variables import Variable
 from wearlaw.version import __version__
 
 __all__ = [
-    "INTERFACE_VERSION", "Array", "Body", "BreakpointMap", "Calibration", "CalibrationWarning", "Claim",
-    "Coefficient", "Command", "CompositionError", "Condition", "ConditionsError", "Configuration",
-    "ConfigurationError", "Contact", "ContactModel", "ContactModelField", "CreepForceModel", "CreepForces",
-    "Creepage", "DataError", "Density", "Exempt", "FallingFriction", "FieldVariable", "Forces", "Friction",
-    "Geometry", "InputError", "Law", "LawVariable", "Length", "LineContactModel", "LineFields", "LocalOutcome",
-    "Material", "MaterialField", "ModelError", "Nodes", "Numbers", "Outcome", "OutputError", "Pipeline",
-    "PlasticityWarning", "PluginWarning", "Prediction", "Problem", "Q", "Quantity", "QuantityLike", "RangeWarning",
-    "Reader", "ResourceKind", "ResumeWarning", "Rig", "Scale", "Solve", "Speed", "Stage", "Stress", "Strips",
-    "Unit", "UnitError", "UnknownModelError", "UnusualWarning", "Variable", "WearLaw", "WearLawField",
+    "Array", "Body", "BreakpointMap", "Calibration", "CalibrationWarning", "Claim", "Coefficient", "Command",
+    "Condition", "ConditionsError", "Configuration", "ConfigurationError", "Contact", "ContactModel",
+    "ContactModelField", "CreepForceModel", "CreepForces", "Creepage", "Density", "Exempt", "FallingFriction", "Forces",
+    "Friction", "Geometry", "InputError", "Law", "LawVariable", "Length", "LineContactModel", "LineFields",
+    "LocalOutcome", "Material", "MaterialField", "Nodes", "Numbers", "Outcome", "Pipeline", "PlasticityWarning",
+    "Prediction", "Problem", "Q", "Quantity", "QuantityLike", "RangeWarning", "Reader", "ResourceKind", "Rig", "Solve",
+    "Speed", "Stage", "Stress", "Strips", "Unit", "UnitError", "UnusualWarning", "Variable", "WearLaw", "WearLawField",
     "WearlawError", "WearlawWarning", "__version__", "accelerate", "accelerated", "beside", "coefficient",
-    "compiled_loop", "contact_model", "elastic_limit", "hertz", "hertz_ellipse", "hookimpl", "installed", "kalker",
-    "law", "material", "parse", "patch_mean", "read_file", "read_law", "rig", "scalar_si", "shown", "stage",
+    "compiled_loop", "contact_model", "elastic_limit", "errors", "hertz", "hertz_ellipse", "hookimpl", "installed",
+    "kalker", "law", "material", "parse", "patch_mean", "read_file", "read_law", "rig", "scalar_si", "shown", "stage",
     "steel", "use", "wear_law",
 ]  # fmt: skip
 __all__ += _late.__all__

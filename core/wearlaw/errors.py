@@ -2,7 +2,7 @@
 
 An error names the wrong field, the value it got and the expected value, and suggests a fix. All errors derive from
 `WearlawError`. Errors in the user's input derive from `InputError`, which is also a `ValueError`, so that generic code
-can catch either.
+can catch either. `wearlaw` itself has those that scripts catch most often and that models raise; this module has all.
 """
 
 from __future__ import annotations
@@ -15,6 +15,13 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 import numpy as np
+
+__all__ = [
+    "CalibrationWarning", "CaseError", "CompositionError", "ConditionsError", "ConfigurationError", "DataError",
+    "FitError", "FitWarning", "FrozenError", "InputError", "ModelError", "OutputError", "PlasticityWarning",
+    "PluginWarning", "RangeWarning", "ResumeWarning", "SweepError", "UnitError", "UnknownModelError",
+    "UnusualWarning", "WearlawError", "WearlawWarning", "WorkerWarning",
+]  # fmt: skip
 
 LONGEST = 400
 """Most characters that a message shows of a value."""

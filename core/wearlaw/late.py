@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from wearlaw_apps.fits.read_tests import read_tests
     from wearlaw_apps.fits.uncertainty import uncertainty
     from wearlaw_apps.life.over_distance import wear_out
-    from wearlaw_apps.output.curves import Curve, FigureData, Limit, Panel, PlotAxis
+    from wearlaw_apps.output.curves import Curve, FigureData, Panel, PlotAxis
     from wearlaw_apps.output.datasets import to_dataframe
     from wearlaw_apps.studies.case import load_case
-    from wearlaw_apps.studies.sections import CheckedClaim, Section, Verdict
+    from wearlaw_apps.studies.sections import CheckedClaim, Section
     from wearlaw_apps.studies.study import Study, run
     from wearlaw_apps.sweeps.inverse import creepage_for
     from wearlaw_apps.sweeps.several import Pipelines as Pipelines
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from wearlaw_models.rigs.wheelset.rig import Wheelset
 
 __all__ = [
-    "CheckedClaim", "Curve", "Disc", "FigureData", "Limit", "Panel", "PlotAxis", "Profile", "Section", "Study",
-    "TwinDisc", "Verdict", "WheelRail", "Wheelset", "compare", "creepage_for", "explore", "fit", "load_case",
+    "CheckedClaim", "Curve", "Disc", "FigureData", "Panel", "PlotAxis", "Profile", "Section", "Study",
+    "TwinDisc", "WheelRail", "Wheelset", "compare", "creepage_for", "explore", "fit", "load_case",
     "lognormal", "normal", "published_range", "read_contact", "read_profile", "read_subsurface", "read_table",
     "read_tests", "run", "sweep", "to_dataframe", "uncertainty", "uniform", "wear_coefficient", "wear_out",
     "wear_profiles", "write_profile",
@@ -55,10 +55,10 @@ PUBLIC = {
     "wearlaw_apps.fits.read_tests": ("read_tests",),
     "wearlaw_apps.fits.uncertainty": ("uncertainty",),
     "wearlaw_apps.life.over_distance": ("wear_out",),
-    "wearlaw_apps.output.curves": ("Curve", "FigureData", "Limit", "Panel", "PlotAxis"),
+    "wearlaw_apps.output.curves": ("Curve", "FigureData", "Panel", "PlotAxis"),
     "wearlaw_apps.output.datasets": ("to_dataframe",),
     "wearlaw_apps.studies.case": ("load_case",),
-    "wearlaw_apps.studies.sections": ("CheckedClaim", "Section", "Verdict"),
+    "wearlaw_apps.studies.sections": ("CheckedClaim", "Section"),
     "wearlaw_apps.studies.study": ("Study", "run"),
     "wearlaw_apps.sweeps.inverse": ("creepage_for",),
     "wearlaw_apps.sweeps.sweep": ("sweep",),

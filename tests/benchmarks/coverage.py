@@ -18,7 +18,8 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_apps.fits import FitWarning, WearTests
+from wearlaw.errors import FitWarning
+from wearlaw_apps.fits import WearTests
 
 DOCS = Path(__file__).parents[2] / "docs"
 CONTACTS = ("global", "exact")

@@ -11,6 +11,7 @@ import wearlaw as wl
 from tests.core.distributions import Install
 from tests.core.stages import CONDITIONS, EXACT, FASTSIM, KTH, ON_RAILS, RAILS, RIG, silently
 from wearlaw import Q
+from wearlaw.errors import ModelError
 from wearlaw.numerics.integrate import integrate_laws  # private: integrals at the size of blocks
 
 PLUGIN = """
@@ -133,7 +134,7 @@ WRITING: dict[str, Any] = {
 @pytest.mark.parametrize("at_fault", WRITING)
 def test_a_model_that_writes_into_an_array_it_was_given_is_named(install: Install, at_fault: str) -> None:
     install("lab", PLUGIN, version="1.2.3")
-    with pytest.raises(wl.ModelError, match=r"failed: ValueError: output array is read-only\n.*Make a new") as error:
+    with pytest.raises(ModelError, match=r"failed: ValueError: output array is read-only\n.*Make a new") as error:
         WRITING[at_fault]()
     assert str(error.value).endswith(f" is class {at_fault} of lab 1.2.3 (plugin 'lab')")
     assert LOADS.m_as("kN").tolist() == [60.0, 80.0]
@@ -182,7 +183,7 @@ WRONG: dict[str, tuple[Any, str]] = {
 def test_an_error_at_run_time_names_the_model_at_fault_and_its_distribution(install: Install, at_fault: str) -> None:
     install("lab", PLUGIN, version="1.2.3")
     work, said = WRONG[at_fault]
-    with pytest.raises(wl.ModelError) as error:
+    with pytest.raises(ModelError) as error:
         work()
     assert str(error.value).startswith(said)
     assert str(error.value).endswith(f" is class {at_fault} of lab 1.2.3 (plugin 'lab')")

@@ -12,6 +12,7 @@ import pytest
 import wearlaw as wl
 from tests.cases import following_line
 from tests.core.stages import AS_PRINTED, BRR, CONDITIONS, ELLIPTIC, EXACT, FASTSIM, FITTED, GLOBAL, KTH, RIG
+from wearlaw.errors import CompositionError
 
 
 @pytest.mark.parametrize(
@@ -31,14 +32,14 @@ from tests.core.stages import AS_PRINTED, BRR, CONDITIONS, ELLIPTIC, EXACT, FAST
     ],
 )
 def test_stages_in_the_wrong_order_are_refused(left: Any, right: Any, said: str) -> None:
-    with pytest.raises(wl.CompositionError) as caught:
+    with pytest.raises(CompositionError) as caught:
         left | right
     assert said in str(caught.value)
 
 
 @pytest.mark.parametrize("model", [EXACT, FASTSIM, ELLIPTIC, AS_PRINTED], ids=repr)
 def test_brr_on_cells_is_refused_with_what_to_add(model: wl.ContactModel) -> None:
-    with pytest.raises(wl.CompositionError) as caught:
+    with pytest.raises(CompositionError) as caught:
         RIG | model | BRR
     message = str(caught.value)
     assert f"wear law 'brr' is stated for the means of the whole patch, but contact model '{model.name}'" in message
@@ -216,5 +217,5 @@ def test_a_pipeline_read_from_json_is_checked_like_one_composed_in_python() -> N
     text = (RIG | wl.contact_model("global") | wl.wear_law("brr")).model_dump_json()
     on_cells = text.replace('"model":"global","total_from":{"model":"exact","slip":"consistent"}', '"model":"exact"')
     assert on_cells != text
-    with pytest.raises(wl.CompositionError, match="stated for the means of the whole patch"):
+    with pytest.raises(CompositionError, match="stated for the means of the whole patch"):
         wl.Pipeline.model_validate_json(on_cells)

@@ -12,6 +12,7 @@ import pytest
 import wearlaw as wl
 from tests import cases
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 from wearlaw_apps.studies.case import Case  # private: a case without its files
 from wearlaw_apps.studies.report.tables import summaries  # private: a part of the report, without its page
 from wearlaw_apps.studies.study import run  # private: a case run without its files
@@ -187,7 +188,7 @@ def test_a_rig_with_two_speeds_passes_the_kit(check: Check) -> None:
 
 
 def test_no_creepage_is_sought_on_a_rig_with_two_speeds() -> None:
-    with pytest.raises(wl.CompositionError, match="no single condition of rig 'two_speeds' sets the creepage"):
+    with pytest.raises(CompositionError, match="no single condition of rig 'two_speeds' sets the creepage"):
         wl.creepage_for(TwoSpeeds() | wl.contact_model("exact"), traction_coefficient=0.1, mass="200 kg")
 
 

@@ -14,6 +14,7 @@ import pytest
 import wearlaw as wl
 from tests.cases import Linear
 from wearlaw import Configuration, Q
+from wearlaw.errors import ModelError
 
 STEEL = wl.steel()
 IN_MM = 'give it in mm or another unit of that dimension, such as "1.0 mm"'
@@ -90,7 +91,7 @@ def test_a_field_without_its_unit_says_what_to_write(record: type[Any], said: st
 @pytest.mark.parametrize(("default", "due"), [(5.3e-9, '"5.3e-09 mm"'), ("5 um", '"5 um"'), (Q(5.0, "um"), '"5.0 µm"')])
 def test_a_field_without_its_type_says_what_to_write(default: object, due: str) -> None:
     said = rf'^Film\.depth: has no type\. .* write depth: Annotated\[wl\.Quantity, wl\.Unit\("mm"\)\] = {due}'
-    with pytest.raises(wl.ModelError, match=said):
+    with pytest.raises(ModelError, match=said):
         type("Film", (Configuration,), {"depth": default, "__module__": __name__})
 
 
@@ -101,7 +102,7 @@ def test_a_model_without_its_name_says_what_to_write() -> None:
         def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
             return contact.wear_index_density
 
-    with pytest.raises(wl.ModelError, match=r'Mine: has no name; write name: ClassVar\[str\] = "mine" in the class'):
+    with pytest.raises(ModelError, match=r'Mine: has no name; write name: ClassVar\[str\] = "mine" in the class'):
         Mine()
 
 

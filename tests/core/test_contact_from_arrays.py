@@ -11,6 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import CompositionError, ModelError
 
 FOUR_NODES: Any = {
     "pressure": Q([100, 800, 900, 300], "MPa"),
@@ -114,7 +115,7 @@ def test_a_locked_wheel_slides_by_its_rolling_speed() -> None:
 
 def test_a_law_of_the_patch_is_refused_on_nodes_and_taken_on_their_mean() -> None:
     contact = wl.Contact.from_arrays(**FOUR_NODES)
-    with pytest.raises(wl.CompositionError, match=r"use contact\.patch_mean\(\) \| law"):
+    with pytest.raises(CompositionError, match=r"use contact\.patch_mean\(\) \| law"):
         contact | wl.wear_law("brr")
     wear = contact.patch_mean() | wl.wear_law("brr")
     # 6.165 µg/m per N of Tγ below 100 N: ρ π 0.25 mm³/km/N.
@@ -177,10 +178,10 @@ def test_negative_wear_is_refused() -> None:
             return -contact.pressure
 
     contact = wl.Contact.from_arrays(**{**FOUR_NODES, "slip": "1 %"})
-    with pytest.raises(wl.ModelError, match="gives a negative wear rate"):
+    with pytest.raises(ModelError, match="gives a negative wear rate"):
         contact | Gain()
 
 
 def test_only_a_contact_comes_before_a_law() -> None:
-    with pytest.raises(wl.CompositionError, match="a wear law takes a contact, not 3"):
+    with pytest.raises(CompositionError, match="a wear law takes a contact, not 3"):
         3 | wl.wear_law("kth")  # type: ignore[operator]

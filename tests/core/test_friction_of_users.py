@@ -12,6 +12,7 @@ import wearlaw as wl
 from tests.core.stages import predicted
 from tests.plugins.fits.fits import usfd
 from wearlaw import Q
+from wearlaw.errors import ModelError
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 
@@ -50,7 +51,7 @@ class Friction:
 )
 def test_a_wrong_law_of_friction_is_named(coefficient: Callable[[Any], Any], says: str) -> None:
     conditions: Any = {**CONDITIONS, "creepage": Q([1.0, 2.0, 3.0], "%"), "friction_coefficient": Friction(coefficient)}
-    with pytest.raises(wl.ModelError, match=rf"^friction_coefficient: friction law Friction .*{says}"):
+    with pytest.raises(ModelError, match=rf"^friction_coefficient: friction law Friction .*{says}"):
         PREDICT(**conditions)
 
 

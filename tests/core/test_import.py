@@ -70,7 +70,7 @@ def test_dir_shows_the_public_names_also_those_loaded_later_and_no_room() -> Non
     code = f"{IMPORT}; import wearlaw_apps.studies.study; assert dir(wl) == sorted(wl.__all__), dir(wl)"
     assert "wearlaw_apps.studies.study" in loaded(code)
     modules = [name for name in dir(wl) if inspect.ismodule(getattr(wl, name))]
-    assert modules == ["elastic_limit", "hertz", "hertz_ellipse", "kalker"]
+    assert modules == ["elastic_limit", "errors", "hertz", "hertz_ellipse", "kalker"]
     assert {"fit", "sweep", "Profile", "load_case"} <= set(dir(wl))
 
 

@@ -14,6 +14,7 @@ import wearlaw as wl
 import wearlaw_kit
 from tests.strategies import EPS
 from wearlaw import Array, Q
+from wearlaw.errors import CompositionError, ModelError
 
 RIG = wl.TwinDisc.suros(material=wl.steel(shear_yield_stress=None))
 EXACT = wl.contact_model("exact")
@@ -174,7 +175,7 @@ def test_contradicting_conditions_do_not_make_a_pipeline(table: Any) -> None:
         name: ClassVar[str] = "other"
         conditions: ClassVar = table
 
-    with pytest.raises(wl.CompositionError, match="relative_humidity: no value suits both stage 'other'"):
+    with pytest.raises(CompositionError, match="relative_humidity: no value suits both stage 'other'"):
         RIG | EXACT | Other() | Humid()
 
 
@@ -284,7 +285,7 @@ def test_what_a_model_declares_is_checked_with_its_class() -> None:
         namespace: Mapping[str, Any] = {
             "conditions": wrong, "__annotations__": {"conditions": ClassVar}, "__module__": __name__
         }  # fmt: skip
-        with pytest.raises(wl.ModelError, match=message):
+        with pytest.raises(ModelError, match=message):
             type("Wrong", (Humid,), dict(namespace))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 
@@ -64,7 +64,7 @@ FASTSIM, ELLIPTIC = wl.contact_model("fastsim"), wl.contact_model("fastsim", bou
     ],
 )
 def test_a_calibration_covers_the_contact_it_was_fitted_for(
-    fitted_for: wl.Calibration, model: wl.ContactModel, scale: wl.Scale, covered: bool
+    fitted_for: wl.Calibration, model: wl.ContactModel, scale: Literal["patch", "cells"], covered: bool
 ) -> None:
     assert fitted_for.covers(model, scale) is covered
 

@@ -13,6 +13,7 @@ import wearlaw as wl
 from tests.core.outcome_laws import BRONZE, MIXED, Damage, Heat, Volume
 from tests.core.stages import CONDITIONS, EXACT, FASTSIM, GLOBAL, KTH, ON_RAILS, RAILS, RIG, predicted, silently
 from wearlaw import Array, Q
+from wearlaw.errors import CompositionError, ModelError
 
 EPS = float(np.finfo(np.float64).eps)
 HEAT = Heat(share=1.0)
@@ -96,7 +97,7 @@ def test_each_body_has_its_own_law() -> None:
     for name in ("wear_rate", "mass_per_distance"):
         for read in (result.__getitem__, result.__getattribute__):
             said = r"a law for each of disc_1 and disc_2; use wear_rate_of\('disc_1'\)"
-            with pytest.raises(wl.CompositionError, match=said):
+            with pytest.raises(CompositionError, match=said):
                 read(name)
 
 
@@ -183,20 +184,20 @@ def test_a_law_reads_the_body_that_it_is_for_also_in_split_cells(model: str) -> 
     ],
 )
 def test_laws_that_do_not_fit_each_other_are_refused(laws: tuple[wl.Law, ...], said: str) -> None:
-    with pytest.raises(wl.CompositionError, match=said):
+    with pytest.raises(CompositionError, match=said):
         silently(MIXED, EXACT, *laws)
 
 
 def test_an_outcome_that_no_law_predicts_is_refused() -> None:
     result = predicted(RIG | GLOBAL | Damage(), **CONDITIONS)
-    with pytest.raises(wl.CompositionError, match=r"'damage'.* did you mean 'rcf_damage'"):
+    with pytest.raises(CompositionError, match=r"'damage'.* did you mean 'rcf_damage'"):
         _ = result["damage"]
-    with pytest.raises(wl.CompositionError, match=r"predicts 'damage'.*Its laws predict: rcf_damage"):
+    with pytest.raises(CompositionError, match=r"predicts 'damage'.*Its laws predict: rcf_damage"):
         result.outcome("damage")
-    with pytest.raises(wl.CompositionError, match="no wear law"):
+    with pytest.raises(CompositionError, match="no wear law"):
         _ = result.wear_rate
     of_one = predicted(silently(MIXED, EXACT, Volume(body="disc_2")), **CONDITIONS)
-    with pytest.raises(wl.CompositionError, match="no law predicts it for 'disc_1', only for disc_2"):
+    with pytest.raises(CompositionError, match="no law predicts it for 'disc_1', only for disc_2"):
         of_one.wear_rate_of("disc_1")
     with pytest.raises(wl.InputError, match="this rig has no 'wheel'"):
         result.outcome("rcf_damage", "wheel")
@@ -256,7 +257,7 @@ class Unsigned(Wrong):
     ids=["nodes", "negative"],
 )
 def test_a_wrong_law_is_named(law: wl.Law, said: str) -> None:
-    with pytest.raises(wl.ModelError, match=said):
+    with pytest.raises(ModelError, match=said):
         predicted(RIG | EXACT | law, **BATCH)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw.errors import ModelError
 
 SUROS = wl.TwinDisc.suros()
 EPS = np.finfo(np.float64).eps
@@ -85,7 +86,7 @@ class Delegating(wl.Rig):
 
 
 def test_a_rig_that_takes_any_conditions_is_blamed_for_its_failure() -> None:
-    with pytest.raises(wl.ModelError, match="rig 'delegating' failed: KeyError: 'creepage'"):
+    with pytest.raises(ModelError, match="rig 'delegating' failed: KeyError: 'creepage'"):
         (Delegating() | MODEL)(creepage="1 %")
 
 
@@ -113,7 +114,7 @@ def test_wrong_conditions_are_named(given: dict[str, Any], said: str) -> None:
 )
 def test_a_broken_rig_is_named(what: Any, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Returning, "what", what)
-    with pytest.raises(wl.ModelError, match=said):
+    with pytest.raises(ModelError, match=said):
         (Returning() | MODEL | KTH)(creepage="1 %")
 
 

@@ -26,6 +26,7 @@ from tests.core.stages import (
     silently,
 )
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 
 PIPELINES = [
     silently(RIG, *stages)
@@ -126,9 +127,9 @@ def test_a_law_is_taken_off_and_put_on_again() -> None:
     assert contact.without_law() is contact
     assert contact.with_law(KTH) == predict
     assert (contact.laws, predict.laws, predict.stages) == ((), (KTH,), (wl.patch_mean(),))
-    with pytest.raises(wl.CompositionError, match="the pipeline has no wear law; give one, as in rig"):
+    with pytest.raises(CompositionError, match="the pipeline has no wear law; give one, as in rig"):
         contact.wear_law  # noqa: B018
-    with pytest.raises(wl.CompositionError, match="kth and kth both predict 'wear_rate'; keep one of them"):
+    with pytest.raises(CompositionError, match="kth and kth both predict 'wear_rate'; keep one of them"):
         wl.Pipeline(rig=RIG, contact_model=FASTSIM, laws=(KTH, KTH))
 
 

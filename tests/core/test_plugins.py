@@ -20,6 +20,7 @@ import wearlaw as wl
 from tests.core.distributions import FIRST_PARTY_LAWS, FIRST_PARTY_MODELS, LAW, Install, write_distribution
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw.cli import main  # private: the program in this process
+from wearlaw.errors import PluginWarning, UnknownModelError
 from wearlaw.fields import specification  # private: what case files hold
 from wearlaw_apps.output.commands import law_of  # private: laws on the command line
 
@@ -124,7 +125,7 @@ def test_a_broken_plugin_is_warned_of_and_left_out_while_the_others_work(case: s
     source, cause = BROKEN[case]
     install(f"broken_{case}", source)
     install("working_plugin", LAW.format(name="working"))
-    with pytest.warns(wl.PluginWarning) as caught:
+    with pytest.warns(PluginWarning) as caught:
         laws = wl.installed("wear law")
     assert len(caught) == 1
     assert str(caught[0].message).startswith(f"left out: broken_{case} 1.0 (plugin 'broken_{case}'): ")
@@ -132,7 +133,7 @@ def test_a_broken_plugin_is_warned_of_and_left_out_while_the_others_work(case: s
     assert caught[0].filename == __file__
     assert set(laws) == FIRST_PARTY_LAWS | {"working"}
     assert set(wl.installed("contact model")) == FIRST_PARTY_MODELS
-    with pytest.raises(wl.UnknownModelError) as error:
+    with pytest.raises(UnknownModelError) as error:
         wl.wear_law("half")
     assert f"left out: broken_{case} 1.0" in str(error.value)
     assert cause in str(error.value)
@@ -140,7 +141,7 @@ def test_a_broken_plugin_is_warned_of_and_left_out_while_the_others_work(case: s
 
 def test_a_broken_plugin_is_warned_of_once_and_then_left_alone(install: Install) -> None:
     install("broken_plugin", "raise RuntimeError")
-    with pytest.warns(wl.PluginWarning):
+    with pytest.warns(PluginWarning):
         wl.installed("wear law")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -156,14 +157,14 @@ def test_ctrl_c_while_a_plugin_is_loading_ends_the_program(install: Install) -> 
 
 def test_what_a_plugin_gave_before_it_broke_stays(install: Install) -> None:
     install("half_broken", LAW.format(name="outside").replace("return [Outside]", "return [Outside, int]"))
-    with pytest.warns(wl.PluginWarning, match="'int'"):
+    with pytest.warns(PluginWarning, match="'int'"):
         assert wl.wear_law("outside").name == "outside"
 
 
 def test_one_name_of_two_distributions_is_an_error_that_names_both(install: Install) -> None:
     install("one_plugin", LAW.format(name="twin"), version="1.5")
     install("other_plugin", LAW.format(name="twin"), version="2.5")
-    with pytest.raises(wl.UnknownModelError) as error:
+    with pytest.raises(UnknownModelError) as error:
         wl.wear_law("twin")
     assert str(error.value) == (
         "wear law 'twin' is provided more than once, by one_plugin 1.5 (plugin 'one_plugin')"
@@ -179,7 +180,7 @@ def test_one_name_of_two_distributions_is_an_error_that_names_both(install: Inst
 
 def test_a_name_that_wearlaw_ships_means_the_shipped_thing_with_one_warning(install: Install) -> None:
     install("usurper", LAW.format(name="kth"))
-    with pytest.warns(wl.PluginWarning, match=r"'kth' is that of wearlaw; the other, of usurper 1.0 .* 'usurper:kth'"):
+    with pytest.warns(PluginWarning, match=r"'kth' is that of wearlaw; the other, of usurper 1.0 .* 'usurper:kth'"):
         shipped = wl.wear_law("kth")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -195,13 +196,13 @@ def test_a_name_that_wearlaw_ships_means_the_shipped_thing_with_one_warning(inst
     assert wl.installed("wear law")["kth"] is type(shipped)
     shown = CliRunner().invoke(main, ["show", "usurper:kth"])
     assert "kth: a wear law of usurper 1.0 (plugin 'usurper')" in shown.output
-    with pytest.raises(wl.UnknownModelError, match="no wear law is called 'nobody:kth'"):
+    with pytest.raises(UnknownModelError, match="no wear law is called 'nobody:kth'"):
         wl.wear_law("nobody:kth")
 
 
 def test_a_command_that_wearlaw_ships_means_the_shipped_one(install: Install) -> None:
     install("usurper", COMMAND.format(name="run", word="mine"))
-    with pytest.warns(wl.PluginWarning, match="command 'run' is that of wearlaw"):
+    with pytest.warns(PluginWarning, match="command 'run' is that of wearlaw"):
         assert "Run a study" in CliRunner().invoke(main, ["run", "--help"]).output
     assert CliRunner().invoke(main, ["usurper:run"]).output == "mine\n"
 
@@ -227,7 +228,7 @@ def test_a_distribution_can_be_left_out(install: Install, monkeypatch: pytest.Mo
 def test_a_plugin_states_the_interfaces_that_it_works_with(install: Install, stated: str, works: bool) -> None:
     install("one_plugin", f"wearlaw_interface = {stated}\n" + textwrap.dedent(LAW.format(name="outside")))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.PluginWarning)
+        warnings.simplefilter("ignore", PluginWarning)
         assert ("outside" in wl.installed("wear law")) is works
 
 
@@ -295,9 +296,9 @@ def test_of_two_copies_of_a_distribution_the_first_on_the_path_counts(
 
 
 def test_an_unknown_contact_model_gets_a_suggestion_and_the_list() -> None:
-    with pytest.raises(wl.UnknownModelError, match=r"did you mean 'exact'\? Installed: exact, fastsim, global,"):
+    with pytest.raises(UnknownModelError, match=r"did you mean 'exact'\? Installed: exact, fastsim, global,"):
         wl.contact_model("exakt")
-    with pytest.raises(wl.UnknownModelError, match="no wear law is called 'wlrm'"):  # which predicts fatigue
+    with pytest.raises(UnknownModelError, match="no wear law is called 'wlrm'"):  # which predicts fatigue
         wl.wear_law("wlrm")
 
 
@@ -314,5 +315,5 @@ def test_threads_that_need_plugins_at_once_all_find_them(install: Install, monke
         return wl.contact_model("exact").name
 
     monkeypatch.setattr(loader, "_entry_points", slowly)
-    with ThreadPoolExecutor(4) as pool, pytest.warns(wl.PluginWarning, match="slow"):
+    with ThreadPoolExecutor(4) as pool, pytest.warns(PluginWarning, match="slow"):
         assert list(pool.map(look_up, range(4))) == ["exact"] * 4

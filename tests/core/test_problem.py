@@ -12,6 +12,7 @@ import pytest
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 
 GIVEN: dict[str, Any] = {
     "a": Q(6, "mm"),
@@ -173,7 +174,7 @@ def test_a_line_without_a_unit_or_of_an_impossible_ratio_is_refused() -> None:
 
 def test_what_belongs_to_lines_is_refused_on_an_ellipse() -> None:
     for name in ("normal_force_per_width", "relative_radius"):
-        with pytest.raises(wl.CompositionError, match=f"{name}: belongs to line contacts, not to elliptic contacts"):
+        with pytest.raises(CompositionError, match=f"{name}: belongs to line contacts, not to elliptic contacts"):
             getattr(problem(), name)
 
 

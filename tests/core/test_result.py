@@ -27,6 +27,7 @@ from tests.core.discs import (
 )
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 
 OF_ELLIPSES = {"semi_axis_a", "semi_axis_b"}
 LIMITS = {"first_yield", "shakedown_limit", "outside_range"}
@@ -45,7 +46,7 @@ def public_properties() -> set[str]:
 def test_properties_of_ellipses_say_so_on_a_line() -> None:
     result = PREDICT(creepage="1 %", **CONDITIONS)
     for name in OF_ELLIPSES:
-        with pytest.raises(wl.CompositionError, match="belongs to elliptic contacts, not to line contacts"):
+        with pytest.raises(CompositionError, match="belongs to elliptic contacts, not to line contacts"):
             getattr(result, name)
 
 

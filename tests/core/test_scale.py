@@ -9,6 +9,7 @@ import pytest
 
 import wearlaw as wl
 from tests.cases import Coarse
+from wearlaw.errors import CompositionError, ModelError
 
 RIG = wl.TwinDisc.suros()
 
@@ -54,13 +55,13 @@ class Declares(wl.WearLaw):
 
 
 def test_a_law_around_a_law_of_the_patch_is_refused_on_cells() -> None:
-    with pytest.raises(wl.CompositionError, match="wear law 'half' is stated for the means of the whole patch"):
+    with pytest.raises(CompositionError, match="wear law 'half' is stated for the means of the whole patch"):
         RIG | wl.contact_model("exact") | Half(inner=wl.wear_law("brr"))
     assert (RIG | wl.contact_model("exact") | Half(inner=wl.wear_law("kth"))).laws[0].scale == "any"
     on_patch = (RIG | wl.contact_model("exact") | wl.patch_mean()).with_law(Half(inner=wl.wear_law("brr")))
     assert on_patch.wear_law.scale == "patch"
     cells = (RIG | wl.contact_model("exact"))(max_pressure="1 GPa", creepage="1 %", friction_coefficient=0.3).contact
-    with pytest.raises(wl.CompositionError, match="wear law 'half' is stated for the means"):
+    with pytest.raises(CompositionError, match="wear law 'half' is stated for the means"):
         cells | Half(inner=wl.wear_law("brr"))
 
 
@@ -69,7 +70,7 @@ def test_a_law_around_a_law_of_the_patch_is_refused_on_cells() -> None:
 )
 def test_an_unknown_scale_is_refused_where_it_is_written(base: type[Any], words: str) -> None:
     message = rf"Wrong.scale: is 'pach'; did you mean 'patch'\? It must be {words}"
-    with pytest.raises(wl.ModelError, match=message):
+    with pytest.raises(ModelError, match=message):
         type("Wrong", (base,), {"scale": "pach", "__module__": __name__})
 
 
@@ -90,7 +91,7 @@ def test_an_unknown_variable_is_refused_and_not_ignored(declared: str, name: str
         of: ClassVar[Any] = {declared: {name: (1.0, 2.0)}}
         monotone_in: ClassVar[Any] = tuple(of.get("monotone_in", ()))
 
-    with pytest.raises(wl.ModelError) as error:
+    with pytest.raises(ModelError) as error:
         RIG | wl.contact_model("exact") | Wrong()
     assert str(error.value).startswith(
         f"wear law 'declares' names the variable '{name}' in `{declared}`, which is unknown{hint}"

@@ -29,6 +29,7 @@ from tests.core.axles import (
 )
 from tests.strategies import EPS
 from wearlaw import Array, Q
+from wearlaw.errors import CompositionError, ModelError
 from wearlaw_apps.fits import WearTests
 
 
@@ -128,13 +129,13 @@ def test_a_wrong_mask_is_the_rigs_fault(exists: Any) -> None:
         def problem(self, **conditions: Any) -> wl.Problem:
             return super().problem(**conditions).replaced(exists=exists)
 
-    with pytest.raises(wl.ModelError, match=r"rig 'wrong' .*`exists`"):
+    with pytest.raises(ModelError, match=r"rig 'wrong' .*`exists`"):
         (Wrong() | wl.contact_model("fastsim"))(**GIVEN)
 
 
 def test_applications_that_take_one_patch_say_so() -> None:
     with pytest.raises(
-        wl.CompositionError, match=r"uncertainty: needs one patch .* 'axle' makes several, along side and patch"
+        CompositionError, match=r"uncertainty: needs one patch .* 'axle' makes several, along side and patch"
     ):
         wl.uncertainty(PREDICT, **{**GIVEN, "load": wl.uniform("60 kN", "80 kN")}, samples=4).interval()
     varied = {"displacement": Q([0.0, 1.0, 7.0], "mm"), "longitudinal_creepage": Q([0.1, 0.2, 0.3], "%")}
@@ -143,12 +144,12 @@ def test_applications_that_take_one_patch_say_so() -> None:
         other_conditions={"load": "80 kN", "spin": "0.3 1/m", **varied},
         wear_rate=Q([1.0, 2.0, 3.0], "ug/m/mm^2"),
     )
-    with pytest.raises(wl.CompositionError, match="compare: needs one patch"):
+    with pytest.raises(CompositionError, match="compare: needs one patch"):
         wl.compare([PREDICT], tests)
-    with pytest.raises(wl.CompositionError, match="fit: needs one patch"):
+    with pytest.raises(CompositionError, match="fit: needs one patch"):
         wl.fit(PREDICT, tests, free=["hardness"])
     creepages = {name: value for name, value in GIVEN.items() if name != "longitudinal_creepage"}
-    with pytest.raises(wl.CompositionError, match="creepage_for: needs one patch"):
+    with pytest.raises(CompositionError, match="creepage_for: needs one patch"):
         wl.creepage_for(Axle() | wl.contact_model("fastsim"), tangential_force="1 kN", **creepages)
 
 
@@ -190,9 +191,7 @@ def test_a_rig_balances_its_loads_around_the_contact() -> None:
 
 
 def test_the_creepage_that_loads_depend_on_is_not_looked_for() -> None:
-    with pytest.raises(
-        wl.CompositionError, match="rig 'flange' balances its loads, which depend on the unknown creepage"
-    ):
+    with pytest.raises(CompositionError, match="rig 'flange' balances its loads, which depend on the unknown creepage"):
         wl.creepage_for(
             Flange() | wl.contact_model("fastsim"),
             tangential_force="1 kN",
@@ -208,7 +207,7 @@ def test_what_balances_must_return_a_problem() -> None:
         def balanced(self, problem: wl.Problem, forces: Callable[[wl.Problem], wl.CreepForces]) -> Any:
             forces(problem)
 
-    with pytest.raises(wl.ModelError, match=r"rig 'forgetful' .*`balanced`"):
+    with pytest.raises(ModelError, match=r"rig 'forgetful' .*`balanced`"):
         (Forgetful() | wl.contact_model("fastsim"))(vertical_load="20 kN", **CREEP)
 
 
@@ -231,7 +230,7 @@ def test_labels_of_axes_must_fit_the_batch(dims: Any) -> None:
             return super().problem(**conditions).replaced(dims=dims)
 
     predict = Mislabelled() | wl.contact_model("fastsim")
-    with pytest.raises(wl.ModelError, match="rig 'mislabelled' "):
+    with pytest.raises(ModelError, match="rig 'mislabelled' "):
         predict(**GIVEN)
 
 
@@ -359,7 +358,7 @@ def test_a_rig_may_choose_its_geometry_by_a_field() -> None:
     strips: Any = Worn(hertzian=False) | wl.contact_model("fastsim") | KTH
     np.testing.assert_array_equal(of(strips(**GIVEN), "wear_rate"), of(CUT(**GIVEN), "wear_rate"))
     with pytest.raises(
-        wl.CompositionError,
+        CompositionError,
         match="contact model 'polach' solves elliptic contacts only, but a Worn makes patches of strips;"
         r" those that solve them: .*fastsim",
     ):

@@ -12,6 +12,7 @@ import wearlaw as wl
 from tests.core.axles import EXISTS, GIVEN, Axle
 from tests.core.stages import CONDITIONS, EXACT, FASTSIM, KTH, RIG, predicted, silently
 from wearlaw import Q
+from wearlaw.errors import ModelError
 
 EPS = float(np.finfo(np.float64).eps)
 RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="2 m/s")
@@ -210,7 +211,7 @@ class WrongContact(Wrong):
 )
 def test_a_wrong_stage_is_named(stage: wl.Stage, said: str) -> None:
     predict = silently(RIG, EXACT, stage, KTH)
-    with pytest.raises(wl.ModelError, match=said):
+    with pytest.raises(ModelError, match=said):
         predict(**{**CONDITIONS, "creepage": Q([0.3, 1.0], "%")})
 
 
@@ -227,10 +228,10 @@ def test_a_wrong_stage_is_named(stage: wl.Stage, said: str) -> None:
 @pytest.mark.parametrize("model", [EXACT, FASTSIM])
 def test_a_stage_with_the_wrong_shape_of_friction_is_named(model: wl.ContactModel, fault: str, said: str) -> None:
     predict = silently(RIG, model, Wrong(fault=fault), KTH)
-    with pytest.raises(wl.ModelError, match=f"stage 'wrong' posed a problem with a friction coefficient {said}"):
+    with pytest.raises(ModelError, match=f"stage 'wrong' posed a problem with a friction coefficient {said}"):
         predict(**{**CONDITIONS, "creepage": Q([0.3, 1.0], "%")})
     if fault != "one number":
-        with pytest.raises(wl.ModelError, match="stage 'wrong' posed a problem with a friction coefficient of"):
+        with pytest.raises(ModelError, match="stage 'wrong' posed a problem with a friction coefficient of"):
             predict(**{**CONDITIONS, "creepage": Q(0.3, "%")})
 
 

@@ -13,7 +13,8 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_apps.fits import FitWarning, WearTests
+from wearlaw.errors import FitWarning
+from wearlaw_apps.fits import WearTests
 from wearlaw_models.laws.archard import Archard
 
 STEEL = wl.steel(shear_yield_stress=None)

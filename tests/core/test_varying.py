@@ -11,6 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import ModelError
 from wearlaw.numerics.integrate import BLOCK, integrate_laws  # private: integrals at the size of blocks
 from wearlaw.parameters import (  # private: the numbers of a record, for fits
     changed,
@@ -123,7 +124,7 @@ def test_a_law_that_fails_with_arrays_is_named_and_told_what_to_write(where: str
     law, model = AsksAboutNumbers(where=where), wl.contact_model("exact")
     problem, rng = points(12)
     assert integrate_laws(model, (law,), problem).values[0].shape == (12,)
-    with pytest.raises(wl.ModelError, match=r"(?s)^wear law 'asks' failed: ValueError: .*np\.where instead of if"):
+    with pytest.raises(ModelError, match=r"(?s)^wear law 'asks' failed: ValueError: .*np\.where instead of if"):
         rates(model, law, {"exponent": rng.uniform(1.0, 2.0, 12)}, problem)
 
 

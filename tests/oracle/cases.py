@@ -12,6 +12,7 @@ import xarray as xr
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 
 BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.33, density="8800 kg/m^3")
 HOLLOW = wl.Profile.s1002().worn(Q([-20, 0, 20], "mm"), Q([0, 0.5, 0], "mm"))
@@ -173,11 +174,11 @@ def seen(prediction: wl.Prediction, contact: bool) -> dict[str, Any]:
     if any(name.startswith("wear_rate") for name in names):
         for body in prediction.problem.bodies:
             for name in PER_BODY:
-                with suppress(wl.CompositionError, wl.InputError):  # of a body that does not turn, or has no wear law
+                with suppress(CompositionError, wl.InputError):  # of a body that does not turn, or has no wear law
                     values[f"{name} of {body}"] = getattr(prediction, name)(body)
-            with suppress(wl.CompositionError):  # of a line, or of means over the patch
+            with suppress(CompositionError):  # of a line, or of means over the patch
                 values[f"profile of {body} "] = thinned(_middle(prediction).wear_profile(body))
-    with suppress(wl.CompositionError):  # of an ellipse or strips
+    with suppress(CompositionError):  # of an ellipse or strips
         values["along "] = thinned(_middle(prediction).profile)
     return values
 
@@ -190,7 +191,7 @@ def thinned(dataset: xr.Dataset) -> xr.Dataset:
 def _properties(prediction: wl.Prediction, names: tuple[str, ...]) -> dict[str, Any]:
     values = {}
     for name in names:
-        with suppress(wl.CompositionError):  # of another shape of patch, or without a law
+        with suppress(CompositionError):  # of another shape of patch, or without a law
             values[name] = getattr(prediction, name)
     return values
 

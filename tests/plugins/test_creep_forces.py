@@ -13,6 +13,7 @@ from hypothesis import given
 import wearlaw as wl
 from tests.plugins.ellipses import EPS, ellipses
 from wearlaw import Array, Q
+from wearlaw.errors import CompositionError
 
 NAMES = ("linear", "polach", "shen_hedrick_elkins")
 MODELS = [wl.contact_model(name) for name in NAMES]
@@ -105,7 +106,7 @@ def test_brr_takes_the_energy_of_the_whole_patch(model: wl.ContactModel) -> None
 @every_model
 def test_the_patch_is_not_resolved(model: wl.ContactModel) -> None:
     with pytest.raises(
-        wl.CompositionError, match=r"gives means of the whole patch; .* wl.contact_model\(\"strip_theory\"\)"
+        CompositionError, match=r"gives means of the whole patch; .* wl.contact_model\(\"strip_theory\"\)"
     ):
         usfd(model)(**CONDITIONS).wear_profile("wheel")
 
@@ -115,5 +116,5 @@ def test_a_line_contact_is_refused_with_the_models_that_solve_it(model: wl.Conta
     message = (
         f"contact model '{model.name}' solves elliptic contacts only, but a TwinDisc makes line contacts; those that"
     )
-    with pytest.raises(wl.CompositionError, match=re.escape(message) + r".*exact, fastsim, global, half_space$"):
+    with pytest.raises(CompositionError, match=re.escape(message) + r".*exact, fastsim, global, half_space$"):
         wl.TwinDisc.suros() | model

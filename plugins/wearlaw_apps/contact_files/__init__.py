@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw.errors import DataError
 from wearlaw_apps.contact_files.creepages import Creepages, derived
 from wearlaw_apps.contact_files.mat import ADHESION, Case, case_of
 from wearlaw_apps.contact_files.table import is_table
@@ -136,7 +137,7 @@ class ContactMat(wl.Reader):
         if creepages is None:
             transient = "it is a step of transient rolling (T = 2)"
             steady = "its fields are not those of a rigid motion in steady rolling with DQ = DX"
-            raise wl.DataError(
+            raise DataError(
                 f"'{case.path}': does not determine the creepages, since {steady if case.steady else transient}; give"
                 ' those that CONTACT prints, as in cksi=0.002, ceta=0.001, cphi="0.0003 1/mm"'
             )

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-import wearlaw as wl
 from wearlaw import Array
+from wearlaw.errors import DataError
 from wearlaw_apps.contact_files.table import Table, table_of
 
 NEWEST, OLDEST = 2410, 1220
@@ -91,7 +91,7 @@ def case_of(path: Path) -> Case:
     version = _version(table)
     grid_row = _rows_of_position(version)
     if len(table.values) < grid_row + 3:
-        raise wl.DataError(
+        raise DataError(
             f"'{path}', line {table.lines[-1]}: ends after {len(table.values)} rows of numbers, but the head of version"
             f" {version} has {grid_row + 3}; the file is cut short there"
         )
@@ -109,7 +109,7 @@ def case_of(path: Path) -> Case:
 def _version(table: Table) -> int:
     """Return the version of the format, the last number of the first row."""
     if table.values.shape[1] < len(ELEMENTS):
-        raise wl.DataError(
+        raise DataError(
             f"'{table.path}': has {table.values.shape[1]} columns, but CONTACT writes at least {len(ELEMENTS)}; is it"
             " one of its files?"
         )
@@ -214,13 +214,13 @@ def _elements(table: Table, grid_row: int, first: int) -> dict[str, Any]:
         if wrong.any():
             table.wrong(first + int(np.argmax(wrong)), column, columns[column], rule)
     if (state == EXTERIOR).any() and numbers.size != mx * my:
-        raise wl.DataError(
+        raise DataError(
             f"'{table.path}', line {table.lines[-1]}: ends after {numbers.size} elements, but the grid has {mx} x {my}"
             f" = {mx * my}, and the file lists those outside the contact too; it is cut short there"
         )
     touching = state != EXTERIOR
     if not touching.any() or not rows[touching, 4].sum() > 0.0:
-        raise wl.DataError(f"'{table.path}', line {table.lines[-1]}: no element is in contact; there is no wear")
+        raise DataError(f"'{table.path}', line {table.lines[-1]}: no element is in contact; there is no wear")
     place = numbers[touching].astype(np.intp) - 1
     values = {name: rows[touching, column] for column, name in columns.items()}
     return {"ix": place % mx, "iy": place // mx, "values": values}

@@ -12,6 +12,7 @@ import numpy as np
 import xarray
 
 import wearlaw as wl
+from wearlaw.errors import DataError
 from wearlaw_apps.contact_files.table import Table, table_of
 
 DISPLACEMENTS = ("ux", "uy", "uz")
@@ -61,7 +62,7 @@ def read_subsurface(path: str | os.PathLike[str], block: int = 1) -> xarray.Data
     table = table_of(Path(path))
     width = table.values.shape[1]
     if width not in COLUMNS:
-        raise wl.DataError(
+        raise DataError(
             f"'{table.path}', line {table.lines[0]}: has {width} columns, but a .subs file has 4, 8 or 14; is it one?"
         )
     blocks = _blocks(table)
@@ -74,7 +75,7 @@ def read_subsurface(path: str | os.PathLike[str], block: int = 1) -> xarray.Data
     place = tuple(np.searchsorted(axis, points[:, column]) for column, axis in enumerate(axes))
     if shape != counts or np.unique(np.ravel_multi_index(place, shape)).size != len(points):
         grid = " x ".join(map(str, counts))
-        raise wl.DataError(f"'{table.path}', line {table.lines[first]}: the points of this block are no grid of {grid}")
+        raise DataError(f"'{table.path}', line {table.lines[first]}: the points of this block are no grid of {grid}")
     variables = {}
     for column, name in enumerate(COLUMNS[width], 3):
         values = np.empty(shape)
@@ -96,7 +97,7 @@ def _blocks(table: Table) -> list[tuple[int, tuple[int, int, int]]]:
         nx, ny, nz = (table.whole(row, column, f"N{'XYZ'[column]}", range(1, 10**7)) for column in range(3))
         last = row + nx * ny * nz
         if last >= len(table.values):
-            raise wl.DataError(
+            raise DataError(
                 f"'{table.path}', line {table.lines[-1]}: ends after {len(table.values) - row - 1} points of the block"
                 f" that begins in line {table.lines[row]}, which has {nx} x {ny} x {nz}; the file is cut short there"
             )

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw.errors import DataError
 from wearlaw_apps import tables
 
 LARGEST = 256 * 2**20
@@ -46,7 +47,7 @@ class Table:
     def wrong(self, row: int, column: int, name: str, rule: str) -> NoReturn:
         """Raise an error for a number, by its row and column from 0."""
         got = f"{self.values[row, column]:g}"
-        raise wl.DataError(f"'{self.path}', line {self.lines[row]}, column {column + 1} ({name}): {rule}, got {got}")
+        raise DataError(f"'{self.path}', line {self.lines[row]}, column {column + 1} ({name}): {rule}, got {got}")
 
     def whole(self, row: int, column: int, name: str, choices: Sequence[int] | range) -> int:
         """Return a whole number among those known, or raise an error."""
@@ -90,19 +91,19 @@ def table_of(path: Path, most: Callable[[Table], int] | None = None) -> Table:
     try:
         text = wl.read_file(path, LARGEST).decode("ascii")
     except (FileNotFoundError, wl.InputError) as error:
-        raise wl.DataError(f"cannot read '{path}': {getattr(error, 'strerror', None) or error}") from None
+        raise DataError(f"cannot read '{path}': {getattr(error, 'strerror', None) or error}") from None
     except UnicodeDecodeError:
-        raise wl.DataError(f"'{path}': is not plain text, as CONTACT writes it") from None
+        raise DataError(f"'{path}': is not plain text, as CONTACT writes it") from None
     lines = text.splitlines()
     if not text.endswith(("\n", "\r")):
-        raise wl.DataError(f"'{path}', line {len(lines)}: ends without a line break; the file is cut short there")
+        raise DataError(f"'{path}', line {len(lines)}: ends without a line break; the file is cut short there")
     rows = [number for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("%")]
     if too_long := [number for number in rows if len(lines[number - 1]) > LONGEST]:
-        raise wl.DataError(f"'{path}', line {too_long[0]}: is longer than any row of CONTACT; is it one of its files?")
+        raise DataError(f"'{path}', line {too_long[0]}: is longer than any row of CONTACT; is it one of its files?")
     if most is not None and len(rows) > HEAD:
         said = most(_parsed(path, "".join(f"{line}\n" for line in lines[: rows[HEAD - 1]])))
         if len(rows) > said:
-            raise wl.DataError(
+            raise DataError(
                 f"'{path}', line {rows[said]}: is row {said + 1} of numbers, but by the header there are at"
                 f" most {said}; is the file two in one?"
             )
@@ -114,12 +115,12 @@ def _parsed(path: Path, text: str) -> Table:
     try:
         table = wl.read_table(io.StringIO(text), sep=" ", comment="%")
         values = np.column_stack([_numbers(table, name) for name in table.columns])
-    except wl.DataError as error:
+    except DataError as error:
         if not error.problems:
-            raise wl.DataError(f"'{path}': holds no numbers; is the file complete?") from None
-        raise wl.DataError(f"'{path}' is wrong in:", error.problems) from None
+            raise DataError(f"'{path}': holds no numbers; is the file complete?") from None
+        raise DataError(f"'{path}' is wrong in:", error.problems) from None
     if not values.size:
-        raise wl.DataError(f"'{path}': holds no numbers; is the file complete?")
+        raise DataError(f"'{path}': holds no numbers; is the file complete?")
     problems = []
     for row, column in np.argwhere(~(np.abs(values) <= HUGE)):
         cell = table.texts(str(column + 1))[row]
@@ -127,7 +128,7 @@ def _parsed(path: Path, text: str) -> Table:
         full = " (Fortran writes this if the number needs more room)" if "*" in cell else ""
         problems.append(f"line {table.lines[row]}, column {column + 1}: '{cell[:40] or 'NaN'}' {what}{full}")
     if problems:
-        raise wl.DataError(f"'{path}' is wrong in:", problems)
+        raise DataError(f"'{path}' is wrong in:", problems)
     return Table(path, values, table.lines)
 
 
@@ -135,7 +136,7 @@ def _numbers(table: tables.Table, name: str) -> Array:
     """Return a column, with NaN for what is no number."""
     try:
         return table.numbers(name)
-    except wl.DataError:  # Fortran's exponents, or worse
+    except DataError:  # Fortran's exponents, or worse
         return np.array([_number(cell) for cell in table.texts(name)])
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import wearlaw as wl
+from wearlaw.errors import CompositionError
 from wearlaw.fields import specification
 from wearlaw.parameters import changed, number_in_si, numbers
 from wearlaw_apps.output.labels import labelled
@@ -44,7 +45,7 @@ class Subject:
         self.codes = {MEANS: "wl.patch_mean()", **self.stages, **models, **laws}
         fitting = []
         for model in models:
-            with suppress(wl.CompositionError):  # it is for another shape of patch
+            with suppress(CompositionError):  # it is for another shape of patch
                 self.rig | model
                 fitting.append(model)
         self.models, self.laws = labelled(fitting), labelled([*laws])
@@ -90,7 +91,7 @@ class Subject:
         """Return the pipeline of a contact model and a law, by their labels; a law of patch means gets them."""
         try:
             return composed(self.rig, self.models[model], [*self.stages], self.laws[law])
-        except wl.CompositionError:
+        except CompositionError:
             return composed(self.rig, self.models[model], [*self.stages, MEANS], self.laws[law])
 
     def taken(self, pipeline: Any, conditions: Mapping[str, Any]) -> dict[str, Any]:

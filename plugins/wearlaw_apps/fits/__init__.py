@@ -6,18 +6,16 @@ import wearlaw as wl
 from wearlaw.late import face
 
 if TYPE_CHECKING:
-    from wearlaw.errors import FitError, FitWarning
     from wearlaw_apps.fits.comparison import Comparison
     from wearlaw_apps.fits.result import Fit
     from wearlaw_apps.fits.uncertainty import Uncertainty
     from wearlaw_apps.fits.wear_tests import WearTests
 
-__all__ = ["Comparison", "Fit", "FitError", "FitWarning", "Uncertainty", "WearTests"]
+__all__ = ["Comparison", "Fit", "Uncertainty", "WearTests"]
 
 __getattr__ = face(
     "wearlaw_apps.fits",
     {
-        "wearlaw.errors": ("FitError", "FitWarning"),
         "wearlaw_apps.fits.comparison": ("Comparison",),
         "wearlaw_apps.fits.result": ("Fit",),
         "wearlaw_apps.fits.uncertainty": ("Uncertainty",),

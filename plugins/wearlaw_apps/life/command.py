@@ -10,6 +10,7 @@ import click
 import pandas as pd
 
 import wearlaw as wl
+from wearlaw.errors import ResumeWarning
 from wearlaw_apps.life.life import Life
 from wearlaw_apps.output.commands import answer, fields, folder_for, value, values
 from wearlaw_apps.output.curves import FigureFormat
@@ -68,7 +69,7 @@ def life(
     loaded, notes, named = load_case(case), Notes(), fields("--columns", columns, "NAME=HEAD")
     arguments: dict[str, Any] = values("--set", settings)
     with results_folder(folder, overwrite, LIFE) as fresh:
-        with notes.of("life"), caught_warnings(wl.ResumeWarning) as resumed:
+        with notes.of("life"), caught_warnings(ResumeWarning) as resumed:
             predict: wl.Pipeline[...] = loaded.rig | loaded.contact_models[0]
             for stage in loaded.stages:
                 predict = predict | stage

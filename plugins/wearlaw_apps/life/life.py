@@ -12,6 +12,7 @@ import xarray
 
 import wearlaw as wl
 from wearlaw_apps.life.removal import positions
+from wearlaw_apps.output.curves import Limit
 from wearlaw_apps.output.labels import readable
 from wearlaw_apps.output.plot import plot
 
@@ -162,7 +163,7 @@ class Life:
             limits = sorted({self.limits[column] for column in columns if column in self.limits})
             if not curves or (measure in NOT_DRAWN and not limits):
                 continue
-            lines = tuple(wl.Limit(f"limit {limit:g} {unit}".rstrip(), limit) for limit in limits)
+            lines = tuple(Limit(f"limit {limit:g} {unit}".rstrip(), limit) for limit in limits)
             yield wl.Panel(wl.PlotAxis(along), wl.PlotAxis(f"{_words(measure)} [{unit or '-'}]"), curves, limits=lines)
 
     def plot(self) -> Figure:

@@ -14,7 +14,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw.errors import warn
+from wearlaw.errors import ResumeWarning, warn
 from wearlaw_apps.output.notes import caught_warnings
 from wearlaw_apps.sweeps.located import posed
 from wearlaw_apps.sweeps.points import Points
@@ -75,7 +75,7 @@ class Line:
         self._kept = Parts(store, provenance, resume, "life")
         if self._kept.resumed:
             text = f"the finished steps in {wl.shown(store)} are kept; the life goes on from there"
-            warnings.warn(text, wl.ResumeWarning, stacklevel=3)
+            warnings.warn(text, ResumeWarning, stacklevel=3)
         return self._kept
 
     def wear(self, step: int, predict: wl.Pipeline[...], at: Array) -> tuple[Wear, tuple[str, ...]]:

@@ -13,6 +13,7 @@ import pandas as pd
 import xarray
 
 import wearlaw as wl
+from wearlaw.errors import DataError
 from wearlaw_apps.life.life import Life
 from wearlaw_apps.life.line import Line
 from wearlaw_apps.life.removal import even, positions
@@ -149,7 +150,7 @@ def wear_out(
         """Return the states that a function gives."""
         table = line(rig)
         if not isinstance(table, pd.DataFrame | xarray.Dataset):
-            raise wl.DataError(f"line: must return a pandas.DataFrame or an xarray.Dataset, got {wl.shown(table)}")
+            raise DataError(f"line: must return a pandas.DataFrame or an xarray.Dataset, got {wl.shown(table)}")
         with operating_points(predict, table, *reading, None, True, True) as points:
             return points
 

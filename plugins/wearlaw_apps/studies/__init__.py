@@ -8,18 +8,11 @@ import wearlaw as wl
 from wearlaw.late import face
 
 if TYPE_CHECKING:
-    from wearlaw.errors import CaseError
     from wearlaw_apps.studies.case import Case
 
-__all__ = ["Case", "CaseError"]
+__all__ = ["Case"]
 
-__getattr__ = face(
-    "wearlaw_apps.studies",
-    {
-        "wearlaw.errors": ("CaseError",),
-        "wearlaw_apps.studies.case": ("Case",),
-    },
-)
+__getattr__ = face("wearlaw_apps.studies", {"wearlaw_apps.studies.case": ("Case",)})
 
 STARTERS = ("two_discs", "my_tests")
 """Short cases to start from; `wheel_on_rail` and `wheelset` are those of their rigs."""

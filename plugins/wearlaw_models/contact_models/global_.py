@@ -19,7 +19,7 @@ class Global(wl.ContactModel):
 
     name: ClassVar[str] = "global"
     source: ClassVar[str] = "Tassini et al., Wear 268 (2010) 660-667, section 3.1"
-    scale: ClassVar[wl.Scale] = "patch"
+    scale: ClassVar = "patch"
     uses_measured_traction: ClassVar[bool] = True
 
     total_from: wl.ContactModelField = Field(default="exact", validate_default=True)

@@ -12,6 +12,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.contact_files.files import FILES, HEAD, PRINTED, SUBSURFACE, of_version, rows_of, turned, write_rows
 from wearlaw import Q
+from wearlaw.errors import DataError
 from wearlaw_apps.contact_files import ContactMat
 
 PRINTING = 5e-4
@@ -201,7 +202,7 @@ def test_transient_rolling_needs_the_creepages(tmp_path: Path) -> None:
     rows = rows_of(FILES["carter"])
     rows[4, 0] = 2
     path = write_rows(tmp_path / "transient.mat", rows)
-    with pytest.raises(wl.DataError, match=r"transient rolling \(T = 2\); give those that CONTACT prints, as in"):
+    with pytest.raises(DataError, match=r"transient rolling \(T = 2\); give those that CONTACT prints, as in"):
         wl.read_contact(path)
     assert wl.read_contact(path, cksi=-0.001, ceta=0.0, cphi="0 1/mm").wear_index == pytest.approx(152.0, rel=PRINTING)
 
@@ -209,11 +210,11 @@ def test_transient_rolling_needs_the_creepages(tmp_path: Path) -> None:
 def test_fields_that_are_no_rigid_motion_need_the_creepages(tmp_path: Path) -> None:
     rows = rows_of(FILES["half_space"])
     rows[HEAD:, 8] *= 1.5
-    with pytest.raises(wl.DataError, match="not those of a rigid motion in steady rolling"):
+    with pytest.raises(DataError, match="not those of a rigid motion in steady rolling"):
         wl.read_contact(write_rows(tmp_path / "off.mat", rows))
     rows = rows_of(FILES["half_space"])
     rows[3, 7] = 0.2  # DQ is half of DX
-    with pytest.raises(wl.DataError, match="not those of a rigid motion in steady rolling with DQ = DX"):
+    with pytest.raises(DataError, match="not those of a rigid motion in steady rolling with DQ = DX"):
         wl.read_contact(write_rows(tmp_path / "step.mat", rows))
 
 

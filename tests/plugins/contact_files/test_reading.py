@@ -14,6 +14,7 @@ from tests.core.axles import GIVEN, KTH, Axle
 from tests.core.distributions import Install
 from tests.plugins.contact_files.files import FILES
 from wearlaw import Q
+from wearlaw.errors import CompositionError, DataError, ModelError, UnknownModelError
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.CalibrationWarning", "ignore::wearlaw.RangeWarning")
 
@@ -89,13 +90,13 @@ def test_readers_of_one_ending_are_told_apart_by_the_content(install: Install, t
     assert wl.read_contact(printed(tmp_path)).problem is not None
     assert wl.read_contact(printed(tmp_path, "0.3", mark="OTHER")).wear_index > 0.0
     with pytest.raises(
-        wl.UnknownModelError,
+        UnknownModelError,
         match=r"none of the readers for its ending recognises it, 'one' of wearlaw_one 1.0 \(plugin 'wearlaw_one'\) and"
         r" 'other' of wearlaw_other 1.0 .*; name one, as in read_contact\(path, reader=...\)",
     ):
         wl.read_contact(printed(tmp_path, mark="NEITHER"))
     install("wearlaw_third", reader("third"))
-    with pytest.raises(wl.UnknownModelError, match=r"several readers recognise it, 'one' of .* and 'third' of we"):
+    with pytest.raises(UnknownModelError, match=r"several readers recognise it, 'one' of .* and 'third' of we"):
         wl.read_contact(printed(tmp_path))
     assert wl.read_contact(printed(tmp_path), reader="third").wear_index > 0.0
 
@@ -109,22 +110,22 @@ def test_a_plugin_may_read_the_files_of_a_shipped_reader(install: Install, tmp_p
 def test_two_readers_of_one_name_are_named_with_their_distributions(install: Install, tmp_path: Path) -> None:
     install("wearlaw_one", reader())
     install("wearlaw_two", reader())
-    with pytest.raises(wl.UnknownModelError, match=r"several readers recognise it, 'printed' .* wearlaw_two"):
+    with pytest.raises(UnknownModelError, match=r"several readers recognise it, 'printed' .* wearlaw_two"):
         wl.read_contact(printed(tmp_path))
-    with pytest.raises(wl.UnknownModelError, match=r"reader 'printed' is provided more than once, by wearlaw_one 1.0"):
+    with pytest.raises(UnknownModelError, match=r"reader 'printed' is provided more than once, by wearlaw_one 1.0"):
         wl.read_contact(printed(tmp_path), reader="printed")
 
 
 def test_files_that_cannot_be_read_are_named(install: Install, tmp_path: Path) -> None:
     install("wearlaw_prt", reader())
     path = printed(tmp_path)
-    with pytest.raises(wl.DataError, match=r"there is no file '.*onee.prt'; did you mean 'one.prt'\?"):
+    with pytest.raises(DataError, match=r"there is no file '.*onee.prt'; did you mean 'one.prt'\?"):
         wl.read_contact(path.with_name("onee.prt"))
-    with pytest.raises(wl.DataError, match=r"cannot read '.*': Is a directory"):
+    with pytest.raises(DataError, match=r"cannot read '.*': Is a directory"):
         wl.read_contact(tmp_path)
-    with pytest.raises(wl.DataError, match=r"no reader reads files that end in '.csv'; those .* end in .mat, .prt"):
+    with pytest.raises(DataError, match=r"no reader reads files that end in '.csv'; those .* end in .mat, .prt"):
         wl.read_contact(printed(tmp_path, name="one.csv"))
-    with pytest.raises(wl.UnknownModelError, match="no reader is called 'print'; did you mean 'printed'"):
+    with pytest.raises(UnknownModelError, match="no reader is called 'print'; did you mean 'printed'"):
         wl.read_contact(path, reader="print")
     with pytest.raises(wl.InputError, match="paths: give at least one file"):
         wl.read_contact([])
@@ -149,7 +150,7 @@ def test_a_reader_that_returns_something_wrong_is_named(
     result: str, message: str, install: Install, tmp_path: Path
 ) -> None:
     install("wearlaw_prt", reader(result=result))
-    with pytest.raises(wl.ModelError, match=message):
+    with pytest.raises(ModelError, match=message):
         wl.read_contact(printed(tmp_path))
 
 
@@ -157,7 +158,7 @@ def test_a_reader_needs_endings_and_starts_no_pipeline() -> None:
     for wrong in ("()", '".mat"'):
         with pytest.raises(TypeError, match="suffixes must be a tuple"):
             exec(f"class Wrong(wl.Reader):\n    name = 'wrong'\n    suffixes = {wrong}", {"wl": wl})
-    with pytest.raises(wl.CompositionError, match="reader 'contact_mat' cannot start a pipeline"):
+    with pytest.raises(CompositionError, match="reader 'contact_mat' cannot start a pipeline"):
         _ = wl.installed("reader")["contact_mat"]() | wl.wear_law("usfd")
 
 
@@ -171,7 +172,7 @@ def test_tractions_may_exceed_their_bound_by_the_rounding_of_printed_digits(
     if works:
         assert wl.read_contact(printed(tmp_path)).wear_index > 0.0
     else:
-        with pytest.raises(wl.ModelError, match="where its own bound is"):
+        with pytest.raises(ModelError, match="where its own bound is"):
             wl.read_contact(printed(tmp_path))
 
 
@@ -270,16 +271,16 @@ def test_what_a_solved_contact_cannot_do_says_so() -> None:
     contact, usfd = wl.read_contact(FILES["tread"]), wl.wear_law("usfd")
     with pytest.raises(wl.InputError, match=r"contact: has no problem, .* use contact \| law"):
         wl.Prediction.of(contact.replaced(problem=None), usfd)
-    with pytest.raises(wl.CompositionError, match=r"resolves it into cells; take the means first, contact.patch_mean"):
+    with pytest.raises(CompositionError, match=r"resolves it into cells; take the means first, contact.patch_mean"):
         wl.Prediction.of(contact, wl.wear_law("brr"))
     assert wl.Prediction.of(contact.patch_mean(), wl.wear_law("brr")).wear_rate.m > 0.0
-    with pytest.raises(wl.CompositionError, match="both predict 'wear_rate'"):
+    with pytest.raises(CompositionError, match="both predict 'wear_rate'"):
         wl.Prediction.of(contact, usfd, wl.wear_law("kth"))
-    with pytest.raises(wl.CompositionError, match="the rig has no body 'disc_1'"):
+    with pytest.raises(CompositionError, match="the rig has no body 'disc_1'"):
         wl.Prediction.of(contact, wl.wear_law("usfd", body="disc_1"))
     found = wl.Prediction.of(contact, wl.wear_law("usfd", body="rail"), wl.wear_law("kth", body="wheel"))
     assert found.wear_rate_of("wheel") != found.wear_rate_of("rail")
-    with pytest.raises(wl.CompositionError, match="strips: the contact is already solved"):
+    with pytest.raises(CompositionError, match="strips: the contact is already solved"):
         found.wear_profile("rail", strips=20)
 
 

@@ -11,6 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.contact_files.files import FILES, SUBSURFACE, changed, of_version, rows_of, write_rows
 from wearlaw import Array
+from wearlaw.errors import DataError
 
 TREAD = FILES["tread"]
 FIRST_ELEMENT = 14
@@ -82,7 +83,7 @@ CHANGES: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
 def test_a_damaged_file_is_refused_with_line_and_column(name: str, tmp_path: Path) -> None:
     change, message = CHANGES[name]
     path = changed(TREAD, tmp_path / "tread.0001a.mat", change)
-    with pytest.raises(wl.DataError, match=message) as caught:
+    with pytest.raises(DataError, match=message) as caught:
         wl.read_contact(path)
     assert "tread.0001a.mat" in str(caught.value)
 
@@ -101,14 +102,14 @@ def test_a_file_of_another_program_is_named_as_what_it_is(name: str, tmp_path: P
     content, message = OTHERS[name]
     path = tmp_path / "other.mat"
     path.write_bytes(content)
-    with pytest.raises(wl.DataError, match=message):
+    with pytest.raises(DataError, match=message):
         wl.read_contact(path)
 
 
 def test_cells_of_an_older_version_are_in_its_own_rows(tmp_path: Path) -> None:
     rows = of_version(rows_of(TREAD), 1801)
     rows[2, 4] = -1.0
-    with pytest.raises(wl.DataError, match=r"line 4, column 5 \(DX\): must be positive, got -1"):
+    with pytest.raises(DataError, match=r"line 4, column 5 \(DX\): must be positive, got -1"):
         wl.read_contact(write_rows(tmp_path / "old.mat", rows))
 
 
@@ -123,17 +124,17 @@ def below(change: Callable[[Array], Array], tmp_path: Path) -> Path:
 
 
 def test_damaged_stresses_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(wl.DataError, match=r"line 101: ends after 99 points of the block .* 7 x 5 x 8; .* cut short"):
+    with pytest.raises(DataError, match=r"line 101: ends after 99 points of the block .* 7 x 5 x 8; .* cut short"):
         wl.read_subsurface(below(lambda rows: rows[:100], tmp_path))
-    with pytest.raises(wl.DataError, match=r"has 5 columns, but a .subs file has 4, 8 or 14; is it one\?"):
+    with pytest.raises(DataError, match=r"has 5 columns, but a .subs file has 4, 8 or 14; is it one\?"):
         wl.read_subsurface(below(lambda rows: rows[:, :5], tmp_path))
     twice = rows_of(SUBSURFACE)
     twice[9] = twice[8]
-    with pytest.raises(wl.DataError, match="line 3: the points of this block are no grid of 7 x 5 x 8"):
+    with pytest.raises(DataError, match="line 3: the points of this block are no grid of 7 x 5 x 8"):
         wl.read_subsurface(below(lambda _: twice, tmp_path))
-    with pytest.raises(wl.DataError, match=r"line 2, column 1 \(NX\): must be from 1 to"):
+    with pytest.raises(DataError, match=r"line 2, column 1 \(NX\): must be from 1 to"):
         wl.read_subsurface(below(lambda rows: 0.0 * rows, tmp_path))
-    with pytest.raises(wl.DataError, match=r"cannot read .*No such file"):
+    with pytest.raises(DataError, match=r"cannot read .*No such file"):
         wl.read_subsurface(tmp_path / "nowhere.subs")
 
 

@@ -9,7 +9,8 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_apps.fits import FitError, WearTests
+from wearlaw.errors import FitError
+from wearlaw_apps.fits import WearTests
 
 RIG = wl.TwinDisc.suros()
 EXACT, GLOBAL = RIG | wl.contact_model("exact"), RIG | wl.contact_model("global")

@@ -24,11 +24,12 @@ from tests.plugins.fits.comparisons import (
 )
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_apps.fits import Comparison, Fit, FitWarning, WearTests
+from wearlaw.errors import FitWarning
+from wearlaw_apps.fits import Comparison, Fit, WearTests
 from wearlaw_apps.fits.agreement import agreement  # private: errors of made-up rates, without a law
 
 pytestmark = pytest.mark.filterwarnings(
-    "ignore::wearlaw_apps.fits.FitWarning"
+    "ignore::wearlaw.errors.FitWarning"
 )  # most compare fits to the tests themselves
 
 

@@ -14,7 +14,7 @@ from tests.plugins.fits.test_fit_stages import SOFT, Softer, made_up
 from wearlaw_apps.fits import WearTests
 
 pytestmark = pytest.mark.filterwarnings(
-    "ignore::wearlaw_apps.fits.FitWarning"
+    "ignore::wearlaw.errors.FitWarning"
 )  # most compare fits to the tests themselves
 
 FASTSIM = wl.contact_model("fastsim")

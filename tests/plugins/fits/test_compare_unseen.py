@@ -12,10 +12,11 @@ import wearlaw as wl
 from tests.plugins.fits.comparisons import EXACT, GLOBAL, SCATTER, by_label, made, scattered, usfd
 from tests.plugins.fits.fits import sloping
 from wearlaw import Q
-from wearlaw_apps.fits import Comparison, FitError, WearTests
+from wearlaw.errors import FitError
+from wearlaw_apps.fits import Comparison, WearTests
 
 pytestmark = pytest.mark.filterwarnings(
-    "ignore::wearlaw_apps.fits.FitWarning"
+    "ignore::wearlaw.errors.FitWarning"
 )  # most compare fits to the tests themselves
 
 MARK = "fitted to these tests, which flatters their rank: "

@@ -25,7 +25,8 @@ from tests.plugins.fits.fits import (
     usfd,
 )
 from wearlaw import Q
-from wearlaw_apps.fits import FitError, FitWarning, WearTests
+from wearlaw.errors import FitError, FitWarning
+from wearlaw_apps.fits import WearTests
 
 KTH = GLOBAL | wl.wear_law("kth")
 

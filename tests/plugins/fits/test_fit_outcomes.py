@@ -15,7 +15,8 @@ from tests.core.distributions import RUBBED_AND_TIRED, Install
 from tests.core.outcome_laws import CONDITIONS, MIXED, Damage, Heat, Volume
 from tests.plugins.fits.fits import EXACT, refused, sloping
 from wearlaw import Q
-from wearlaw_apps.fits import FitError, WearTests
+from wearlaw.errors import DataError, FitError
+from wearlaw_apps.fits import WearTests
 
 TRUE_HEAT, TRUE_DAMAGE = Heat(share=0.3), Damage(threshold=Q(40.0, "N"), slope=Q(2e-6, "1/N"))
 SLOPING = sloping.model_copy(update={"offset": Q(0.0, "ug/m/mm^2")})
@@ -121,9 +122,9 @@ def test_outcomes_without_measurements_and_wrong_units_are_refused() -> None:
     refused("none of the 7 tests has a rcf damage, which is fitted", EXACT | Heat() | Damage(), tests, ["slope"])
     refused("^free: .*'sope'.* share, threshold, slope", EXACT | Heat() | Damage(), tests, ["sope"])
     wrong = measured_tests({"heat_flux": Q(np.ones(7), "kN")})
-    with pytest.raises(wl.DataError, match="heat_flux"):
+    with pytest.raises(DataError, match="heat_flux"):
         wl.fit(EXACT | Heat(), wrong, ["share"])
-    with pytest.raises(wl.DataError, match="rcf_damage"):
+    with pytest.raises(DataError, match="rcf_damage"):
         wl.fit(EXACT | Damage(), measured_tests({"rcf_damage": Q(np.ones(7), "kN")}), ["slope"])
 
 
@@ -164,14 +165,14 @@ def test_outcomes_of_plugins_are_known_when_tests_are_read(install: Install, tmp
     text = "creepage [%],normal_force [kN],friction_coefficient,damage\n1,7.4,0.4,2\n2,7.4,0.4,\n"
     tests = read(tmp_path, text)
     assert tests.outcomes.keys() == {"damage"}
-    with pytest.raises(wl.DataError, match="give exactly one load"):
+    with pytest.raises(DataError, match="give exactly one load"):
         read(tmp_path, "creepage [%],damage\n1,2\n")
 
 
 def test_the_wear_rate_of_a_body_is_no_misspelt_column(tmp_path: Path) -> None:
     text = "creepage [%],normal_force [kN],friction_coefficient,{} [ug/m/mm^2]\n1,7.4,0.4,2\n"
     assert read(tmp_path, text.format("wear_rate_disc_1")).other_conditions.keys() == {"wear_rate_disc_1"}
-    with pytest.raises(wl.DataError, match="unknown column; did you mean 'wear_rate'"):
+    with pytest.raises(DataError, match="unknown column; did you mean 'wear_rate'"):
         read(tmp_path, text.format("wear_rat"))
-    with pytest.raises(wl.DataError, match="unknown column; did you mean 'wear_rate_uncertainty'"):
+    with pytest.raises(DataError, match="unknown column; did you mean 'wear_rate_uncertainty'"):
         read(tmp_path, text.format("wear_rate_uncertaint"))

@@ -26,7 +26,8 @@ from tests.plugins.fits.fits import (
     usfd,
 )
 from wearlaw import Q
-from wearlaw_apps.fits import FitWarning, WearTests
+from wearlaw.errors import FitWarning
+from wearlaw_apps.fits import WearTests
 
 
 def test_tests_for_which_the_best_fit_predicts_no_wear_are_refused() -> None:
@@ -167,7 +168,7 @@ def test_parameters_that_the_tests_leave_open_are_refused(predict: Any, creepage
     refused(f"do not determine {open_}[,;] ", predict, made_up(predict, 0.1, 0, creepage), free)
 
 
-@pytest.mark.filterwarnings("ignore::wearlaw_apps.fits.FitWarning")
+@pytest.mark.filterwarnings("ignore::wearlaw.errors.FitWarning")
 def test_an_interval_ends_at_the_bounds() -> None:
     # The scatter is that of the largest rates, which hides the mild regime; the interval of its slope has no ends.
     law = wl.wear_law("usfd", fitted_for="exact", m_c="61.9 ug/m/N", tr_sc="77.26 N/mm^2")

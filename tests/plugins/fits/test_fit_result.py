@@ -171,7 +171,7 @@ def test_tests_that_differ_in_one_condition_have_a_curve_over_it(varied: str) ->
     np.testing.assert_allclose(curve.y, expected, rtol=1e-9)
 
 
-@pytest.mark.filterwarnings("ignore::wearlaw_apps.fits.FitWarning")
+@pytest.mark.filterwarnings("ignore::wearlaw.errors.FitWarning")
 def test_a_notebook_shows_a_fit_and_a_comparison_as_tables(exact_fit: Fit) -> None:
     html = exact_fit._repr_html_()
     assert html.count("<tr>") == len(exact_fit.parameters) + 2

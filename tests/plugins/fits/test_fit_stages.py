@@ -14,6 +14,7 @@ from scipy import stats
 import wearlaw as wl
 from tests.plugins.fits.fits import EXACT, PRESSURE, RIG, refused, traction_tests
 from wearlaw import Array, Q
+from wearlaw.errors import CompositionError
 from wearlaw_apps.fits import WearTests
 
 CREEPAGE = np.array([0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 2.0, 3.0])
@@ -164,5 +165,5 @@ def test_a_stage_needs_its_bounds_a_measurement_and_loads_that_stay() -> None:
     nothing = traction_tests(np.full(10, np.nan), CREEPAGE, friction_coefficient=0.4, wear_rate="5 ug/m/mm^2")
     refused("^tests: .*traction.* reduction", SOFT, nothing, ["reduction"])
     balanced = Balanced(**dict(RIG)) | EXACT.contact_model | Softer()
-    with pytest.raises(wl.CompositionError, match=r"^fit: rig 'twin_disc' .* reduction"):
+    with pytest.raises(CompositionError, match=r"^fit: rig 'twin_disc' .* reduction"):
         wl.fit(balanced, made_up(), ["reduction"])

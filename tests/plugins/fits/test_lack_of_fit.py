@@ -11,7 +11,8 @@ from scipy import stats
 import wearlaw as wl
 from tests.plugins.fits.fits import FRICTION, PRESSURE, usfd
 from wearlaw import Q
-from wearlaw_apps.fits import Fit, FitWarning, WearTests
+from wearlaw.errors import FitWarning
+from wearlaw_apps.fits import Fit, WearTests
 from wearlaw_apps.fits.lack_of_fit import lack_of_fit, repeats  # private: the example of a textbook
 
 CREEPAGE = [0.2, 0.4, 0.6, 0.8]

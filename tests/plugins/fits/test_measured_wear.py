@@ -14,7 +14,8 @@ from tests.environments import ROOT
 from tests.plugins.fits.fits import EXACT, RIG, refused
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_apps.fits import FitWarning, WearTests
+from wearlaw.errors import DataError, FitWarning
+from wearlaw_apps.fits import WearTests
 
 CREEPAGE = Q([0.5, 1.0, 2.0, 4.0], "%")
 TEST: Any = {"creepage": CREEPAGE, "normal_force": Q([5.0, 6.0, 7.0, 8.0], "kN"), "friction_coefficient": 0.45}
@@ -186,7 +187,7 @@ def test_an_outcome_of_a_law_of_ones_own_is_measured_as_mass_if_it_is_wear() -> 
     refused(
         r"has a fatigue of labs, .* no wear .*wear=True", EXACT.without_law() | Tired(), tests, ["volume_per_energy"]
     )
-    with pytest.raises(wl.DataError, match=r"squared_wear: its unit 'mm\^6' is no mass or volume"):
+    with pytest.raises(DataError, match=r"squared_wear: its unit 'mm\^6' is no mass or volume"):
         wl.fit(EXACT.without_law() | Squared(), tests, ["volume_per_energy"], bootstrap=0)
 
 
@@ -215,17 +216,17 @@ WRONG: dict[str, tuple[dict[str, Any], dict[str, Any], str]] = {
 @pytest.mark.parametrize("name", WRONG)
 def test_what_cannot_be_converted_says_what_is_missing(name: str) -> None:
     measured, options, message = WRONG[name]
-    with pytest.raises(wl.DataError, match=message):
+    with pytest.raises(DataError, match=message):
         found(weighed(**measured), **options)
 
 
 def test_unlike_bodies_are_not_weighed_together() -> None:
     predict = UNLIKE | ENERGY.contact_model | ENERGY.laws[0]
-    with pytest.raises(wl.DataError, match="revolutions: the bodies differ in diameter; weigh one of them"):
+    with pytest.raises(DataError, match="revolutions: the bodies differ in diameter; weigh one of them"):
         found(weighed(**ONE, revolutions=1e4), predict, body="both")
-    with pytest.raises(wl.DataError, match="disc_2 has another material"):
+    with pytest.raises(DataError, match="disc_2 has another material"):
         found(weighed(**ONE, distance="1 km"), predict, body="both")
-    with pytest.raises(wl.DataError, match="mass_loss: add how far the test rolled"):
+    with pytest.raises(DataError, match="mass_loss: add how far the test rolled"):
         weighed(**ONE)
 
 
@@ -235,7 +236,7 @@ def test_a_rail_makes_no_revolutions() -> None:
     given: Any = {"normal_force": "80 kN", "friction_coefficient": 0.3}
     others: Any = {"longitudinal_creepage": Q([0.1, 0.2, 0.3], "%"), "lateral_creepage": "0 %", "spin": "0 1/m"}
     tests = WearTests.from_arrays(**given, other_conditions=others, mass_loss="1 mg", cycles=1e4)
-    with pytest.raises(wl.DataError, match="cycles: rail makes no revolutions; give mass_loss with the distance"):
+    with pytest.raises(DataError, match="cycles: rail makes no revolutions; give mass_loss with the distance"):
         wl.fit(predict, tests, ["mass_per_energy"], bootstrap=0)
     lost = Q(predict(**given, **others).wear_index.m_as("N") * 5e-9 * 1e3, "kg")
     tests = WearTests.from_arrays(**given, other_conditions=others, mass_loss=lost, distance="1 km")
@@ -286,20 +287,20 @@ def test_a_table_with_decimal_commas_and_heads_of_its_own(tmp_path: Path) -> Non
     (tmp_path / "campaign.csv").write_text(CAMPAIGN, encoding="utf-8")
     columns = {**HEADS, "creepage": "Slip", "normal_force": "Load"}
     is_campaign(wl.read_tests(tmp_path / "campaign.csv", columns=columns, decimal=","))
-    with pytest.raises(wl.DataError) as error:
+    with pytest.raises(DataError) as error:
         wl.read_tests(tmp_path / "campaign.csv", decimal=",")
     example = next(text for text in error.value.problems if "columns={" in text)
     assert '"label": "Test no.", "creepage": "Slip / %", "normal_force": "Load in kN"' in example
     assert '--columns creepage="Slip / %"' in example
-    with pytest.raises(wl.DataError, match="there is no column 'Slipp'; did you mean 'Slip'"):
+    with pytest.raises(DataError, match="there is no column 'Slipp'; did you mean 'Slip'"):
         wl.read_tests(tmp_path / "campaign.csv", columns={**columns, "creepage": "Slipp"}, decimal=",")
 
 
 def test_a_workbook_with_a_title_and_a_sheet_of_notes() -> None:
     is_campaign(wl.read_tests(ROOT / "tests" / "data" / "campaign.xlsx", sheet="Tests", columns=HEADS))
-    with pytest.raises(wl.DataError, match=r"no sheet 'Test'; did you mean 'Tests'\? There are: 'Notes', 'Tests'"):
+    with pytest.raises(DataError, match=r"no sheet 'Test'; did you mean 'Tests'\? There are: 'Notes', 'Tests'"):
         wl.read_tests(ROOT / "tests" / "data" / "campaign.xlsx", sheet="Test")
-    with pytest.raises(wl.DataError, match="has 2 sheets with cells, 'Notes' and 'Tests'; name one by sheet="):
+    with pytest.raises(DataError, match="has 2 sheets with cells, 'Notes' and 'Tests'; name one by sheet="):
         wl.read_tests(ROOT / "tests" / "data" / "campaign.xlsx")
 
 
@@ -317,7 +318,7 @@ def test_a_row_of_units_holds_units_alone(tmp_path: Path) -> None:
         assert tests.columns["creepage"][0] == pytest.approx(expected, rel=4 * EPS)
         assert tests.columns["normal_force"][0] == 7000.0
     (tmp_path / "a.csv").write_text("creepage,normal_force,traction_coefficient\n%,kN,-\n1,7,0.3\n2,x,0.3\n")
-    with pytest.raises(wl.DataError, match="line 4, column 'normal_force \\[kN\\]': 'x' is not a number"):
+    with pytest.raises(DataError, match="line 4, column 'normal_force \\[kN\\]': 'x' is not a number"):
         wl.read_tests(tmp_path / "a.csv")
 
 

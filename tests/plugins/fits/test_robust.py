@@ -12,7 +12,8 @@ from scipy import optimize, stats
 import wearlaw as wl
 from tests.plugins.fits.fits import EXACT
 from wearlaw import Q
-from wearlaw_apps.fits import FitError, FitWarning, WearTests
+from wearlaw.errors import FitError, FitWarning
+from wearlaw_apps.fits import WearTests
 from wearlaw_apps.fits.intervals import studentised  # private: of any least squares
 from wearlaw_apps.fits.least_squares import LOSSES  # private: the losses that there are
 

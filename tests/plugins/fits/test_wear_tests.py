@@ -14,6 +14,7 @@ from hypothesis import given
 import wearlaw as wl
 from tests.strategies import EPS, log_uniform
 from wearlaw import Q
+from wearlaw.errors import DataError
 from wearlaw_apps.fits import WearTests
 
 NAN = np.nan
@@ -103,13 +104,13 @@ def test_a_mask_a_slice_and_an_index_select_tests() -> None:
 
 def test_a_spreadsheet_is_told(tmp_path: Path) -> None:
     (tmp_path / "tests.xlsx").write_bytes(b"PK\x03\x04\x14\x00\x06\x00")
-    with pytest.raises(wl.DataError, match="save its sheet as CSV"):
+    with pytest.raises(DataError, match="save its sheet as CSV"):
         wl.read_tests(tmp_path / "tests.xlsx")
 
 
 def test_selecting_none_is_refused_and_there_is_no_fourth_of_three() -> None:
     tests = made()
-    with pytest.raises(wl.DataError, match="none of the 3 tests is selected"):
+    with pytest.raises(DataError, match="none of the 3 tests is selected"):
         tests[tests.creepage > Q(50, "%")]
     with pytest.raises(IndexError):
         tests[3]
@@ -256,9 +257,9 @@ def test_other_conditions_and_outcomes_of_a_file(tmp_path: Path) -> None:
         "lateral_creepage",
     }
     np.testing.assert_array_equal(tests.measured("heat_flux", "W/m^2"), [2e6, NAN])
-    with pytest.raises(wl.DataError, match="heat_flux"):
+    with pytest.raises(DataError, match="heat_flux"):
         tests.measured("heat_flux", "kg")
-    with pytest.raises(wl.DataError, match="heat_flux"):  # a condition must be known in every test
+    with pytest.raises(DataError, match="heat_flux"):  # a condition must be known in every test
         read(text, tmp_path)
 
 
@@ -267,7 +268,7 @@ def test_shipped_tests_come_before_a_file_of_that_name(folder: Path) -> None:
     assert "Dwyer-Joyce" in wl.read_tests("lewis2004").source
     assert wl.read_tests("./lewis2004").labels == ("a", "b")
     read(GOOD, folder)
-    with pytest.raises(wl.DataError, match=r"mine\.csv"):
+    with pytest.raises(DataError, match=r"mine\.csv"):
         wl.read_tests("mime.csv")
 
 
@@ -297,12 +298,12 @@ FAULTY = [
 
 @pytest.mark.parametrize(("text", "named"), FAULTY)
 def test_what_is_wrong_with_a_file_is_named(text: str, named: str, tmp_path: Path) -> None:
-    with pytest.raises(wl.DataError, match=named):
+    with pytest.raises(DataError, match=named):
         read(text, tmp_path)
 
 
 def test_all_faults_of_a_file_are_named(tmp_path: Path) -> None:
-    with pytest.raises(wl.DataError) as refusal:
+    with pytest.raises(DataError) as refusal:
         read(f"{HEAD}\na,1,-7,-30\na,200,7,1\n", tmp_path)
     assert len(refusal.value.problems) == 3
 
@@ -346,5 +347,5 @@ WRONG: list[tuple[str, dict[str, Any]]] = [
 
 @pytest.mark.parametrize(("named", "changes"), WRONG)
 def test_wrong_arrays_are_refused_by_name(named: str, changes: dict[str, Any]) -> None:
-    with pytest.raises(wl.DataError, match=named):
+    with pytest.raises(DataError, match=named):
         made(**changes)

@@ -17,7 +17,7 @@ from tests.cases import load, table
 from tests.plugins.kit.cells import Cells
 from tests.strategies import EPS, LINE_MODELS, log_uniform, saturation_creepage, with_creepage
 from wearlaw import Q
-from wearlaw_apps.studies import CaseError
+from wearlaw.errors import CaseError
 from wearlaw_kit import checks, line_problems
 
 SUROS = wl.TwinDisc.suros()

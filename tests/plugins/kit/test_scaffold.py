@@ -11,8 +11,8 @@ from typing import get_args
 import pytest
 from click.testing import Result
 
-import wearlaw as wl
 from tests.cases import assert_refused, wearlaw
+from wearlaw.hookspecs import INTERFACE_VERSION  # private: authors write the number
 from wearlaw_kit.scaffold import Kind  # private: the kinds that the command offers
 
 pytestmark = pytest.mark.usefixtures("folder")
@@ -37,7 +37,7 @@ def test_a_new_plugin_is_a_whole_distribution(kind: Kind) -> None:
     } | {f"wearlaw-two_slopes/wearlaw_two_slopes/{file}" for file in ("__init__.py", "py.typed")}
     module = written["wearlaw-two_slopes/wearlaw_two_slopes/__init__.py"].read_text(encoding="utf-8")
     assert "class TwoSlopes(" in module
-    assert f"wearlaw_interface = {wl.INTERFACE_VERSION}\n" in module
+    assert f"wearlaw_interface = {INTERFACE_VERSION}\n" in module
 
 
 def test_whatever_the_author_adds_to_the_package_is_in_the_wheel() -> None:

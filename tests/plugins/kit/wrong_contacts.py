@@ -555,7 +555,7 @@ class ForceOfAnother(Exact):  # type: ignore[misc]
 class CrossingAside(Exact):  # type: ignore[misc]
     """The slip crosses a value a thousandth of the patch aside."""
 
-    def crossings(self, problem: wl.Problem, variable: wl.FieldVariable, value: Any) -> Any:
+    def crossings(self, problem: wl.Problem, variable: str, value: Any) -> Any:
         found = super().crossings(problem, variable, value)
         return found if found is None else found + 2e-3 * problem.half_width[..., None]
 

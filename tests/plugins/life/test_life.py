@@ -14,6 +14,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import R0, cone, round_head, wheelset
 from wearlaw import Q
+from wearlaw.errors import DataError, OutputError, ResumeWarning
 from wearlaw_apps.life import Life
 from wearlaw_apps.life.line import Line  # private: a step that fails
 from wearlaw_apps.life.removal import (  # private: the parts of a step in closed form
@@ -25,6 +26,7 @@ from wearlaw_apps.life.removal import (  # private: the parts of a step in close
     swept,
 )
 from wearlaw_apps.life.steps import Limits  # private: the limits alone
+from wearlaw_apps.output import Limit
 from wearlaw_apps.sweeps.sweep import run  # private: the warnings of a step
 
 GIVEN: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
@@ -231,7 +233,7 @@ def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
 def test_life_ends_at_a_limit() -> None:
     found = wl.wear_out(pipeline(), line(3), over="10000 km", until={"depth": "0.02 mm"}, **GIVEN)
     (limited,) = (panel for panel in found.figure().panels if panel.limits)
-    assert (limited.y.label, limited.limits) == ("depth [mm]", (wl.Limit("limit 0.02 mm", 0.02),))
+    assert (limited.y.label, limited.limits) == ("depth [mm]", (Limit("limit 0.02 mm", 0.02),))
     assert found.ended == "depth"
     assert last(found, "depth [mm]") == pytest.approx(0.02, rel=1e-5)
 
@@ -268,21 +270,21 @@ def changed(**columns: Any) -> pd.DataFrame:
 @pytest.mark.parametrize(
     ("states", "options", "error", "named"),
     [
-        (changed(share=[0.2, 0.5, 0.2]), {}, wl.DataError, "add up to 0.9"),
-        (changed(share=[20.0, 60.0, 20.0]), {}, wl.DataError, "percent"),
-        (changed(share=[-0.2, 1.0, 0.2]), {}, wl.DataError, "row 0"),
-        (line(3).drop(columns="share"), {}, wl.DataError, "share"),
+        (changed(share=[0.2, 0.5, 0.2]), {}, DataError, "add up to 0.9"),
+        (changed(share=[20.0, 60.0, 20.0]), {}, DataError, "percent"),
+        (changed(share=[-0.2, 1.0, 0.2]), {}, DataError, "row 0"),
+        (line(3).drop(columns="share"), {}, DataError, "share"),
         (line(3).set_axis(["lateral_displacement", "share"], axis=1), {}, wl.UnitError, "lateral_displacement"),
         (
             changed(y=[0.0, 1.0, 7.0]),
             {},
-            wl.DataError,
+            DataError,
             r"^step 1, after 0 km: .*row 2 .*lateral_displacement = 7 mm.*climbs",
         ),
-        (changed(y=[-7.0, 1.0, 7.0]), {}, wl.DataError, r"row 0 .*lateral_displacement = -7 mm.*climbs"),
+        (changed(y=[-7.0, 1.0, 7.0]), {}, DataError, r"row 0 .*lateral_displacement = -7 mm.*climbs"),
         (changed(rolling_speed=20.0), {}, wl.ConditionsError, "rolling_speed: is a field of rig 'wheelset'"),
         (changed(**{"yaww [mrad]": 0.0}), {}, wl.ConditionsError, "yaww.*did you mean 'yaw'"),
-        (changed(y=[0.0, 60.0, 1.0]), {}, wl.DataError, r"row 1 .*60 mm"),
+        (changed(y=[0.0, 60.0, 1.0]), {}, DataError, r"row 1 .*60 mm"),
         (line(3), {"over": "100"}, wl.UnitError, "over"),
         (line(3), {"depth_step": "0.2 mm"}, wl.InputError, "depth_step"),
         (line(3), {"until": {"flange": "25 mm"}}, wl.InputError, "until"),
@@ -338,13 +340,13 @@ def test_interrupted_life_goes_on(tmp_path: Path, short: Life) -> None:
     *_, before, latest = sorted(path.glob("part_*"))
     shutil.rmtree(latest)
     (before / "depth/c/0/0").write_bytes(b"damaged")
-    with pytest.raises(wl.OutputError, match="resume"):
+    with pytest.raises(OutputError, match="resume"):
         wl.wear_out(pipeline(), line(), over="1500 km", store=path, **GIVEN)
-    with pytest.raises(wl.OutputError, match="smoothing"):
+    with pytest.raises(OutputError, match="smoothing"):
         wl.wear_out(pipeline(), line(), over="1500 km", smoothing="2 mm", store=path, resume=True, **GIVEN)
     first = path / "part_000000/zarr.json"
     written = first.stat().st_mtime_ns
-    with pytest.warns(wl.ResumeWarning, match="kept"):
+    with pytest.warns(ResumeWarning, match="kept"):
         again = wl.wear_out(pipeline(), line(), over="1500 km", store=path, resume=True, **GIVEN)
     assert again.table.equals(short.table)
     assert all(short.notes)

@@ -21,6 +21,7 @@ from tests.core.axles import (
 )
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import ModelError
 
 ARC = np.linspace(-60.0, 30.0, 271)
 OUTWARDS = np.array([-1.0, 1.0])
@@ -146,5 +147,5 @@ def test_a_wrong_place_on_a_profile_is_the_rigs_fault(field: str, value: Any) ->
             changes: Any = {f"profile_{field}": value}
             return found.replaced(bodies={"wheel": dataclasses.replace(found.bodies["wheel"], **changes)})
 
-    with pytest.raises(wl.ModelError, match=f"rig 'lost' .*`profile_{field}`.* of wheel"):
+    with pytest.raises(ModelError, match=f"rig 'lost' .*`profile_{field}`.* of wheel"):
         (Lost() | wl.contact_model("fastsim"))(**GIVEN)

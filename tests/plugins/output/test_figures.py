@@ -15,7 +15,8 @@ from matplotlib.figure import Figure
 
 from tests.plugins.studies import report_data as data
 from tests.plugins.studies.report_data import ONE, THREE
-from wearlaw import Curve, FigureData, Limit, Panel, PlotAxis
+from wearlaw import Curve, FigureData, Panel, PlotAxis
+from wearlaw_apps.output import Limit
 from wearlaw_apps.output.curves import OUTSIDE, STRIP, Map, Shade, in_parts  # private: rarer parts of the description
 from wearlaw_apps.output.drawing import draw, line_styles  # private: the drawer
 from wearlaw_apps.output.style import (  # private: the looks that both drawers share

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-import wearlaw as wl
 from tests.cases import tree
+from wearlaw.errors import OutputError
 from wearlaw_apps.output.folder import FILES, results_folder  # private: what commands share
 
 RESULTS = "results.nc"
@@ -33,7 +33,7 @@ def test_a_new_or_empty_folder_is_filled(there: bool, tmp_path: Path) -> None:
 def test_earlier_results_are_replaced_when_asked_and_other_files_stay(tmp_path: Path) -> None:
     fill(tmp_path / "out", "results.csv", "figures/old.png")
     (tmp_path / "out" / "figures" / "mine.png").touch()
-    with pytest.raises(wl.OutputError, match=r"'.*out' is not empty; choose another folder"):
+    with pytest.raises(OutputError, match=r"'.*out' is not empty; choose another folder"):
         fill(tmp_path / "out")
     fill(tmp_path / "out", "figures/new.png", overwrite=True)  # a results.csv of other numbers would mislead
     assert tree(tmp_path / "out").keys() == {RESULTS, "figures", "figures/new.png", "figures/mine.png", FILES}
@@ -54,7 +54,7 @@ def test_what_wearlaw_did_not_write_is_refused_and_kept(overwrite: bool, tmp_pat
         "file/out": "cannot write to '.*out': (Not a directory|File exists)",
         "long" * 100: "File name too long",
     }.items():
-        with pytest.raises(wl.OutputError, match=f"^output: .*{message}"):
+        with pytest.raises(OutputError, match=f"^output: .*{message}"):
             fill(tmp_path / name, overwrite=overwrite)
     assert tree(tmp_path) == before
 
@@ -106,7 +106,7 @@ def test_results_do_not_replace_what_wearlaw_did_not_write(kind: str, tmp_path: 
         else:
             place.symlink_to(mine / "new.csv")
     before = tree(tmp_path)
-    with pytest.raises(wl.OutputError, match=r"^output: '.*new\.csv' cannot be written, since something that wearlaw"):
+    with pytest.raises(OutputError, match=r"^output: '.*new\.csv' cannot be written, since something that wearlaw"):
         fill(out, "tables/new.csv", overwrite=True)
     assert tree(tmp_path) == before
 
@@ -114,5 +114,5 @@ def test_results_do_not_replace_what_wearlaw_did_not_write(kind: str, tmp_path: 
 def test_a_list_of_another_encoding_is_told(tmp_path: Path) -> None:
     fill(tmp_path)
     (tmp_path / FILES).write_bytes(b"\x81\n")
-    with pytest.raises(wl.OutputError, match=r"cannot read '.*\.wearlaw-files': it is not text in UTF-8; .* with -o"):
+    with pytest.raises(OutputError, match=r"cannot read '.*\.wearlaw-files': it is not text in UTF-8; .* with -o"):
         fill(tmp_path, overwrite=True)

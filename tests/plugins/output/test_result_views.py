@@ -21,6 +21,7 @@ from tests.core.outcome_laws import Damage, Heat
 from tests.core.stages import RAILS
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 
 LOADS, CREEPAGES = Q([2.0, 4.0, 6.0, 8.0], "kN"), Q([0.2, 1.0, 5.0], "%")
 GLOBAL: Any = wl.TwinDisc.suros() | wl.contact_model("global") | wl.wear_law("usfd")
@@ -99,7 +100,7 @@ def test_laws_of_friction_and_conditions_that_are_not_numbers_stand_in_the_attri
 def test_names_that_are_no_list_are_refused() -> None:
     with pytest.raises(wl.InputError, match="names: must be a list of names, such as"):
         GLOBAL(**POINT).to_dataset("wear_rate")
-    with pytest.raises(wl.CompositionError, match="wearrate"):
+    with pytest.raises(CompositionError, match="wearrate"):
         GLOBAL(**POINT).to_dataset(["wearrate"])
 
 

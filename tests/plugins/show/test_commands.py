@@ -13,6 +13,7 @@ from tests.cases import table, wearlaw, write
 from tests.core.distributions import Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
 from wearlaw.cli import main  # private: the program in this process
+from wearlaw.errors import PluginWarning
 from wearlaw_apps.studies.case import case_schema, case_text  # private: a case without its files
 
 # case, schema, show, help
@@ -85,7 +86,7 @@ def test_a_plugin_that_ends_the_program_ends_no_command(install: Install, folder
     write(folder / "own.toml", table(contact_models=["global"], wear_laws=["usfd"], profiles={}))
     for arguments in (["show", "usfd"], ["schema"], ["case", "own.toml"]):
         loader._FOUND.clear()
-        with pytest.warns(wl.PluginWarning, match=r"left out: ending 1\.0 \(plugin 'ending'\): SystemExit: 0"):
+        with pytest.warns(PluginWarning, match=r"left out: ending 1\.0 \(plugin 'ending'\): SystemExit: 0"):
             result = wearlaw(*arguments)
         assert result.exit_code == 0
         assert result.stdout

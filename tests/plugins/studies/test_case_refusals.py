@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests import cases
 from tests.cases import OWN_TESTS, changed, load, table
-from wearlaw_apps.studies import CaseError
+from wearlaw.errors import CaseError
 
 WRONG: list[tuple[str, Any, str]] = [
     ("title", None, "title"),

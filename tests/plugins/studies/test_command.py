@@ -16,6 +16,7 @@ import wearlaw as wl
 from tests import cases
 from tests.cases import assert_refused, files, table, wearlaw, write
 from tests.core.distributions import Install
+from wearlaw.errors import PluginWarning
 from wearlaw_apps.studies import Case
 
 LATTICE = {**cases.SWEEP, "friction_coefficient": [0.3, 0.4]}
@@ -249,6 +250,6 @@ def test_a_plugin_that_was_left_out_is_named_where_its_model_is_missed(install: 
     install("crumbling", "raise RuntimeError('no licence found')\n", "1.2.3")
     write(folder / "c.toml", table(wear_laws=["crumbling"]))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.PluginWarning)
+        warnings.simplefilter("ignore", PluginWarning)
         assert_refused(wearlaw("run", "c.toml"), "left out: crumbling 1.2.3 (plugin 'crumbling'): RuntimeError: no lic")
         assert_refused(wearlaw("show", "crumbling"), "left out: crumbling 1.2.3 (plugin 'crumbling')")

@@ -17,9 +17,9 @@ from click.testing import CliRunner
 import wearlaw as wl
 from wearlaw import Q, loader  # private: plugins of a test are forgotten after it
 from wearlaw.cli import main  # private: the program in this process
+from wearlaw.errors import CaseError, DataError
 from wearlaw_apps.explore.page import Page, named  # private: the page without a browser
 from wearlaw_apps.fits import WearTests
-from wearlaw_apps.studies import CaseError
 from wearlaw_apps.studies.case import case_schema  # private: the schema of the command `schema`
 
 LAW = '''
@@ -150,7 +150,7 @@ def test_tests_without_the_column_are_an_error_that_names_it(predict: Any) -> No
     tests = WearTests.from_arrays(
         creepage="1 %", max_pressure=Q([600, 700], "MPa"), friction_coefficient=0.4, wear_rate="4 ug/m/mm^2"
     )
-    with pytest.raises(wl.DataError, match=r"no column 'relative_humidity \[%\]', which wear law 'humid' needs"):
+    with pytest.raises(DataError, match=r"no column 'relative_humidity \[%\]', which wear law 'humid' needs"):
         wl.fit(predict, tests, free=["slope"])
 
 

@@ -16,6 +16,7 @@ from tests.cases import case
 from tests.plugins.studies.panels import by_label, by_name
 from tests.plugins.studies.report_data import page_of
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 from wearlaw_apps.output.styled import latex_table  # private: the marks of a table for LaTeX
 from wearlaw_apps.studies.report.tables import FOOTNOTES, summaries  # private: the marks of each number
 
@@ -64,7 +65,7 @@ def test_without_a_yield_stress_there_is_no_limit() -> None:
     r = (wl.TwinDisc.suros(material=soft) | wl.contact_model("exact"))(
         max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.4
     )
-    with pytest.raises(wl.CompositionError, match="no body's material has a shear_yield_stress"):
+    with pytest.raises(CompositionError, match="no body's material has a shear_yield_stress"):
         r.first_yield  # noqa: B018
 
 

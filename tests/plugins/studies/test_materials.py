@@ -16,7 +16,8 @@ import wearlaw as wl
 from tests.cases import POINT, case, load, table
 from tests.core.distributions import Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
-from wearlaw_apps.studies import Case, CaseError
+from wearlaw.errors import CaseError, PluginWarning
+from wearlaw_apps.studies import Case
 from wearlaw_apps.studies.case import case_schema, load_case, written  # private: a case without its files
 from wearlaw_apps.studies.report.tables import parameters  # private: a part of the report, without its page
 from wearlaw_apps.studies.study import provenance, run  # private: a case run without its files
@@ -236,6 +237,6 @@ def test_a_wrong_class_of_materials_is_left_out_with_the_reason(
 ) -> None:
     assert old in STEELS
     install("steels", STEELS.replace(old, new))
-    with pytest.warns(wl.PluginWarning, match="left out: steels 1.0"):
+    with pytest.warns(PluginWarning, match="left out: steels 1.0"):
         (broken,) = loader.discovered().broken
     assert cause in broken.cause

@@ -15,6 +15,7 @@ import wearlaw as wl
 from tests.cases import case, table, wearlaw
 from tests.core.distributions import LAB, Install
 from wearlaw import loader  # private: plugins of a test are found as if they were installed
+from wearlaw.errors import PluginWarning
 from wearlaw_apps.studies.case import (  # private: a case without its files
     Case,
     case_schema,
@@ -117,7 +118,7 @@ def test_what_is_not_of_its_kind_is_left_out_with_the_reason(
 ) -> None:
     assert old in LAB
     install("lab", LAB.replace(old, new))
-    with pytest.warns(wl.PluginWarning, match="left out: lab 1.0"):
+    with pytest.warns(PluginWarning, match="left out: lab 1.0"):
         found = loader.discovered()
     assert cause in found.broken[0].cause
 
@@ -152,7 +153,7 @@ def test_a_parameter_set_is_checked_like_a_law(install: Install, monkeypatch: py
 
 def test_a_parameter_set_with_the_name_of_a_law_is_left_out_by_name(install: Install) -> None:
     install("lab", LAB.replace('"lab_2026"', '"kth"'))
-    with pytest.warns(wl.PluginWarning) as caught:
+    with pytest.warns(PluginWarning) as caught:
         assert wl.wear_law("kth").name == "kth"
     assert [str(one.message) for one in caught] == [
         "left out: lab 1.0 (plugin 'lab'): parameter set 'kth' has the name of a wear law of"

@@ -11,6 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.cases import SWEEP, case
 from tests.core.distributions import Install
+from wearlaw.errors import ModelError
 
 LAB = """
     import warnings
@@ -82,7 +83,7 @@ def test_what_a_section_cannot_do_names_it_and_its_plugin(install: Install) -> N
 def test_what_a_section_raises_is_the_plugins_fault_and_kept_as_the_cause(install: Install) -> None:
     install("lab", LAB)
     message = r"section 'raises' of lab 1\.0 .* failed with ZeroDivisionError: division by zero"
-    with pytest.raises(wl.ModelError, match=message) as refused:
+    with pytest.raises(ModelError, match=message) as refused:
         wl.run(case(sections=["raises"]))
     assert isinstance(refused.value.__cause__, ZeroDivisionError)
 

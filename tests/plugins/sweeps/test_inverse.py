@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import ModelError
 
 RIG = wl.TwinDisc.suros()
 LOAD: Any = {"normal_force_per_width": Q(741.43, "kN/m"), "friction_coefficient": 0.46}
@@ -174,7 +175,7 @@ def test_a_model_whose_force_is_no_number_is_named() -> None:
             return problem.creepage * np.nan
 
     contact = RIG | Nowhere()
-    with pytest.raises(wl.ModelError, match="'nowhere' gave a longitudinal force that is not finite"):
+    with pytest.raises(ModelError, match="'nowhere' gave a longitudinal force that is not finite"):
         wl.creepage_for(contact, traction_coefficient=0.3, **LOAD)
-    with pytest.raises(wl.ModelError, match="'nowhere' gave a longitudinal force that is not finite"):
+    with pytest.raises(ModelError, match="'nowhere' gave a longitudinal force that is not finite"):
         contact(creepage="1 %", **LOAD)

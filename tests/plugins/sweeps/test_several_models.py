@@ -10,6 +10,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 
 RIG = wl.TwinDisc.suros(material=wl.steel(shear_yield_stress=None))
 EXACT, GLOBAL = wl.contact_model("exact"), wl.contact_model("global")
@@ -44,7 +45,7 @@ def test_a_pair_that_cannot_be_is_left_out_with_one_line() -> None:
     found = predict(**CONDITIONS)["wear_rate"]
     assert np.isnan(found.sel(contact_model="exact", law="brr")).all()
     assert np.isfinite(found).sum() == 9
-    with pytest.raises(wl.CompositionError, match="brr"):
+    with pytest.raises(CompositionError, match="brr"):
         RIG | [EXACT] | [BRR]
 
 
@@ -71,5 +72,5 @@ def test_each_warning_is_given_once() -> None:
     "wrong", [lambda: RIG | cast(Any, ["exact"]), lambda: RIG | [EXACT] | [KTH] | [BRR], lambda: RIG | []]
 )
 def test_what_is_no_list_of_models_is_refused(wrong: Any) -> None:
-    with pytest.raises(wl.CompositionError):
+    with pytest.raises(CompositionError):
         wrong()

@@ -12,7 +12,7 @@ import xarray as xr
 import wearlaw as wl
 from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, deadly, ending, predictor
 from tests.plugins.sweeps.test_sweep_tables import BY_PATTERN, FRICTION, wheels
-from wearlaw_apps.sweeps import SweepError
+from wearlaw.errors import ModelError, SweepError
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.usefixtures("small_blocks")
@@ -62,7 +62,7 @@ def test_a_cluster_can_also_hand_results_back(client: Any) -> None:
 def test_what_would_end_a_worker_of_the_cluster_is_an_error_here_and_the_workers_live_on(client: Any) -> None:
     client.wait_for_workers(2, timeout=60)  # one may have died before
     before = set(client.nthreads())
-    with pytest.raises(wl.ModelError, match="SystemExit: 0"):
+    with pytest.raises(ModelError, match="SystemExit: 0"):
         wl.sweep(ending(), **CONDITIONS, client=client)
     assert set(client.nthreads()) == before
 

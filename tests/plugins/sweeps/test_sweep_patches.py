@@ -15,6 +15,7 @@ from tests.core.axles import CREEP, GIVEN, KTH, Axle, Warns, Worn, lifted, of
 from tests.plugins.sweeps.sweeps import told
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import ModelError
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -148,7 +149,7 @@ class Forgetful(Axle):
 def test_a_batch_of_another_shape_is_the_rigs_fault() -> None:
     axes = {**GIVEN, "displacement": Q([0.0, 7.0], "mm"), "friction_coefficient": [0.2, 0.3]}
     with pytest.raises(
-        wl.ModelError,
+        ModelError,
         match=r"rig 'forgetful' gave a batch of shape \(2, 2, 2\) .* for 4 operating points",
     ):
         wl.sweep(Forgetful() | FASTSIM | KTH, **axes)

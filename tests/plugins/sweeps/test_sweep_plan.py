@@ -15,6 +15,7 @@ import wearlaw as wl
 from tests.cases import Linear
 from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, predictor
 from wearlaw import Array, Q
+from wearlaw.errors import ResumeWarning
 from wearlaw_apps.sweeps import plan, points, sweep  # private: how a sweep is divided
 from wearlaw_apps.sweeps.evaluation import Job  # private: a sweep that is not run
 from wearlaw_apps.sweeps.points import Points, split  # private: its points
@@ -90,6 +91,6 @@ def test_results_do_not_depend_on_the_size_of_blocks(tmp_path: Path, monkeypatch
     assert len(chunks) == 4  # 5 of the 20 creepages
     chunks[0].unlink()
     monkeypatch.setattr(plan, "LARGEST", 0)  # a resumed store keeps its blocks
-    with pytest.warns(wl.ResumeWarning, match="3 of 4 blocks are kept"):
+    with pytest.warns(ResumeWarning, match="3 of 4 blocks are kept"):
         again = wl.sweep(predictor(), **CONDITIONS, outputs=OUTPUTS, store=tmp_path / "map.zarr", resume=True)
     xr.testing.assert_identical(again.load(), whole)

@@ -23,6 +23,7 @@ from matplotlib import pyplot as plt
 import wearlaw as wl
 from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, contents, held, interrupted_after, predictor, told
 from wearlaw import Q
+from wearlaw.errors import OutputError, ResumeWarning
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -73,7 +74,7 @@ def test_a_resumed_sweep_gives_the_same_as_an_uninterrupted_one(
     assert 3 * 24 <= finished < 240
     assert int((left.wear_rate == whole.wear_rate).sum()) == finished
     advances = told(monkeypatch)
-    with pytest.warns(wl.ResumeWarning, match=r"\d of 10 blocks are kept in '.*map.zarr'; the others are"):
+    with pytest.warns(ResumeWarning, match=r"\d of 10 blocks are kept in '.*map.zarr'; the others are"):
         resumed = wl.sweep(held(tmp_path / "gate"), **GIVEN, store=tmp_path / "map.zarr", workers=workers, resume=True)
     assert advances[0] >= 3 * 24  # not computed again
     xr.testing.assert_identical(resumed.load(), whole)  # warnings of finished blocks included
@@ -94,7 +95,7 @@ def test_a_damaged_block_of_a_complete_store_is_computed_again(what: str, tmp_pa
     store = tmp_path / "map.zarr"
     whole = wl.sweep(predictor(), **GIVEN, store=store).load()
     DAMAGE[what](store)
-    with pytest.warns(wl.ResumeWarning, match="9 of 10 blocks are kept"):
+    with pytest.warns(ResumeWarning, match="9 of 10 blocks are kept"):
         resumed = wl.sweep(predictor(), **GIVEN, store=store, resume=True)
     xr.testing.assert_identical(resumed.load(), whole)
 
@@ -112,7 +113,7 @@ def test_a_store_whose_array_is_not_described_is_refused(tmp_path: Path) -> None
     store = tmp_path / "map.zarr"
     wl.sweep(predictor(), **GIVEN, store=store)
     (store / "wear_rate" / "zarr.json").write_text("garbage")
-    with pytest.raises(wl.OutputError, match=r"map.zarr' is damaged .*; remove it to start again"):
+    with pytest.raises(OutputError, match=r"map.zarr' is damaged .*; remove it to start again"):
         wl.sweep(predictor(), **GIVEN, store=store, resume=True)
 
 
@@ -128,7 +129,7 @@ def test_other_conditions_or_outputs_are_refused(changes: dict[str, Any], messag
     store = tmp_path / "map.zarr"
     wl.sweep(predictor(), **GIVEN, store=store)
     before = contents(tmp_path)
-    with pytest.raises(wl.OutputError, match=message):
+    with pytest.raises(OutputError, match=message):
         wl.sweep(predictor(), **{**GIVEN, **changes}, store=store, resume=True)
     assert contents(tmp_path) == before
 
@@ -138,16 +139,16 @@ def test_another_law_or_version_is_refused(tmp_path: Path, monkeypatch: pytest.M
     interrupted(store, monkeypatch)
     predict = held(tmp_path / "gate")
     other = predict.with_law(predict.wear_law.model_copy(update={"slope": Q(2.0, "mm")}))
-    with pytest.raises(wl.OutputError, match=r"predict.laws.0.slope: "):
+    with pytest.raises(OutputError, match=r"predict.laws.0.slope: "):
         wl.sweep(other, **GIVEN, store=store, resume=True)
     with monkeypatch.context() as patched:
         patched.setattr("wearlaw_apps.sweeps.provenance.__version__", "99.0")  # private: another version of wearlaw
-        with pytest.raises(wl.OutputError, match="wearlaw: "):
+        with pytest.raises(OutputError, match="wearlaw: "):
             wl.sweep(predict, **GIVEN, store=store, resume=True)
     monkeypatch.setattr(
         "wearlaw.loader.Shelf.distribution", lambda *_: "another 1.2.3"
     )  # private: what is installed, changed for a test
-    with pytest.raises(wl.OutputError, match="wear law held: "):
+    with pytest.raises(OutputError, match="wear law held: "):
         wl.sweep(predict, **GIVEN, store=store, resume=True)
 
 
@@ -166,14 +167,17 @@ def test_what_is_in_the_way_is_refused_and_kept(tmp_path: Path, monkeypatch: pyt
         ("file", True),
         ("file/map.zarr", False),
     ):
-        with pytest.raises(wl.OutputError, match=name.partition("/")[0]):
+        with pytest.raises(OutputError, match=name.partition("/")[0]):
             wl.sweep(predictor(), **GIVEN, store=tmp_path / name, resume=resume)
     assert contents(tmp_path) == before
 
 
 @pytest.mark.parametrize("resume", [False, True])
 def test_a_second_writer_is_refused(resume: bool, tmp_path: Path) -> None:
-    with filelock.FileLock(tmp_path / "map.zarr.lock"), pytest.raises(wl.OutputError, match="by another process"):
+    with (
+        filelock.FileLock(tmp_path / "map.zarr.lock"),
+        pytest.raises(OutputError, match="by another process"),
+    ):
         wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=resume)
     wl.sweep(predictor(), **GIVEN, store=tmp_path / "map.zarr", resume=resume)
 
@@ -245,7 +249,7 @@ def wait_for(blocks: int, running: subprocess.Popen[str], folder: Path) -> None:
         time.sleep(0.005)
 
 
-@pytest.mark.filterwarnings("ignore::wearlaw.ResumeWarning")
+@pytest.mark.filterwarnings("ignore::wearlaw.errors.ResumeWarning")
 @pytest.mark.skipif(os.name == "nt", reason="there is no SIGKILL")
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_sweep_killed_at_any_moment_resumes_to_the_same_numbers(workers: int, tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ import wearlaw as wl
 from tests.core.axles import KTH, Axle
 from tests.plugins.sweeps.sweeps import interrupted_after, predictor, told
 from wearlaw import Q
+from wearlaw.errors import DataError, OutputError, ResumeWarning
 from wearlaw_apps.sweeps import plan, points  # private: small blocks
 
 ROWS = 100
@@ -172,11 +173,11 @@ def test_a_fault_far_down_is_found_in_any_piece(tmp_path: Path, monkeypatch: pyt
     table = frame()
     table.loc[63, "Fz [N]"] = -1.0
     table.to_csv(tmp_path / "run.csv", index=False)
-    with pytest.raises(wl.DataError, match=r"line 65, column 'Fz \[N\]': .*got -1.000 N"):
+    with pytest.raises(DataError, match=r"line 65, column 'Fz \[N\]': .*got -1.000 N"):
         swept(tmp_path / "run.csv")
     table.loc[63, "Fz [N]"] = np.nan
     table.to_csv(tmp_path / "run.csv", index=False)
-    with pytest.raises(wl.DataError, match=r"line 65, column 'Fz \[N\]': is missing"):
+    with pytest.raises(DataError, match=r"line 65, column 'Fz \[N\]': is missing"):
         swept(tmp_path / "run.csv")
 
 
@@ -194,7 +195,7 @@ def test_a_row_that_only_its_block_shows_to_be_wrong_is_named(
     given: Any = {"load": "80 kN", "longitudinal_creepage": "0.2 %", "spin": "0.3 1/m"}
     columns = {"displacement": "y", "friction_coefficient": "mu"}
     predict: Any = Axle() | wl.contact_model("fastsim") | KTH
-    with pytest.raises(wl.DataError, match="line 35, column 'mu': friction_coefficient: must be a positive"):
+    with pytest.raises(DataError, match="line 35, column 'mu': friction_coefficient: must be a positive"):
         wl.sweep(predict, tmp_path / "run.csv", columns=columns, workers=workers, **given)
     table["mu"] = 0.3
     ds = wl.sweep(predict, table.rename(columns={"y [mm]": "displacement [mm]", "mu": "friction_coefficient"}), **given)
@@ -207,10 +208,10 @@ def test_a_row_that_only_its_block_shows_to_be_wrong_is_named(
 def test_rows_of_tables_in_memory_are_counted() -> None:
     ds = dataset()
     ds.Fz[7], ds.slip[9] = np.nan, -2.0
-    with pytest.raises(wl.DataError, match=r"row 7 \(the first is row 0\), column 'Fz \[N\]': is missing"):
+    with pytest.raises(DataError, match=r"row 7 \(the first is row 0\), column 'Fz \[N\]': is missing"):
         swept(ds)
     ds.Fz[7] = 5e3
-    with pytest.raises(wl.DataError, match=r"row 9 \(the first is row 0\): creepage: must not exceed"):
+    with pytest.raises(DataError, match=r"row 9 \(the first is row 0\): creepage: must not exceed"):
         swept(ds)
 
 
@@ -238,7 +239,7 @@ def test_an_interrupted_sweep_over_a_file_is_resumed(tmp_path: Path, monkeypatch
         with pytest.raises(KeyboardInterrupt):
             swept(tmp_path / "run.csv", store=tmp_path / "map.zarr")
     seen = told(monkeypatch)
-    with pytest.warns(wl.ResumeWarning):
+    with pytest.warns(ResumeWarning):
         resumed = swept(tmp_path / "run.csv", store=tmp_path / "map.zarr", resume=True)
     assert 0 < seen[1] < ROWS  # done before, and not again
     xr.testing.assert_identical(resumed.load(), whole)
@@ -253,7 +254,7 @@ def test_a_changed_file_is_not_resumed(column: str, name: str, tmp_path: Path) -
     table = frame()
     table.loc[50, column] += 1e-3
     table.to_csv(tmp_path / "run.csv", index=False)
-    with pytest.raises(wl.OutputError, match=rf"since these have changed:\n  {name}: was 100 values.* of run.csv, SHA"):
+    with pytest.raises(OutputError, match=rf"since these have changed:\n  {name}: was 100 values.* of run.csv, SHA"):
         swept(tmp_path / "run.csv", store=tmp_path / "map.zarr", resume=True)
 
 
@@ -342,6 +343,6 @@ def test_what_does_not_fit_a_pattern_is_named(tmp_path: Path, changes: Any, colu
 def test_a_file_that_is_no_table_shows_how_it_was_read(tmp_path: Path) -> None:
     (tmp_path / "run.out").write_text("own run\nMon Jan 1 2024\n1 2 3\n")
     with pytest.raises(
-        wl.DataError, match=r"none of its columns is a condition; .* it begins: own run; Mon Jan 1 2024; 1 2"
+        DataError, match=r"none of its columns is a condition; .* it begins: own run; Mon Jan 1 2024; 1 2"
     ):
         wl.sweep(predictor(), tmp_path / "run.out", keep={"own": "own run"}, **FRICTION)

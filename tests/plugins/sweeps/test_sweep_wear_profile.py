@@ -15,6 +15,7 @@ import xarray as xr
 import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import wheelset
 from wearlaw import Q
+from wearlaw.errors import DataError, OutputError, ResumeWarning
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
 
@@ -75,13 +76,13 @@ def test_sum_in_a_store_goes_on_after_an_interrupt(tmp_path: Path, monkeypatch: 
     assert others
     shutil.rmtree(first)
     (second / "depth/c/0/0").write_bytes(b"damaged")
-    with pytest.raises(wl.OutputError, match="resume"):
+    with pytest.raises(OutputError, match="resume"):
         wl.wear_profiles(PREDICT, TABLE, store=path, **given)
-    with pytest.warns(wl.ResumeWarning, match=f"{len(others)} of {len(others) + 2} blocks are kept"):
+    with pytest.warns(ResumeWarning, match=f"{len(others)} of {len(others) + 2} blocks are kept"):
         xr.testing.assert_identical(due, wl.wear_profiles(PREDICT, TABLE, store=path, resume=True, **given))
     with xr.open_zarr(path, consolidated=False) as stored:
         xr.testing.assert_identical(stored.load(), due)
-    with pytest.raises(wl.OutputError, match="kept"):
+    with pytest.raises(OutputError, match="kept"):
         wl.wear_profiles(PREDICT, TABLE.iloc[::-1], store=path, resume=True, **given)
 
 
@@ -128,11 +129,11 @@ def test_a_row_without_a_balance_is_named(monkeypatch: pytest.MonkeyPatch) -> No
     """Few rounds balance the loads in the middle of the track, and do not on a flange."""
     monkeypatch.setattr("wearlaw_models.rigs.wheelset.stand.STEPS", 3)  # private: the rounds of a search
     table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 6.31], "share": 0.5})
-    with pytest.raises(wl.DataError, match=r"row 1 .*lateral_displacement = 6.31 mm.*no normal forces balance"):
+    with pytest.raises(DataError, match=r"row 1 .*lateral_displacement = 6.31 mm.*no normal forces balance"):
         wl.wear_profiles(PREDICT, table, share="share", **GIVEN)
 
 
 def test_a_row_in_which_the_wheel_climbs_is_named() -> None:
     table = pd.DataFrame({"lateral_displacement [mm]": [0.0, 1.0, 7.0], "share": [0.5, 0.25, 0.25]})
-    with pytest.raises(wl.DataError, match=r"row 2 .*lateral_displacement = 7 mm.*climbs"):
+    with pytest.raises(DataError, match=r"row 2 .*lateral_displacement = 7 mm.*climbs"):
         wl.wear_profiles(PREDICT, table, share="share", **GIVEN)

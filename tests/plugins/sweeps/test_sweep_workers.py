@@ -16,7 +16,7 @@ from wearlaw import (
     Q,
     kernels,  # private: which kernels a worker chose
 )
-from wearlaw_apps.sweeps import SweepError, WorkerWarning
+from wearlaw.errors import ModelError, SweepError, WorkerWarning
 
 pytestmark = pytest.mark.usefixtures("small_blocks")
 
@@ -42,7 +42,7 @@ def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: 
     xr.testing.assert_equal(swept, wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS))
 
 
-@pytest.mark.filterwarnings("ignore::wearlaw_apps.sweeps.WorkerWarning")
+@pytest.mark.filterwarnings("ignore::wearlaw.errors.WorkerWarning")
 def test_a_sweep_whose_workers_die_again_and_again_is_given_up(tmp_path: Path) -> None:
     predict = deadly(tmp_path / "die always", always=True)
     with pytest.raises(SweepError, match="given up"):
@@ -51,13 +51,13 @@ def test_a_sweep_whose_workers_die_again_and_again_is_given_up(tmp_path: Path) -
 
 def test_what_a_model_raises_in_a_worker_is_raised_here() -> None:
     failing = predictor(Failing(slope=Q(1.0, "mm")))
-    with pytest.raises(wl.ModelError, match="wear law 'failing' failed: OverflowError: too much"):
+    with pytest.raises(ModelError, match="wear law 'failing' failed: OverflowError: too much"):
         wl.sweep(failing, **CONDITIONS, workers=2)
     assert wl.sweep(predictor(), **CONDITIONS, workers=2).wear_rate.notnull().all()
 
 
 def test_what_would_end_a_worker_is_an_error_here() -> None:
-    with pytest.raises(wl.ModelError, match="SystemExit: 0"):
+    with pytest.raises(ModelError, match="SystemExit: 0"):
         wl.sweep(ending(), **CONDITIONS, workers=2)
 
 

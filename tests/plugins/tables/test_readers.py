@@ -11,6 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.cases import wearlaw
 from tests.core.distributions import Install
+from wearlaw.errors import DataError
 
 PAGE = Path(__file__).parents[3] / "docs" / "your-files.md"
 (PLUGIN,) = re.findall(r":caption: wearlaw_polar\.py\n\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
@@ -34,7 +35,5 @@ def test_files_are_read_by_the_readers_of_plugins(install: Install, tmp_path: Pa
 def test_a_reader_that_returns_no_profile_is_named(install: Install, tmp_path: Path) -> None:
     install("polar", PLUGIN)
     (tmp_path / "head.fwf").write_text("a b\n1 2\n")
-    with pytest.raises(
-        wl.DataError, match=r"head\.fwf': the reader of '\.fwf' returned a DataFrame, not a wl\.Profile"
-    ):
+    with pytest.raises(DataError, match=r"head\.fwf': the reader of '\.fwf' returned a DataFrame, not a wl\.Profile"):
         wl.read_profile(tmp_path / "head.fwf", kind="rail")

@@ -19,6 +19,7 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.plugins.tables.sheets import xlsx
 from wearlaw import Q
+from wearlaw.errors import DataError
 from wearlaw_apps.tables import Table
 
 FORCE, SLIP = np.linspace(5.0, 7.0, 50), np.linspace(-0.02, 0.03, 50)
@@ -139,15 +140,15 @@ WRONG: dict[str, tuple[str, dict[str, Any], str]] = {
 @pytest.mark.parametrize("name", WRONG)
 def test_what_is_wrong_is_named_by_its_place(name: str) -> None:
     content, options, message = WRONG[name]
-    with pytest.raises(wl.DataError, match=message):
+    with pytest.raises(DataError, match=message):
         text(content, **{"columns": COLUMNS, **options})["force"]
 
 
 def test_all_wrong_cells_are_named() -> None:
-    with pytest.raises(wl.DataError) as error:
+    with pytest.raises(DataError) as error:
         text("a,b\n1,2\nx,y\n\nz,2\n")["a"]
     assert [problem.split(",")[0] for problem in error.value.problems] == ["line 3", "line 5"]
-    with pytest.raises(wl.DataError) as error:
+    with pytest.raises(DataError) as error:
         text("a,b\n1,2,3\n\n1,2\n4\n")["a"]
     assert [problem.split(":")[0] for problem in error.value.problems] == [
         "line 2",
@@ -163,7 +164,7 @@ def test_a_spreadsheet_is_a_table_with_the_rows_of_its_sheet(tmp_path: Path, inl
     assert table.numbers("force").tolist() == [7.1, 7.25]
     assert table.numbers("slip").tolist() == [-0.5, 1e-3]
     assert (table.lines.tolist(), table.comments) == ([3, 5], ["made up"])
-    with pytest.raises(wl.DataError, match=r"has 2 sheets with cells, 'sheet1\.xml' and 'sheet2\.xml'; name one"):
+    with pytest.raises(DataError, match=r"has 2 sheets with cells, 'sheet1\.xml' and 'sheet2\.xml'; name one"):
         wl.read_table(xlsx(tmp_path / "two.xlsx", rows, rows))
 
 
@@ -177,7 +178,7 @@ def test_a_row_of_units_below_the_heads(units: str, expected: bool) -> None:
     assert (found.columns["force"].unit, found.columns["xi"].unit) == (("kN", "") if expected else (None, None))
     if expected:
         assert found.numbers("force").tolist() == [1.0, 4.0]
-        with pytest.raises(wl.DataError, match="line 4, column 's"):
+        with pytest.raises(DataError, match="line 4, column 's"):
             wl.read_table(io.StringIO(f"s{mark}Fz\n[m]{mark}kN\n1{mark}2\nx{mark}5\n"))["s"]
 
 
@@ -219,7 +220,7 @@ def test_blocks_of_a_vehicle_program_are_a_table() -> None:
     ],
 )
 def test_blocks_that_do_not_fit_are_named(change: tuple[str, str], message: str) -> None:
-    with pytest.raises(wl.DataError, match=message):
+    with pytest.raises(DataError, match=message):
         text(BLOCKS.replace(*change), columns=None)
 
 
@@ -228,20 +229,20 @@ def test_what_is_no_table_is_refused(tmp_path: Path) -> None:
     (tmp_path / "old.csv").write_bytes("Größe\n1\n".encode("cp1252"))
     (tmp_path / "none.csv").write_bytes(b"")
     (tmp_path / "run.xlsx").write_bytes(b"PK\x03\x04\x14\x00\x06\x00")
-    with pytest.raises(wl.DataError, match=r"is no spreadsheet in \.xlsx \(.*\); save its sheet as CSV"):
+    with pytest.raises(DataError, match=r"is no spreadsheet in \.xlsx \(.*\); save its sheet as CSV"):
         wl.read_table(tmp_path / "run.xlsx")
-    with pytest.raises(wl.DataError, match="cannot be read: it is a spreadsheet, not text; save its sheet as CSV"):
+    with pytest.raises(DataError, match="cannot be read: it is a spreadsheet, not text; save its sheet as CSV"):
         wl.read_table((tmp_path / "run.xlsx").rename(tmp_path / "run.csv"))
     for wrong in ("run.nc", "old.csv", "none.csv", "missing.csv", ""):
-        with pytest.raises(wl.DataError, match=re.escape(str(tmp_path / wrong))):
+        with pytest.raises(DataError, match=re.escape(str(tmp_path / wrong))):
             wl.read_table(tmp_path / wrong)
-    with pytest.raises(wl.DataError, match="table"):
+    with pytest.raises(DataError, match="table"):
         wl.read_table(3)  # type: ignore[arg-type]
-    with pytest.raises(wl.DataError, match="several levels"):
+    with pytest.raises(DataError, match="several levels"):
         wl.read_table(frame().set_index(["Time [s]", "note"]))
 
 
 def test_variables_lie_along_one_dimension() -> None:
     assert wl.read_table(dataset().assign(one=3.0), {"n": "one"}).numbers("n").tolist() == [3.0] * 50
-    with pytest.raises(wl.DataError, match="'other' along car"):
+    with pytest.raises(DataError, match="'other' along car"):
         wl.read_table(dataset().assign(other=("car", [1.0, 2.0])))

@@ -42,6 +42,7 @@ from tests.plugins.tassini2010.paper import (
 )
 from wearlaw_apps.papers.tassini2010 import claims  # private: one claim or table, without the study
 from wearlaw_apps.papers.tassini2010.bench import Bench  # private: one claim or table, without the study
+from wearlaw_apps.studies.sections import Verdict  # private: the type alone
 
 BEGIN, END = GLOBAL[1] / GLOBAL[0] * AREA, GLOBAL[3] * AREA
 """Where severe and where catastrophic wear begin [N]."""
@@ -214,7 +215,7 @@ RATIO = 0.25 * math.pi * 7.85 / 5.3
 BY_MEAN = 2.1e9**2 * 16.0 * RADIUS / (math.pi * MODULUS) / 1e3
 """Where the mean pressure is 2.1 GPa [kN/m]: p = P/(2a), a² = 4PR/(πE*)."""
 
-PAPER: dict[str, tuple[wl.Verdict, Callable[[], list[Expected]]]] = {
+PAPER: dict[str, tuple[Verdict, Callable[[], list[Expected]]]] = {
     "elliptic in full slip": ("holds in part", elliptic_in_full_slip),
     "elliptic in partial slip": (
         "holds",
@@ -259,7 +260,7 @@ PAPER: dict[str, tuple[wl.Verdict, Callable[[], list[Expected]]]] = {
 }
 """The verdict on each claim and the numbers of its row, in their order, by the formulas of the paper and integrals."""
 
-MEAN_KEPT: dict[str, tuple[wl.Verdict, Callable[[], list[Expected]]]] = {
+MEAN_KEPT: dict[str, tuple[Verdict, Callable[[], list[Expected]]]] = {
     "KTH on both theories": ("holds in part", lambda: [*on_both_theories(), *beyond_slow("fastsim", "exact")]),
     "KTH local like global": ("holds in part", lambda: [*like_global(), *beyond_slow("exact", "global")]),
     "lower slip speed": ("holds", lambda: [20.0 / SPEED]),
@@ -346,7 +347,7 @@ def of_density(density: float) -> dict[str, Any]:
     ],
 )
 def test_a_verdict_turns_where_the_formulas_say(
-    bench: Bench, claim: Callable[[Bench], wl.CheckedClaim], changes: dict[str, Any], expected: wl.Verdict
+    bench: Bench, claim: Callable[[Bench], wl.CheckedClaim], changes: dict[str, Any], expected: Verdict
 ) -> None:
     assert claim(under(bench, **changes)).verdict == expected
 

@@ -12,6 +12,7 @@ import wearlaw as wl
 from tests.plugins.kit.strips import Strips
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import CompositionError, ModelError
 from wearlaw.numerics import integrate  # private: integrals at the size of blocks
 from wearlaw.units.variables import VARIABLES  # private: the list of variables and their units
 
@@ -227,7 +228,7 @@ def test_a_body_that_is_not_there_is_named() -> None:
 
 def test_means_of_the_patch_have_no_profile() -> None:
     result = (RIG | FASTSIM | wl.patch_mean() | PER_ENERGY)(**CONDITIONS)
-    with pytest.raises(wl.CompositionError, match="gives means of the whole patch"):
+    with pytest.raises(CompositionError, match="gives means of the whole patch"):
         result.wear_profile("wheel")
     assert result.wear_rate.to("kg/m^3").magnitude == pytest.approx(
         1e-12 * result.wear_index_density.to("N/m^2").magnitude, rel=8 * EPS
@@ -235,7 +236,7 @@ def test_means_of_the_patch_have_no_profile() -> None:
 
 
 def test_a_law_of_the_whole_patch_needs_patch_means() -> None:
-    with pytest.raises(wl.CompositionError, match="stated for the means of the whole patch"):
+    with pytest.raises(CompositionError, match="stated for the means of the whole patch"):
         RIG | FASTSIM | wl.wear_law("brr")
     assert (RIG | FASTSIM | wl.patch_mean() | wl.wear_law("brr"))(**CONDITIONS).wear_rate.magnitude > 0
 
@@ -370,7 +371,7 @@ class Lost(Strips):
 
 def test_a_model_of_ellipses_that_gives_no_number_is_named_with_the_creepages() -> None:
     said = "contact model 'lost' gave a spin moment that is not finite, first for longitudinal creepage 0.2000 %"
-    with pytest.raises(wl.ModelError, match=said):
+    with pytest.raises(ModelError, match=said):
         (RIG | Lost(cells=8, strips=8))(**CONDITIONS).spin_moment  # noqa: B018
 
 

@@ -11,6 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 
 GIVEN: dict[str, Any] = {
     "wheel_radius": Q(460, "mm"),
@@ -139,7 +140,7 @@ def test_a_rig_survives_json_in_a_pipeline() -> None:
 
 
 def test_only_models_of_elliptic_contact_follow_it() -> None:
-    with pytest.raises(wl.CompositionError) as caught:
+    with pytest.raises(CompositionError) as caught:
         rig() | wl.contact_model("exact")
     message = str(caught.value)
     assert message.startswith(
@@ -149,11 +150,11 @@ def test_only_models_of_elliptic_contact_follow_it() -> None:
 
 
 def test_a_line_model_given_an_ellipse_says_so() -> None:
-    with pytest.raises(wl.CompositionError, match="contact model 'exact' does not solve elliptic contacts, only line"):
+    with pytest.raises(CompositionError, match="contact model 'exact' does not solve elliptic contacts, only line"):
         wl.contact_model("exact").solve(rig().problem(**CONDITIONS))
 
 
 def test_an_elliptic_model_given_a_line_says_so() -> None:
     line = wl.TwinDisc.suros().problem(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.3)
-    with pytest.raises(wl.CompositionError, match="contact model 'polach' does not solve line contacts, only elliptic"):
+    with pytest.raises(CompositionError, match="contact model 'polach' does not solve line contacts, only elliptic"):
         wl.contact_model("polach").solve(line)

@@ -10,7 +10,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
-from wearlaw_apps.studies import CaseError
+from wearlaw.errors import CaseError
 
 RIG = """
 title = "A worn wheel"

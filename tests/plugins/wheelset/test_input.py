@@ -10,6 +10,7 @@ import pytest
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 from wearlaw_models.rigs.wheelset import stand  # private: the accuracy that a search ends at
 
 FIELDS: dict[str, Any] = {
@@ -111,9 +112,7 @@ def test_coordinates_of_the_geometry_are_the_values_given(unit: str) -> None:
 
 
 def test_contact_models_that_do_not_solve_strips_are_refused_at_once() -> None:
-    with pytest.raises(
-        wl.CompositionError, match="'polach' solves elliptic contacts only, but a Wheelset makes patches"
-    ):
+    with pytest.raises(CompositionError, match="'polach' solves elliptic contacts only, but a Wheelset makes patches"):
         pair() | wl.contact_model("polach")
     predict: Any = pair(patch="ellipse") | wl.contact_model("polach")
     assert np.isfinite(predict(**GIVEN).lateral_force.magnitude[:, 0]).all()

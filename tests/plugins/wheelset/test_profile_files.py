@@ -16,6 +16,7 @@ import wearlaw as wl
 from tests.plugins.tables.sheets import xlsx
 from tests.plugins.wheelset.published_profiles import S1002, UIC60
 from wearlaw import Array, Q
+from wearlaw.errors import DataError, OutputError
 from wearlaw_models.rigs.wheelset.files import LARGEST  # private: the largest file that is read
 
 WHEEL, RAIL = wl.Profile.s1002(), wl.Profile.uic60()
@@ -80,7 +81,7 @@ def test_the_wheel_of_the_benchmark_is_mirrored_as_its_file_says(tmp_path: Path)
     text = simpack(S1002, "mirror.y = 1;mirror.z = 0;inversion = 1")
     found = values(wl.read_profile(saved(tmp_path, "S1002.PRW", text)))
     assert found == pytest.approx(S1002 * [-1.0, 1.0], abs=1e-12)
-    with pytest.raises(wl.DataError, match=r"S1002\.PRW': the wheel is mirrored: .* has line 2\d "):
+    with pytest.raises(DataError, match=r"S1002\.PRW': the wheel is mirrored: .* has line 2\d "):
         wl.read_profile(saved(tmp_path, "S1002.PRW", text.replace("mirror.y = 1", "mirror.y = 0")))
     found = values(wl.read_profile(tmp_path / "S1002.PRW", mirror_y=True))
     assert found == pytest.approx(S1002 * [-1.0, 1.0], abs=1e-12)
@@ -153,7 +154,7 @@ def test_a_file_without_units_takes_those_of_the_argument(tmp_path: Path) -> Non
     text = simpack(table() / 25.4).replace("    units.len.f    = +1.000000000000000e+03\n", "")
     found = values(wl.read_profile(saved(tmp_path, "a.prw", text), units="inch"))
     assert found == pytest.approx(table(), abs=1.3e-5)
-    with pytest.raises(wl.DataError, match=r"a\.prw': units: "):
+    with pytest.raises(DataError, match=r"a\.prw': units: "):
         wl.read_profile(tmp_path / "a.prw", units="kg")
 
 
@@ -191,7 +192,7 @@ def test_a_wheel_of_miniprof_has_its_taping_line_behind_its_flange(tmp_path: Pat
     text = NEW.format(columns="X,Y", count=count, more="WheelDiameterTaperline=70.0000\nSd=32.5") + rows(measured, " ")
     assert values(wl.read_profile(saved(tmp_path, "a.whl", text))) == pytest.approx(points, abs=1e-5)
     text = text.replace("WheelDiameterTaperline=70.0000\n", "")
-    with pytest.raises(wl.DataError, match=r'a\.whl\': the wheel must have its origin at .* shift_y="-70 mm"'):
+    with pytest.raises(DataError, match=r'a\.whl\': the wheel must have its origin at .* shift_y="-70 mm"'):
         wl.read_profile(saved(tmp_path, "a.whl", text))
     assert values(wl.read_profile(tmp_path / "a.whl", shift_y="-70 mm")) == pytest.approx(points, abs=1e-5)
     old = OLD + rows(np.column_stack([measured, np.zeros(count)]), " ")
@@ -247,7 +248,7 @@ def test_miniprof_is_read_without_an_empty_line_with_remarks_and_by_parts(tmp_pa
     for part in (1, 2):
         found = values(wl.read_profile(path, kind="wheel", shift_y="-70 mm", part=part))
         assert found == pytest.approx(points, abs=1e-5)
-    with pytest.raises(wl.DataError, match="part must be from 1 to 2, got 3"):
+    with pytest.raises(DataError, match="part must be from 1 to 2, got 3"):
         wl.read_profile(path, kind="wheel", part=3)
 
 
@@ -325,7 +326,7 @@ def mangled(points: Array, **changes: Any) -> Array:
 def test_repair_does_what_the_errors_suggest_and_lists_it(tmp_path: Path, change: Any, said: str) -> None:
     points = table()
     path = saved(tmp_path, "a.csv", rows(change(points), ","))
-    with pytest.raises(wl.DataError):
+    with pytest.raises(DataError):
         wl.read_profile(path, kind="wheel")
     with pytest.warns(wl.UnusualWarning) as caught:
         profile = wl.read_profile(path, kind="wheel", repair=True)
@@ -345,7 +346,7 @@ def test_a_case_may_name_the_same_options(tmp_path: Path) -> None:
 
 def test_repair_leaves_points_alone_that_are_in_no_order(tmp_path: Path) -> None:
     mixed = np.random.default_rng(1).permutation(table())
-    with pytest.raises(wl.DataError, match="runs back on itself"):
+    with pytest.raises(DataError, match="runs back on itself"):
         wl.read_profile(saved(tmp_path, "a.csv", rows(mixed, ",")), kind="wheel", repair=True)
 
 
@@ -362,9 +363,7 @@ def test_a_straight_side_may_be_given_by_its_ends(tmp_path: Path, lean: float) -
         across = (curve.y[side] - high[0]) * (low[1] - high[1]) - (curve.z[side] - high[1]) * (low[0] - high[0])
         # A cubic spline forgets its bend at the corner by 2 - sqrt(3) a point, at 0.5 mm: 7 % after 1 mm.
         assert np.abs(across).max() / np.hypot(*(low - high)) < 0.02e-3
-    with pytest.raises(
-        wl.DataError, match=r"has a gap behind it: .* if it is straight there, in a file give repair=True"
-    ):
+    with pytest.raises(DataError, match=r"has a gap behind it: .* if it is straight there, in a file give repair=True"):
         wl.read_profile(saved(tmp_path, "b.csv", rows(np.delete(points, np.s_[60:90], axis=0), ",")), kind="rail")
 
 
@@ -432,7 +431,7 @@ def test_a_spreadsheet_is_read(tmp_path: Path) -> None:
     assert values(wl.read_profile(path, kind="wheel")) == pytest.approx(points, abs=1e-12)
     xlsx(path, [["notes", "more"]], [["z", "y"], *points[:, ::-1].tolist()])
     assert values(wl.read_profile(path, kind="wheel", sheet="sheet2.xml")) == pytest.approx(points, abs=1e-12)
-    with pytest.raises(wl.DataError, match=r"has 2 sheets with cells, .* name one by sheet="):
+    with pytest.raises(DataError, match=r"has 2 sheets with cells, .* name one by sheet="):
         wl.read_profile(path, kind="wheel")
 
 
@@ -485,15 +484,15 @@ PARTS += "\n[Profile2Info]\nColumnDef=Y,X\n[Profile2Points]\n" + rows(table()[::
 )  # fmt: skip
 def test_a_file_that_is_no_profile_says_where_and_why(tmp_path: Path, name: str, text: Any, message: str) -> None:
     path = saved(tmp_path, name, text)
-    with pytest.raises(wl.DataError, match=message) as caught:
+    with pytest.raises(DataError, match=message) as caught:
         wl.read_profile(path)
     assert str(caught.value).startswith(f"profile '{path}': ")
 
 
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
-    with pytest.raises(wl.DataError, match="there is no such file in '"):
+    with pytest.raises(DataError, match="there is no such file in '"):
         wl.read_profile(tmp_path / "a.prw")
-    with pytest.raises(wl.DataError, match="Is a directory"):
+    with pytest.raises(DataError, match="Is a directory"):
         wl.read_profile(tmp_path)
 
 
@@ -563,11 +562,11 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
 
     with monkeypatch.context() as patched:
         patched.setattr(os, "replace", full)
-        with pytest.raises(wl.OutputError, match=r"cannot write '.*a\.prw': No space left on device"):
+        with pytest.raises(OutputError, match=r"cannot write '.*a\.prw': No space left on device"):
             wl.write_profile(path, WHEEL)
     assert [one.name for one in tmp_path.iterdir()] == ["a.prw"]
     assert path.read_text() == "before"
-    with pytest.raises(wl.OutputError, match="cannot write"):
+    with pytest.raises(OutputError, match="cannot write"):
         wl.write_profile(tmp_path / "none" / "a.prw", WHEEL)
     wl.write_profile(path, WHEEL)
     assert wl.read_profile(path).kind == "wheel"

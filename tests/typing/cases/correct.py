@@ -143,7 +143,7 @@ class Same(wl.ContactModel):
     inner: wl.ContactModelField
 
     @property
-    def scale(self) -> wl.Scale:
+    def scale(self) -> Literal["patch", "cells"]:
         return "patch" if self.inner.scale == "patch" else "cells"
 
     def solve_line(self, problem: wl.Problem) -> wl.Contact:

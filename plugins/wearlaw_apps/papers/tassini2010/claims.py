@@ -14,6 +14,7 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_apps.papers.tassini2010.bench import HIGHEST, PARTIAL, TESTED, Bench, borders
+from wearlaw_apps.studies.sections import Verdict
 
 SAME, SIMILAR, GOOD = 0.02, 0.10, 0.20
 
@@ -86,7 +87,7 @@ def checked(bench: Bench, tests: tuple[Array, Array]) -> dict[str, wl.CheckedCla
     }
 
 
-def verdict(parts: Iterable[bool | np.bool_]) -> wl.Verdict:
+def verdict(parts: Iterable[bool | np.bool_]) -> Verdict:
     """Return the verdict on a claim from its parts, each of which holds or not."""
     held = list(parts)
     return "holds" if all(held) else "holds in part" if any(held) else "does not hold"

@@ -77,7 +77,7 @@ class Exact(wl.LineContactModel):
         d = np.minimum(problem.creepage / _saturation(problem), 1.0)
         return problem.friction_coefficient * problem.normal_force_per_width * d * (2.0 - d)
 
-    def crossings(self, problem: wl.Problem, variable: wl.FieldVariable, value: Array) -> Array | None:
+    def crossings(self, problem: wl.Problem, variable: str, value: Array) -> Array | None:
         """Return where the pressure or the slip crosses a value."""
         if variable == "pressure":
             return wl.hertz.distances_at_pressure(value, problem.half_width, problem.max_pressure)

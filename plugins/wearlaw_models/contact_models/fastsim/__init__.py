@@ -184,7 +184,7 @@ class Fastsim(wl.LineContactModel):
             share = 2.0 / np.pi * (np.arctan(d) + d / (1.0 + d**2))
         return problem.friction_coefficient * problem.normal_force_per_width * share
 
-    def crossings(self, problem: wl.Problem, variable: wl.FieldVariable, value: Array) -> Array | None:
+    def crossings(self, problem: wl.Problem, variable: str, value: Array) -> Array | None:
         """Return where the pressure or the slip crosses a value."""
         a, slope = problem.half_width, self._bound_slope(problem)
         if variable == "pressure":

@@ -423,7 +423,7 @@ def _columns(source: Path | io.StringIO, units: str, decimal: str, sheet: str | 
         for column, values in zip(columns, (y, z), strict=True):
             for row in np.flatnonzero(np.isnan(values))[:1]:
                 raise FileError(f"{table.where(int(row), column.name)}: is missing")
-    except wl.DataError as error:
+    except wl.errors.DataError as error:
         subject = str(error) if isinstance(source, Path) else "it has no points"
         raise FileError("; ".join(error.problems[:3]) or subject) from None
     if not y.size:
@@ -457,7 +457,9 @@ def write_points(path: Path, kind: str, y: Array, z: Array) -> None:
         finally:
             temporary.unlink(missing_ok=True)
     except (OSError, ValueError) as error:
-        raise wl.OutputError(f"cannot write {wl.shown(path)}: {getattr(error, 'strerror', None) or error}") from None
+        raise wl.errors.OutputError(
+            f"cannot write {wl.shown(path)}: {getattr(error, 'strerror', None) or error}"
+        ) from None
 
 
 def _rows(y: Array, z: Array, mark: str) -> list[str]:

@@ -738,9 +738,9 @@ def read_profile(
         fields.lines = points.lines
         return Profile.model_validate(fields)
     except wl.ConfigurationError as error:
-        raise wl.DataError(f"profile {wl.shown(path)}: {'; '.join(map(str, error.problems))}") from None
+        raise wl.errors.DataError(f"profile {wl.shown(path)}: {'; '.join(map(str, error.problems))}") from None
     except wl.InputError as error:
-        raise wl.DataError(f"profile {wl.shown(path)}: {error}") from None
+        raise wl.errors.DataError(f"profile {wl.shown(path)}: {error}") from None
 
 
 def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
