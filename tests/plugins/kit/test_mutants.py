@@ -142,7 +142,6 @@ def test_right_models_pass(model: Any) -> None:
 
 MODELS_OF_THE_DOCUMENTATION = {
     "wearlaw_plateau": "Plateau",
-    "wearlaw_ours": "Ours",
     "wearlaw_fatigue": "Fatigue",
     "wearlaw_rigid": "Rigid",
     "wearlaw_rigid_ellipse": "RigidEllipse",
