@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -71,12 +71,32 @@ def equivalent_conicity(
             f"rolling_radius_difference: must change its sign, but lies between {1e3 * difference.min():.4g} and"
             f" {1e3 * difference.max():.4g} mm, so the wheelset runs to one side; give a table with both sides"
         )
+    theta = np.pi * ((np.arange(NODES) + 0.5) / NODES - 0.5)
+    return float(0.5 / np.mean(1.0 / np.sqrt(wave(y, difference, amplitude, theta).stiffness)) ** 2)
+
+
+class Wave(NamedTuple):
+    """A wave y = y_m + ŷ sin θ between two turning points."""
+
+    place: Array
+    """Displacements, y [m]."""
+    stiffness: Array
+    """(y'/(ŷ cos θ))², in the unit of the restoring difference over metres: a constant where that is linear."""
+
+
+def wave(y: Array, difference: Array, amplitude: float, theta: Array) -> Wave:
+    """Return the wave of y'' = -`difference`(y) with an amplitude [m], at angles [rad].
+
+    Raises
+    ------
+    InputError
+        If no wave fits into the table, or the difference does not steer the wheelset back.
+    """
     energy = scipy.interpolate.PchipInterpolator(y, difference).antiderivative()
     middle = _middle(energy, amplitude, y)
-    theta = np.pi * ((np.arange(NODES) + 0.5) / NODES - 0.5)
     place = np.clip(middle + amplitude * np.sin(theta), y[0], y[-1])
     ends = [energy(np.clip(middle + side * amplitude, y[0], y[-1])) for side in (-1.0, 1.0)]
-    height = np.where(theta < 0.0, ends[0], ends[1]) - energy(place)
+    height = np.where(np.sin(theta) < 0.0, ends[0], ends[1]) - energy(place)
     stiffness = 2.0 * height / (amplitude * np.cos(theta)) ** 2
     if not (stiffness > 0.0).all():
         worst = float(place[int(np.argmin(stiffness))])
@@ -84,7 +104,7 @@ def equivalent_conicity(
             f"rolling_radius_difference: does not steer the wheelset back across y = {1e3 * worst:.4g} mm, so there is"
             f" no wave with an amplitude of {1e3 * amplitude:.6g} mm; try another amplitude"
         )
-    return float(0.5 / np.mean(1.0 / np.sqrt(stiffness)) ** 2)
+    return Wave(place, stiffness)
 
 
 def _middle(energy: Any, amplitude: float, y: Array) -> float:
