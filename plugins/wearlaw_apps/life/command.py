@@ -33,6 +33,8 @@ LIFE = "life.json"
 @click.option("--sep", help="What separates the cells of LINE [default: semicolon, tab or comma].")
 @click.option("--decimal", default=".", show_default=True, help="Decimal mark of LINE.")
 @click.option("--until", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
+@click.option("--turn", metavar="MEASURE=VALUE", multiple=True, help="Limit at which the wheel is turned.")
+@click.option("--least-diameter", metavar="DIAMETER", help="Least diameter of a wheel, which ends the life.")
 @click.option("--set", "settings", metavar="NAME=VALUE", multiple=True,
               help="Condition of all states, or argument of wl.wear_out, such as sides=each.")  # fmt: skip
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
@@ -46,6 +48,8 @@ def life(
     sep: str | None,
     decimal: str,
     until: tuple[str, ...],
+    turn: tuple[str, ...],
+    least_diameter: str | None,
     settings: tuple[str, ...],
     workers: int,
     resume: bool,
@@ -62,7 +66,7 @@ def life(
 
     The first contact model and the first wear law of the case predict. The folder then holds life.csv, the measures
     at every step; profiles.csv; a figure; the worn profile, worn.csv (or that of each side, worn_left.csv and
-    worn_right.csv); and life.json.
+    worn_right.csv); cuts.csv, if it was turned; and life.json.
     """  # noqa: D301
     folder = output or folder_for(str(line), "life")
     partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
@@ -77,6 +81,7 @@ def life(
             result = wl.wear_out(
                 predict, line, over=value(over), columns=named or None,
                 sep=sep, decimal=decimal, until=values("--until", until),
+                turn=values("--turn", turn), least_diameter=least_diameter,
                 workers=workers, store=partial, resume=resume, progress=True, **arguments,
             )  # fmt: skip
         laws = [repr(law) for law in result.pipeline.laws]
@@ -93,7 +98,8 @@ def _tables(life: Life) -> dict[str, pd.DataFrame]:
     profiles = life.profiles.drop_vars("body")
     units = {name: variable.attrs.get("units") for name, variable in profiles.variables.items()}
     heads = {name: f"{name} [{unit}]" for name, unit in units.items() if unit}
-    tables = {"life": life.table, "profiles": profiles.to_dataframe().reset_index().rename(columns=heads)}
+    tables = {"cuts": life.cuts} if len(life.cuts) else {}
+    tables |= {"life": life.table, "profiles": profiles.to_dataframe().reset_index().rename(columns=heads)}
     for side, profile in zip(profiles["side"].values, life.worn_profiles[-1], strict=True):
         y, z = (value.magnitude for value in profile.points)
         tables["worn" if side == "mean" else f"worn_{side}"] = pd.DataFrame({"y [mm]": y, "z [mm]": z})

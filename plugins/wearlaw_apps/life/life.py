@@ -43,6 +43,11 @@ def name_and_unit(column: str) -> tuple[str, str]:
     return name, unit.removesuffix("]")
 
 
+def measure_of(name: str) -> str:
+    """Return the measure of a column, which may be that of one side."""
+    return name.removesuffix("_left").removesuffix("_right")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Life:
     """How profiles wear over a distance.
@@ -63,11 +68,14 @@ class Life:
         normal of the first profile. `mass` is what a wheel lost, or a metre of rail. `worn_area` is the area between
         the sections of the first profile and this one. `factor` is what the step's depths were multiplied by so that
         the removed mass is the predicted one. Where each side has its own profile, the names of their columns end with
-        "_left" and "_right".
+        "_left" and "_right". A cut has a row of its own, at the distance of the row before it.
     notes : tuple of tuple of str
         Notes on each step, such as how many patches lie outside the range of the law.
     limits : dict of str to float
-        The limits of `until`, in the units of the table, by column.
+        The limits of `until`, `turn` and `least_diameter`, in the units of the table, by column.
+    cuts : pandas.DataFrame
+        A row for each cut: the distance, also since the last cut, the measure whose limit asked for it, the depth of
+        the cut at the taping line, the diameter lost to wear and cut together, and the diameter that is left [mm].
     """
 
     pipeline: wl.Pipeline[...]
@@ -77,6 +85,7 @@ class Life:
     table: pd.DataFrame
     notes: tuple[tuple[str, ...], ...]
     limits: Mapping[str, float] = field(default_factory=dict)
+    cuts: pd.DataFrame = field(default_factory=pd.DataFrame)
 
     @property
     def profile(self) -> Profile:
@@ -141,7 +150,7 @@ class Life:
                 x, y = wl.PlotAxis("y, outwards [mm]"), wl.PlotAxis(label, inverted=True)
                 panels.append(wl.Panel(x, y, curves, f"{title}, {what}", equal=name == "z"))
         panels += self._measures(column)
-        caption = f"The {self.body} after {last} steps. It follows from the given line and wear law alone."
+        caption = f"The {self.body} after {len(self.notes)} steps. It follows from the given line and wear law alone."
         return wl.FigureData("life", f"Life of a {self.body}", tuple(panels), caption)
 
     def _measures(self, along: str) -> Iterator[wl.Panel]:
@@ -174,15 +183,23 @@ class Life:
         first, last = self.table.iloc[0], self.table.iloc[-1]
         along, unit = name_and_unit(self.table.columns[0])
         why = {"": ", interrupted", "over": ""}.get(self.ended, f", to the limit of {_words(self.ended)}")
-        steps = "1 step" if len(self.table) == 2 else f"{len(self.table) - 1} steps"
+        steps = "1 step" if len(self.notes) == 1 else f"{len(self.notes)} steps"
         lines = [f"Life of a {self.body}: {_number(last.iloc[0])} {unit or along}, {steps}{why}"]
         for column in map(str, self.table.columns[1:]):
             of_side = len(self.worn_profiles[0]) == 1 and column.partition(" ")[0].endswith(("_left", "_right"))
             if not (column.startswith("factor") or of_side) and np.isfinite(last[column]):
-                unit = readable(name_and_unit(column)[1])
-                lines.append(
-                    f"  {_words(column):<26}{_number(first[column])} to {_number(last[column])} {unit}".rstrip()
-                )
+                unit, digits = readable(name_and_unit(column)[1]), 6 if column.startswith("diameter") else 4
+                low, high = (_number(row[column], digits) for row in (first, last))
+                lines.append(f"  {_words(column):<26}{low} to {high} {unit}".rstrip())
+        if len(self.cuts):
+            counts = self.cuts["limit"].map(measure_of).value_counts()
+            reasons = " and ".join(f"{count} at the limit of {_words(str(name))}" for name, count in counts.items())
+            lines.append(f"  cuts: {reasons}")
+            for column in map(str, self.cuts.columns):
+                if column.startswith(("since_last", "depth_of_cut", "diameter_lost")):
+                    low, high = map(_number, (self.cuts[column].min(), self.cuts[column].max()))
+                    spread = low if low == high else f"{low} to {high}"
+                    lines.append(f"    {_words(column):<24}{spread} {readable(name_and_unit(column)[1])}")
         return "\n".join(lines)
 
 
@@ -191,5 +208,5 @@ def _words(column: str) -> str:
     return name_and_unit(column)[0].replace("_", " ").replace("gradient", "gradient qR")
 
 
-def _number(value: float) -> str:
-    return f"{value:,.0f}" if abs(value) >= 1e4 else f"{value:.4g}"
+def _number(value: float, digits: int = 4) -> str:
+    return f"{value:,.0f}" if abs(value) >= 1e4 else f"{value:.{digits}g}"

@@ -14,10 +14,11 @@ import xarray
 
 import wearlaw as wl
 from wearlaw.errors import DataError
-from wearlaw_apps.life.life import Life
+from wearlaw_apps.life.life import Life, measure_of
 from wearlaw_apps.life.line import Line
 from wearlaw_apps.life.removal import even, positions
 from wearlaw_apps.life.steps import Limits, Steps, with_profiles
+from wearlaw_apps.life.turning import cut_of, turned, turns
 from wearlaw_apps.sweeps.evaluation import expect_pipeline
 from wearlaw_apps.sweeps.points import Points
 from wearlaw_apps.sweeps.progress import Bar
@@ -45,6 +46,8 @@ def wear_out(
     smoothing: wl.QuantityLike = "3 mm",
     spacing: wl.QuantityLike = "0.1 mm",
     until: Mapping[str, wl.QuantityLike | float] | None = None,
+    turn: Mapping[str, wl.QuantityLike | float] | None = None,
+    least_diameter: wl.QuantityLike | None = None,
     body: str = "wheel",
     sides: Literal["mean", "each"] = "mean",
     conicity_step: float = 0.005,
@@ -93,6 +96,11 @@ def wear_out(
         Limits of measures in `Life.table` that end the life, such as {"flange_thickness": "25 mm"}. Limits of the
         flange's thickness and gradient lie below the measure of the new profile, those of the conicity on either side,
         and all others above.
+    turn : mapping, optional
+        Limits of measures, as in `until`, at which wheels are turned: they get their first profile again, at the
+        greatest diameter that worn wheels leave, the same on both sides. `Life.cuts` has the cuts.
+    least_diameter : Quantity or str, optional
+        Least diameter of a wheel at the taping line [m]. It ends the life, as does a cut that would go below it.
     body : str
         "wheel" or "rail".
     sides : "mean" or "each"
@@ -171,9 +179,13 @@ def wear_out(
         now = steps.begin(predict)
         rows, profiles = [now.row], [now.profiles]
         notes: list[tuple[str, ...]] = []
-        limits = Limits(until or {}, distance, now.row)
+        cutting = turns(predict.rig, body, until or {}, turn or {})
+        least = {} if least_diameter is None else {"diameter": least_diameter}
+        limits = Limits({**(until or {}), **cutting, **least}, distance, now.row)
+        cuts: list[dict[str, Any]] = []
+        last = now.row
         if store is not None:
-            settings |= {"sides": sides, "limits": limits.ends}
+            settings |= {"sides": sides, "limits": limits.ends, "turn": sorted(cutting)}
             stack.enter_context(closing(steps.line.keep(store, settings, resume)))
         along, _ = limits.ends["over"]
         bar = stack.enter_context(Bar(round(distance), progress))
@@ -181,15 +193,27 @@ def wear_out(
 
         def life(ended: str = "") -> Life:
             ends = dict(end for name, end in limits.ends.items() if name != "over")
-            return Life(now.predict, body, ended, tuple(profiles), pd.DataFrame(rows), tuple(notes), ends)
+            table, every = pd.DataFrame(rows), pd.DataFrame(cuts)
+            return Life(now.predict, body, ended, tuple(profiles), table, tuple(notes), ends, every)
 
         try:
-            while not (ended := limits.reached(now.row)):
-                now = steps.step(now, limits)
+            while True:
+                ended = limits.reached(now.row)
+                if measure_of(ended) in cutting:
+                    cut = turned(steps, now)
+                    if ended_by := limits.reached(cut.row):  # the cut would take too much
+                        ended = ended_by
+                        break
+                    cuts.append(cut_of(ended, last, now.row, cut.row))
+                    now, last = cut, cut.row
+                elif ended:
+                    break
+                else:
+                    now = steps.step(now, limits)
+                    notes.append(now.notes)
                 bar(round(now.row[along]) - round(rows[-1][along]))
                 rows.append(now.row)
                 profiles.append(now.profiles)
-                notes.append(now.notes)
         except (wl.WearlawError, KeyboardInterrupt) as error:
             if now.number:
                 error.life = life()  # type: ignore[union-attr]

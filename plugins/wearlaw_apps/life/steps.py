@@ -12,7 +12,7 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw.units.registry import unit_in_si
-from wearlaw_apps.life.life import SIDES, name_and_unit
+from wearlaw_apps.life.life import SIDES, measure_of, name_and_unit
 from wearlaw_apps.life.line import Line, Wear
 from wearlaw_apps.life.removal import conserving, positions, smoothed, swept
 
@@ -42,13 +42,14 @@ TRIES = 8
 NEAR = 1e-9
 """Share of the way to a limit at which it counts as reached."""
 
-CONICITY = "equivalent_conicity"
-"""Its column."""
+CONICITY, DIAMETER = "equivalent_conicity", "diameter [mm]"
+"""Columns of these measures."""
 
 TOWARDS = {
     "mass": 1.0,
     "depth": 1.0,
     "worn_area": 1.0,
+    "diameter": -1.0,
     "flange_height": 1.0,
     "flange_thickness": -1.0,
     "flange_gradient": -1.0,
@@ -75,12 +76,12 @@ class Limits:
         for name, limit in until.items():
             measures = [name] if name in there else [f"{name}{side}" for side in SIDES[2] if f"{name}{side}" in there]
             if not measures:
-                raise wl.InputError(f"until: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
-            unit, what = name_and_unit(there[measures[0]])[1], f"until: {name}"
+                raise wl.InputError(f"limit: this profile has no {wl.shown(name)}; it has {', '.join(there)}")
+            unit, what = name_and_unit(there[measures[0]])[1], f"limit of {name}"
             value = float(wl.Unit(unit).si(limit, what) / unit_in_si(unit) if unit else wl.coefficient(limit, what))
             for measure in measures:
                 first = start[there[measure]]
-                towards = TOWARDS.get(measure.removesuffix("_left").removesuffix("_right"), value - first)
+                towards = TOWARDS.get(measure_of(measure), value - first)
                 if (value - first) * towards <= 0.0:
                     must = {1.0: "lie above", -1.0: "lie below"}.get(towards, "differ from")
                     has = f"{first:.4g} {unit}".rstrip()
@@ -144,9 +145,11 @@ class Steps:
         """The column of the distance or of the passages, and what one metre or passage is there."""
         return ("passages", 1.0) if self.body == "rail" else ("distance [km]", 1e-3)
 
-    def begin(self, predict: wl.Pipeline[...]) -> State:
-        """Return the state at the start."""
-        return self._state(predict, self.new, 0.0, np.zeros(self.line.sides), [1.0] * len(self.new))
+    def begin(self, predict: wl.Pipeline[...], after: State | None = None) -> State:
+        """Return the state of the new profiles, at the start or after another state, whose step comes next."""
+        done, mass = (0.0, np.zeros(self.line.sides)) if after is None else (after.row[self.along[0]], after.mass)
+        begun = self._state(predict, self.new, done, mass, [1.0] * len(self.new))
+        return begun if after is None else begun._replace(number=after.number)
 
     def step(self, now: State, limits: Limits) -> State:
         """Return the state after one more step."""
@@ -228,6 +231,9 @@ class Steps:
             row[f"worn_area{side} [mm^2]"] = 1e6 * swept(new, profile) if done else 0.0
             measures = profile.measures(getattr(rig, "flange_back_position", "-70 mm"), new=new)
             row |= {f"{name}{side} [mm]": value.m_as("mm") for name, value in measures.items()}
+            radius, curve = float(np.asarray(rig.bodies[self.body].rolling_radius)), profile.curve
+            if math.isfinite(radius) and curve.y[0] <= 0.0 <= curve.y[-1]:
+                row[DIAMETER.replace(" ", f"{side} ")] = 2e3 * (radius + float(curve.at(0.0)[1]))
         try:
             row[CONICITY] = float(rig.equivalent_conicity(amplitude="3 mm").m_as(""))
         except (AttributeError, wl.InputError):  # the rig has none, or these profiles

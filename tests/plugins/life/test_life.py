@@ -225,7 +225,7 @@ def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
     for line in drawn.curves:  # each runs across the whole profile
         assert (line.x.min(), line.x.max()) == pytest.approx((-70.0, 60.0), abs=0.1)
     labels = ["mass [kg]", *(f"flange {name} [mm]" for name in ("height", "thickness", "gradient qR")), "hollow [mm]"]
-    assert [panel.y.label for panel in measures] == [*labels, "equivalent conicity [-]"]
+    assert [panel.y.label for panel in measures] == [*labels, "diameter [mm]", "equivalent conicity [-]"]
     assert all([curve.label for curve in panel.curves] == [""] for panel in measures), "one profile for both sides"
     assert len(short.plot().axes) == len(short.figure().panels)
 
@@ -287,7 +287,7 @@ def changed(**columns: Any) -> pd.DataFrame:
         (changed(y=[0.0, 60.0, 1.0]), {}, DataError, r"row 1 .*60 mm"),
         (line(3), {"over": "100"}, wl.UnitError, "over"),
         (line(3), {"depth_step": "0.2 mm"}, wl.InputError, "depth_step"),
-        (line(3), {"until": {"flange": "25 mm"}}, wl.InputError, "until"),
+        (line(3), {"until": {"flange": "25 mm"}}, wl.InputError, "limit: .*'flange'"),
         (line(3), {"until": {"flange_thickness": 25.0}}, wl.UnitError, "flange_thickness"),
         (line(3), {"body": "rail", "over": 10.0, "until": {"hollow": "1 mm"}}, wl.InputError, "has no 'hollow'"),
         (line(3), {"until": {"flange_thickness": "33 mm"}}, wl.InputError, r"must lie below .*, 32\.5 mm; got '33 mm'"),
