@@ -34,6 +34,7 @@ DEFERRED = {
     ("wearlaw_apps.sweeps.workers", "loky"): "is for several processes alone",
     ("wearlaw_apps.sweeps.workers", "zarr"): "takes as long to load as all else",
     ("wearlaw_apps.tables", "pandas"): "takes half as long to load as the rest of wearlaw",
+    ("wearlaw_kit.section", "wearlaw_apps.output.files"): "matplotlib takes longer to load than all else",
     ("wearlaw_kit.kit", "pytest"): "is not needed to run the checks of the kit",
     ("wearlaw_apps.fits.wear_tests", "pandas"): "takes half as long to load as the rest of wearlaw; for one method",
     ("wearlaw_apps.life", "wearlaw_apps.life.section"): "is needed for a report alone",

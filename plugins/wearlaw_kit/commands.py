@@ -5,8 +5,9 @@ from __future__ import annotations
 import shlex
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -18,7 +19,7 @@ from wearlaw.models.law import Law
 from wearlaw.models.model import Model
 from wearlaw_apps.output.commands import fields, values
 from wearlaw_apps.show import accuracies
-from wearlaw_kit.kit import Check, checks, validate_expected
+from wearlaw_kit.kit import Check, checks, tried, validate_expected
 from wearlaw_kit.scaffold import Kind, write_plugin
 
 
@@ -56,6 +57,7 @@ def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
 @click.option(
     "--option", "options", metavar="FIELD=VALUE", multiple=True, help="Set a field of the model; may be repeated."
 )
+@click.option("--case", "case_name", metavar="CASE", help="The case that a section is tried on.")
 @click.option("--distribution", metavar="NAME", help="Check all models of an installed distribution.")
 @click.option("--only", metavar="CHECK", multiple=True, help="Run this check alone; may be repeated.")
 @click.option("--durations", is_flag=True, help="State the time of every check.")
@@ -69,6 +71,7 @@ def new_plugin(name: str, kind: Kind | None, output: Path) -> None:
 def check(
     name: str | None,
     options: tuple[str, ...],
+    case_name: str | None,
     distribution: str | None,
     only: tuple[str, ...],
     durations: bool,
@@ -86,15 +89,20 @@ def check(
     wearlaw check --distribution wearlaw-mine       all models of a plugin
     wearlaw check my_set                            a parameter set of a plugin
     wearlaw check fit/law.toml                      the law in a file
+    wearlaw check my_section --case my_case         a section of reports
     wearlaw check twin_disc --option track_width="8 mm"
     wearlaw check my_law --expect-failure "rate_is_finite=divides by zero at zero pressure"
     """  # noqa: D301
     if (name is None) == (distribution is None):
         raise click.UsageError("give the name of a model, or --distribution")
     settings, reasons = values("--option", options), fields("--expect-failure", expected, "CHECK=REASON")
-    sources = [_installed(name)] if name is not None else _provided(str(distribution))
+    sources: list[Any] = [_installed(name)] if name is not None else _provided(str(distribution))
     models = [
-        _made(source, settings) if isinstance(source, type) else source.model_copy(update=settings)
+        _made(source, settings)
+        if isinstance(source, type)
+        else source.model_copy(update=settings)
+        if isinstance(source, Law)
+        else tried(source, case_name)
         for source in sources
     ]
     chosen = [(model, list(checks(model))) for model in models]
@@ -117,7 +125,7 @@ def check(
         click.get_current_context().exit(1)
 
 
-def _checked(model: Model, model_checks: list[Check], reasons: Mapping[str, str], durations: bool) -> Counter[str]:
+def _checked(model: Any, model_checks: list[Check], reasons: Mapping[str, str], durations: bool) -> Counter[str]:
     """Run checks of a model, print their lines, and return how many had which outcome."""
     least = 0.0 if durations else 1.0
     outcomes = Counter(_outcome(model_check, reasons.get(model_check.name), least) for model_check in model_checks)
@@ -183,15 +191,15 @@ def _duration(start: float, least: float) -> str:
     return f" ({taken:.0f} s)" if taken >= 1.0 else f" ({taken:.3f} s)" if taken >= least else ""
 
 
-def _installed(name: str) -> type[Model] | Law:
-    """Return the class of the model with this name, or the law of a parameter set or of a file."""
+def _installed(name: str) -> type[Model] | Law | Callable[..., Any]:
+    """Return the class of the model with this name, the law of a parameter set or of a file, or a section."""
     if is_law_file(name):
         return read_law(name)
     installed = loader.discovered()
-    kinds = ("wear law", "law", "contact model", "stage", "rig", "reader", "parameter set")
+    kinds = ("wear law", "law", "contact model", "stage", "rig", "reader", "parameter set", "section")
     for kind in kinds:
         if name in installed[kind]:
-            model: type[Model] | Law = installed.find(kind, name)
+            model: type[Model] | Law | Callable[..., Any] = installed.find(kind, name)
             return model
     for kind, shelf in installed.shelves.items():
         if name in shelf:

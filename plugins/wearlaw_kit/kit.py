@@ -6,8 +6,9 @@ import functools
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
+import wearlaw as wl
 from wearlaw.errors import InputError, WearlawWarning, did_you_mean
 from wearlaw.models.contact_model import ContactModel, Stage
 from wearlaw.models.law import Law
@@ -22,6 +23,7 @@ from wearlaw_kit import (  # each registers its rules  # noqa: F401
     reader,
     rig,
     rig_inputs,
+    section,
     stage,
     units,
 )
@@ -29,6 +31,9 @@ from wearlaw_kit.examples import exempt, failing
 from wearlaw_kit.law_contacts import CONTACTS
 from wearlaw_kit.reduced import CHECKED
 from wearlaw_kit.rules import RULES, Rule, rule
+from wearlaw_kit.section import TriedSection
+
+MakeSection: TypeAlias = "Callable[[wl.Study], wl.Section]"
 
 TestFunction = TypeVar("TestFunction", bound="Callable[[Check], None]")
 
@@ -116,8 +121,8 @@ class Check:
             raise
 
 
-def checks(model: Model) -> Iterator[Check]:
-    """Yield the checks of a model, each on a new instance with the fields of the model.
+def checks(model: Model | MakeSection, case: Any = None) -> Iterator[Check]:
+    """Yield the checks of a model, each on a new instance with the fields of the model, or of a section of reports.
 
     Checks that do not apply to the model are left out: those of claims in `Model.exemptions`, unless it is an `Exempt`
     for a part of the claim or up to a bound, of nodes for a law of the
@@ -125,16 +130,19 @@ def checks(model: Model) -> Iterator[Check]:
 
     Parameters
     ----------
-    model : Rig, ContactModel, Stage, Law or Reader
-        The model, with the options to check.
+    model : Rig, ContactModel, Stage, Law, Reader or callable
+        The model, with the options to check, or the function of a section.
+    case : str or Case, optional
+        The case, or its name, whose results the section is made from; it is run once.
 
     Raises
     ------
     InputError
-        If this is not a model, or is a rig or a reader without an `example`.
+        If this is not a model, is a rig or a reader without an `example`, or a section without a case.
     """
-    if not isinstance(model, Rig | ContactModel | Stage | Law | Reader):
-        kinds = "a rig, a contact model, a stage, a law or a reader"
+    model = tried(model, case)
+    if not isinstance(model, Rig | ContactModel | Stage | Law | Reader | TriedSection):
+        kinds = "a rig, a contact model, a stage, a law, a reader or the function of a section"
         raise InputError(f"checks: needs {kinds}, such as wl.wear_law('usfd'); got {model!r}")
     if isinstance(model, Rig) and not model.example:
         conditions = ", ".join(f'"{name}": ...' for name in model.conditions())
@@ -157,9 +165,22 @@ def checks(model: Model) -> Iterator[Check]:
             yield Check(kit_rule.name, kit_rule.doc, run)
 
 
+def tried(model: Any, case: Any) -> Any:
+    """Return a model, or a section with the case that it is tried on."""
+    if isinstance(model, Model | type) or not callable(model):
+        return model
+    make: Any = model
+    if case is None:
+        raise InputError(
+            'checks: a section is made from the results of a case; give its name, as in case="two_discs" or --case'
+            " two_discs"
+        )
+    return TriedSection(make, wl.load_case(case) if isinstance(case, str) else case)
+
+
 def _run(kit_rule: Rule, model: Any, exemption: Exempt | None = None) -> None:
     """Check a model on problems that have the conditions that it declares."""
-    token = CHECKED.set({} if isinstance(model, Rig | Reader) else model.own_conditions())
+    token = CHECKED.set(model.own_conditions() if isinstance(model, ContactModel | Stage | Law) else {})
     try:
         with exempt(exemption):
             kit_rule.check(model)
@@ -168,14 +189,14 @@ def _run(kit_rule: Rule, model: Any, exemption: Exempt | None = None) -> None:
 
 
 def conformance(
-    model: Model, *, expected_failures: Mapping[str, str] | None = None
+    model: Model | MakeSection, case: Any = None, *, expected_failures: Mapping[str, str] | None = None
 ) -> Callable[[TestFunction], TestFunction]:
     """Return a decorator that runs a test function of one argument, `check`, with every check of a model.
 
     Parameters
     ----------
-    model : Rig, ContactModel, Stage, Law or Reader
-        The model, with the options to check.
+    model, case
+        As for `checks`.
     expected_failures : mapping of str to str, optional
         Checks that are known to fail, each with the reason. The test fails once one of them passes. A check that this
         version of wearlaw lacks is skipped, so that different versions can share the mapping.
@@ -192,8 +213,9 @@ def conformance(
     import pytest
 
     expected = dict(expected_failures or {})
-    model_checks = list(checks(model))
-    lacking = validate_expected("expected_failures", model, model_checks, expected)
+    subject = tried(model, case)
+    model_checks = list(checks(subject))
+    lacking = validate_expected("expected_failures", subject, model_checks, expected)
 
     def parameter(check: Check) -> object:
         marks = [pytest.mark.xfail(strict=True, reason=expected[check.name])] if check.name in expected else []
@@ -201,7 +223,7 @@ def conformance(
 
     skipped = [
         pytest.param(None, id=claim, marks=pytest.mark.skip(reason=f"not claimed: {reason}"))
-        for claim, reason in model.exemptions.items()
+        for claim, reason in subject.exemptions.items()
         if as_exempt(reason).whole
     ]
     no_check = pytest.mark.skip(reason="this version of wearlaw has no such check")
@@ -210,7 +232,7 @@ def conformance(
 
 
 def validate_expected(
-    subject: str, model: Model, model_checks: Iterable[Check], expected: Mapping[str, str]
+    subject: str, model: Model | TriedSection, model_checks: Iterable[Check], expected: Mapping[str, str]
 ) -> list[str]:
     """Return the expected failures that no check of this version has, and raise an `InputError` for wrong ones.
 

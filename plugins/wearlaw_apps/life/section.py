@@ -7,6 +7,7 @@ import pandas as pd
 
 import wearlaw as wl
 from wearlaw_apps.life.over_distance import wear_out
+from wearlaw_apps.life.steps import CONICITY
 from wearlaw_apps.output.notes import caught_warnings
 
 LINE = "line"
@@ -44,7 +45,7 @@ def section(study: wl.Study) -> wl.Section:
         title="The life of a wheel",
         text=f"An example, not a service rate: {OVER:~P} with equal shares of the {values.size} states of the sweep"
         f" '{LINE}'. Real lines have curves, in which flanges wear.",
-        tables={"life": life.table},
+        tables={"life": life.table.rename(columns={CONICITY: f"{CONICITY} [-]"})},
         figures=figures,
         summary=f"{head}: {'; '.join(' '.join(row.split()) for row in rows)}.",
     )
