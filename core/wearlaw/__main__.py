@@ -1,4 +1,4 @@
-"""The commands as python -m wearlaw, where the folder of scripts is not on the path."""
+"""The command line as `python -m wearlaw`."""
 
 from wearlaw.cli import main
 

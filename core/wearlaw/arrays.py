@@ -1,4 +1,4 @@
-"""The array type of all values in SI, extremes and equality of arrays, and the treatment of errors of floats."""
+"""The type of arrays in SI, their extremes and equality, and errors of floats."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command line: it parses, calls the rest of the package, and prints."""
+"""The command line."""
 
 from __future__ import annotations
 

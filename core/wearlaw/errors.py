@@ -1,4 +1,4 @@
-"""Every exception and warning that wearlaw raises on purpose, and how messages show a value.
+"""Exceptions and warnings, and how messages show a value.
 
 An error names the wrong field, the value it got and the expected value, and suggests a fix. All errors derive from
 `WearlawError`. Errors in the user's input derive from `InputError`, which is also a `ValueError`, so that generic code

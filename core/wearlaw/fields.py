@@ -1,4 +1,4 @@
-"""Fields that hold a model: a name, a table or the file of a law in a file, an instance in Python."""
+"""Fields that take a model by its name, table, file or instance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The extension points: the four hooks that a plugin can implement.
+"""The four hooks that a plugin can implement.
 
 A plugin is a module named in the entry-point group "wearlaw" of its distribution, with functions of these
 names marked `@wearlaw.hookimpl`.

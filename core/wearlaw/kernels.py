@@ -1,4 +1,4 @@
-"""Loops that numba compiles where it is installed, and the choice between them and NumPy.
+"""Loops that numba compiles where it is installed.
 
 A loop that numba compiles stands beside a function of NumPy arrays that gives the same to rounding. It pays where NumPy
 takes many passes over memory, as in a march from node to node.

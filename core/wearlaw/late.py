@@ -1,4 +1,4 @@
-"""What comes from plugins at its first use, and the extra that each application needs: the file that names plugins."""
+"""The file that names plugins: what they provide at its first use, and the extra that each needs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Read, convert to SI and change the numbers among a model's fields, by name."""
+"""The numbers among a model's fields, by name and in SI."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading files from outside: up to a size, in the encodings that editors and shells write, and TOML."""
+"""Reading text and TOML from outside, up to a size, in the encodings of editors and shells."""
 
 from __future__ import annotations
 

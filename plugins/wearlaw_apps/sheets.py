@@ -1,4 +1,4 @@
-"""The cells of spreadsheets (.xlsx, .ods) as text, by the parts of ECMA-376 and of OpenDocument that hold them."""
+"""The cells of spreadsheets (.xlsx, .ods) as text, after ECMA-376 and OpenDocument."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands `plugins` and `show`: what plugins provide, and all about one thing of theirs in words."""
+"""The commands `plugins` and `show`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of numbers with units, from CSV files, pandas or xarray, with the line of each row for errors.
+"""Tables of numbers with units, from CSV files, pandas or xarray.
 
 >>> import wearlaw as wl
 >>> table = wl.read_table("run.csv", {"normal_force": "Fz [kN]", "creepage": "-slip [%]"})

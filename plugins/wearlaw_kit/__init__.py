@@ -1,4 +1,4 @@
-"""The conformance kit: the rules for every rig, contact model and wear law, and strategies for testing your own code.
+"""The conformance kit: checks of models, and strategies for tests of your own.
 
 `checks` yields the checks of a model, `conformance` makes pytest tests of them. The strategies are also what
 hypothesis draws from for arguments typed `Problem` and `Contact`.

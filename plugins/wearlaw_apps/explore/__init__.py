@@ -1,4 +1,4 @@
-"""A page to explore a rig: sliders for its conditions, menus of models, and live figures."""
+"""A page to explore a rig, with sliders and live figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Wear tests, parameters of laws fitted to them, comparisons with predictions, and uncertainties of predictions."""
+"""Wear tests, fits of laws, comparisons and uncertainties."""
 
 from typing import TYPE_CHECKING
 

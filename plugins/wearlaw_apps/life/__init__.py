@@ -1,4 +1,4 @@
-"""The life of a wheel or a rail: wear over a distance, with profiles that change."""
+"""The life of a wheel or a rail, whose profile wears."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What applications write: figures, tables, and the folders that hold them."""
+"""Figures, tables, and the folders that hold them."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""Studies: what a case file describes is computed, drawn, and written with a report."""
+"""Studies: case files, their results and their report."""
 
 from collections.abc import Callable
 from pathlib import Path

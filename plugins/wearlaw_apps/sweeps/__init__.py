@@ -1,1 +1,1 @@
-"""Sweeps: many operating points, in blocks, on several processes or a cluster, kept on disk as they go."""
+"""Sweeps of many operating points, on processes or a cluster, kept on disk."""
