@@ -68,11 +68,15 @@ def wear_profile(solution: Solution, body: str, strips: int | None, at: Quantity
         }
     if at is not None:
         return _on_profile(problem, worn, across.y, across.width, columns, per, at)
+    there = across.width > 0.0  # strips that fill up a batch lie nowhere
+    if problem.unloaded is not None:
+        there |= problem.unloaded[..., None]
+    columns = {name: (np.where(there, values, np.nan), unit) for name, (values, unit) in columns.items()}
     batch = axis_names(problem)
     dims = [*batch, "strip"] if batch else ["y"]
-    places = {"y": (across.y, "mm")}
+    places = {"y": (np.where(there, across.y, np.nan), "mm")}
     if worn.profile_position is not None:
-        places[POSITION] = _arc(worn, across.y), "mm"
+        places[POSITION] = _arc(worn, places["y"][0]), "mm"
     return labelled(problem, data_of(dims, places), data_of(dims, columns, per))
 
 
