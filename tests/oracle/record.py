@@ -138,5 +138,4 @@ def _change(a: float, b: float) -> float:
     """Return the relative change of a number."""
     if a == b or (math.isnan(a) and math.isnan(b)):
         return 0.0
-    change = abs(b - a) / max(abs(a), abs(b))
-    return math.inf if math.isnan(change) else change
+    return math.inf if math.isnan(b - a) else abs(b - a) / max(abs(a), abs(b))
