@@ -76,6 +76,7 @@ class Wheel:
             (wl.scalar_si(one.youngs_modulus, "Pa"), one.poisson_ratio)
             for one in (pair.material, pair.rail_material or pair.material)
         )
+        self.roller = np.inf if pair.roller_radius is None else wl.scalar_si(pair.roller_radius, "m")
         self.modulus = 1.0 / ((1.0 - n1**2) / e1 + (1.0 - n2**2) / e2)
 
     def angle(self, s: Array) -> Array:
@@ -91,8 +92,10 @@ class Wheel:
             return x * cos_yaw + y * sin_yaw, across * cos_roll + z * sin_roll, z * cos_roll - across * sin_roll
 
         y, z = self.rail.rail(s)
+        lean, z = np.arcsin(x[:, None] / (self.roller - z)), self._surface(x[:, None], z)
         place = turned(x[:, None], y - self.at, z - height + self.nominal)
-        normal = turned(0.0, np.sin(self.angle(s)), -np.cos(self.angle(s)))
+        upright = np.cos(self.angle(s))
+        normal = turned(upright * np.sin(lean), np.sin(self.angle(s)), -upright * np.cos(lean))
         low, high = self.radius.x[[0, -1]]
         gap = over = np.zeros((x.size, s.size))
         for _ in range(50):
@@ -104,6 +107,13 @@ class Wheel:
             if np.abs(gap - before).max() < 1e-10:
                 break
         return np.where(np.abs(over) < 1e-9, gap, FAR)
+
+    def _surface(self, x: Array, z: Array) -> Array:
+        """Return z of the rail, or of the roller, at places whose z at x = 0 is given [m]."""
+        if np.isinf(self.roller):
+            return z + 0.0 * x
+        radius = self.roller - z
+        return np.asarray(self.roller - np.sqrt(radius**2 - x**2))
 
     def pressed(self, load: float, elements: int = 120) -> Pressed:
         """Return the contact under a vertical load [N], without friction.
@@ -144,7 +154,8 @@ class Wheel:
         y += self.at
         table = np.linspace(self.rail.first, self.rail.last, 4001)
         y_rail, z_rail = self.rail.rail(table)
-        free = np.interp(y, y_rail, z_rail, left=np.inf, right=np.inf) - down
+        beside = (y < y_rail[0]) | (y > y_rail[-1])
+        free = np.where(beside, np.inf, self._surface(x, np.interp(y, y_rail, z_rail))) - down
         first = np.unravel_index(free.argmin(), free.shape)
         return float(free[first]), float(np.cos(self.angle(np.interp(y[first], y_rail, table)))), float(x[first])
 

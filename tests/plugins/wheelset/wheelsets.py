@@ -80,6 +80,7 @@ class Body:
         self.side = side
         self.curve = pair.wheel.curve
         self.base = 0.75
+        self.roller = np.inf if pair.roller_radius is None else float(pair.roller_radius.to("m").magnitude)
         cant = float(pair.rail_cant.to("rad").magnitude)
         rail = pair.rail.curve
         y, z = rail.y, rail.z
@@ -118,8 +119,8 @@ class Body:
         own = np.stack(np.broadcast_arrays(radius * np.sin(angle), across, radius * np.cos(angle)), axis=-1)
         return np.asarray(move.apply(own.reshape(-1, 3)).reshape(own.shape) + shift)
 
-    def height(self, y: Any) -> Any:
-        """Return z of the rail at y in the track [m], by Newton's method on its arc length; infinite beside it."""
+    def height(self, x: Any, y: Any) -> Any:
+        """Return z of the rail or the roller in the track [m], by Newton's method on its arc length; infinite beside it."""
         out = np.asarray(self.side * y)
         table = np.linspace(self.first, self.last, 4001)
         at = self.rail(table)[0]
@@ -127,7 +128,10 @@ class Body:
         for _ in range(4):
             s = s - (self.rail(s)[0] - out) / np.cos(self._rail.at(s)[2] - self._cant)
             s = np.clip(s, self.first, self.last)
-        return np.where((out < at[0]) | (out > at[-1]), np.inf, self.rail(s)[1])
+        z = self.rail(s)[1]
+        if np.isfinite(self.roller):
+            z = self.roller - np.sqrt((self.roller - z) ** 2 - np.asarray(x) ** 2)
+        return np.where((out < at[0]) | (out > at[-1]), np.inf, z)
 
 
 def standing(displacement: Any, roll: Any, yaw: Any, height: Any) -> tuple[Rotation, Array]:
@@ -138,7 +142,7 @@ def standing(displacement: Any, roll: Any, yaw: Any, height: Any) -> tuple[Rotat
 def gap(body: Body, s: Any, angle: Any, move: Rotation, shift: Array) -> Any:
     """Return the vertical gap between points of the wheel and the rail below them [m]."""
     at = body.surface(s, angle, move, shift)
-    return body.height(at[..., 1]) - at[..., 2]
+    return body.height(at[..., 0], at[..., 1]) - at[..., 2]
 
 
 def least_gap(body: Body, move: Rotation, shift: Array) -> tuple[float, Array]:

@@ -60,7 +60,7 @@ def patches(section: Section, position: Position, touching: Touching) -> dict[st
     rail_y, rail_z, _, rail_curvature = section.at("rail", place.rail_arc, wide.side)
     values = {
         "y": side * across,
-        "z": section.at("rail_z", across, wide.side)[0],
+        "z": place.z + touching.least[..., None] + touching.gap,
         "x": np.broadcast_to(place.x, arc.shape),
         "contact_angle": side * place.angle,
         "rolling_radius": place.radius,

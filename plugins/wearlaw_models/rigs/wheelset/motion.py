@@ -12,6 +12,10 @@ The bodies stay in contact, so the vertical velocity follows from the lateral on
     ξ = v_x/V,  η = v_y/(V cos δ),  φ = ω·n/V.
 
 All three are wheel minus rail. At small angles ξ = 1 - Ωr/V, η = ((v_y - ρ'r)/V - ψ)/cos δ and φ = sin δ/r.
+
+A roller in place of the rail turns at V/R, with its radius R where its z is zero, so that its surface has the speed
+(1 - z/R) V. A point at x lies at the angle χ from the top, sin χ = x/(R - z). Tangents and normal turn by χ about the
+roller's axis, so that ξ is (v_x/cos χ + v_y tan δ tan χ)/V, of the velocities of the wheel less those of the roller.
 """
 
 from __future__ import annotations
@@ -34,6 +38,8 @@ class Place(NamedTuple):
         Place from the middle of the axle, forwards, outwards and down [m].
     angle : ndarray
         Contact angle, δ [rad].
+    rail_z : ndarray
+        z of the rail's profile in the track [m].
     radius : ndarray
         Rolling radius, r [m].
     rail_arc : ndarray
@@ -44,6 +50,7 @@ class Place(NamedTuple):
     y: Array
     z: Array
     angle: Array
+    rail_z: Array
     radius: Array
     rail_arc: Array
 
@@ -53,7 +60,20 @@ def placed(section: Section, position: Position, arc: Array) -> Place:
     at = gaps(section, position, arc)
     rail_arc, _ = section.at("rail_position", at.y, position.side)
     angle = np.arctan(at.rail_slope - 0.5 * at.rise)
-    return Place(at.x, at.y - position.displacement, at.z, angle, at.radius, rail_arc)
+    rail_z, _ = section.at("rail_z", at.y, position.side)
+    z = in_space(at.x, at.z, section.axes)
+    return Place(at.x, at.y - position.displacement, z, angle, rail_z, at.radius, rail_arc)
+
+
+def in_space(x: Array, z: Array, axes: float) -> Array:
+    """Return z of points from the axle, whose circles about a roller's axis have a given z above it [m]."""
+    above = 1.0 - axes * z
+    return np.asarray(z + axes * x * x / (above + np.sqrt(above * above - (axes * x) ** 2)))
+
+
+def _pitch(place: Place, roller: float) -> Array:
+    """Return the angle of points on a roller from its top, χ [rad]."""
+    return np.asarray(np.arcsin(roller * place.x / (1.0 - roller * place.rail_z)))
 
 
 def curvature_along(section: Section, position: Position, place: Place, arc: Array) -> Array:
@@ -70,10 +90,11 @@ def curvature_along(section: Section, position: Position, place: Place, arc: Arr
     return np.maximum(curved, 0.1 * round_)
 
 
-def roll_rate(place: Place, lateral_velocity: Array, yaw_velocity: Array) -> Array:
+def roll_rate(place: Place, lateral_velocity: Array, yaw_velocity: Array, roller: float) -> Array:
     """Return the roll velocity at which both wheels stay on their rails [rad/s], positive if it lowers the right one.
 
-    A side whose wheel moves outwards by dy and rolls by dρ opens its gap by tan δ dy - (y + z tan δ) dρ.
+    A side whose wheel moves outwards by dy and rolls by dρ opens its gap by tan δ dy - (y + z tan δ) dρ. So does a
+    move forwards on a roller, whose curvature at its top is `roller` [1/m].
 
     Parameters
     ----------
@@ -82,8 +103,9 @@ def roll_rate(place: Place, lateral_velocity: Array, yaw_velocity: Array) -> Arr
     lateral_velocity, yaw_velocity : ndarray, (positions,)
         Velocities of the lateral displacement [m/s] and of the yaw [rad/s].
     """
-    fall = np.tan(place.angle)
-    opening = fall * (lateral_velocity[:, None] + yaw_velocity[:, None] * place.x)
+    pitch = _pitch(place, roller)
+    fall = np.tan(place.angle) / np.cos(pitch)
+    opening = fall * lateral_velocity[:, None] + yaw_velocity[:, None] * (fall * place.x - np.tan(pitch) * place.y)
     rate: Array = opening.sum(axis=-1) / (place.y + fall * place.z).sum(axis=-1)
     return rate
 
@@ -112,6 +134,7 @@ def creepages(
     turn_rate: Array,
     roll_rate: Array,
     side: Array,
+    roller: float,
 ) -> Creepages:
     """Return the creepages in the axes of the track.
 
@@ -125,19 +148,23 @@ def creepages(
         v_y [m/s], ω_z and ρ' [rad/s], outward, so that they have opposite signs on the left.
     side : ndarray
         1 on the right and -1 on the left.
+    roller : float
+        Curvature of a roller in place of the rail at its top, 1/R [1/m]; 0 for a rail.
     """
     _, roll, yaw, _ = position
+    pitch, sin, cos = _pitch(place, roller), np.sin(place.angle), np.cos(place.angle)
     axle = -np.cos(roll) * np.sin(yaw), np.cos(roll) * np.cos(yaw), np.sin(roll)
-    rolling = roll_rate * np.cos(yaw), roll_rate * np.sin(yaw)
-    upright = speed * np.cos(place.angle)
-    still = (
-        1.0 + (rolling[1] * place.z - turn_rate * place.y) / speed,
-        side * (lateral_velocity + turn_rate * place.x - rolling[0] * place.z) / upright,
-        side * (turn_rate * np.cos(place.angle) - rolling[1] * np.sin(place.angle)) / speed,
-    )
-    turning = (
-        -(axle[1] * place.z - axle[2] * place.y) / speed,
-        -side * (axle[2] * place.x - axle[0] * place.z) / upright,
-        side * (axle[1] * np.sin(place.angle) - axle[2] * np.cos(place.angle)) / speed,
-    )
+    ahead = speed * np.cos(pitch) * (1.0 - roller * place.rail_z)
+
+    def of(turn: tuple[Array, ...], along: Array, across: Array) -> tuple[Array, ...]:
+        """Return the creepages of a rotation and of velocities forwards and outwards."""
+        along = along + turn[1] * place.z - turn[2] * place.y
+        across = across + turn[2] * place.x - turn[0] * place.z
+        spin = (turn[2] * np.cos(pitch) - turn[0] * np.sin(pitch)) * cos - turn[1] * sin
+        along = along / np.cos(pitch) + across * np.tan(pitch) * sin / cos
+        return along / speed, side * across / (speed * cos), side * spin / speed
+
+    still = of((roll_rate * np.cos(yaw), roll_rate * np.sin(yaw), turn_rate), ahead, lateral_velocity)
+    still = *still[:2], still[2] + side * roller * sin
+    turning = of((-axle[0], -axle[1], -axle[2]), 0.0 * speed, 0.0 * speed)
     return Creepages(still, turning)

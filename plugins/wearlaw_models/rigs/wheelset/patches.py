@@ -27,8 +27,8 @@ class Patches:
     across, upright : ndarray
         Resultants of the pressure outwards and down, over the force [-]; on a patch that bends they are less than the
         negative sine and the cosine of its angle.
-    arc, rail_arc, radius : ndarray
-        Arc lengths of both profiles in the middle of the patch, and the rolling radius there [m].
+    arc, rail_arc, radius, rail_z : ndarray
+        Arc lengths of both profiles in the middle of the patch, and the rolling radius and z of the rail there [m].
     approach : ndarray
         Vertical approach from first touching [m].
     flange : ndarray
@@ -52,6 +52,7 @@ class Patches:
     arc: Array
     rail_arc: Array
     radius: Array
+    rail_z: Array
     approach: Array
     flange: Array
     sliding: Creepages

@@ -251,12 +251,14 @@ class Wheelset(wl.Rig):
     patch: Patch = "strips"
     """What contact models get of a patch. "strips": the rows of its pressure, with creepages of their own. "ellipse":
     the ellipse of the same force, length and area, for models of ellipses, such as `half_space`."""
+    roller_radius: Annotated[wl.Quantity, wl.Unit("mm")] | None = None
+    """Radius of rollers in place of the rails, from their axis to the top of their profile, R [m]; None for rails."""
     material: wl.MaterialField
     """Material of wheels and rails; a file may also give the name of an installed material."""
     rail_material: wl.MaterialField | None = None
     """Material of the rails, if it differs from the wheels'."""
     rolling_speed: wl.Speed
-    """Speed of the wheelset along the track, V [m/s]."""
+    """Speed of the wheelset along the track, or of the tops of rollers, V [m/s]."""
 
     if TYPE_CHECKING:
 
@@ -275,6 +277,7 @@ class Wheelset(wl.Rig):
             rail_cant: wl.QuantityLike = "0 rad",
             flange_angle: wl.QuantityLike = "30 deg",
             patch: Patch = "strips",
+            roller_radius: wl.QuantityLike | None = None,
             material: wl.Material,
             rail_material: wl.Material | None = None,
             rolling_speed: wl.QuantityLike,
@@ -348,8 +351,13 @@ class Wheelset(wl.Rig):
         """The "wheel" and the "rail"; the radius is the nominal one, and problems have those of their patches."""
         return {
             "wheel": wl.Body(self.material, wl.scalar_si(self.nominal_radius, "m")),
-            "rail": wl.Body(self.rail_material or self.material, np.inf),
+            "rail": wl.Body(self.rail_material or self.material, self._roller),
         }
+
+    @property
+    def _roller(self) -> float:
+        """The radius of rollers at their tops [m], infinite for rails."""
+        return np.inf if self.roller_radius is None else wl.scalar_si(self.roller_radius, "m")
 
     def geometry(
         self,
@@ -487,6 +495,8 @@ class Wheelset(wl.Rig):
             raise wl.ConditionsError("give vertical_load, or vertical_load_left and vertical_load_right")
         if (arrays["curve_radius"] == 0.0).any():
             raise wl.ConditionsError("curve_radius: must not be zero; straight track has an infinite radius, 'inf m'")
+        if self.roller_radius is not None and np.isfinite(arrays["curve_radius"]).any():
+            raise wl.ConditionsError("curve_radius: rollers stand for straight track; leave it or roller_radius out")
         shape = arrays["yaw"].shape
         flat = {name: array.reshape(-1) for name, array in arrays.items()}
         # Laws of friction stay as they are given: each patch has a creep speed of its own.
@@ -614,7 +624,7 @@ class Wheelset(wl.Rig):
             ),
             "rail": wl.Body(
                 self.rail_material or self.material,
-                np.inf,
+                np.inf if self.roller_radius is None else wide(self._roller - patches.rail_z),
                 profile_position=wide(patches.rail_arc),
                 profile_direction=side,
             ),
@@ -713,6 +723,7 @@ class Wheelset(wl.Rig):
                 cant=wl.scalar_si(self.rail_cant, "rad"),
                 gauge=wl.scalar_si(self.gauge, "m"),
                 depth=wl.scalar_si(self.gauge_depth, "m"),
+                roller_radius=self._roller,
             )
 
         right = of(self.wheel, self.rail)

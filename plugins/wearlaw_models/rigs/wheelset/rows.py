@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw import Array
-from wearlaw_models.rigs.wheelset.motion import Place, curvature_along
+from wearlaw_models.rigs.wheelset.motion import Place, curvature_along, in_space
 from wearlaw_models.rigs.wheelset.search import Position, Section
 from wearlaw_models.rigs.wheelset.search_loops import locus
 
@@ -210,7 +210,7 @@ def near(section: Section, position: Position, places: Lattice) -> Near:
     at = _surface(section, wide, arc)
     gap = np.where(inside & np.isfinite(z), z - at.z - at.slope * (y - at.y), np.inf)
     lean = at.y - wide.displacement + at.slope * at.z
-    return Near(gap, np.cos(angle), lean, float(section.wheel_radius.value.mean()))
+    return Near(gap, np.cos(angle), lean, 1.0 / (1.0 / float(section.wheel_radius.value.mean()) + section.roller))
 
 
 def _across(section: Section, position: Position, arc: Array, row: tuple[Array, ...]) -> tuple[Array, Surface]:
@@ -254,7 +254,7 @@ def _surface(section: Section, position: Position, arc: Array) -> Surface:
     y, dy = section.at("wheel_y", arc, position.side)
     radius, d_radius = section.at("wheel_radius", arc, position.side)
     turn = np.sin(position.roll), np.cos(position.roll), np.sin(position.yaw), np.cos(position.yaw)
-    x, across, down, slope = locus(y, radius, d_radius / dy, position.displacement, turn)
+    x, across, down, slope = locus(y, radius, d_radius / dy, position.displacement, turn, section.axes)
     return Surface(x, across, down, slope, radius)
 
 
@@ -304,9 +304,11 @@ def rows(section: Section, places: Lattice, position: Position, height: Array, a
         array[kept] for array in (width, y, z, arc, overlap, sunk, turned, mean, facing, rail_arc, start, end)
     )
     at, here = Surface(*(array[kept] for array in at)), Position(*(array[kept] for array in here))
-    place = Place(at.x, at.y - here.displacement, at.z, mean, at.radius, rail_arc)
+    z_wheel = in_space(at.x, at.z, section.axes)
+    place = Place(at.x, at.y - here.displacement, z_wheel, mean, z, at.radius, rail_arc)
     facing = np.maximum(facing, FACING)
-    curvature = 0.5 * curvature_along(section, here, place, np.clip(arc, start, end)) / facing
+    of_roller = section.roller * np.cos(mean) / (1.0 - section.roller * z)
+    curvature = 0.5 * (curvature_along(section, here, place, np.clip(arc, start, end)) + of_roller) / facing
     lean = (place.y * np.cos(turned) + at.z * np.sin(turned)) / facing
     count = np.bincount(wheel, minlength=height.size)
     first = np.concatenate([[0], np.cumsum(count)])

@@ -144,6 +144,10 @@ class Section:
         Height of the rail, positive downwards, and the arc length of its profile, over y.
     wheel, rail : Curve
         The profiles.
+    roller : float
+        Curvature about its axis of the roller in place of the rail, at its top [1/m]; 0 for a rail.
+    axes : float
+        1 over the distance between this axis and the axle where the taping line is on the roller's top [1/m].
     left : Section or None
         The left wheel above its rail if their profiles differ; the others are then those of the right side.
     """
@@ -154,6 +158,8 @@ class Section:
     rail_position: Table
     wheel: Curve
     rail: Curve
+    roller: float
+    axes: float
     left: Section | None = None
 
     @cached_property
@@ -205,8 +211,9 @@ def _at(of: Table | Curve, x: Array) -> tuple[Array, ...]:
 
 
 def section(
-    wheel: Curve, rail: Curve, *, nominal_radius: float, wheel_offset: float, cant: float, gauge: float, depth: float
-) -> Section:
+    wheel: Curve, rail: Curve, *, nominal_radius: float, wheel_offset: float, cant: float, gauge: float, depth: float,
+    roller_radius: float,
+) -> Section:  # fmt: skip
     """Return one wheel above its rail.
 
     Parameters
@@ -221,6 +228,8 @@ def section(
         Angle by which the rail leans inwards [rad].
     gauge, depth : float
         Distance between the rails, and the depth below their highest points at which it is measured [m].
+    roller_radius : float
+        Radius of rollers in place of the rails, at their tops [m]; infinite for rails.
 
     Raises
     ------
@@ -259,7 +268,8 @@ def section(
     height = scipy.interpolate.CubicHermiteSpline(y[kept], z[kept], np.tan(angle[kept]))
     place = scipy.interpolate.CubicHermiteSpline(y[kept], rail.s[kept], 1.0 / np.cos(angle[kept]))
     rail_z, position = (Table.of(at[0], FINE, of(at), of(at, 1)) for of in (height, place))
-    return Section(across, radius, rail_z, position, wheel, rail)
+    axes = 1.0 / (nominal_radius + roller_radius)
+    return Section(across, radius, rail_z, position, wheel, rail, 1.0 / roller_radius, axes)
 
 
 def _reached(kind: str, curve: Curve, cant: float = 0.0) -> slice:
@@ -331,7 +341,7 @@ def gaps(section: Section, position: Position, arc: Array) -> Gaps:
     side = position.side
     y, dy = section.at("wheel_y", arc, side)
     radius, d_radius = section.at("wheel_radius", arc, side)
-    return _gaps(position, y, radius, d_radius / dy, lambda across: section.at("rail_z", across, side))
+    return _gaps(position, y, radius, d_radius / dy, section.axes, lambda across: section.at("rail_z", across, side))
 
 
 def _gaps(
@@ -339,11 +349,12 @@ def _gaps(
     y: Array,
     radius: Array,
     slope: Array,
+    axes: float,
     rail_at: Callable[[Array], tuple[Array, ...]],
 ) -> Gaps:
     displacement, roll, yaw, _ = position
     turn = np.sin(roll), np.cos(roll), np.sin(yaw), np.cos(yaw)
-    place_x, place_y, down, steep = locus(y, radius, slope, displacement, turn)
+    place_x, place_y, down, steep = locus(y, radius, slope, displacement, turn, axes)
     rail, rail_slope = rail_at(place_y)
     return Gaps(rail - down, rail_slope - steep, place_x, place_y, down, rail_slope, radius)
 
@@ -378,7 +389,7 @@ def touching(section: Section, position: Position, every: int = 1) -> Touching:
             single.append(touching(one, here, every))
         return Touching(*(np.concatenate(pair, axis=1) for pair in zip(*single, strict=True)))
     points = Coarse(*(array[::every] for array in section.coarse))
-    around = _gaps(position.widened(), points.y, points.radius, points.slope, section.rail_z.near)
+    around = _gaps(position.widened(), points.y, points.radius, points.slope, section.axes, section.rail_z.near)
     gap, rise = around.gap, around.rise
     falls = (rise < 0.0) | np.isinf(gap)
     low = falls[..., :-1] & ~falls[..., 1:]
@@ -474,7 +485,7 @@ def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | N
     least = np.empty(shape[:2])
     compiled_search(
         np.ascontiguousarray(displacement), np.ascontiguousarray(yaw), roll is not None,
-        tuple(tuple(one.coarse) for one in section.sides), tuple(one.tables for one in section.sides),
+        tuple(tuple(one.coarse) for one in section.sides), tuple(one.tables for one in section.sides), section.axes,
         roll_found, arc, above, least,
     )  # fmt: skip
     return roll_found, Touching(arc, above, least)

@@ -43,7 +43,9 @@ TABLES = f"UniTuple(Tuple((float64, float64, {ROWS})), 3)"
 """Start, step and cubics of the tables of a wheel's y and radius over its arc length, and of its rail's z over y."""
 
 
-def locus(y: Any, radius: Any, slope: Any, displacement: Any, turn: tuple[Any, Any, Any, Any]) -> tuple[Any, ...]:
+def locus(
+    y: Any, radius: Any, slope: Any, displacement: Any, turn: tuple[Any, Any, Any, Any], axes: float
+) -> tuple[Any, ...]:
     """Return x, y and z of points of the locus of contact, and the slope dz/dy of the locus there.
 
     Parameters
@@ -54,12 +56,17 @@ def locus(y: Any, radius: Any, slope: Any, displacement: Any, turn: tuple[Any, A
         Lateral displacement of the wheelset [m].
     turn : tuple
         The sine and the cosine of the roll, and those of the yaw.
+    axes : float
+        Curvature of a roller in place of the rail, 1 over the distance between its axis and the axle [1/m]; 0 for a
+        rail. z is then that of the circle about this axis, above the axis.
     """
     sin_roll, cos_roll, sin_yaw, cos_yaw = turn
     tan_yaw = sin_yaw / cos_yaw
-    lean = tan_yaw * sin_roll
+    meets = axes * (y + radius * slope)  # where the normals of a circle meet the axle
+    tilt = meets * tan_yaw * cos_roll / (1.0 - meets * sin_roll)
+    lean = tan_yaw * sin_roll - tilt * cos_roll
     scale = 1.0 / np.sqrt(1.0 + lean * lean)
-    sine = -tan_yaw * cos_roll * scale * slope
+    sine = -(tan_yaw * cos_roll + tilt * sin_roll) * scale * slope
     cosine = np.sqrt(np.maximum(1.0 - sine * sine, 0.0))
     sin_angle = scale * (sine - lean * cosine)
     cos_angle = scale * (cosine + lean * sine)
@@ -67,11 +74,13 @@ def locus(y: Any, radius: Any, slope: Any, displacement: Any, turn: tuple[Any, A
     across = y * cos_roll - upright * sin_roll
     normal_y = sin_angle * sin_yaw - cos_yaw * (slope * cos_roll + cos_angle * sin_roll)
     normal_z = cos_angle * cos_roll - slope * sin_roll
+    x, z = along * cos_yaw - across * sin_yaw, y * sin_roll + upright * cos_roll
+    turned, above = axes * x, np.abs(1.0 - axes * z)  # of points beside any rail it may be negative
     return (
-        along * cos_yaw - across * sin_yaw,
+        x,
         across * cos_yaw + along * sin_yaw + displacement,
-        y * sin_roll + upright * cos_roll,
-        -normal_y / normal_z,
+        z - turned * x / (above + np.sqrt(above * above + turned * turned)),
+        -normal_y / (normal_z * np.sqrt(1.0 + (tilt * cos_yaw) ** 2)),
     )
 
 
@@ -113,11 +122,13 @@ def ends(table: tuple[float, float, Array]) -> tuple[float, float]:
     return start, start + step * cubics.shape[1]
 
 
-def below(arc: float, tables: Any, shift: float, turn: tuple[float, float, float, float]) -> tuple[float, ...]:
+def below(
+    arc: float, tables: Any, shift: float, turn: tuple[float, float, float, float], axes: float
+) -> tuple[float, ...]:
     """Return y and z of the locus at an arc length of the wheel, its slope dz/dy, and z and slope of the rail there."""
     there, d_there = at(arc, tables[0])
     size, d_size = at(arc, tables[1])
-    _, across, down, steep = locus(there, size, d_size / d_there, shift, turn)
+    _, across, down, steep = locus(there, size, d_size / d_there, shift, turn, axes)
     rail, rail_slope = at(across, tables[2])
     return across, down, steep, rail, rail_slope
 
@@ -125,6 +136,7 @@ def below(arc: float, tables: Any, shift: float, turn: tuple[float, float, float
 def touch(
     shift: float,
     turn: tuple[float, float, float, float],
+    axes: float,
     every: int,
     points: tuple[Array, Array, Array, Array],
     tables: Any,
@@ -157,7 +169,7 @@ def touch(
         away = moved * (radius[k] + y[k])  # farther than roll and yaw move the point across the rail
         gap[k], rise[k] = np.inf, 0.0
         if first - away <= y[k] + shift <= last + away:
-            _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn)
+            _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn, axes)
             if first <= across < last:
                 rail, rail_slope = at(across, tables[2])
                 gap[k], rise[k] = rail - down, rail_slope - steep
@@ -191,7 +203,7 @@ def touch(
             if iteration > 1:
                 share = at_right / (at_right - at_left) if at_right != at_left else 0.0
                 root = right - share * (right - left)
-            _, down, steep, rail, rail_slope = below(root, tables, shift, turn)
+            _, down, steep, rail, rail_slope = below(root, tables, shift, turn, axes)
             value = rail_slope - steep
             if iteration == 0:
                 at_left = value
@@ -215,7 +227,7 @@ def touch(
                 place[patch], place[patch + 1] = place[patch + 1], place[patch]
                 cell[patch], cell[patch + 1] = cell[patch + 1], cell[patch]
     if cell[0] >= 0:
-        across, down, _, _, rail_slope = below(place[0], tables, shift, turn)
+        across, down, _, _, rail_slope = below(place[0], tables, shift, turn, axes)
         lever = across + rail_slope * down
     for patch in range(PATCHES):
         found[patch] = place[patch]
@@ -224,7 +236,7 @@ def touch(
 
 
 @wl.compiled_loop(
-    f"void({VECTOR}, {VECTOR}, boolean, UniTuple(UniTuple({VECTOR}, 4), 2), UniTuple({TABLES}, 2), {VECTOR},"
+    f"void({VECTOR}, {VECTOR}, boolean, UniTuple(UniTuple({VECTOR}, 4), 2), UniTuple({TABLES}, 2), float64, {VECTOR},"
     " float64[:, :, ::1], float64[:, :, ::1], float64[:, ::1])"
 )
 def compiled_search(
@@ -233,6 +245,7 @@ def compiled_search(
     given: bool,
     points: tuple[Any, Any],
     tables: tuple[Any, Any],
+    axes: float,
     roll: Array,
     found: Array,
     above: Array,
@@ -253,8 +266,8 @@ def compiled_search(
             for side in range(2):
                 out = 2.0 * side - 1.0
                 least[point, side], lever = touch(
-                    out * displacement[point], (out * sin_roll, cos_roll, out * sin_yaw, cos_yaw), every,
-                    points[side], tables[side], gap, rise, height, cell, place,
+                    out * displacement[point], (out * sin_roll, cos_roll, out * sin_yaw, cos_yaw), axes,
+                    every, points[side], tables[side], gap, rise, height, cell, place,
                     found[point, side], above[point, side],
                 )  # fmt: skip
                 levers += lever

@@ -220,13 +220,15 @@ class Stand:
         stand.sliding = creepages(
             Position(*(array[laid.wheel] for array in position)), laid.place, task.speed[point],
             side * task.lateral_velocity[point], side * task.turn_rate[point], side * turn[point], side,
+            section.roller,
         )  # fmt: skip
         if before is not None:
             stand.rotation = before.rotation[np.isin(before.points, points)]
         elif task.rotation is not None:
             stand.rotation = task.rotation.copy()
         else:
-            mean = np.bincount(point, force * laid.place.radius, count) / np.bincount(point, force, count)
+            rolls = laid.place.radius / (1.0 - section.roller * laid.place.rail_z)
+            mean = np.bincount(point, force * rolls, count) / np.bincount(point, force, count)
             stand.rotation = task.speed / mean
         stand.patches = stand._found()
         stand._sum(None, stand.patches)
@@ -274,9 +276,9 @@ class Stand:
             sums = np.bincount(rows.wheel, weight * values, 2 * count) / np.bincount(rows.wheel, weight, 2 * count)
             return np.asarray(sums).reshape(-1, 2)
 
-        x, y, z, angle = (mean(array) for array in rows.place[:4])
-        place = Place(x, y, z, angle, np.zeros(0), np.zeros(0))
-        return roll_rate(place, self.task.lateral_velocity, self.task.yaw_velocity)
+        x, y, z, angle, rail_z = (mean(array) for array in rows.place[:5])
+        place = Place(x, y, z, angle, rail_z, np.zeros(0), np.zeros(0))
+        return roll_rate(place, self.task.lateral_velocity, self.task.yaw_velocity, self.section.roller)
 
     def _found(self) -> Patches:
         """Return the patches: rows that touch and lie beside each other, at most `PATCHES` of them on each side."""
@@ -334,7 +336,8 @@ class Stand:
         across, upright = -mean(np.sin(angle)), mean(np.cos(angle))
         return Patches(
             point, of % 2, number, whole, across, upright, mean(rows.wheel_arc[at]), middle,
-            mean(rows.place.radius[at]), approach, mean(np.where(np.abs(angle) > self.task.flange_angle, 1.0, 0.0)),
+            mean(rows.place.radius[at]), mean(rows.place.rail_z[at]), approach,
+            mean(np.where(np.abs(angle) > self.task.flange_angle, 1.0, 0.0)),
             Creepages(tuple(means[:3]), tuple(means[3:])), a, b, strips, Creepages(tuple(moved[:3]), tuple(moved[3:])),
         )  # fmt: skip
 

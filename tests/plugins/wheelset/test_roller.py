@@ -1,0 +1,101 @@
+"""Wheelsets on rollers, against surfaces of revolution in space."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import wearlaw as wl
+from tests.plugins.wheelset.brute_force import TURNS, compared, positions
+from tests.plugins.wheelset.test_search import first, si
+from tests.plugins.wheelset.wheelsets import R0, Body, least_gap, standing, wheelset
+from wearlaw import Q
+from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
+
+RADIUS = 0.35
+PAIR = wheelset(roller_radius=Q(RADIUS, "m"))
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Contact of S1002 on rollers of 60E1 with roll and yaw: the least gap between the bodies is zero, and where it is",
+    source="search over the surface of the wheel in space (scipy)",
+    held_to="gap 0.2 µm and place 10 µm for each mm by which the wheelset stands higher or lower than its taping line",
+)
+@pytest.mark.parametrize(("displacement", "yaw"), [(0.0, 0.0), (3e-3, 20e-3), (-5.5e-3, 10e-3), (5e-3, -15e-3)])
+def test_wheels_touch_where_their_surfaces_in_space_are_nearest(displacement: float, yaw: float) -> None:
+    found = first(PAIR, displacement, yaw)
+    down = float(si(found, "vertical_displacement"))
+    where = standing(displacement, si(found, "roll"), yaw, down)
+    for side, name in ((-1, "left"), (1, "right")):
+        least, place = least_gap(Body(PAIR, side), *where)
+        there = np.array([si(found.sel(side=name), axis) for axis in "xyz"])
+        # The search takes the distance R + r0 of the axes. A crest, x = -ψ y (1 - r/A), moves by r/R of the share by
+        # which A is off; y and z follow it on the locus of contact. Heights above the roller change by 1 - cos(x/R).
+        off, slope = abs(down) / (RADIUS + R0), there[0] / RADIUS
+        assert abs(least) < 1e-9 + 0.6 * slope**2 * abs(down)
+        assert place == pytest.approx(there, rel=0.0, abs=2e-7 + 1.1 * R0 / RADIUS * off * abs(there[0]))
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Pressure of new and worn wheels on rollers of 350 and 800 mm at random displacements up to 6.2 mm, with yaw 0 and"
+    " 20 mrad: maximum, area",
+    source="half-spaces between the surfaces of revolution in space, on 120 by 120 elements, where the roller turns by 0.2"
+    " rad or less",
+    held_to="{pressure:.0%}, {area:.0%}",
+    pressure=0.02,
+    area=0.03,
+)
+@pytest.mark.parametrize(("radius", "yaw"), [(350, 0.0), (350, 20e-3), (800, 0.0), (800, 20e-3)])
+def test_wheels_are_pressed_on_rollers_as_by_brute_force(
+    radius: float, yaw: float, pressure: float, area: float
+) -> None:
+    found = []
+    for position in positions(8, seed=58 + radius, roller_radius=Q(radius, "mm")):
+        if abs(position.displacement) > 6.2e-3:  # beyond, wheels climb
+            continue
+        for due, off in compared(position._replace(yaw=yaw)):
+            assert off is not None, position
+            assert off.load == pytest.approx(0.0, abs=BALANCED), position
+            if due.turn <= TURNS:
+                found.append(off[:2])
+    assert len(found) > 4
+    assert (np.abs(found).max(axis=0) <= (pressure, area)).all()
+
+
+def test_a_roller_as_large_as_the_earth_is_a_rail() -> None:
+    # What differs is of the order of the wheel's radius over the roller's.
+    law = wl.wear_law("energy", mass_per_energy="0.001 ug/J")
+    where: dict[str, Any] = {
+        "lateral_displacement": Q([0.0, 4.9, 6.2], "mm"), "yaw": "7 mrad", "vertical_load": "60 kN",
+        "friction_coefficient": 0.3, "lateral_velocity": "0.02 m/s", "yaw_velocity": "0.05 rad/s",
+    }  # fmt: skip
+    on_rail, on_roller = ((pair | wl.contact_model("strip_theory") | law)(**where)
+                          for pair in (wheelset(), wheelset(roller_radius="6371 km")))  # fmt: skip
+    for name in ("max_pressure", "longitudinal_force", "lateral_force", "wear_rate", "spin"):
+        due = on_rail[name].magnitude
+        assert on_roller[name].magnitude == pytest.approx(due, rel=1e-5, abs=1e-5 * np.nanmax(np.abs(due)), nan_ok=True)
+    assert on_rail.wear_profile("rail").depth.units == "nm"
+    assert on_roller.wear_profile("rail").depth.units == "um/km"
+
+
+def test_bodies_of_a_problem_have_the_radii_of_their_patches() -> None:
+    with warnings.catch_warnings(action="ignore"):
+        problem: Any = (PAIR | wl.contact_model("fastsim")).posed({
+            "lateral_displacement": "6.3 mm", "vertical_load": "60 kN", "friction_coefficient": 0.3,
+        })  # fmt: skip
+    roller = problem.body("rail")
+    _, z = Body(PAIR, 1).rail(roller.profile_position[problem.exists])
+    # The mean over rows is off from their middle by what the arc of 13 mm falls beside its tangent.
+    off = 0.5 * float(np.nanmax(problem.b)) ** 2 / 13e-3
+    assert roller.rolling_radius[problem.exists] == pytest.approx(RADIUS - z, abs=off)
+    assert z.max() > 5e-3
+
+
+def test_rollers_are_straight_track() -> None:
+    with pytest.raises(wl.ConditionsError, match="curve_radius: rollers stand for straight track"):
+        PAIR.problem(lateral_displacement="0 mm", vertical_load="50 kN", friction_coefficient=0.3, curve_radius="300 m")
