@@ -77,7 +77,7 @@ def wear_out(
         follow from the profiles come from a function, which takes the rig at each step and returns such a DataFrame or
         Dataset.
     over : Quantity, str or float
-        The distance [m], or the number of passages for a rail.
+        The distance [m], or the number of passages for a rail. A roller in place of the rail wears over a distance.
     share : str
         The column with the shares, which add up to one.
     columns : mapping of str to str, optional
@@ -147,8 +147,9 @@ def wear_out(
         raise wl.InputError(f"depth_step: must be at most {1e3 * DEEPEST:g} mm, since contacts move as a profile wears")
     if not conicity_step > 0.0:
         raise wl.InputError(f"conicity_step: must be positive, or math.inf for no limit; got {conicity_step:g}")
-    distance = _distance(over, body)
     new = tuple(even(profile) for profile in _profiles(predict.rig, body, sides))
+    rolls = bool(np.isfinite(predict.rig.bodies[body].rolling_radius))
+    distance = _distance(over, rolls)
     predict = with_profiles(predict, body, new)
     longest = max(np.ptp(profile.curve.s) for profile in new)
     at = positions(new, math.ceil(longest / length.si(spacing, "spacing")) + 1)
@@ -175,7 +176,7 @@ def wear_out(
             if renewed is None:
                 raise
             raise type(error)(f"step 1: {error}") from None
-        steps = Steps(of_line, body, new, **settings)
+        steps = Steps(of_line, body, rolls, new, **settings)
         now = steps.begin(predict)
         rows, profiles = [now.row], [now.profiles]
         notes: list[tuple[str, ...]] = []
@@ -222,9 +223,9 @@ def wear_out(
         return life(ended)
 
 
-def _distance(over: Any, body: str) -> float:
+def _distance(over: Any, rolls: bool) -> float:
     """Return the distance [km], or the number of passages of a rail."""
-    if body != "rail":
+    if rolls:
         return 1e-3 * float(wl.Unit("km").si(over, "over"))
     if isinstance(over, str | wl.Quantity) or not over > 0.0:
         raise wl.InputError(f"over: a rail wears by passages; give their number, such as 1e6; got {wl.shown(over)}")

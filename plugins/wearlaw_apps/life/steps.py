@@ -134,6 +134,8 @@ class Steps:
 
     line: Line
     body: str
+    rolls: bool
+    """Whether the body rolls on a circumference, as all but rails do."""
     new: tuple[Profile, ...]
     """The profiles at the start: one for both sides, or those of the left and the right side."""
     depth_step: float
@@ -143,7 +145,7 @@ class Steps:
     @property
     def along(self) -> tuple[str, float]:
         """The column of the distance or of the passages, and what one metre or passage is there."""
-        return ("passages", 1.0) if self.body == "rail" else ("distance [km]", 1e-3)
+        return ("distance [km]", 1e-3) if self.rolls else ("passages", 1.0)
 
     def begin(self, predict: wl.Pipeline[...], after: State | None = None) -> State:
         """Return the state of the new profiles, at the start or after another state, whose step comes next."""
@@ -194,6 +196,7 @@ class Steps:
         middle = _of_middle(now, wear, distance)
         body = now.predict.rig.bodies[self.body]
         density, radius = wl.scalar_si(body.material.density, "kg/m^3"), float(np.asarray(body.rolling_radius))
+        radius = -radius if self.body == "rail" else radius  # z is positive towards the axis of a roller
         volumes = distance * self._of_profiles(middle.mass) / density
         removals = zip(now.profiles, distance * self._of_profiles(middle.depth), volumes, strict=True)
         worn = [conserving(profile, at, depth, float(volume), radius) for profile, depth, volume in removals]

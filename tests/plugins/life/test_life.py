@@ -249,6 +249,19 @@ def test_rails_wear_by_passages() -> None:
         assert last(found, f"mass_{side} [kg]") == pytest.approx(swept(new, worn) * 7850.0, rel=1e-2)
 
 
+def test_rollers_wear_over_a_distance() -> None:
+    predict = pipeline(roller_radius="350 mm")
+    found = wl.wear_out(predict, line(3), over="200 km", body="rail", **GIVEN)
+    assert last(found, "distance [km]") == 200.0
+    (new,), (worn,) = found.worn_profiles[0], found.worn_profiles[-1]
+    # The surfaces of revolution of both, by Guldin's rule on their radii R - z.
+    y = 1e-3 * np.linspace(-36.0, 36.0, 20001)
+    radii = [0.35 - np.interp(y, profile.curve.y, profile.curve.z) for profile in (new, worn)]
+    lost = np.pi * np.trapezoid(radii[0] ** 2 - radii[1] ** 2, y)
+    # Straight lines between points 0.05 mm apart on radii of 13 mm and more cut off (0.05 mm)²/8/13 mm on both alike.
+    assert last(found, "mass [kg]") == pytest.approx(7850.0 * lost, rel=1e-3)
+
+
 def test_line_may_be_a_file_with_its_own_heads(tmp_path: Path) -> None:
     table = line(3)
     table.columns = ["y [mm]", "part [%]"]

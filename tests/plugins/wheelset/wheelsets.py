@@ -120,7 +120,7 @@ class Body:
         return np.asarray(move.apply(own.reshape(-1, 3)).reshape(own.shape) + shift)
 
     def height(self, x: Any, y: Any) -> Any:
-        """Return z of the rail or the roller in the track [m], by Newton's method on its arc length; infinite beside it."""
+        """Return z of the rail or the roller [m], by Newton's method on its arc length; infinite beside it."""
         out = np.asarray(self.side * y)
         table = np.linspace(self.first, self.last, 4001)
         at = self.rail(table)[0]

@@ -255,7 +255,8 @@ def section(
     if not z[: top + 1].max() > depth:
         raise wl.InputError(
             f"gauge_depth: {1e3 * depth:.4g} mm is below the gauge side of the rail, which ends"
-            f" {1e3 * z[: top + 1].max():.4g} mm below the rail's top"
+            f" {1e3 * z[: top + 1].max():.4g} mm below the rail's top; give a smaller one, as for a narrow roller, or a"
+            " profile that reaches further down"
         )
     below = top - np.flatnonzero(z[top::-1] > depth)[0]
     at_depth = scipy.optimize.brentq(
