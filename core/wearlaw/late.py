@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from wearlaw_apps.fits.read_tests import read_tests
     from wearlaw_apps.fits.uncertainty import uncertainty
     from wearlaw_apps.life.over_distance import wear_out
+    from wearlaw_apps.life.uncertain import uncertain_life
     from wearlaw_apps.output.curves import Curve, FigureData, Panel, PlotAxis
     from wearlaw_apps.output.datasets import to_dataframe
     from wearlaw_apps.studies.case import load_case
@@ -42,8 +43,8 @@ __all__ = [
     "CheckedClaim", "Curve", "Disc", "FigureData", "Panel", "PlotAxis", "Profile", "Section", "Study",
     "TwinDisc", "WheelRail", "Wheelset", "compare", "creepage_for", "explore", "fit", "free_motion", "load_case",
     "lognormal", "normal", "published_range", "read_contact", "read_profile", "read_subsurface", "read_table",
-    "read_tests", "run", "sweep", "to_dataframe", "uncertainty", "uniform", "wear_coefficient", "wear_out",
-    "wear_profiles", "write_profile",
+    "read_tests", "run", "sweep", "to_dataframe", "uncertain_life", "uncertainty", "uniform", "wear_coefficient",
+    "wear_out", "wear_profiles", "write_profile",
 ]  # fmt: skip
 
 PUBLIC = {
@@ -56,6 +57,7 @@ PUBLIC = {
     "wearlaw_apps.fits.read_tests": ("read_tests",),
     "wearlaw_apps.fits.uncertainty": ("uncertainty",),
     "wearlaw_apps.life.over_distance": ("wear_out",),
+    "wearlaw_apps.life.uncertain": ("uncertain_life",),
     "wearlaw_apps.output.curves": ("Curve", "FigureData", "Panel", "PlotAxis"),
     "wearlaw_apps.output.datasets": ("to_dataframe",),
     "wearlaw_apps.studies.case": ("load_case",),

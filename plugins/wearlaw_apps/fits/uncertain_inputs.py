@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -94,6 +94,35 @@ def of_fit(fit: Fit, conditions: Mapping[str, Any]) -> UncertainFit:
     if not fit.samples:
         raise InputError("the fit has no replicates to draw from; fit it with a bootstrap, as in bootstrap=1000")
     return UncertainFit(fit, FRICTION in fit.samples and conditions.get(FRICTION) is None)
+
+
+def uncertain_inputs(
+    predict: Pipeline[...],
+    law: Mapping[str, Any],
+    stage: Mapping[str, Any],
+    conditions: Mapping[str, Any],
+    fits: Sequence[Uncertain] = (),
+) -> list[Uncertain]:
+    """Return the inputs that distributed conditions and numbers of laws and stages are, with those of fits.
+
+    Raises
+    ------
+    InputError
+        If there are none, or a number is given twice.
+    """
+    distributed = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
+    of_conditions = [of_condition(name, value) for name, value in distributed.items()]
+    inputs = [*of_conditions, *of_numbers(predict, "law", law), *of_numbers(predict, "stage", stage), *fits]
+    if not inputs:
+        raise InputError(
+            'nothing is uncertain; give a condition as a distribution, such as creepage=wl.uniform("0.5 %", "1 %"),'
+            " or a parameter by law={...} or stage={...}"
+        )
+    places = [place for uncertain in inputs for place in uncertain.at(np.array(0.5)) if isinstance(place, Place)]
+    twice = [place.field for place in places if places.count(place) > 1]
+    if twice:
+        raise InputError(f"{' and '.join(uncertain.name for uncertain in inputs)}: {twice[0]} is given twice")
+    return inputs
 
 
 def of_condition(name: str, distribution: Distribution) -> UncertainInput:

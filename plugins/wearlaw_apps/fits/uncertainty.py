@@ -29,9 +29,8 @@ from wearlaw_apps.fits.uncertain_inputs import (
     Sampled,
     Uncertain,
     check_samples,
-    of_condition,
     of_fit,
-    of_numbers,
+    uncertain_inputs,
 )
 from wearlaw_apps.output.conditions import Known
 from wearlaw_apps.output.curves import Curve, FigureData, Panel, PlotAxis, Shade
@@ -107,21 +106,11 @@ def uncertainty(
     expect_pipeline(pipeline)
     if not pipeline.laws:
         pipeline.wear_law  # noqa: B018  raises
-    of_stages = of_numbers(pipeline, "stage", stage or {})
-    check_loads_stay(pipeline, "uncertainty", [number.name for number in of_stages])
-    distributed = {name: value for name, value in conditions.items() if isinstance(value, Distribution)}
-    of_conditions = [of_condition(name, value) for name, value in distributed.items()]
-    inputs = [*of_conditions, *of_numbers(pipeline, "law", law or {}), *of_stages, *inputs]
-    if not inputs:
-        raise InputError(
-            'nothing is uncertain; give a condition as a distribution, such as creepage=wl.uniform("0.5 %", "1 %"),'
-            " or a parameter by law={...} or stage={...}"
-        )
-    places = [place for uncertain in inputs for place in uncertain.at(np.array(0.5)) if isinstance(place, Place)]
-    twice = [place.field for place in places if places.count(place) > 1]
-    if twice:
-        raise InputError(f"{' and '.join(uncertain.name for uncertain in inputs)}: {twice[0]} is given twice")
-    fixed = {name: value for name, value in conditions.items() if value is not None and name not in distributed}
+    check_loads_stay(pipeline, "uncertainty", list(stage or {}))
+    inputs = uncertain_inputs(pipeline, law or {}, stage or {}, conditions, inputs)
+    fixed = {
+        name: value for name, value in conditions.items() if value is not None and not isinstance(value, Distribution)
+    }
     explicit = pipeline.with_law(*(model.explicit() for model in pipeline.laws))
     sampler = Sampler(explicit, fixed, tuple(inputs))
     count = 1 << (samples - 1).bit_length()

@@ -10,10 +10,13 @@ from wearlaw.late import face
 
 if TYPE_CHECKING:
     from wearlaw_apps.life.life import Life
+    from wearlaw_apps.life.uncertain import UncertainLife
 
-__all__ = ["Life"]
+__all__ = ["Life", "UncertainLife"]
 
-__getattr__ = face("wearlaw_apps.life", {"wearlaw_apps.life.life": ("Life",)})
+__getattr__ = face(
+    "wearlaw_apps.life", {"wearlaw_apps.life.life": ("Life",), "wearlaw_apps.life.uncertain": ("UncertainLife",)}
+)
 
 
 @wl.hookimpl

@@ -27,6 +27,9 @@ SIDES = {1: ("",), 2: ("_left", "_right")}
 MOST_CURVES = 4
 """Most profiles in a picture."""
 
+NEAR = 1e-9
+"""Share of the way to a limit at which it counts as reached."""
+
 SEEN = 10.0
 """Largest depth as drawn on the profile [mm]."""
 
@@ -91,6 +94,17 @@ class Life:
     def profile(self) -> Profile:
         """The worn profile; that of the right side if each has its own, as `worn_profiles[-1]` has both."""
         return self.worn_profiles[-1][-1]
+
+    @property
+    def reached(self) -> dict[str, float]:
+        """The distance [km], or number of passages, at which each limit was first reached, by its column."""
+        distances = {}
+        for column, limit in self.limits.items():
+            start = self.table[column].iloc[0]
+            there = np.flatnonzero((self.table[column] - start) / (limit - start) >= 1.0 - NEAR)
+            if there.size:
+                distances[column] = float(self.table.to_numpy()[there[0], 0])
+        return distances
 
     @property
     def profiles(self) -> xarray.Dataset:
@@ -173,7 +187,7 @@ class Life:
             if not curves or (measure in NOT_DRAWN and not limits):
                 continue
             lines = tuple(Limit(f"limit {limit:g} {unit}".rstrip(), limit) for limit in limits)
-            yield wl.Panel(wl.PlotAxis(along), wl.PlotAxis(f"{_words(measure)} [{unit or '-'}]"), curves, limits=lines)
+            yield wl.Panel(wl.PlotAxis(along), wl.PlotAxis(f"{words(measure)} [{unit or '-'}]"), curves, limits=lines)
 
     def plot(self) -> Figure:
         """Draw profiles over the distance, the wear along their normals, and the measures, as a matplotlib figure."""
@@ -182,31 +196,32 @@ class Life:
     def __repr__(self) -> str:
         first, last = self.table.iloc[0], self.table.iloc[-1]
         along, unit = name_and_unit(self.table.columns[0])
-        why = {"": ", interrupted", "over": ""}.get(self.ended, f", to the limit of {_words(self.ended)}")
+        why = {"": ", interrupted", "over": ""}.get(self.ended, f", to the limit of {words(self.ended)}")
         steps = "1 step" if len(self.notes) == 1 else f"{len(self.notes)} steps"
-        lines = [f"Life of a {self.body}: {_number(last.iloc[0])} {unit or along}, {steps}{why}"]
+        lines = [f"Life of a {self.body}: {short(last.iloc[0])} {unit or along}, {steps}{why}"]
         for column in map(str, self.table.columns[1:]):
             of_side = len(self.worn_profiles[0]) == 1 and column.partition(" ")[0].endswith(("_left", "_right"))
             if not (column.startswith("factor") or of_side) and np.isfinite(last[column]):
                 unit, digits = readable(name_and_unit(column)[1]), 6 if column.startswith("diameter") else 4
-                low, high = (_number(row[column], digits) for row in (first, last))
-                lines.append(f"  {_words(column):<26}{low} to {high} {unit}".rstrip())
+                low, high = (short(row[column], digits) for row in (first, last))
+                lines.append(f"  {words(column):<26}{low} to {high} {unit}".rstrip())
         if len(self.cuts):
             counts = self.cuts["limit"].map(measure_of).value_counts()
-            reasons = " and ".join(f"{count} at the limit of {_words(str(name))}" for name, count in counts.items())
+            reasons = " and ".join(f"{count} at the limit of {words(str(name))}" for name, count in counts.items())
             lines.append(f"  cuts: {reasons}")
             for column in map(str, self.cuts.columns):
                 if column.startswith(("since_last", "depth_of_cut", "diameter_lost")):
-                    low, high = map(_number, (self.cuts[column].min(), self.cuts[column].max()))
+                    low, high = map(short, (self.cuts[column].min(), self.cuts[column].max()))
                     spread = low if low == high else f"{low} to {high}"
-                    lines.append(f"    {_words(column):<24}{spread} {readable(name_and_unit(column)[1])}")
+                    lines.append(f"    {words(column):<24}{spread} {readable(name_and_unit(column)[1])}")
         return "\n".join(lines)
 
 
-def _words(column: str) -> str:
+def words(column: str) -> str:
     """Return the name of a measure for readers."""
     return name_and_unit(column)[0].replace("_", " ").replace("gradient", "gradient qR")
 
 
-def _number(value: float, digits: int = 4) -> str:
+def short(value: float, digits: int = 4) -> str:
+    """Return a number for readers."""
     return f"{value:,.0f}" if abs(value) >= 1e4 else f"{value:.{digits}g}"

@@ -46,6 +46,7 @@ def wear_out(
     smoothing: wl.QuantityLike = "3 mm",
     spacing: wl.QuantityLike = "0.1 mm",
     until: Mapping[str, wl.QuantityLike | float] | None = None,
+    until_all: bool = False,
     turn: Mapping[str, wl.QuantityLike | float] | None = None,
     least_diameter: wl.QuantityLike | None = None,
     body: str = "wheel",
@@ -96,6 +97,8 @@ def wear_out(
         Limits of measures in `Life.table` that end the life, such as {"flange_thickness": "25 mm"}. Limits of the
         flange's thickness and gradient lie below the measure of the new profile, those of the conicity on either side,
         and all others above.
+    until_all : bool
+        Whether the last of these limits ends the life, instead of the first; `Life.reached` has the distance to each.
     turn : mapping, optional
         Limits of measures, as in `until`, at which wheels are turned: they get their first profile again, at the
         greatest diameter that worn wheels leave, the same on both sides. `Life.cuts` has the cuts.
@@ -182,11 +185,12 @@ def wear_out(
         notes: list[tuple[str, ...]] = []
         cutting = turns(predict.rig, body, until or {}, turn or {})
         least = {} if least_diameter is None else {"diameter": least_diameter}
-        limits = Limits({**(until or {}), **cutting, **least}, distance, now.row)
+        waiting = until or {} if until_all else {}
+        limits = Limits({**(until or {}), **cutting, **least}, distance, now.row, waiting)
         cuts: list[dict[str, Any]] = []
         last = now.row
         if store is not None:
-            settings |= {"sides": sides, "limits": limits.ends, "turn": sorted(cutting)}
+            settings |= {"sides": sides, "limits": limits.ends, "turn": sorted(cutting), "until_all": until_all}
             stack.enter_context(closing(steps.line.keep(store, settings, resume)))
         along, _ = limits.ends["over"]
         bar = stack.enter_context(Bar(round(distance), progress))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,7 +12,7 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw.units.registry import unit_in_si
-from wearlaw_apps.life.life import SIDES, measure_of, name_and_unit
+from wearlaw_apps.life.life import NEAR, SIDES, measure_of, name_and_unit
 from wearlaw_apps.life.line import Line, Wear
 from wearlaw_apps.life.removal import conserving, positions, smoothed, swept
 
@@ -33,14 +33,14 @@ and then the other."""
 SHORTEST = 1.0 / 64.0
 """Smallest share of `depth_step` that a jump of the conicity makes a step; a jump stays one however short the step."""
 
+LEAST = 1e-6
+"""Smallest share of `depth_step` of a step that ends at a limit: a measure that jumps passes it however short it is."""
+
 AIM = 0.95
 """Share of `conicity_step` at which a step aims."""
 
 TRIES = 8
 """Most distances that a step tries to hold the conicity and the limits."""
-
-NEAR = 1e-9
-"""Share of the way to a limit at which it counts as reached."""
 
 CONICITY, DIAMETER = "equivalent_conicity", "diameter [mm]"
 """Columns of these measures."""
@@ -64,10 +64,16 @@ class Limits:
     """Limits that end a life: those of measures, as in `wear_out`, and the distance in the unit of its column.
 
     `start` has the measures at the start by their columns, the distance first. A measure that each side has for itself
-    ends the life with the first side.
+    ends the life with the first side. Measures that wait end it once all of them are reached.
     """
 
-    def __init__(self, until: Mapping[str, wl.QuantityLike | float], over: float, start: Mapping[str, float]) -> None:
+    def __init__(
+        self,
+        until: Mapping[str, wl.QuantityLike | float],
+        over: float,
+        start: Mapping[str, float],
+        waiting: Collection[str] = (),
+    ) -> None:
         along, *columns = start
         there = {name_and_unit(column)[0]: column for column in columns if math.isfinite(start[column])}
         self._start = start
@@ -88,6 +94,7 @@ class Limits:
                     raise wl.InputError(f"{what}: must {must} that of the new profile, {has}; got {wl.shown(limit)}")
                 self.ends[measure] = there[measure], value
         self.ends["over"] = along, over
+        self._waiting = {name for name in self.ends if measure_of(name) in waiting}
 
     def _ways(self, row: Mapping[str, float]) -> Array:
         """Return the share of the way from the start to each limit."""
@@ -96,12 +103,14 @@ class Limits:
 
     def reached(self, row: Mapping[str, float]) -> str:
         """Return the measure that is at its limit, or "over"; "" if the life goes on."""
-        return next((name for name, way in zip(self.ends, self._ways(row), strict=True) if way >= 1.0 - NEAR), "")
+        reached = [name for name, way in zip(self.ends, self._ways(row), strict=True) if way >= 1.0 - NEAR]
+        waits = not self._waiting.issubset(reached)
+        return next((name for name in reached if not (waits and name in self._waiting)), "")
 
     def share(self, before: Mapping[str, float], after: Mapping[str, float]) -> float:
         """Return the share of a step at which the first measure reaches its limit, one if none does."""
         old, new = self._ways(before), self._ways(after)
-        passed = new > 1.0
+        passed = (new > 1.0) & (old < 1.0 - NEAR)
         return float(((1.0 - old[passed]) / (new - old)[passed]).min(initial=1.0))
 
 
@@ -167,12 +176,13 @@ class Steps:
         if not deepest > 0.0:
             raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
         distance = min(self._distance(now, wear), (limits.ends["over"][1] - now.row[along]) / unit)
+        least = min(LEAST * self.depth_step / deepest, distance)
         after = self._after(now, at, wear, distance)
         for _ in range(TRIES - 1):
             if after.change > self.conicity_step and distance * deepest > SHORTEST * self.depth_step:
                 distance *= max(AIM * self.conicity_step / after.change, 0.25)
-            elif (share := limits.share(now.row, after.row)) < 1.0 - 1e-6:
-                distance *= share
+            elif (share := limits.share(now.row, after.row)) < 1.0 - 1e-6 and distance > least:
+                distance = max(share * distance, least)
             else:
                 break
             after = self._after(now, at, wear, distance)

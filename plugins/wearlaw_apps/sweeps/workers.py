@@ -11,16 +11,19 @@ import sys
 import time
 import warnings
 from collections import deque
-from collections.abc import Callable, Generator, Iterable
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from collections.abc import Callable, Generator, Iterable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, as_completed, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import asdict
 from threading import Thread
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from wearlaw.errors import ModelError, SweepError, WorkerWarning, described
 from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs, evaluate
 from wearlaw_apps.sweeps.points import Block, Points
+
+T = TypeVar("T")
+R = TypeVar("R")
 
 Evaluated: TypeAlias = Generator[tuple[Block, Outputs, BlockRecord], None, None]
 """Finished blocks, in any order, with their outputs ({} if they are in a store) and records."""
@@ -91,11 +94,9 @@ def _unpickled(job: bytes) -> Job:
 
 def in_processes(workers: int, job: bytes, store: str | None, points: Points, blocks: Iterable[Block]) -> Evaluated:
     """Evaluate blocks in worker processes, which later sweeps use too."""
-    import loky
-
     waiting, deaths = deque(blocks), 0
     while waiting:
-        pool = loky.get_reusable_executor(workers, timeout=IDLE_S, initializer=_obey, initargs=(os.getpid(),))
+        pool = _pool(workers)
         try:
             yield from _in_pool(pool, lambda: workers, job, store, points, waiting)
         except BrokenProcessPool:
@@ -109,6 +110,27 @@ def in_processes(workers: int, job: bytes, store: str | None, points: Points, bl
         except BaseException:  # nobody waits for the blocks in work
             pool.shutdown(kill_workers=True)
             raise
+
+
+def each_in_processes(workers: int, task: Callable[[T], R], items: Sequence[T]) -> Generator[tuple[int, R], None, None]:
+    """Yield the number of each item with what a task returns for it, as they finish in worker processes."""
+    pool = _pool(workers)
+    pending = {pool.submit(task, item): number for number, item in enumerate(items)}
+    try:
+        for future in as_completed(pending):
+            yield pending[future], future.result()
+    except BaseException as error:  # nobody waits for the others
+        pool.shutdown(kill_workers=True)
+        if isinstance(error, BrokenProcessPool):
+            raise SweepError("a worker process died; does it need more memory than there is?") from None
+        raise
+
+
+def _pool(workers: int) -> Any:
+    """Return the executor of worker processes."""
+    import loky
+
+    return loky.get_reusable_executor(workers, timeout=IDLE_S, initializer=_obey, initargs=(os.getpid(),))
 
 
 def _obey(parent: int) -> None:
