@@ -70,7 +70,7 @@ def left_over(found: wl.Prediction, load: float) -> dict[str, Array]:
 )
 @pytest.mark.parametrize(("wheel", "most"), [("new", 6.6), ("worn", 7.2)])
 def test_what_does_not_balance_has_no_result(wheel: str, most: float, share: float) -> None:
-    place = np.concatenate([np.arange(-6.0, 6.0, 1.0), np.arange(6.0, most, 0.01)])
+    place = np.concatenate([np.arange(-6.0, 6.0, 1.0), np.arange(6.0, most, 0.03)])
     found = predicted(wheel, lateral_displacement=Q(place, "mm"))
     none = missing(found)
     assert not none.any()
@@ -82,9 +82,7 @@ def test_what_does_not_balance_has_no_result(wheel: str, most: float, share: flo
         assert (left[name] <= 1.001 * share).all(), name
 
 
-@pytest.mark.parametrize(
-    ("wheel", "forces"), [("new", [5.0, 20.0, 60.0, 72.0, 78.0, 82.0]), ("worn", [10.0, 25.0, 40.0])]
-)
+@pytest.mark.parametrize(("wheel", "forces"), [("new", [5.0, 60.0, 78.0]), ("worn", [25.0, 40.0])])
 def test_each_position_has_the_lateral_force_asked_for_or_none(wheel: str, forces: list[float]) -> None:
     found = predicted(wheel, lateral_force=Q(np.array(forces), "kN"))
     none = missing(found)
@@ -97,6 +95,8 @@ def test_each_position_has_the_lateral_force_asked_for_or_none(wheel: str, force
 FORCES: dict[str, Any] = {"lateral_force": Q([10.0, 300.0], "kN"), **COMMON}
 """Lateral forces on a wheelset of 160 kN, of which no flange bears the second."""
 
+CONTACT: Any = wheelset(rolling_speed="20 m/s") | wl.contact_model("fastsim")
+
 
 def begins(status: Any) -> bool:
     """Return whether the first position is balanced, and the second one states the greatest force."""
@@ -105,32 +105,23 @@ def begins(status: Any) -> bool:
 
 
 def test_a_warning_counts_the_positions_without_a_result_and_status_says_why() -> None:
-    contact: Any = wheelset(rolling_speed="20 m/s") | wl.contact_model("fastsim")
     said = "1 of 2 positions have no result, the first with a lateral force of 300 kN: the greatest lateral force"
     with pytest.warns(wl.RangeWarning, match=said):
-        found = contact(**FORCES)
+        found = CONTACT(**FORCES)
     assert begins(found["status"].magnitude[:, 1, 0])
     assert begins(found.problem.status[:, 0, 2])
     assert begins(found.to_dataset().status[:, 1, 0])
     assert found[0].sel(side="left", patch=1)["status"].magnitude == "balanced"
     assert set(found.to_dataframe(["status"])["status"]) == {"balanced"}  # a table has the patches that exist
     assert found == found[[0, 1]]
+    staged = (CONTACT | wl.stage("third_body", reduction=0.5)).predict(found.problem)
+    assert begins(staged["status"].magnitude[:, 1, 0])
 
 
 def test_sweeps_keep_the_status(tmp_path: Path) -> None:
-    contact: Any = wheelset(rolling_speed="20 m/s") | wl.contact_model("fastsim")
-    assert begins(wl.sweep(contact, **FORCES).status[:, 1, 0])
-    kept = wl.sweep(contact, **FORCES, outputs=["status", "normal_force"], store=tmp_path / "kept")
+    kept = wl.sweep(CONTACT, **FORCES, outputs=["status", "normal_force"], store=tmp_path / "kept")
     assert begins(kept.status[:, 1, 0])
     assert np.isnan(kept.normal_force[1]).all()
-
-
-def test_a_stage_keeps_the_status() -> None:
-    contact: Any = wheelset(rolling_speed="20 m/s") | wl.contact_model("fastsim")
-    found = (contact | wl.stage("third_body", reduction=0.5))(**FORCES)
-    status = found["status"].magnitude
-    assert (status[0] == "balanced").all()
-    assert not np.isin(status[1], ["balanced", ""]).any()
 
 
 # ------------------------------------------------------------------------------------------------- a resampled flank
@@ -143,16 +134,15 @@ def resampled(spacing: float) -> ws.Profile:
     return through(*curve.at(s)[:2], "wheel")
 
 
-@pytest.mark.parametrize("spacing", [0.1e-3, 0.25e-3, 0.5e-3])
-def test_the_straight_flank_of_resampled_points_does_not_climb(spacing: float) -> None:
-    contact = wheelset(wheel=resampled(spacing), rolling_speed="20 m/s") | wl.contact_model("fastsim")
+@pytest.mark.parametrize(
+    "wheel", [WHEELS["new"], resampled(0.1e-3), resampled(0.5e-3)], ids=["exact", "fine", "coarse"]
+)
+def test_the_straight_flank_of_resampled_points_does_not_climb(wheel: ws.Profile) -> None:
+    contact = wheelset(wheel=wheel, rolling_speed="20 m/s") | wl.contact_model("fastsim")
     given: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
-    exact = wheelset(rolling_speed="20 m/s") | wl.contact_model("fastsim")
-    for place in np.arange(6.2, 6.46, 0.05):
-        for one in (exact, contact):
-            with warnings.catch_warnings(record=True) as caught:
-                warnings.simplefilter("always")
-                one.posed({**given, "lateral_displacement": Q(place, "mm")})
-            assert not [1 for text in caught if "climbs" in str(text.message)], place
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        contact.posed({**given, "lateral_displacement": Q(np.arange(6.2, 6.46, 0.05), "mm")})
+    assert not [1 for text in caught if "climbs" in str(text.message)]
     with pytest.warns(wl.RangeWarning, match="climbs its rail"):
         contact.posed({**given, "lateral_displacement": "7 mm"})
