@@ -132,7 +132,9 @@ def vectors_dissipate_their_product(law: WearLaw, contact: Contact) -> None:
     """
     if contact.on_strips and _is_of_energy(law):
         straight, across = (law.rate(_with_slip_across(contact, share), law.numbers) for share in (0.0, 1.0))
-        assert_close(across, straight, "the rate with slip across the traction")
+        assert_close(
+            across, straight, "the rate with slip across the traction; take q·s from contact.wear_index_density"
+        )
 
 
 def _is_of_energy(law: WearLaw) -> bool:

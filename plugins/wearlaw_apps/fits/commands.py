@@ -170,13 +170,13 @@ def fit(
         measured = _tests(tests, columns, sheet=sheet, sep=sep, decimal=decimal, balance_resolution=balance_resolution)
         if FRICTION not in names:
             _note_friction(measured, friction, notes)
-        predict = _rig(rig, notes) | contact_model(contact)
-        for text in stages:
-            predict = predict | stage(text)
-        if law is not None:
-            predict = predict | law_of(law, law_fields)
-            _note_fixed(predict.laws[0], names, notes)
         with notes.of("fit"), Bar(bootstrap) as bar:
+            predict = _rig(rig, notes) | contact_model(contact)
+            for text in stages:
+                predict = predict | stage(text)
+            if law is not None:
+                predict = predict | law_of(law, law_fields)
+                _note_fixed(predict.laws[0], names, notes)
             bar.stage("fitting")
             settings |= {"friction_coefficient": friction, "bounds": _bounds(bounds), "bootstrap": bootstrap}
             fitted = fit_parameters(predict, measured, names, on_progress=bar, **settings)

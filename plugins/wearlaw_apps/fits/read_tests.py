@@ -234,7 +234,7 @@ def _unknown(table: Table, names: Collection[str]) -> Iterator[str]:
         of_body = column.name.startswith("wear_rate_")  # the wear rate of one body
         alike = [name for name in near if not (of_body and name == "wear_rate")]
         close = get_close_matches(column.name, alike, n=1) or get_close_matches(column.name, nearer, n=1, cutoff=0.8)
-        words = column.name.casefold().replace("_", " ")
+        words = column.name.casefold().replace("_", " ").rstrip(" %")
         other = OTHER_NAMES.get(words, "")
         name = next(iter(close), other if other in missing else "")
         if column.unit is None or name:

@@ -292,6 +292,9 @@ def test_a_table_with_decimal_commas_and_heads_of_its_own(tmp_path: Path) -> Non
     example = next(text for text in error.value.problems if "columns={" in text)
     assert '"label": "Test no.", "creepage": "Slip / %", "normal_force": "Load in kN"' in example
     assert '--columns creepage="Slip / %"' in example
+    (tmp_path / "bare.csv").write_text(CAMPAIGN.replace("Slip / %", "Slip %"), encoding="utf-8")
+    with pytest.raises(DataError, match="column 'Slip %': unknown column; did you mean 'creepage'"):
+        wl.read_tests(tmp_path / "bare.csv", decimal=",")
     with pytest.raises(DataError, match="there is no column 'Slipp'; did you mean 'Slip'"):
         wl.read_tests(tmp_path / "campaign.csv", columns={**columns, "creepage": "Slipp"}, decimal=",")
 

@@ -173,7 +173,7 @@ def test_checks_are_named_documented_and_frozen() -> None:
 
 
 def test_checks_of_something_else_are_an_error() -> None:
-    with pytest.raises(wl.InputError, match="needs a rig, a contact model, a stage, a law or a reader"):
+    with pytest.raises(wl.InputError, match="needs a rig, a contact model, a stage, a law, a reader or the function"):
         list(checks(3))  # type: ignore[arg-type]
 
 
