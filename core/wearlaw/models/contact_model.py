@@ -41,6 +41,7 @@ class ContactModel(Model):
     """
 
     kind: ClassVar[str] = "contact model"
+    conditions: ClassVar[type[Any] | None]
 
     scale: ClassVar = cast(Any, "cells")  # Any: for type checkers, a subclass may make it a property
     """"patch" if the model gives only the means of the whole patch, otherwise "cells". A model that contains another
@@ -251,6 +252,7 @@ class Stage(Model):
     """
 
     kind: ClassVar[str] = "stage"
+    conditions: ClassVar[type[Any] | None]
 
     gives_means: ClassVar[bool] = False
     """Whether the contact after this stage is one node with the means of the whole patch."""

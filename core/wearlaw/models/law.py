@@ -185,6 +185,7 @@ class Law(Model):
     """
 
     kind: ClassVar[str] = "law"
+    conditions: ClassVar[type[Any] | None]
 
     outcome: ClassVar[Outcome]
     """What the law predicts."""

@@ -88,7 +88,7 @@ class Model(Configuration, ABC):
     source: ClassVar[str]
     """Literature source of the model."""
 
-    conditions: ClassVar = cast(Any, None)  # Any: a rig has a method of this name, and a subclass may have a property
+    conditions: ClassVar = cast(Any, None)  # Any: a rig has a method of this name
     """A `TypedDict` of conditions that a contact model, a stage or a law needs beside those of rigs, each with its unit
     and a docstring. They are conditions of every pipeline with the model, which reads them from `conditions` of the
     problem or the contact. A rig with a condition of this name provides it."""

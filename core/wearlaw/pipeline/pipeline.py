@@ -26,6 +26,7 @@ from wearlaw.contact.conditions import (
     is_friction_law,
     together,
 )
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Body, CreepForces, Problem
 from wearlaw.errors import (
     CompositionError,
@@ -77,6 +78,20 @@ class Poses(Protocol[P]):
 
     def problem(self, *args: P.args, **conditions: P.kwargs) -> Problem:
         """Return the problem that the conditions pose."""
+        ...
+
+
+class Declares(Protocol):
+    """A stage or a law as type checkers see it if it declares conditions: a pipeline with it takes any."""
+
+    conditions: ClassVar[type[Any]]
+
+
+class DeclaresAndSolves(Declares, Protocol):
+    """A contact model as type checkers see it if it declares conditions."""
+
+    def solve(self, problem: Problem) -> Contact:
+        """Return the solved contact."""
         ...
 
 
@@ -272,15 +287,15 @@ class Rig(Model):
         return f"give {name}={example}"
 
     @overload
+    def __or__(self, model: DeclaresAndSolves) -> Pipeline[...]: ...
+    @overload
     def __or__(self: Poses[P], model: ContactModel) -> Pipeline[P]: ...
     @overload
     def __or__(self: Poses[P], model: Sequence[ContactModel]) -> Pipelines[P]: ...
-    def __or__(self: Poses[P], model: ContactModel | Sequence[ContactModel]) -> Pipeline[P] | Pipelines[P]:
+    def __or__(self, model: Any) -> Any:
         """Return the pipeline that solves this rig's contact with a contact model, or with each of a list of them."""
-        assert isinstance(self, Rig)
         if isinstance(model, list | tuple):
-            pipelines: Pipelines[P] = _several(self, model)
-            return pipelines
+            return _several(self, model)
         if not isinstance(model, ContactModel):
             raise CompositionError(f"a rig is followed by a contact model, not by {shown(model)}; {ORDER}")
         return Pipeline(rig=self, contact_model=model)
@@ -518,14 +533,15 @@ class Pipeline(Configuration, Generic[P]):
         return line if len(line) <= LINE else "({})".format("\n | ".join(parts))
 
     @overload
+    def __or__(self, part: Declares) -> Pipeline[...]: ...
+    @overload
     def __or__(self, part: Law | Stage) -> Pipeline[P]: ...
     @overload
     def __or__(self, part: Sequence[Law]) -> Pipelines[P]: ...
-    def __or__(self, part: Law | Stage | Sequence[Law]) -> Pipeline[P] | Pipelines[P]:
+    def __or__(self, part: Any) -> Any:
         """Return the pipeline with one more law or stage around the contact model, or with each of a list of laws."""
         if isinstance(part, list | tuple) and not self.laws:
-            pipelines: Pipelines[P] = _several(self.rig, [self.contact_model], self.stages, part, dims=["law"])
-            return pipelines
+            return _several(self.rig, [self.contact_model], self.stages, part, dims=["law"])
         if isinstance(part, Stage):
             if self.laws:
                 raise CompositionError(f"a stage stands before the laws, not after them: {shown(part)}; {ORDER}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, assert_type
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypedDict, assert_type
 
 import numpy as np
 
@@ -313,3 +313,48 @@ def sets() -> Mapping[str, wl.WearLaw]:
 def wearlaw_of_tomorrow() -> int:
     """Return what a later version of wearlaw asks for."""
     return 3
+
+
+class Humidity(TypedDict):
+    """Humidity of the air."""
+
+    relative_humidity: Annotated[wl.QuantityLike, wl.Unit("%")]
+
+
+class Humid(wl.WearLaw):
+    """A law with a condition of its own."""
+
+    name: ClassVar[str] = "humid"
+    source: ClassVar[str] = "made up"
+    conditions: ClassVar = Humidity
+
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
+        return contact.per_node(contact.conditions["relative_humidity"])
+
+
+class HumidModel(wl.ContactModel):
+    """A contact model with a condition of its own."""
+
+    name: ClassVar[str] = "humid_contact"
+    source: ClassVar[str] = "made up"
+    conditions: ClassVar = Humidity
+
+    def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
+        return solved
+
+
+class Wet(wl.Stage):
+    """A stage with a condition of its own."""
+
+    name: ClassVar[str] = "wet"
+    source: ClassVar[str] = "made up"
+    conditions: ClassVar = Humidity
+
+
+test = {"creepage": "1 %"}
+humid = rig | wl.contact_model("exact") | Humid()
+humid(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.4, relative_humidity="40 %")
+(rig | wl.contact_model("exact") | wl.wear_law("usfd") | Humid())(relative_humidity="40 %", **test)
+(rig | wl.contact_model("exact") | Wet() | wl.wear_law("usfd"))(relative_humidity="40 %", **test)
+(wheel | HumidModel() | wl.wear_law("usfd"))(relative_humidity="40 %", **test)
+assert_type(humid(relative_humidity="40 %", **test), wl.Prediction)

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar, TypedDict
 
 import wearlaw as wl
 from wearlaw import Q
@@ -136,3 +136,21 @@ def wearlaw_commands() -> int:
 def wearlaw_resources() -> dict[str, str]:
     """Return texts without their kind."""
     return {"my_case": "title = 'Mine'"}
+
+
+class Humidity(TypedDict):
+    """Humidity of the air."""
+
+    relative_humidity: Annotated[wl.QuantityLike, wl.Unit("%")]
+
+
+class Moist(wl.Stage):
+    """A stage with a condition of its own."""
+
+    name: ClassVar[str] = "wet"
+    source: ClassVar[str] = "made up"
+    conditions: ClassVar = Humidity
+
+
+rig | Moist()  # expect-error
+predict(normal_force="7 kN", creepage="1 %", friction_coefficient=0.4, relative_humidity="4 %")  # expect-error
