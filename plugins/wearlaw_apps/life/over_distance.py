@@ -80,7 +80,9 @@ def wear_out(
     over : Quantity, str or float
         The distance [m], or the number of passages for a rail. A roller in place of the rail wears over a distance.
     share : str
-        The column with the shares, which add up to one.
+        The column with the shares of the distance, which add up to one; "equal" for rows of equal shares. Of a run, it
+        is the column of times or of distances, which grow: a row then stands for what lies half-way to its neighbours,
+        and a column `rolling_speed` makes distances of times.
     columns : mapping of str to str, optional
         The column of each condition, as in `wearlaw.sweep`. Default: columns have the names of conditions, and a
         warning names the others, which are ignored.

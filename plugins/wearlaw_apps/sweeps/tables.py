@@ -21,7 +21,8 @@ from wearlaw.units.quantities import Q
 from wearlaw.units.variables import VARIABLES
 from wearlaw_apps.sweeps.located import advice
 from wearlaw_apps.sweeps.points import OnDisk, Points, Varying, split
-from wearlaw_apps.sweeps.wear_profile import SHARE, check_shares
+from wearlaw_apps.sweeps.shares import EQUAL, with_shares
+from wearlaw_apps.sweeps.wear_profile import SHARE
 from wearlaw_apps.tables import LISTED, Column, Table, named_column, open_table
 
 Columns = Mapping[str, str]
@@ -73,6 +74,9 @@ def operating_points(
     for name in arrays:
         raise DataError(f"{name}: beside a table it must be one value; add it to the table as a column")
     table = open_table(source, **as_csv)
+    share = (keep or {}).get(SHARE, EQUAL)
+    if summed and share == EQUAL and EQUAL not in (column.name for column in table.heads):
+        keep = {name: text for name, text in (keep or {}).items() if name != SHARE}
     patterns, labels = _patterns(table, {**(keep or {}), **(columns or {})})
     if labels and summed:
         raise DataError(f"{table.label}: the rows are summed, so that a column must have one name, without {{...}}")
@@ -118,8 +122,8 @@ def operating_points(
             file=table if table.on_disk else Table(table.label),
             numbers=range(axes[next(iter(varying))].values.shape[0]),
         )
-        if summed and keep is not None:
-            check_shares(points, keep[SHARE])
+        if summed:
+            points = with_shares(points, share, _files(beside, 1, stack)[0] if on_disk else None)
         yield points
 
 

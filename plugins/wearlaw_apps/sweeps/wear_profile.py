@@ -14,7 +14,7 @@ from pydantic import TypeAdapter
 
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import ConditionsError, DataError, shown
+from wearlaw.errors import ConditionsError
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.units.quantities import Q, QuantityLike, coefficient
@@ -34,12 +34,6 @@ WEAR_PROFILE = "wear_profile"
 
 SHARE = "share"
 """Name that the column with the shares gets."""
-
-ROUNDED = 1e-6
-"""Deviation of the sum of the shares from one that is rounding of the numbers in a table."""
-
-PIECE = 1_000_000
-"""Shares that are read at a time."""
 
 UNITS = (
     {"depth": "um/km", "sliding_distance": "mm/m", "mass": "mg/km"},
@@ -225,32 +219,3 @@ class Sum(Target):
         """Let other processes write the folder."""
         if self._parts is not None:
             self._parts.close()
-
-
-def check_shares(points: Points, name: str) -> None:
-    """Raise an error unless the kept column `SHARE` of points has the shares of one whole.
-
-    Raises
-    ------
-    DataError
-        If a share is missing or negative, or they do not add up to one.
-    """
-    column, total, table = points.kept[SHARE], 0.0, points.file
-    assert table is not None
-    factor = 1.0 if column.unit is None else float(coefficient(Q(1.0, column.unit), name))
-    for start in range(0, column.values.size, PIECE):
-        shares = column.values[start : start + PIECE]
-        wrong = np.flatnonzero(~(shares >= 0.0))
-        if wrong.size:
-            row = table.where(start + int(wrong[0]))
-            raise DataError(
-                f"{table.label}, {row}, column {shown(name)}: must be a share of the distance, zero or more, got"
-                f" {shares[wrong[0]]:g}"
-            )
-        total += factor * float(shares.sum())
-    if abs(total - 1.0) > ROUNDED:
-        percent = "; are they in percent? Name the column with its unit, as in 'share [%]'"
-        advice = percent if abs(total - 100.0) < 100.0 * ROUNDED else f"; divide the column by {total:.6g}"
-        raise DataError(
-            f"{table.label}: the shares in {shown(name)} must add up to 1, but add up to {total:.6g}{advice}"
-        )

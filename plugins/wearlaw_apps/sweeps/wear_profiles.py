@@ -55,7 +55,7 @@ def wear_profiles(
     body : str
         The body that wears.
     share : str, optional
-        The column of the table with the share of each row, which add up to one. The results are then the weighted sums
+        The column of the table with the share of each row, as in `wear_out`. The results are then the weighted sums
         over all rows, with the mass, at constant memory for a file of any length. A store keeps the sum of each block.
     outputs : sequence of str
         Further outputs, as in `sweep`; none beside `share`.

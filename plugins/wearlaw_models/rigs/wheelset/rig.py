@@ -75,6 +75,8 @@ class WheelsetConditions(TypedDict, total=False):
     stay on their rails."""
     curve_radius: Annotated[wl.QuantityLike, wl.Unit("m", positive=False, infinite=True)]
     """Radius of the curve, positive to the right [m]. Infinite on straight track."""
+    rolling_speed: Annotated[wl.QuantityLike, wl.Unit("m/s", limit=HUGE, usual=(1e-4, 200.0))]
+    """Speed along the track, V [m/s]; that of the rig if not given."""
     rolled_distance: Annotated[wl.QuantityLike, wl.Unit("km", positive=False, negative=False, limit=HUGE)]
     """Distance rolled since the bodies were new [m], for laws of running-in."""
 
@@ -258,7 +260,7 @@ class Wheelset(wl.Rig):
     rail_material: wl.MaterialField | None = None
     """Material of the rails, if it differs from the wheels'."""
     rolling_speed: wl.Speed
-    """Speed of the wheelset along the track, or of the tops of rollers, V [m/s]."""
+    """Speed of the wheelset along the track, or of the tops of rollers, V [m/s]; the condition replaces it."""
 
     if TYPE_CHECKING:
 
@@ -528,6 +530,7 @@ class Wheelset(wl.Rig):
     def _task(self, conditions: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
         """Return what is asked at positions; with a lateral force, they are in the middle of the track at first."""
         speed = np.full(conditions["yaw"].shape, wl.scalar_si(self.rolling_speed, "m/s"))
+        speed = conditions.get("rolling_speed", speed)
         none, load = np.zeros(speed.shape), conditions.get("vertical_load")
         loads = np.stack(
             [conditions[f"vertical_load_{side}"] if load is None else load for side in DIMS["side"]], axis=-1
