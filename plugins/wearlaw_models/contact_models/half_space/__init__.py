@@ -11,8 +11,8 @@ from pydantic import Field
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_models.contact_models.half_space.cerruti import influence as influence
 from wearlaw_models.contact_models.half_space.grid import Grid
+from wearlaw_models.contact_models.half_space.grid import influence as influence
 from wearlaw_models.contact_models.half_space.rolling import Friction, Patch
 
 WIDE = 1e4
@@ -22,10 +22,15 @@ DIGITS = 12
 """Decimals of the axes over √(ab) to which ellipses have the same grid."""
 
 
+def middles_of(cells: int) -> Array:
+    """Return the middles of equal cells from -1 to 1."""
+    return (2.0 * np.arange(cells) + 1.0) / cells - 1.0
+
+
 @functools.lru_cache(maxsize=8)
 def of_ellipse(cells: int, root: float, poisson_ratio: float) -> Grid:
     """Return the grid of ellipses of one shape, by √(a/b), which share its tables."""
-    middles = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
+    middles = middles_of(cells)
     return Grid(root * middles, middles / root, np.full(cells, 2.0 / (cells * root)), poisson_ratio)
 
 
@@ -99,7 +104,7 @@ class HalfSpace(wl.ContactModel):
 
     def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
         """Return the contact on as many rows of elements as along the patch."""
-        middles = (2.0 * np.arange(self.cells) + 1.0) / self.cells - 1.0
+        middles = middles_of(self.cells)
         root = np.sqrt((1.0 - middles) * (1.0 + middles))
         flat = problem.flatten()
         strips = wl.Strips(
@@ -114,44 +119,36 @@ class HalfSpace(wl.ContactModel):
         """Return the contact on the strips of the problem."""
         strips = problem.flatten().strips
         assert strips is not None
-        middles = (2.0 * np.arange(self.cells) + 1.0) / self.cells - 1.0
-        half_length = np.where(strips.max_pressure > 0.0, strips.half_length, 0.0)
-        begin = (strips.x - half_length).min(axis=-1, keepdims=True)
-        end = (strips.x + half_length).max(axis=-1, keepdims=True)
-        return self._solve(problem, strips, 0.5 * (begin + end) + 0.5 * (end - begin) * middles)
+        return self._solve(problem, strips, self._columns(strips))
 
     def solve_line(self, problem: wl.Problem) -> wl.Contact:
         """Return the contact on elements of one strip, so wide that its middle is a line contact."""
         flat = problem.flatten()
-        width, of_strips = WIDE * flat.a, ("friction_coefficient", "rolling_speed", "density", "poisson_ratio")
-        one = wl.Strips(
+        width = WIDE * flat.a
+        strip = wl.Strips(
             y=np.zeros((flat.size, 1)),
             width=width[:, None],
             half_length=flat.a[:, None],
             max_pressure=flat.max_pressure[:, None],
         )
-        wide = wl.Problem.of_strips(
-            one,
-            shear_modulus=flat.shear_modulus,
-            a=flat.a,
-            b=0.5 * width,
-            longitudinal_creepage=flat.longitudinal_creepage,
-            lateral_creepage=flat.lateral_creepage,
-            spin=flat.spin,
-            **{name: getattr(flat, name) for name in of_strips},
-        )
-        found = self.solve_strips(wide)
+        wide = flat.replaced(b=0.5 * width, normal_force=flat.normal_force_per_width * width)
+        solved = self._solve(wide, strip, self._columns(strip))
         fields = wl.LineFields(
-            pressure=found.pressure[..., 0],
-            traction=found.traction_x[..., 0],
-            slip=found.slip_x[..., 0],
-            traction_bound=found.traction_bound[..., 0],
+            pressure=solved.pressure[..., 0],
+            traction=solved.traction_x[..., 0],
+            slip=solved.slip_x[..., 0],
+            traction_bound=solved.traction_bound[..., 0],
         )
-        length = found.area[..., 0] / width[:, None]
-        contact = wl.Contact.from_line(
-            flat, fields, x=found.x[..., 0], length=length, force_per_width=found.force_x / width
-        )
+        length, force = solved.area[..., 0] / width[:, None], solved.force_x / width
+        contact = wl.Contact.from_line(flat, fields, x=solved.x[..., 0], length=length, force_per_width=force)
         return contact.unflattened(problem)
+
+    def _columns(self, strips: wl.Strips) -> Array:
+        """Return the middles of elements along x from the first to the last edge of the strips, (points, cells)."""
+        half_length = np.where(strips.max_pressure > 0.0, strips.half_length, 0.0)
+        begin = (strips.x - half_length).min(axis=-1, keepdims=True)
+        end = (strips.x + half_length).max(axis=-1, keepdims=True)
+        return 0.5 * (begin + end) + 0.5 * (end - begin) * middles_of(self.cells)
 
     def _solve(self, problem: wl.Problem, strips: wl.Strips, columns: Array) -> wl.Contact:
         """Return the contact on elements in the columns at x of (points, cells) and the rows of the strips."""
@@ -163,27 +160,27 @@ class HalfSpace(wl.ContactModel):
         load = (pressure * length * strips.width[:, None, :]).sum(axis=(-2, -1))
         pressure *= (flat.normal_force / load)[:, None, None]
         size = np.sqrt(flat.a * flat.b)
-        if problem.geometry == "ellipse":
-            creepages = flat.longitudinal_creepage[:, None] - flat.spin[:, None] * strips.y
-            creepages = np.stack(np.broadcast_arrays(creepages, flat.lateral_creepage[:, None], flat.spin[:, None]))
-        else:
+        if problem.geometry == "strips":
             along, across, spin = flat.creepages_of_strips
             creepages = np.stack([along, across + spin * strips.x, spin])
+        else:
+            along = flat.longitudinal_creepage[:, None] - flat.spin[:, None] * strips.y
+            creepages = np.stack(np.broadcast_arrays(along, flat.lateral_creepage[:, None], flat.spin[:, None]))
         # Of tractions and slip along x and along y, and of the bound; of forces, moment and power.
         fields, totals = np.zeros((5, *pressure.shape)), np.zeros((4, flat.size))
         decay = wl.scalar_si(self.decay, "s/m")
         for point in range(flat.size):
-            one = flat[point]
-            c, force = float(size[point]), float(one.friction_coefficient * one.normal_force)
-            ratio, rows = float(one.poisson_ratio), pressure[point].any(axis=0)  # without those that fill up the batch
+            at = flat[point]
+            c, force = float(size[point]), float(at.friction_coefficient * at.normal_force)
+            ratio, rows = float(at.poisson_ratio), pressure[point].any(axis=0)  # without those that fill up the batch
             if problem.geometry == "ellipse":
-                grid = of_ellipse(self.cells, round(float(np.sqrt(one.a / one.b)), DIGITS), ratio)
+                grid = of_ellipse(self.cells, round(float(np.sqrt(at.a / at.b)), DIGITS), ratio)
             else:
                 grid = Grid(columns[point] / c, strips.y[point, rows] / c, strips.width[point, rows] / c, ratio)
-            patch = Patch(grid, pressure[point, :, rows] * (c**2 / float(one.normal_force)))
-            unit = force / (float(one.shear_modulus) * c**2)
+            patch = Patch(grid, pressure[point, :, rows] * (c**2 / float(at.normal_force)))
+            unit = force / (float(at.shear_modulus) * c**2)
             reduced = creepages[:, point, rows, None] / unit * np.array([1.0, 1.0, c])[:, None, None]
-            friction = Friction(self.limit_ratio, decay * unit * float(one.rolling_speed))
+            friction = Friction(self.limit_ratio, decay * unit * float(at.rolling_speed))
             q, slip, bound = patch.solved(friction, reduced)
             stress, share = force / c**2, unit * slip / np.where(patch.inside, bound, 1.0)
             fields[:, point, :, rows] = np.stack([*(stress * q), *(share * q), stress * bound]).swapaxes(0, 1)

@@ -21,19 +21,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw import Array
-from wearlaw_models.contact_models.half_space.blocks import Blocks
 from wearlaw_models.contact_models.half_space.grid import Grid
-from wearlaw_models.contact_models.half_space.step import Step
+from wearlaw_models.contact_models.half_space.step import Blocks, Step
 
 MISS, GUESS = 1e-10, 0.1
 """Traction that is left to correct, over the greatest bound, and that of a first guess."""
 
-STEPS = np.tile([0.1, 0.3, 0.03], 30)
+STEPS = np.tile([0.1, 0.3, 0.03], 60)
 """Weights of the slip beside the traction, over the stiffness of an element. With one that stays, Newton's method runs
 in circles in some contacts."""
 
-DAMPED, CLOSE = 10, 1e-3
-"""Steps after which friction that falls follows the slip half the way, until less than this is left to correct."""
+DAMPED = {10: 0.5, 30: 0.2}
+"""Numbers of steps from which on friction that falls follows the slip by a share of the way."""
+
+CLOSE = 1e-3
+"""What is left to correct when it follows at once again."""
 
 NEAR, EARLY, LATE = 0.1, 0.1, 1e-4
 """Share of the residual that GMRES leaves: `LATE` if less than `NEAR` is left to correct, or else `EARLY`."""
@@ -43,15 +45,7 @@ COARSE = 8
 
 
 class Friction(NamedTuple):
-    """Friction that falls with the slip, as `wl.FallingFriction` does, over that at rest.
-
-    Attributes
-    ----------
-    limit_ratio : float
-        The value at infinite slip.
-    rate : float
-        Coefficient of the exponential fall, over the slip.
-    """
+    """Friction that falls with the slip, over that at rest, as `wl.FallingFriction` does; `rate` is over the slip."""
 
     limit_ratio: float = 1.0
     rate: float = 0.0
@@ -65,14 +59,6 @@ class Friction(NamedTuple):
         """Return the values at slips, and their slopes; none where nothing slips."""
         fallen = (1.0 - self.limit_ratio) * np.exp(-self.rate * slip)
         return self.limit_ratio + fallen, np.where(slip > 0.0, -self.rate * fallen, 0.0)
-
-
-class Solution(NamedTuple):
-    """Tractions (2, rows, columns), and the slip along them and their bound (rows, columns)."""
-
-    traction: Array
-    slip: Array
-    bound: Array
 
 
 class Patch:
@@ -124,17 +110,17 @@ class Patch:
         blocks = whole.reshape((rows + 1) // 2, 2, (columns + 1) // 2, 2).mean(axis=(1, 3))
         coarse = Patch(self.grid.coarser, blocks)
         creepages = np.pad(creepages, ((0, 0), (0, rows % 2), (0, 0)), "edge").reshape(3, -1, 2, 1).mean(axis=2)
-        q = coarse.rolling(friction, creepages, coarse.guess(friction, creepages), GUESS).traction
+        q = coarse.rolling(friction, creepages, coarse.guess(friction, creepages), GUESS)[0]
         share = q / np.where(coarse.inside, blocks, 1.0)
         guess: Array = share.repeat(2, axis=1).repeat(2, axis=2)[:, :rows, :columns] * self.pressure
         return guess
 
-    def solved(self, friction: Friction, creepages: Array) -> Solution:
-        """Return the solution to rounding."""
+    def solved(self, friction: Friction, creepages: Array) -> tuple[Array, Array, Array]:
+        """Return the solution to rounding, as `rolling` does."""
         return self.rolling(friction, creepages, self.guess(friction, creepages))
 
-    def rolling(self, friction: Friction, creepages: Array, q: Array, miss: float = MISS) -> Solution:
-        """Return the solution from a first guess of the tractions.
+    def rolling(self, friction: Friction, creepages: Array, q: Array, miss: float = MISS) -> tuple[Array, Array, Array]:
+        """Return tractions (2, rows, columns), the slip along them and their bound (rows, columns), from a first guess.
 
         Raises
         ------
@@ -143,13 +129,14 @@ class Patch:
         """
         w = self.rigid_slip(0.5 * self.grid.step, creepages)
         blocks, settled, left, slips = Blocks(self.grid), False, np.inf, np.zeros(self.inside.shape, dtype=np.bool_)
-        bound, slope = self.pressure, np.zeros(self.inside.shape)
+        bound, slope, share = self.pressure, np.zeros(self.inside.shape), 1.0
         for number, rho in enumerate(STEPS / self.grid.stiffness):
             if friction.falls:
                 before = bound
                 bound, slope = (self.pressure * one for one in friction.at(self.slipped(q, slips, creepages)))
-                if number >= DAMPED and left > CLOSE:
-                    bound, slope = 0.5 * (before + bound), 0.0 * slope
+                share = DAMPED.get(number, share)
+                if share < 1.0 and left > CLOSE:
+                    bound, slope = before + share * (bound - before), 0.0 * slope
             s = w - self.inside * self.grid.taken_up(q)
             u = q + rho * s
             length = np.maximum(np.hypot(*u), 1e-300)
@@ -158,7 +145,7 @@ class Patch:
             left /= min(bound.max(), rho * np.abs(w).max()) or 1.0
             if left <= miss and (settled or miss > MISS):
                 q = np.where(slips, bound * axis, q)
-                return Solution(q, self.slipped(q, slips, creepages), bound)
+                return q, self.slipped(q, slips, creepages), bound
             settled = left <= miss
             # Where an element slips, q goes to the bound at once along q + ρs; across, it follows the slip by a share.
             fixed = np.where(slips, (bound - (q * axis).sum(axis=0)) * axis, 0.0)
