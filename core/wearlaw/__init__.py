@@ -37,14 +37,7 @@ from wearlaw.fields import ContactModelField, MaterialField, WearLawField, read_
 from wearlaw.hookspecs import Command, ResourceKind, hookimpl
 from wearlaw.kernels import accelerate, accelerated, compiled_loop
 from wearlaw.loader import contact_model, installed, law, material, patch_mean, rig, stage, use, wear_law
-from wearlaw.models.contact_model import (
-    ContactModel,
-    CreepForceModel,
-    Forces,
-    LineContactModel,
-    Solve,
-    Stage,
-)
+from wearlaw.models.contact_model import ContactModel, CreepForceModel, Forces, LineContactModel, Solve, Stage
 from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome, WearLaw
 from wearlaw.models.model import Claim, Exempt
 from wearlaw.models.reader import Reader

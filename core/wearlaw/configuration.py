@@ -16,14 +16,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, field_validator
 from pydantic.errors import PydanticSchemaGenerationError
 from pydantic.json_schema import GenerateJsonSchema
 
-from wearlaw.errors import (
-    ConfigurationError,
-    Fault,
-    FrozenError,
-    ModelError,
-    did_you_mean,
-    shown,
-)
+from wearlaw.errors import ConfigurationError, Fault, FrozenError, ModelError, did_you_mean, shown
 from wearlaw.units.quantities import Unit, plain_number, text_of
 from wearlaw.units.usual import OneWarning
 

@@ -20,7 +20,7 @@ __all__ = [
     "CalibrationWarning", "CaseError", "CompositionError", "ConditionsError", "ConfigurationError", "DataError",
     "FitError", "FitWarning", "FrozenError", "InputError", "ModelError", "OutputError", "PlasticityWarning",
     "PluginWarning", "RangeWarning", "ResumeWarning", "SweepError", "UnitError", "UnknownModelError",
-    "UnusualWarning", "WearlawError", "WearlawWarning", "WorkerWarning",
+    "UnusualWarning", "WearlawError", "WearlawWarning", "WorkerWarning", "warn",
 ]  # fmt: skip
 
 LONGEST = 400

@@ -29,13 +29,7 @@ from pydantic import Field
 from wearlaw.arrays import Array, extremes, read_only
 from wearlaw.configuration import Configuration, item_docstrings
 from wearlaw.errors import CompositionError, ConditionsError, ModelError, UnitError, WearlawError, described
-from wearlaw.units.quantities import (
-    Quantity,
-    QuantityLike,
-    Unit,
-    coefficient,
-    scalar_si,
-)
+from wearlaw.units.quantities import Quantity, QuantityLike, Unit, coefficient, scalar_si
 from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import alike, meaning_of
 

@@ -13,23 +13,10 @@ from pydantic import Field, model_validator
 
 from wearlaw.arrays import Array, extremes, type_name
 from wearlaw.configuration import Configuration
-from wearlaw.contact.contact import (
-    LAW_VARIABLES,
-    PATCH_VARIABLES,
-    Contact,
-    LawVariable,
-    variable_at_nodes,
-)
+from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact, LawVariable, variable_at_nodes
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry
-from wearlaw.errors import (
-    CalibrationWarning,
-    CompositionError,
-    InputError,
-    did_you_mean,
-    shown,
-    warn,
-)
+from wearlaw.errors import CalibrationWarning, CompositionError, InputError, did_you_mean, shown, warn
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.model import Blame, Model, check_scale, fault
 from wearlaw.parameters import numbers_in_si

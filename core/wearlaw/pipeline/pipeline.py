@@ -28,14 +28,7 @@ from wearlaw.contact.conditions import (
 )
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Body, CreepForces, Problem
-from wearlaw.errors import (
-    CompositionError,
-    ConditionsError,
-    ModelError,
-    UnitError,
-    did_you_mean,
-    shown,
-)
+from wearlaw.errors import CompositionError, ConditionsError, ModelError, UnitError, did_you_mean, shown
 from wearlaw.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.late import method
 from wearlaw.models.contact_model import ContactModel, Scale, Stage

@@ -6,7 +6,6 @@ import dataclasses
 import json
 import os
 import re
-import warnings
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -75,7 +74,7 @@ class Line:
         self._kept = Parts(store, provenance, resume, "life")
         if self._kept.resumed:
             text = f"the finished steps in {wl.shown(store)} are kept; the life goes on from there"
-            warnings.warn(text, ResumeWarning, stacklevel=3)
+            warn(text, ResumeWarning)
         return self._kept
 
     def wear(self, step: int, predict: wl.Pipeline[...], at: Array) -> tuple[Wear, tuple[str, ...]]:

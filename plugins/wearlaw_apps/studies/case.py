@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import re
 import textwrap
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
@@ -40,6 +39,7 @@ from wearlaw.errors import (
     described,
     did_you_mean,
     shown,
+    warn,
     with_problems,
 )
 from wearlaw.fields import ContactModelField, LawField, StageField, preset_fields
@@ -355,7 +355,7 @@ def _left_out(shelf: Shelf, name: str) -> Iterator[None]:
         raise
     except BaseException as error:
         reason = f"{shelf.kind} {shown(name)} of {shelf.origin(name)} is left out of the schema: {described(error)}"
-        warnings.warn(reason, PluginWarning, stacklevel=4)
+        warn(reason, PluginWarning)
 
 
 def _rig_tables(name: str, rig: type[Rig], definitions: dict[str, Any]) -> Iterator[dict[str, Any]]:

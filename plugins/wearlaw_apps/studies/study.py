@@ -28,6 +28,7 @@ from wearlaw.errors import (
     WearlawError,
     described,
     shown,
+    warn,
 )
 from wearlaw.models.law import WEAR, WearLaw
 from wearlaw.models.model import Model
@@ -136,7 +137,7 @@ def run(
     _check_figures(case, pairs, profiles)
     sweeps = {name: _sweep(name, grid, case, pairs, notes, evaluator) for name, grid in case.sweeps.items()}
     if store is not None and 0 < evaluator.kept < evaluator.blocks:
-        warnings.warn(kept(evaluator.kept, evaluator.blocks, store), ResumeWarning, stacklevel=3)
+        warn(kept(evaluator.kept, evaluator.blocks, store), ResumeWarning)
     for text in of_profiles.texts:
         notes.add(text)
     words = {name: outcome.long_name for name, outcome in case.outcomes.items()}

@@ -9,7 +9,6 @@ import pickle
 import signal
 import sys
 import time
-import warnings
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, as_completed, wait
@@ -18,7 +17,7 @@ from dataclasses import asdict
 from threading import Thread
 from typing import Any, TypeAlias, TypeVar
 
-from wearlaw.errors import ModelError, SweepError, WorkerWarning, described
+from wearlaw.errors import ModelError, SweepError, WorkerWarning, described, warn
 from wearlaw_apps.sweeps.evaluation import BlockRecord, Job, Outputs, evaluate
 from wearlaw_apps.sweeps.points import Block, Points
 
@@ -106,7 +105,7 @@ def in_processes(workers: int, job: bytes, store: str | None, points: Points, bl
                     f"the sweep was given up, since worker processes died {DEATHS} times; does it need more memory than"
                     " there is?"
                 ) from None
-            warnings.warn("a worker process died; its blocks are evaluated again", WorkerWarning, stacklevel=4)
+            warn("a worker process died; its blocks are evaluated again", WorkerWarning)
         except BaseException:  # nobody waits for the blocks in work
             pool.shutdown(kill_workers=True)
             raise

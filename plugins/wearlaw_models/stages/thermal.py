@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -235,12 +234,11 @@ class Thermal(wl.Stage):
         peclet = (0.5 * problem.rolling_speed * problem.a / (diffusivity * slender))[counts]
         slow = peclet < LEAST_PECLET
         if slow.any():
-            warnings.warn(
+            wl.errors.warn(
                 f"stage 'thermal' assumes heat that flows into the depth alone, with a Péclet number Va/(2κ), over"
                 f" (a/b)² on a long patch, of at least {LEAST_PECLET:g}; {slow.sum()} of {counts.size} contacts have"
                 f" less, down to {peclet.min():.2g}. Their temperature may be off by more than 6 %; check against data",
                 wl.RangeWarning,
-                stacklevel=2,
             )
 
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import sys
-import warnings
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.curve import Curve, through_points
 from wearlaw_models.rigs.wheelset.files import Kind
@@ -54,14 +51,6 @@ UPRIGHT = np.radians(80.0)
 ROUNDED = 0.1
 """Slope at the end of a profile up to which the top of a flange is there [rad]. On a top with a radius of 20 mm, which
 is more than in use, it is 0.1 mm from the end."""
-
-
-def warn(text: str) -> None:
-    """Warn of something that is possible but unlikely, where the user called wearlaw."""
-    frame, level = sys._getframe(), 1
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith(("wearlaw", "pydantic")):
-        frame, level = frame.f_back, level + 1
-    warnings.warn(text, wl.UnusualWarning, stacklevel=level)
 
 
 def of_shape(kind: Kind, curve: Curve, lean: float) -> Iterator[str]:

@@ -10,7 +10,6 @@ import io
 import math
 import os
 import re
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -232,8 +231,8 @@ def _simpack(lines: Sequence[str], units: str) -> Points:
         elif place == ["spline"] and key in NUMBERS:
             values[key] = _number(value, number, key)
         elif place == ["spline"] and key not in TEXTS:
-            warnings.warn(
-                f"line {number} of a profile: the key {wl.shown(key)} is not known and left out", wl.WearlawWarning, 4
+            wl.errors.warn(
+                f"line {number} of a profile: the key {wl.shown(key)} is not known and left out", wl.WearlawWarning
             )
     if not told:
         raise FileError(f"it ends in the section '{place[-1]}'; is it whole?" if place else "it has no spline.begin")
@@ -254,11 +253,10 @@ def _nest(place: list[str], section: str, edge: str, line: int) -> None:
 def _changed(columns: Array, rows: NDArray[np.intp], values: dict[str, float], kind: Kind | None, units: str) -> Points:
     """Return the points after the changes of a Simpack header, in the order of the numbers that the files print."""
     if values.get("approx.smooth", 0.0):
-        warnings.warn(
+        wl.errors.warn(
             f"the profile asks for approx.smooth = {values['approx.smooth']:g}, whose meaning Simpack does not publish;"
             " the points are not smoothed by it, so give smoothing as a length",
             wl.WearlawWarning,
-            stacklevel=5,
         )
     y, z = columns[0], columns[1]
     weights = columns[2] if columns.shape[0] > 2 else np.ones(y.size)

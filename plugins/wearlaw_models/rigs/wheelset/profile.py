@@ -274,7 +274,7 @@ class Profile(wl.Configuration):
             kept[list(spots)] = False
             texts += doubts.of_smoothing(self.kind, curve, y[kept], z[kept])
         for text in texts:
-            doubts.warn(text)
+            wl.errors.warn(text, wl.UnusualWarning)
 
     def _name(self, index: int) -> str:
         """Return the name of a point in messages."""
@@ -502,10 +502,10 @@ class Profile(wl.Configuration):
         back = float(wl.Unit("mm", positive=False).si(flange_back_position, "flange_back_position"))
         height, thickness, gradient = flange(y, z, back)
         for text in doubts.of_tip(y, z, self.curve.angle, height):
-            doubts.warn(text)
+            wl.errors.warn(text, wl.UnusualWarning)
             height = gradient = np.nan
         for text in doubts.of_back(self.curve, back):
-            doubts.warn(text)
+            wl.errors.warn(text, wl.UnusualWarning)
         names = ("flange_height", "flange_thickness", "flange_gradient", "hollow")
         values = (height, thickness, gradient, hollow(z))
         return {name: wl.Q(1e3 * length, "mm") for name, length in zip(names, values, strict=True)}
@@ -722,7 +722,7 @@ def read_profile(
         y = y + float(length.si(shift_y, "shift_y"))
         points, mended = repaired(replace(points, y=y, z=z), told, repair)
         if mended:
-            doubts.warn(f"profile {wl.shown(path)}, repaired: {'; '.join(mended)}")
+            wl.errors.warn(f"profile {wl.shown(path)}, repaired: {'; '.join(mended)}", wl.UnusualWarning)
         y, z = points.y, points.z
         if points.taped and y.min() <= 0.0 <= y.max():
             way = slice(None, None, -1 if y[-1] < y[0] else 1)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -15,7 +14,6 @@ from pydantic import BeforeValidator, Field, model_validator
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.conicity import NOTHING, equivalent_conicity
-from wearlaw_models.rigs.wheelset.doubts import warn
 from wearlaw_models.rigs.wheelset.geometry import Geometry, geometry, patches, profiles
 from wearlaw_models.rigs.wheelset.guidance import FARTHEST, guided
 from wearlaw_models.rigs.wheelset.loads import BALANCE, Loads
@@ -311,7 +309,7 @@ class Wheelset(wl.Rig):
         )
         for name, profile in self._profiles.items():
             for text in unlikely(profile, cant, radius, back):
-                warn(f"{name}: {text}")
+                wl.errors.warn(f"{name}: {text}", wl.UnusualWarning)
         play = self._flange_play
         if play is not None and not 0.0 < play < MOST_PLAY:
             raise self._misfit(
@@ -667,23 +665,21 @@ class Wheelset(wl.Rig):
         if over.any():
             point, side = (int(index[0]) for index in np.nonzero(over))
             displacement = 1e3 * loads.task.displacement[point]
-            warnings.warn(
+            wl.errors.warn(
                 f"at a lateral displacement of {displacement:.4g} mm the {DIMS['side'][side]} wheel climbs its rail: it"
                 " stands on its flange beyond the steepest point",
                 wl.RangeWarning,
-                stacklevel=5,
             )
 
     def _warn_of_points(self, problem: wl.Problem) -> None:
         """Warn of a pressure that the points of a measured profile give, rather than its shape."""
         greatest = np.nanmax(problem.max_pressure, initial=0.0)
         if self._rough and greatest > HIGH_PRESSURE:
-            warnings.warn(
+            wl.errors.warn(
                 f"the maximum pressure of {1e-6 * greatest:.0f} MPa is that of single points:"
                 f" {' and '.join(self._rough)} run"
                 ' through all of theirs; give smoothing with the profile, such as "0.01 mm"',
                 wl.RangeWarning,
-                stacklevel=5,
             )
 
     def _warn_of_missing(self, loads: Loads, status: NDArray[np.object_]) -> None:
@@ -695,11 +691,10 @@ class Wheelset(wl.Rig):
                 where = f"at a lateral displacement of {1e3 * task.displacement[first]:.4g} mm"
             else:
                 where = f"with a lateral force of {1e-3 * task.lateral_force[first]:.4g} kN"
-            warnings.warn(
+            wl.errors.warn(
                 f"{missing.size} of {status.size} positions have no result, the first {where}: {status[first]}; see"
                 " status of the problem",
                 wl.RangeWarning,
-                stacklevel=5,
             )
 
     @property
