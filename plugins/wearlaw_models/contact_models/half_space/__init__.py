@@ -148,7 +148,8 @@ class HalfSpace(wl.ContactModel):
         half_length = np.where(strips.max_pressure > 0.0, strips.half_length, 0.0)
         begin = (strips.x - half_length).min(axis=-1, keepdims=True)
         end = (strips.x + half_length).max(axis=-1, keepdims=True)
-        return 0.5 * (begin + end) + 0.5 * (end - begin) * middles_of(self.cells)
+        columns: Array = 0.5 * (begin + end) + 0.5 * (end - begin) * middles_of(self.cells)
+        return columns
 
     def _solve(self, problem: wl.Problem, strips: wl.Strips, columns: Array) -> wl.Contact:
         """Return the contact on elements in the columns at x of (points, cells) and the rows of the strips."""
