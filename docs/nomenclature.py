@@ -16,7 +16,7 @@ from wearlaw.loader import discovered
 from wearlaw.parameters import numbers
 from wearlaw.units.variables import GIVEN, OWNERS, VARIABLES, Variable
 from wearlaw_apps.output.labels import readable
-from wearlaw_models.rigs.wheelset.rig import WheelsetProblem
+from wearlaw_models.rigs.wheelset.problem import WheelsetProblem
 
 TABLE = Path(__file__).parent / "nomenclature.csv"
 HEAD = ("symbol", "name", "meaning", "unit", "on axes and in tables", "used in")

@@ -45,7 +45,7 @@ DEFERRED = {
         "xarray",
     ): "takes as long to load as the rest of wearlaw; for tables",
     ("wearlaw_models.rigs.wheelset.pictures", "matplotlib.figure"): "takes longer to load than all else; few plot",
-    ("wearlaw_models.rigs.wheelset.profile", "matplotlib.figure"): "takes longer to load than all else; few plot",
+    ("wearlaw_models.rigs.wheelset.pictures", "matplotlib.style"): "takes longer to load than all else; few plot",
     (
         "wearlaw_apps.papers.tassini2010",
         "wearlaw_apps.papers.tassini2010",

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import cache, partial
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from wearlaw import Array
-from wearlaw_models.rigs.wheelset.curve import Arc, Parametric, Piece
+from wearlaw_models.rigs.wheelset.curve import Arc, Curve, Parametric, Piece, joined
+from wearlaw_models.rigs.wheelset.fields import CONVEX
 
 MM = 1e-3
 SIDE = math.atan(20.0)
@@ -180,3 +181,9 @@ def _polynomial(coefficients: tuple[float, ...], begin: float, end: float) -> Pa
         return MM * straight[order](y), MM * derivatives[order](y)
 
     return Parametric(derivative, np.linspace(begin, end, 1 + math.ceil(end - begin)))
+
+
+@cache
+def curve_of(name: str) -> Curve:
+    """Return the curve of a formula."""
+    return joined(FORMULAS[name].pieces(), CONVEX[FORMULAS[name].kind])

@@ -9,9 +9,12 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw_models.rigs.wheelset.curve import Curve
+from wearlaw_models.rigs.wheelset.measures import depth_between
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
@@ -30,14 +33,8 @@ BELOW = 8.0
 LINES = 60
 """Most positions whose contact points are joined by lines."""
 
-STYLE: Any = {
-    "axes.grid": True,
-    "grid.alpha": 0.3,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.titlesize": "medium",
-    "legend.frameon": False,
-}
+STYLE = "wearlaw_apps.output.wearlaw"
+"""The style of all pictures, by matplotlib's name."""
 
 WAYS = ("lateral_displacement", "yaw")
 """Axes of a geometry besides the side and the patch."""
@@ -82,14 +79,51 @@ class Profiles(NamedTuple):
         return self.rail_arc, self.rail_y, self.rail_z
 
 
+def _matplotlib() -> Any:
+    import matplotlib.figure
+    import matplotlib.style
+
+    return matplotlib
+
+
+def draw_profile(
+    ax: Axes | None, curve: Curve, name: str, measures: Mapping[str, wl.Quantity],
+    points: tuple[wl.Quantity, wl.Quantity] | None, new: Curve | None,
+) -> Axes:  # fmt: skip
+    """Draw a profile with its measures and points; see `Profile.plot`."""
+    mpl = _matplotlib()
+    with mpl.style.context(STYLE if ax is None else {}):
+        several: list[Axes] = [] if ax is None else [ax]
+        if not several:
+            figure: Figure = mpl.figure.Figure(figsize=(7.4, 3.6 if new is None else 5.4))
+            several += list(figure.subplots(1 if new is None else 2, squeeze=False)[:, 0])
+        axes, *below = several
+        axes.plot(1e3 * curve.y, 1e3 * curve.z, color="C0", label=name)
+        if new is not None:
+            axes.plot(1e3 * new.y, 1e3 * new.z, color="0.4", linestyle="--", label="new")
+            axes.legend()
+        if new is not None and below:
+            there = (new.y >= curve.y.min()) & (new.y <= curve.y.max())
+            below[0].plot(1e3 * new.y[there], 1e3 * depth_between(new, curve, new.s[there]), color="C0")
+            below[0].set(xlabel="y of the new profile [mm], outwards", ylabel="depth along the normal [mm]")
+        lines = (f"{measure.replace('_', ' ')} {value.m_as('mm'):.2f} mm" for measure, value in measures.items())
+        place = (0.85, 0.3) if curve.sign < 0.0 else (0.5, 0.5)
+        axes.text(*place, "\n".join(lines), transform=axes.transAxes, ha="center", va="center", fontsize="small")
+        if points is not None:
+            axes.plot(*(value.magnitude for value in points), ".", color="C1", markersize=2.0, zorder=3, label="points")
+        axes.set(xlabel="y [mm], outwards", ylabel="z [mm], down", title=name, aspect="equal")
+        if not axes.yaxis_inverted():
+            axes.invert_yaxis()
+        return axes
+
+
 def geometry_figure(geometry: xarray.Dataset, profiles: Profiles) -> Figure:
     """Return a figure of contact points on both profiles of the right side, Δr and contact angles."""
-    import matplotlib.figure
-
-    with matplotlib.rc_context(STYLE):
-        figure = matplotlib.figure.Figure(figsize=(7.4, 6.2), layout="constrained")
+    mpl = _matplotlib()
+    with mpl.style.context(STYLE):
+        figure: Figure = mpl.figure.Figure(figsize=(7.4, 6.2))
         axes = figure.subplot_mosaic([["both", "both"], ["radius", "angle"]], height_ratios=(3.0, 4.0))
-        colours = matplotlib.cm.ScalarMappable(cmap="viridis")  # pyright: ignore[reportAttributeAccessIssue]
+        colours = mpl.cm.ScalarMappable(cmap="viridis")
         _contact_points(axes["both"], geometry, profiles, colours)
         radius, angle = geometry.rolling_radius_difference, geometry.contact_angle.sel(side="right")
         _curves(axes["radius"], radius.expand_dims("patch", -1))

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
-from difflib import get_close_matches
-from functools import cache, cached_property
+from collections.abc import Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -26,77 +24,19 @@ from pydantic_core import core_schema
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset import doubts
-from wearlaw_models.rigs.wheelset.curve import Curve, joined, through_points
-from wearlaw_models.rigs.wheelset.files import Kind, points_of, write_points
-from wearlaw_models.rigs.wheelset.formulas import FORMULAS
-from wearlaw_models.rigs.wheelset.measures import depth_between, flange, hollow, rail_wear
+from wearlaw_models.rigs.wheelset.curve import Curve, through_points
+from wearlaw_models.rigs.wheelset.fields import CONVEX, KNOWN, Angle, Coordinates, Fields, Shift, metres
+from wearlaw_models.rigs.wheelset.files import Kind, write_points
+from wearlaw_models.rigs.wheelset.formulas import FORMULAS, curve_of
+from wearlaw_models.rigs.wheelset.measures import depth_between, flange, hollow, lean_of, rail_wear, worn_by
+from wearlaw_models.rigs.wheelset.pictures import draw_profile
 from wearlaw_models.rigs.wheelset.points import check_orientation, check_points, filled, point
 from wearlaw_models.rigs.wheelset.reach import without_spots
-from wearlaw_models.rigs.wheelset.repairs import repaired
+from wearlaw_models.rigs.wheelset.reading import File, fields_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from pydantic import SerializationInfo, SerializerFunctionWrapHandler
-
-CONVEX = {"wheel": -1.0, "rail": 1.0}
-"""Sign of dθ/ds where a body is convex: the wheel lies above its profile, the rail below."""
-
-
-KNOWN = "_known"
-"""Key of what is known of a profile among its fields."""
-
-
-class _Fields(dict[str, Any]):
-    """The fields of a profile with what is known of it."""
-
-    lines: NDArray[np.intp] | None = None
-    """Line of each point in its file."""
-    worn: bool = False
-    """Whether wearlaw wore it, so that nothing about its shape is doubted."""
-    told: bool = False
-    """Whether they were checked, and what is unlikely about them was told."""
-
-
-class _Coordinates:
-    """Makes pydantic accept coordinates: a quantity with one axis, or a table of values and their unit."""
-
-    def __get_pydantic_core_schema__(self, source: object, handler: object) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(
-            self._checked,
-            serialization=core_schema.plain_serializer_function_ser_schema(self._table, when_used="json"),
-        )
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, object]:
-        values = {"type": "array", "items": {"type": "number"}}
-        properties = {"values": values, "unit": {"type": "string", "examples": ["mm"]}}
-        return {"type": "object", "properties": properties, "required": ["values", "unit"]}
-
-    def _checked(self, value: object) -> wl.Quantity:
-        if isinstance(value, Mapping):
-            if value.keys() != {"values", "unit"}:
-                raise ValueError('give {values = [...], unit = "mm"}')
-            value = wl.Q(value["values"], value["unit"])
-        if not isinstance(value, wl.Quantity):
-            raise ValueError(
-                f'has no unit; give a quantity, such as Q([-1.0, 0.0, 1.0], "mm"), not a {type(value).__name__}'
-            )
-        wl.Unit("mm", positive=False).si(wl.Q(0.0, str(value.units)), "it")
-        if np.ndim(value.magnitude) != 1:
-            raise ValueError(f"must have one axis, got an array of shape {np.shape(value.magnitude)}")
-        numbers = np.array(value.magnitude, dtype=np.float64)
-        numbers.setflags(write=False)
-        return wl.Q(numbers, str(value.units))
-
-    @staticmethod
-    def _table(value: wl.Quantity) -> dict[str, Any]:
-        return {"values": value.magnitude.tolist(), "unit": f"{value.units:~C}"}
-
-
-Coordinates = Annotated[wl.Quantity, _Coordinates()]
-Angle = Annotated[wl.Quantity, wl.Unit("deg", positive=False)]
-Shift = Annotated[wl.Quantity, wl.Unit("mm", positive=False)]
 
 
 class Profile(wl.Configuration):
@@ -214,10 +154,10 @@ class Profile(wl.Configuration):
         if isinstance(value, Profile):
             return handler(value)
         fields = cls._of_text(value)
-        if isinstance(fields, _Fields):  # pydantic passes fields to __init__, which comes here once more
+        if isinstance(fields, Fields):  # pydantic passes fields to __init__, which comes here once more
             return handler({**fields, KNOWN: fields})
         record = fields.get(KNOWN) if isinstance(fields, Mapping) else None
-        if not isinstance(record, _Fields):
+        if not isinstance(record, Fields):
             profile = handler(fields)
         else:
             profile = handler(record)
@@ -233,10 +173,10 @@ class Profile(wl.Configuration):
         if isinstance(value, str | os.PathLike):
             value = _named(os.fspath(value))
         elif isinstance(value, Mapping) and "file" in value:
-            return _File(**value).fields()
+            return _of_file(File(**value))
         if isinstance(value, Mapping) and (name := value.get("formula")) is not None:
             if name not in FORMULAS:
-                near = did_you_mean(name, FORMULAS)
+                near = wl.errors.did_you_mean(name, FORMULAS)
                 raise ValueError(
                     f"formula: no profile is called {wl.shown(name)}{near} There are {', '.join(FORMULAS)}"
                 )
@@ -255,7 +195,7 @@ class Profile(wl.Configuration):
         elif self.y is None or self.z is None:
             raise ValueError("needs the name of a formula, or points with y and z")
         else:
-            check_points(_si(self.y), _si(self.z), self._name)
+            check_points(metres(self.y), metres(self.z), self._name)
             if self.weights is not None and len(self.weights) != self.y.size:
                 raise ValueError(f"weights: must be one for each of {self.y.size} points, got {len(self.weights)}")
         check_orientation(self.kind, *self._moved(*self._unmoved), self._name)
@@ -280,15 +220,20 @@ class Profile(wl.Configuration):
         """Return the name of a point in messages."""
         return f"point {index}" if self._lines is None else f"line {self._lines[index]}"
 
+    def _near(self, y: float, z: float) -> str:
+        """Return the name and place of the point that is nearest to a place [m] in messages."""
+        across, down = self._moved(*self._unmoved)
+        return point(int(np.hypot(across - y, down - z).argmin()), across, down, self._name)
+
     @property
     def _unmoved(self) -> tuple[Array, Array]:
         """The points as given, or those of the formula's curve [m], before the mirror, turn and shifts."""
         if self.formula is not None:
-            curve = _by_formula(self.formula)
+            curve = curve_of(self.formula)
             return curve.y, curve.z
         assert self.y is not None
         assert self.z is not None
-        return _si(self.y), _si(self.z)
+        return metres(self.y), metres(self.z)
 
     @property
     def _motion(self) -> tuple[float, float, float, float]:
@@ -313,7 +258,7 @@ class Profile(wl.Configuration):
     def _curve_and_spots(self) -> tuple[Curve, tuple[int, ...]]:
         """The curve, and the points that it passes over, by their index."""
         if self.formula is not None:
-            return self._in_place(_by_formula(self.formula)), ()
+            return self._in_place(curve_of(self.formula)), ()
         if self._worn:
             return self._through(slice(None)), ()
         return without_spots(*self._moved(*self._unmoved), self._through)
@@ -352,11 +297,11 @@ class Profile(wl.Configuration):
         the sides, has no slope. The sides are taken 10 mm below the top. NaN for a wheel, or if a side does not reach
         so far down. Wear of one side changes it, by about 1/110 for 5 mm.
         """
-        return wl.Q(_lean(self.curve) if self.kind == "rail" else np.nan, "rad")
+        return wl.Q(lean_of(self.curve) if self.kind == "rail" else np.nan, "rad")
 
-    def _fields(self, *, told: bool = False) -> _Fields:
+    def _fields(self, *, told: bool = False) -> Fields:
         """Return the fields, with what is known of the profile."""
-        fields = _Fields({name: getattr(self, name) for name in self.model_fields_set})
+        fields = Fields({name: getattr(self, name) for name in self.model_fields_set})
         fields.lines, fields.worn, fields.told = self._lines, self._worn, told
         return fields
 
@@ -418,30 +363,8 @@ class Profile(wl.Configuration):
         """
         length = wl.Unit("mm", positive=False)
         place, removed = length.si(s, "s"), length.si(depth, "depth")
-        curve = self.curve
-        if place.ndim != 1 or not place.size or removed.shape not in ((), place.shape):
-            raise wl.InputError(
-                f"s must have one axis, and depth a value for each s, got shapes {place.shape} and {removed.shape}"
-            )
-        if (np.diff(place) <= 0.0).any() or place[0] < curve.s[0] - 1e-9 or place[-1] > curve.s[-1] + 1e-9:
-            raise wl.InputError(
-                f"s must grow and lie on the profile, from {1e3 * curve.s[0]:.6g} to {1e3 * curve.s[-1]:.6g} mm; got"
-                f" {1e3 * place.min():.6g} to {1e3 * place.max():.6g} mm"
-            )
-        if (removed < 0.0).any():
-            raise wl.InputError(f"depth must not be negative, got {1e3 * removed.min():.4g} mm")
-        depths = np.interp(curve.s, place, np.broadcast_to(removed, place.shape), left=0.0, right=0.0)
-        left = 1.0 - curve.curvature * depths
-        if left.min() <= 0.0:
-            worst = int(np.argmin(left))
-            raise wl.InputError(
-                f"depth {1e3 * depths[worst]:.4g} mm at s = {1e3 * curve.s[worst]:.4g} mm reaches the centre of the"
-                f" curve, which has a radius of {1e3 / curve.curvature[worst]:.4g} mm there; remove it in smaller steps"
-            )
-        y = curve.y - CONVEX[self.kind] * np.sin(curve.angle) * depths
-        z = curve.z + CONVEX[self.kind] * np.cos(curve.angle) * depths
-        new = through_points(y, z, 0.0, None, CONVEX[self.kind])
-        fields = _Fields(kind=self.kind, y=wl.Q(1e3 * new.y, "mm"), z=wl.Q(1e3 * new.z, "mm"), smoothing=smoothing)
+        new = worn_by(self.curve, place, removed)
+        fields = Fields(kind=self.kind, y=wl.Q(1e3 * new.y, "mm"), z=wl.Q(1e3 * new.z, "mm"), smoothing=smoothing)
         fields.worn = True
         return Profile.model_validate(fields)
 
@@ -516,56 +439,24 @@ class Profile(wl.Configuration):
         With a `new` profile, draw both, and below them, unless `ax` is given, the depth between them along the normals
         of the new one.
         """
-        below: Axes | None = None
-        if ax is None:
-            from matplotlib.figure import Figure
-
-            figure = Figure(figsize=(7.4, 3.6 if new is None else 5.4), layout="constrained")
-            several: list[Axes] = list(figure.subplots(1 if new is None else 2, squeeze=False)[:, 0])
-            for axes in several:
-                axes.spines[["top", "right"]].set_visible(False)
-                axes.grid(alpha=0.3)
-            ax, below = several[0], None if new is None else several[1]
-        curve = self.curve
-        ax.plot(1e3 * curve.y, 1e3 * curve.z, color="#0072B2", linewidth=1.6, label=repr(self))
-        if new is not None:
-            ax.plot(1e3 * new.curve.y, 1e3 * new.curve.z, color="0.4", linestyle="--", linewidth=1.2, label="new")
-            ax.legend(frameon=False, fontsize="small")
-        if new is not None and below is not None:
-            there = (new.curve.y >= curve.y.min()) & (new.curve.y <= curve.y.max())
-            depth = new.depth_to(self, wl.Q(1e3 * new.curve.s[there], "mm")).magnitude
-            below.plot(1e3 * new.curve.y[there], depth, color="#0072B2", linewidth=1.6)
-            below.set(xlabel="y of the new profile [mm], outwards", ylabel="depth along the normal [mm]")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wl.UnusualWarning)
             measures = self.measures(new=new)
-        lines = (f"{name.replace('_', ' ')} {value.m_as('mm'):.2f} mm" for name, value in measures.items())
-        place = (0.85, 0.3) if self.kind == "wheel" else (0.5, 0.5)
-        ax.text(*place, "\n".join(lines), transform=ax.transAxes, ha="center", va="center", fontsize="small")
-        if self.smoothing.magnitude:
-            y, z = (value.magnitude for value in self.points)
-            ax.plot(y, z, ".", color="#D55E00", markersize=2.0, zorder=3, label="points")
-        ax.set(xlabel="y [mm], outwards", ylabel="z [mm], down", title=repr(self), aspect="equal")
-        if not ax.yaxis_inverted():
-            ax.invert_yaxis()
-        return ax
+        points = self.points if self.smoothing.magnitude else None
+        return draw_profile(ax, self.curve, repr(self), measures, points, None if new is None else new.curve)
 
     @model_serializer(mode="wrap")
     def _short(self, handler: SerializerFunctionWrapHandler, info: SerializationInfo) -> Any:
         """Return the name of a formula, or the fields that are not at their defaults."""
         if info.mode != "json":
             return handler(self)
-        changed = {name: value for name, value in handler(self).items() if name in self._changed}
-        return self.formula if changed.keys() == {"formula"} else changed
-
-    @property
-    def _changed(self) -> list[str]:
-        """The fields that are not at their defaults, without the kind of a formula."""
-        texts = ("turn", "shift_y", "shift_z", "smoothing")
         names = [name for name in ("formula", "y", "z", "weights", "diameter") if getattr(self, name) is not None]
         names += ["mirror"] if self.mirror else []
-        names += [name for name in texts if getattr(self, name).magnitude]
-        return names if self.formula else ["kind", *names]
+        names += [name for name in ("turn", "shift_y", "shift_z", "smoothing") if getattr(self, name).magnitude]
+        if names == ["formula"]:
+            return self.formula
+        names += [] if self.formula else ["kind"]  # a formula knows its kind
+        return {name: value for name, value in handler(self).items() if name in names}
 
     @classmethod
     def __get_pydantic_json_schema__(
@@ -574,11 +465,11 @@ class Profile(wl.Configuration):
         table = super().__get_pydantic_json_schema__(schema, handler)
         table.pop("required", None)  # a formula knows its kind
         names = {"type": "string", "description": "the name of a formula, such as s1002, or the path of a file"}
-        return {"anyOf": [table, _File.model_json_schema(), names]}
+        return {"anyOf": [table, File.model_json_schema(), names]}
 
     @cached_property
     def _identity(self) -> tuple[object, ...]:
-        points = tuple(_si(value).tobytes() for value in (self.y, self.z) if value is not None)
+        points = tuple(metres(value).tobytes() for value in (self.y, self.z) if value is not None)
         diameter = None if self.diameter is None else wl.scalar_si(self.diameter, "m")
         return self.kind, self.formula, points, self.weights, wl.scalar_si(self.smoothing, "m"), self._motion, diameter
 
@@ -595,7 +486,7 @@ class Profile(wl.Configuration):
             text = f"Profile.named('{self.formula}')"
         else:
             assert self.y is not None
-            low, high = 1e3 * _si(self.y).min(), 1e3 * _si(self.y).max()
+            low, high = 1e3 * metres(self.y).min(), 1e3 * metres(self.y).max()
             text = f"Profile({self.kind}, {self.y.size} points from y = {low:.4g} to {high:.4g} mm"
             text += f", smoothing={self.smoothing:~P})" if self.smoothing.magnitude else ")"
         text += ".mirrored()" if self.mirror else ""
@@ -605,17 +496,6 @@ class Profile(wl.Configuration):
         return text
 
 
-def _si(value: wl.Quantity) -> Array:
-    """Return lengths in metres."""
-    array: Array = value.magnitude * wl.scalar_si(wl.Q(1.0, str(value.units)), "m")
-    return array
-
-
-@cache
-def _by_formula(name: str) -> Curve:
-    return joined(FORMULAS[name].pieces(), CONVEX[FORMULAS[name].kind])
-
-
 def _named(text: str) -> Any:
     """Return the fields of a formula, or the profile of a file."""
     if text in FORMULAS:
@@ -623,40 +503,15 @@ def _named(text: str) -> Any:
     if not os.path.lexists(wl.beside(text)):
         raise wl.InputError(
             f"{wl.shown(text)} is neither a profile by formula nor a file in {wl.shown(wl.beside('.').absolute())}"
-            f"{did_you_mean(text, FORMULAS)} The"
+            f"{wl.errors.did_you_mean(text, FORMULAS)} The"
             f" formulas are: {', '.join(FORMULAS)}"
         )
-    return _File(file=text).fields()
+    return _of_file(File(file=text))
 
 
-class _File(wl.Configuration):
-    """A table that names the file of a profile, with the options of `read_profile`."""
-
-    file: str
-    kind: Kind | None = None
-    units: str = "mm"
-    sep: str | None = None
-    decimal: str = "."
-    part: int | None = None
-    sheet: str | None = None
-    mirror_y: Annotated[bool, Field(strict=True)] = False
-    mirror_z: Annotated[bool, Field(strict=True)] = False
-    turn: Angle = Field(default="0 deg", validate_default=True)
-    shift_y: Shift = Field(default="0 mm", validate_default=True)
-    shift_z: Shift = Field(default="0 mm", validate_default=True)
-    smoothing: Shift = Field(default="0 mm", validate_default=True)
-    repair: Annotated[bool, Field(strict=True)] = False
-
-    def fields(self) -> dict[str, Any]:
-        """Return the fields of the profile in the file."""
-        profile = read_profile(wl.beside(self.file), **{name: value for name, value in self if name != "file"})
-        return profile._fields(told=True)
-
-
-def did_you_mean(word: str, words: Iterable[str]) -> str:
-    """Return "; did you mean 'x'?" for the nearest known word, or a full stop if no word is near."""
-    near = get_close_matches(word.lower(), list(words), n=1)
-    return f"; did you mean '{near[0]}'?" if near else "."
+def _of_file(given: File) -> Fields:
+    """Return the fields of the profile in a file."""
+    return read_profile(wl.beside(given.file), **{name: of for name, of in given if name != "file"})._fields(told=True)
 
 
 def read_profile(
@@ -713,30 +568,12 @@ def read_profile(
         If the file cannot be read, or does not hold a profile. The message names the file and the line.
     """
     try:
-        points, told = points_of(Path(path), kind, units, sep, decimal, part, sheet)
-        length = wl.Unit("mm", positive=False)
-        y, z = (-points.y if mirror_y else points.y), (-points.z if mirror_z else points.z)
-        angle = float(wl.Unit("deg", positive=False).si(turn, "turn"))
-        if angle:
-            y, z = np.cos(angle) * y - np.sin(angle) * z, np.sin(angle) * y + np.cos(angle) * z
-        y = y + float(length.si(shift_y, "shift_y"))
-        points, mended = repaired(replace(points, y=y, z=z), told, repair)
-        if mended:
-            wl.errors.warn(f"profile {wl.shown(path)}, repaired: {'; '.join(mended)}", wl.UnusualWarning)
-        y, z = points.y, points.z
-        if points.taped and y.min() <= 0.0 <= y.max():
-            way = slice(None, None, -1 if y[-1] < y[0] else 1)
-            across, down = filled(y[way], z[way])
-            width = float(length.si(smoothing, "smoothing"))
-            z = z - float(through_points(across, down, width, None, CONVEX[told]).at(0.0)[1])
-        z = z + float(length.si(shift_z, "shift_z"))
-        fields = _Fields(kind=told, y=wl.Q(1e3 * y, "mm"), z=wl.Q(1e3 * z, "mm"), smoothing=smoothing)
-        if points.weights is not None:
-            fields["weights"] = tuple(points.weights.tolist())
-        if points.diameter is not None:
-            fields["diameter"] = wl.Q(1e3 * points.diameter, "mm")
-        fields.lines = points.lines
-        return Profile.model_validate(fields)
+        given: dict[str, Any] = {
+            "file": os.fspath(path), "kind": kind, "units": units, "sep": sep, "decimal": decimal, "part": part,
+            "sheet": sheet, "mirror_y": mirror_y, "mirror_z": mirror_z, "turn": turn, "shift_y": shift_y,
+            "shift_z": shift_z, "smoothing": smoothing, "repair": repair,
+        }  # fmt: skip
+        return Profile.model_validate(fields_of(Path(path), File(**given)))
     except wl.ConfigurationError as error:
         raise wl.errors.DataError(f"profile {wl.shown(path)}: {'; '.join(map(str, error.problems))}") from None
     except wl.InputError as error:
@@ -761,60 +598,3 @@ def write_profile(path: str | os.PathLike[str], profile: Profile) -> None:
     if profile.smoothing.magnitude:
         y, z = profile.curve.y, profile.curve.z
     write_points(Path(path), profile.kind, y, z)
-
-
-def unlikely(profile: Profile, cant: float, radius: float, back: float) -> Iterator[str]:
-    """Yield what is unlikely about a profile in a rig: with a cant [rad], a radius and a place of the back [m]."""
-    yield from _of_ends(profile, cant)
-    if profile.kind == "rail" and not profile._worn:
-        yield from doubts.of_lean(wl.scalar_si(profile.apparent_cant, "rad"), cant)
-    if profile.kind == "wheel":
-        yield from doubts.of_back(profile.curve, back)
-        if profile.diameter is not None:
-            yield from doubts.of_radius(radius, profile.curve, wl.scalar_si(profile.diameter, "m"))
-
-
-def faults(profile: Profile, cant: float) -> Iterator[str]:
-    """Yield why a profile may not fit others, beside their distances; the cant is that of a rail [rad]."""
-    yield from _of_ends(profile, cant)
-    if profile.kind == "wheel":
-        yield from doubts.of_height(profile.curve)
-
-
-def _of_ends(profile: Profile, cant: float) -> Iterator[str]:
-    y, z = profile._moved(*profile._unmoved)
-
-    def near(across: float, down: float) -> str:
-        return point(int(np.hypot(y - across, z - down).argmin()), y, z, profile._name)
-
-    yield from doubts.of_ends(profile.curve, cant if profile.kind == "rail" else 0.0, near)
-
-
-DEEP, TOP = 10e-3, 20e-3
-"""Depth of the sides below the top, and half-width of the top, by which a rail's lean is measured [m]."""
-
-
-def _lean(curve: Curve) -> float:
-    """Return the angle at which the top of a rail has no slope about the middle of its head [rad]."""
-    lean = 0.0
-    for _ in range(50):
-        cosine, sine = np.cos(lean), np.sin(lean)
-        y, z = cosine * curve.y - sine * curve.z, sine * curve.y + cosine * curve.z
-        crown = int(np.argmin(z))
-        low = z >= z[crown] + DEEP
-        left, right = np.flatnonzero(low[:crown]), np.flatnonzero(low[crown:]) + crown
-        if not (left.size and right.size):
-            return float("nan")
-        sides = []
-        for inner, outer in ((left[-1] + 1, left[-1]), (right[0] - 1, right[0])):
-            share = (z[crown] + DEEP - z[inner]) / (z[outer] - z[inner])
-            sides.append(y[inner] + share * (y[outer] - y[inner]))
-        middle = 0.5 * sum(sides)
-        top = np.linspace(middle - TOP, middle + TOP, 401)
-        order = slice(left[-1], right[0] + 1)
-        heights = np.interp(top, y[order], z[order])
-        slope = float(((top - middle) * heights).sum() / ((top - middle) ** 2).sum())
-        lean -= np.arctan(slope)
-        if abs(slope) < 1e-10:
-            break
-    return lean

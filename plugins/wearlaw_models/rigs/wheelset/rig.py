@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Required, Self, TypedDict, Unpack
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Unpack
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -14,11 +14,23 @@ from pydantic import BeforeValidator, Field, model_validator
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.conicity import NOTHING, equivalent_conicity
+from wearlaw_models.rigs.wheelset.fitting import check_fit
 from wearlaw_models.rigs.wheelset.geometry import Geometry, geometry, patches, profiles
 from wearlaw_models.rigs.wheelset.guidance import FARTHEST, guided
 from wearlaw_models.rigs.wheelset.loads import BALANCE, Loads
 from wearlaw_models.rigs.wheelset.pictures import Profiles, contact_figure, wear_figure
-from wearlaw_models.rigs.wheelset.profile import Profile, faults, unlikely
+from wearlaw_models.rigs.wheelset.problem import (
+    ANGLE,
+    DIMS,
+    DISPLACEMENT,
+    YAW,
+    WheelsetConditions,
+    WheelsetProblem,
+    warn_of_climbing,
+    warn_of_missing,
+    warn_of_points,
+)
+from wearlaw_models.rigs.wheelset.profile import Profile
 from wearlaw_models.rigs.wheelset.rows import Lattice, lattice
 from wearlaw_models.rigs.wheelset.search import Section, Touching, both_sides, searched, section
 from wearlaw_models.rigs.wheelset.search_loops import PATCHES
@@ -27,88 +39,8 @@ from wearlaw_models.rigs.wheelset.task import Elastic, Friction, Patch, Task
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-DIMS: Mapping[str, tuple[str | int, ...]] = {"side": ("left", "right"), "patch": (1, 2, 3)}
-"""The axes of patches."""
-
-HUGE = 1e12
-"""Greatest value of a condition in its unit, whatever it is: products of several are floats."""
-
-DISPLACEMENT, ANGLE = (wl.Unit(unit, positive=False, limit=HUGE) for unit in ("mm", "mrad"))
-YAW = wl.Unit("mrad", positive=False, limit=200.0, usual=(-40.0, 40.0))  # in the tightest curve, 20
-LOAD = wl.Unit("kN", positive=False, negative=False, limit=HUGE, usual=(0.1, 300.0))
-
-
-class WheelsetConditions(TypedDict, total=False):
-    """The conditions of a wheelset on two rails; arrays broadcast against each other."""
-
-    lateral_displacement: Annotated[wl.QuantityLike, DISPLACEMENT]
-    """Lateral displacement of the wheelset in the track, positive to the right [m]."""
-    lateral_force: Annotated[wl.QuantityLike, wl.Unit("kN", positive=False, limit=HUGE, usual=(-300.0, 300.0))]
-    """Lateral force on the wheelset, positive to the right [N], in place of a displacement. The wheelset stands where
-    the rails bear it, at the nearest stable place to the middle of the track."""
-    vertical_load: Annotated[wl.QuantityLike, LOAD]
-    """Vertical load of each wheel, Q [N]. It is zero for a lifted wheel, and so are its results; the other wheel rolls
-    as if the lifted one just touched its rail."""
-    vertical_load_left: Annotated[wl.QuantityLike, LOAD]
-    """Vertical load of the left wheel [N]; with `vertical_load_right` in place of `vertical_load`."""
-    vertical_load_right: Annotated[wl.QuantityLike, LOAD]
-    """Vertical load of the right wheel [N]."""
-    friction_coefficient: Required[wl.Friction]
-    """Friction coefficient, μ [-]."""
-    yaw: Annotated[wl.QuantityLike, YAW]
-    """Yaw, positive clockwise from above, ψ [rad]; zero if not given."""
-    roll: Annotated[wl.QuantityLike, ANGLE]
-    """Roll, positive if it lowers the right wheel, ρ [rad]. By default the one at which both wheels sink together under
-    their loads: gap plus penetration are equal."""
-    flange_friction_coefficient: wl.Friction
-    """Friction coefficient where the contact angle exceeds `flange_angle`, as on a lubricated flange [-]."""
-    axle_torque: Annotated[wl.QuantityLike, wl.Unit("N*m", positive=False, limit=HUGE)]
-    """Torque on the axle, positive if it drives, M [N m]. By default zero, a free axle."""
-    angular_speed: Annotated[wl.QuantityLike, wl.Unit("rad/s", limit=HUGE)]
-    """Speed of rotation instead of a torque, Ω [rad/s]."""
-    lateral_velocity: Annotated[wl.QuantityLike, wl.Unit("m/s", positive=False, limit=HUGE)]
-    """Velocity of the lateral displacement [m/s]."""
-    yaw_velocity: Annotated[wl.QuantityLike, wl.Unit("rad/s", positive=False, limit=HUGE)]
-    """Velocity of the yaw [rad/s]. Where no roll is given, the wheelset rolls with both velocities, so that both wheels
-    stay on their rails."""
-    curve_radius: Annotated[wl.QuantityLike, wl.Unit("m", positive=False, infinite=True)]
-    """Radius of the curve, positive to the right [m]. Infinite on straight track."""
-    rolling_speed: Annotated[wl.QuantityLike, wl.Unit("m/s", limit=HUGE, usual=(1e-4, 200.0))]
-    """Speed along the track, V [m/s]; that of the rig if not given."""
-    rolled_distance: Annotated[wl.QuantityLike, wl.Unit("km", positive=False, negative=False, limit=HUGE)]
-    """Distance rolled since the bodies were new [m], for laws of running-in."""
-
-
-RESULTS = (
-    wl.Variable(
-        "guiding_force",
-        "kN",
-        "guiding force Y",
-        "Lateral force of a wheel on its rail, positive to the right",
-        "Y",
-        "any",
-    ),
-    wl.Variable("wheel_load", "kN", "wheel load Q", "Vertical force of a wheel on its rail", "Q"),
-    wl.Variable("derailment_quotient", "", "derailment quotient Y/Q", "Guiding force over wheel load", "Y/Q", "any"),
-    wl.Variable("lateral_displacement", "mm", meaning="Lateral displacement of the wheelset in the track", sign="any"),
-    wl.Variable("status", "", meaning='Why a position of a wheelset has no result, or "balanced"', text=True),
-)
-"""The results for a wheelset and its wheels."""
-
-FLANGE_DEPTH = 10e-3
-"""Depth below the taping line at which the thickness of a flange is measured (EN 15313) [m]."""
-
-FLANGE_SLOPE = np.radians(50.0)
-"""A wheel has a flange if its profile is steeper than this; those in use have 60 to 75 degrees [rad]."""
-
-MOST_PLAY = 40e-3
-"""Greatest distance between flange and rail in the middle of the track [m]: a worn flange in a widened curve has 30."""
-
 JUST_TOUCHING = 1e-3
 """Share of the load of the other wheel with which a lifted one is taken to touch its rail."""
-
-HIGH_PRESSURE = 3.5e9
-"""Maximum pressure that only the noise of points gives [Pa]: new flanges have up to about 3."""
 
 MARGIN = 1e-3
 """Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
@@ -131,57 +63,6 @@ def _cant(value: object) -> object:
 
 Cant = Annotated[wl.Quantity, wl.Unit("rad", positive=False, limit=0.2), BeforeValidator(_cant)]
 Place = Annotated[wl.Quantity, wl.Unit("mm", positive=False)]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class WheelsetProblem(wl.Problem):
-    """The contact problem of a wheelset, and how the wheelset stands; arrays have the shape of the batch.
-
-    Attributes
-    ----------
-    roll : ndarray
-        Roll of the wheelset, positive if it lowers the right wheel, ρ [rad].
-    penetration : ndarray
-        Vertical approach of wheel and rail from first touching, at each patch [m].
-    imbalance : ndarray
-        What the balance leaves over, the greatest of these shares [-]: of the vertical load of a wheel, of the torque
-        of full slip, of the load that the rails would move from wheel to wheel to sink equally, and of the mean load of
-        a wheel as a lateral force. It is at most 1e-3.
-    status : ndarray of object
-        "balanced", or the reason why a position has no result [-]. The patches of such a position do not exist.
-    lateral_displacement : ndarray
-        Lateral displacement of the wheelset in the track, positive to the right [m].
-    guiding_force : ndarray
-        Lateral force of a wheel on its rail, positive to the right, Y [N].
-    wheel_load : ndarray
-        Vertical force of a wheel on its rail, Q [N].
-    derailment_quotient : ndarray
-        Guiding force over wheel load, with the sign of Y, Y/Q [-].
-    """
-
-    roll: Array
-    penetration: Array
-    imbalance: Array
-    lateral_displacement: Array
-    guiding_force: Array
-    wheel_load: Array
-    derailment_quotient: Array
-    status: NDArray[np.object_]
-    loads: Loads
-    shape: tuple[int, ...]
-
-    results: ClassVar[tuple[wl.Variable, ...]] = RESULTS
-
-    @property
-    def climbs(self) -> NDArray[np.bool_]:
-        """Whether each wheel stands on its flange beyond the steepest place, (positions, sides)."""
-        return self.loads.climbs
-
-    def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
-        """Return the problem with a function applied to each of its arrays; `of_strips` as in `Problem.mapped`."""
-        mapped = super(WheelsetProblem, self).mapped(function, of_strips)  # a class with slots has no plain super()
-        names = ("roll", "penetration", "imbalance")
-        return mapped.replaced(**{name: function(getattr(self, name)) for name in names})
 
 
 class Wheelset(wl.Rig):
@@ -300,38 +181,16 @@ class Wheelset(wl.Rig):
 
     @model_validator(mode="after")
     def _fits(self) -> Wheelset:
-        for name, profile in self._profiles.items():
-            if profile.kind != (kind := name.removeprefix("left_")):
-                raise ValueError(f"{name} is the profile of a {profile.kind}; give that of a {kind}")
-        cant, radius, back = (
-            wl.scalar_si(value, unit)
-            for value, unit in ((self.rail_cant, "rad"), (self.nominal_radius, "m"), (self.flange_back_position, "m"))
+        check_fit(
+            self._profiles,
+            self._section,
+            cant=wl.scalar_si(self.rail_cant, "rad"),
+            radius=wl.scalar_si(self.nominal_radius, "m"),
+            back=(self.flange_back_position, self.flange_back_distance),
+            gauge=self.gauge,
+            flange_angle=wl.scalar_si(self.flange_angle, "rad"),
         )
-        for name, profile in self._profiles.items():
-            for text in unlikely(profile, cant, radius, back):
-                wl.errors.warn(f"{name}: {text}", wl.UnusualWarning)
-        play = self._flange_play
-        if play is not None and not 0.0 < play < MOST_PLAY:
-            raise self._misfit(
-                f"gauge: rails {self.gauge!r} apart leave the flanges {1e3 * play:.4g} mm on either side, of wheels"
-                f" {self.flange_back_distance!r} apart between their inner faces; they must leave 0 to"
-                f" {1e3 * MOST_PLAY:g} mm"
-            )
-        straight = np.zeros(1)
-        roll, touching = searched(self._section, straight, straight)
-        angle = patches(self._section, both_sides(straight, roll, straight), touching)["contact_angle"][0, :, 0]
-        if not np.abs(angle).max() <= wl.scalar_si(self.flange_angle, "rad"):  # NaN without contact
-            raise self._misfit(
-                f"gauge: in the middle of the track the wheels stand on their flanges or beside the rails; wheels"
-                f" {self.flange_back_distance!r} apart between their inner faces do not fit rails {self.gauge!r} apart"
-            )
         return self
-
-    def _misfit(self, text: str) -> ValueError:
-        """Return the error for wheels that do not fit the rails, by the faults of profiles if there are any."""
-        cant = wl.scalar_si(self.rail_cant, "rad")
-        told = [f"{name}: {fault}" for name, profile in self._profiles.items() for fault in faults(profile, cant)]
-        return ValueError("; ".join(told) or text)
 
     @property
     def _profiles(self) -> Mapping[str, Profile]:
@@ -519,10 +378,10 @@ class Wheelset(wl.Rig):
             status = loads.status
         else:
             loads, status = self._guided(loads, forces)
-        self._warn_of_climbing(loads)
-        self._warn_of_missing(loads, status)
+        warn_of_climbing(loads)
+        warn_of_missing(loads, status)
         whole = self._whole(loads, status, problem.shape)
-        self._warn_of_points(whole)
+        warn_of_points(whole, self._rough)
         return whole
 
     def _task(self, conditions: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
@@ -658,56 +517,6 @@ class Wheelset(wl.Rig):
                 " touch its rail within the profiles; wider profiles are needed, or the wheel has left the rail"
                 + (f", or single points of {' or '.join(self._rough)} are off: give smoothing" if self._rough else "")
             )
-
-    def _warn_of_climbing(self, loads: Loads) -> None:
-        """Warn of a wheel that stands on the top of its flange."""
-        over = loads.climbs
-        if over.any():
-            point, side = (int(index[0]) for index in np.nonzero(over))
-            displacement = 1e3 * loads.task.displacement[point]
-            wl.errors.warn(
-                f"at a lateral displacement of {displacement:.4g} mm the {DIMS['side'][side]} wheel climbs its rail: it"
-                " stands on its flange beyond the steepest point",
-                wl.RangeWarning,
-            )
-
-    def _warn_of_points(self, problem: wl.Problem) -> None:
-        """Warn of a pressure that the points of a measured profile give, rather than its shape."""
-        greatest = np.nanmax(problem.max_pressure, initial=0.0)
-        if self._rough and greatest > HIGH_PRESSURE:
-            wl.errors.warn(
-                f"the maximum pressure of {1e-6 * greatest:.0f} MPa is that of single points:"
-                f" {' and '.join(self._rough)} run"
-                ' through all of theirs; give smoothing with the profile, such as "0.01 mm"',
-                wl.RangeWarning,
-            )
-
-    def _warn_of_missing(self, loads: Loads, status: NDArray[np.object_]) -> None:
-        """Warn of positions that have no result, and say why the first one has none."""
-        missing = np.flatnonzero(status != BALANCE)
-        if missing.size:
-            task, first = loads.task, missing[0]
-            if task.lateral_force is None:
-                where = f"at a lateral displacement of {1e3 * task.displacement[first]:.4g} mm"
-            else:
-                where = f"with a lateral force of {1e-3 * task.lateral_force[first]:.4g} kN"
-            wl.errors.warn(
-                f"{missing.size} of {status.size} positions have no result, the first {where}: {status[first]}; see"
-                " status of the problem",
-                wl.RangeWarning,
-            )
-
-    @property
-    def _flange_play(self) -> float | None:
-        """Distance from the flange, below the taping line, to the rail in the middle of the track [m]; None without.
-
-        It is that of the right wheel.
-        """
-        across, radius = self._section.wheel_y.value, self._section.wheel_radius.value
-        deep = np.flatnonzero(radius > wl.scalar_si(self.nominal_radius, "m") + FLANGE_DEPTH)
-        if not deep.size or self.wheel.curve.angle.min() > -FLANGE_SLOPE:
-            return None
-        return 0.5 * wl.scalar_si(self.gauge, "m") - float(across[deep[-1]])
 
     @cached_property
     def _section(self) -> Section:
