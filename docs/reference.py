@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import wearlaw as wl
 
-MARK = "(The build writes the entries of this page here.)"
+MARK = "(Written by the build.)"
 """Line of a page in whose place its entries stand."""
 
 OTHERS = (
