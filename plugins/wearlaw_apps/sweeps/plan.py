@@ -12,6 +12,9 @@ from wearlaw_apps.sweeps.points import Points, rectangle
 START_S = 1.5
 """Time that a sweep must save to be worth other processes [s]: they need about one second to start."""
 
+SENT_S = 1.5e-8
+"""Time that a number takes from another process into the result [s], as measured."""
+
 BLOCK_S = 1.0
 """Time that a block takes [s], as far as its size lies within the bounds."""
 
@@ -21,7 +24,7 @@ EACH = 4
 LARGEST = 2_000_000
 """Most operating points in a block, a file of 16 MB for each output; of a table most numbers in its rows."""
 
-SAMPLE_S = 0.1
+SAMPLE_S = 0.03
 """Time of a sample of points that tells the time of all [s]."""
 
 FIRST = 100
@@ -43,8 +46,9 @@ def planned(job: Job, points: Points, workers: int, stored: bool) -> tuple[Point
     if points.size <= points.room or not (stored or workers > 1):
         return points, False
     pace = seconds_per_point(job, points)
-    several = workers > 1 and pace * points.size * (1.0 - 1.0 / workers) > START_S
-    if job.summed:
+    sent = 0.0 if stored or job.summed else SENT_S * points.size * points.weight * len(job.units)
+    several = workers > 1 and pace * points.size * (1.0 - 1.0 / workers) > START_S + sent
+    if job.summed or not (stored or several):
         return points, several
     columns = max(Counter(column.dim for column in points.coordinates().values()).values(), default=1)
     room = min(BLOCK_S / pace, LARGEST / points.weight / columns)

@@ -49,6 +49,16 @@ def test_blocks_take_a_second_and_few_files(
     assert math.prod(divided.block_shape) <= plan.LARGEST
 
 
+def test_many_numbers_of_cheap_points_are_not_worth_sending(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plan, "seconds_per_point", lambda *_: 4e-7)  # 4 s, of which two processes save 2
+    points = grid(creepage=10_000_000)
+    few, many = (Job(predictor(), dict.fromkeys(map(str, range(count)), "")) for count in (1, 20))
+    # 10⁷ numbers take 0.15 s to send, and 20 times as many 3 s.
+    assert plan.planned(few, points, 2, stored=False)[1]
+    assert not plan.planned(many, points, 2, stored=False)[1]
+    assert plan.planned(many, points, 2, stored=True)[1], "each process writes its own files"
+
+
 class Slow(Linear):
     """A law that takes time for each point."""
 

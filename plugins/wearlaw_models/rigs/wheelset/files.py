@@ -127,7 +127,7 @@ def points_of(
         raise FileError(f"the ending {wl.shown(ending)} is not known; {hint}")
     sure = kind or by_ending or points.kind
     if sure is None:
-        hint = 'give kind="rail", in a case {file = "rail.csv", kind = "rail"}'
+        hint = f'give kind="wheel" or kind="rail", in a case {{file = "{path.name}", kind = "wheel"}}'
         raise FileError(f"it does not say whether it is a wheel or a rail; {hint}")
     told = {"the argument kind": kind, "its ending": by_ending, "its header": points.kind}
     if not {*told.values()} <= {sure, None}:
