@@ -66,12 +66,12 @@ class Configuration(BaseModel):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        found = handler(schema)
-        properties = handler.resolve_ref_schema(found).get("properties", {})
+        reference = handler(schema)
+        properties = handler.resolve_ref_schema(reference).get("properties", {})
         for name, text in field_docstrings(cls).items():
             for key in {name, cls.model_fields[name].alias} & properties.keys():
                 properties[key] |= {"description": text} if text else {}
-        return found
+        return reference
 
     @field_validator("*", mode="before")
     @classmethod
@@ -179,13 +179,7 @@ def _check_annotated(cls: type[Configuration]) -> None:
     for name, value in vars(cls).items():
         public = not name.startswith("_") and name not in annotated and name not in cls.__class_vars__
         if public and isinstance(value, VALUES):
-            text = (
-                text_of(value)
-                if isinstance(value, pint.Quantity)
-                else value
-                if isinstance(value, str)
-                else f"{value} mm"
-            )
+            text = text_of(value) if isinstance(value, str | pint.Quantity) else f"{value} mm"
             raise ModelError(
                 f"{cls.__name__}.{name}: has no type. For a field with a unit, write {name}: Annotated[wl.Quantity,"
                 f' wl.Unit("mm")] = "{text}"; for a plain number {name}: float; for what all objects of the class share'
@@ -196,7 +190,7 @@ def _check_annotated(cls: type[Configuration]) -> None:
 def _unknown_type(cls: type[BaseModel], error: PydanticSchemaGenerationError) -> str:
     """Return the message for a class whose fields have types without a schema."""
     for name, field in cls.model_fields.items():
-        if not any(isinstance(one, Unit) for one in field.metadata) and _is_plain_quantity(field.annotation):
+        if not any(isinstance(part, Unit) for part in field.metadata) and _is_plain_quantity(field.annotation):
             return (
                 f"{cls.__name__}.{name}: its annotation has no unit; write {name}: Annotated[wl.Quantity, wl.Unit(...)]"
                 ' with the customary unit, such as wl.Unit("mm"), and a default as text, such as "1 mm"'
@@ -208,7 +202,7 @@ def _is_plain_quantity(annotation: Any) -> bool:
     """Return whether a type is `Quantity`, or a union with it, without a `Unit`."""
     if isinstance(annotation, type):
         return issubclass(annotation, pint.Quantity)
-    if get_origin(annotation) is Annotated and any(isinstance(one, Unit) for one in annotation.__metadata__):
+    if get_origin(annotation) is Annotated and any(isinstance(part, Unit) for part in annotation.__metadata__):
         return False
     return any(map(_is_plain_quantity, get_args(annotation)))
 
@@ -225,27 +219,28 @@ def _is_number(annotation: Any) -> bool:
 
 def unusual_fields(record: Configuration) -> dict[str, str]:
     """Return the fields of a record whose values are unusual, each with what a warning says of it."""
-    found = {}
+    texts = {}
     for name, unit in _usual_fields(type(record)).items():
         value = getattr(record, name)
         if isinstance(value, pint.Quantity | float) and (text := unit.unusual(name, value)):
-            found[f"{record.subject()}: {name}"] = text
-    return found
+            texts[f"{record.subject()}: {name}"] = text
+    return texts
 
 
 @cache
 def _usual_fields(cls: type[BaseModel]) -> dict[str, Unit]:
     """Return the units of the fields that state what is usual."""
-    units = {name: _unit((*one.metadata, one.annotation)) for name, one in cls.model_fields.items()}
+    units = {name: _unit((*field.metadata, field.annotation)) for name, field in cls.model_fields.items()}
     return {name: unit for name, unit in units.items() if unit is not None and unit.usual is not None}
 
 
 def _unit(annotations: Iterable[Any]) -> Unit | None:
     """Return the first unit among annotations and what they are made of."""
-    for one in annotations:
-        found = one if isinstance(one, Unit) else _unit((*getattr(one, "__metadata__", ()), *get_args(one)))
-        if found is not None:
-            return found
+    for annotation in annotations:
+        parts = (*getattr(annotation, "__metadata__", ()), *get_args(annotation))
+        unit = annotation if isinstance(annotation, Unit) else _unit(parts)
+        if unit is not None:
+            return unit
     return None
 
 
@@ -268,8 +263,8 @@ def field_docstrings(model: type[BaseModel]) -> dict[str, str]:
     inherited field has the docstring of its last annotation. There are no string literals if the source is not in a
     file, as in a notebook.
     """
-    found = {name: text for base in reversed(model.__mro__) for name, text in item_docstrings(base).items()}
-    return {name: field.description or found.get(name, "") for name, field in model.model_fields.items()}
+    texts = {name: text for base in reversed(model.__mro__) for name, text in item_docstrings(base).items()}
+    return {name: field.description or texts.get(name, "") for name, field in model.model_fields.items()}
 
 
 @cache
@@ -281,21 +276,21 @@ def item_docstrings(cls: type) -> dict[str, str]:
         (statement,) = ast.parse(textwrap.dedent(inspect.getsource(cls))).body
     except (OSError, TypeError, SyntaxError):
         return {}
-    found = {}
+    texts = {}
     for annotated, below in pairwise([*getattr(statement, "body", ()), ast.Pass()]):
         match annotated, below:
             case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
-                found[name] = inspect.cleandoc(text)
+                texts[name] = inspect.cleandoc(text)
             case ast.AnnAssign(target=ast.Name(id=name)), _:
-                found[name] = ""
-    return found
+                texts[name] = ""
+    return texts
 
 
 def known_as(name: str, record: ConfigurationT) -> ConfigurationT:
     """Return an equal record that remembers its name in the look-up; changed copies forget the name."""
-    found = record.model_copy()
-    vars(found)["_known_as"] = name
-    return found
+    copy = record.model_copy()
+    vars(copy)["_known_as"] = name
+    return copy
 
 
 def known_name(record: Configuration) -> str | None:
@@ -323,9 +318,9 @@ def _message(details: ErrorDetails, model: type[BaseModel]) -> str:
     if isinstance(cause, Exception):
         return str(cause)
     if details["type"] == "extra_forbidden":
-        known = [field.alias or name for name, field in model.model_fields.items()]
-        hint = did_you_mean(str(details["loc"][-1]), known)
-        return f"unknown field{hint} The fields are: {', '.join(known) or 'none'}"
+        names = [field.alias or name for name, field in model.model_fields.items()]
+        hint = did_you_mean(str(details["loc"][-1]), names)
+        return f"unknown field{hint} The fields are: {', '.join(names) or 'none'}"
     if details["type"] == "missing":
         return "is missing"
     tables = {"tuple_type": "list", "dict_type": "table", "model_type": "table"}

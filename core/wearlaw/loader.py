@@ -93,8 +93,8 @@ class Shelf:
     def named(self, name: object) -> list[tuple[Any, Origin]]:
         """Return what goes by a name, wearlaw's first, or by "distribution:name"; nothing for what is no name."""
         of, _, bare = name.rpartition(":") if isinstance(name, str) else ("", "", "")
-        found = sorted(self.providers.get(bare, []), key=lambda provided: not provided[1].shipped)
-        return [(item, origin) for item, origin in found if not of or normal(of) == normal(origin.distribution)]
+        matches = sorted(self.providers.get(bare, []), key=lambda provided: not provided[1].shipped)
+        return [(item, origin) for item, origin in matches if not of or normal(of) == normal(origin.distribution)]
 
     def __contains__(self, name: object) -> bool:
         """Return whether an item has a name."""
@@ -106,19 +106,19 @@ class Shelf:
 
     def name_of(self, name: str, item: object) -> str:
         """Return the name by which an item is found: its own, or that with its distribution."""
-        found = self.named(name)
-        clear = len(found) < 2 or (found[0][1].shipped and found[0][0] is item)
-        return next((f"{origin.distribution}:{name}" for one, origin in found if one is item and not clear), name)
+        matches = self.named(name)
+        clear = len(matches) < 2 or (matches[0][1].shipped and matches[0][0] is item)
+        return next((f"{origin.distribution}:{name}" for match, origin in matches if match is item and not clear), name)
 
     def distribution(self, name: str, item: object = None) -> str:
         """Return distribution and version of the item with a name; if `item` is given, it must be that item."""
-        found = (f"{one.distribution} {one.version}" for it, one in self.named(name) if item is None or it is item)
-        return next(found, "not installed")
+        origins = [origin for provided, origin in self.named(name) if item is None or provided is item]
+        return f"{origins[0].distribution} {origins[0].version}" if origins else "not installed"
 
     def items(self) -> dict[str, Any]:
         """Return all items by name; of items that share one, that of wearlaw or none."""
         every = {name: self.named(name) for name in sorted(self.providers)}
-        return {name: found[0][0] for name, found in every.items() if len(found) == 1 or found[0][1].shipped}
+        return {name: matches[0][0] for name, matches in every.items() if len(matches) == 1 or matches[0][1].shipped}
 
 
 class Installed:
@@ -159,16 +159,16 @@ class Installed:
 
         A name that wearlaw shares with another distribution means wearlaw's, with one warning.
         """
-        found = self[kind].named(name)
-        origins = " and ".join(str(origin) for _, origin in found)
-        apart = " or ".join(shown(f"{origin.distribution}:{name}") for _, origin in found if not origin.shipped)
-        if len(found) > 1 and not found[0][1].shipped:
+        matches = self[kind].named(name)
+        origins = " and ".join(str(origin) for _, origin in matches)
+        apart = " or ".join(shown(f"{origin.distribution}:{name}") for _, origin in matches if not origin.shipped)
+        if len(matches) > 1 and not matches[0][1].shipped:
             raise UnknownModelError(f"{kind} {shown(name)} is provided more than once, by {origins}; write {apart}")
-        if len(found) > 1 and (kind, name) not in self._told:
+        if len(matches) > 1 and (kind, name) not in self._told:
             self._told.add((kind, name))
-            warn(f"{kind} {shown(name)} is that of wearlaw; the other, of {found[1][1]}, is {apart}", PluginWarning)
-        if found:
-            return found[0][0]
+            warn(f"{kind} {shown(name)} is that of wearlaw; the other, of {matches[1][1]}, is {apart}", PluginWarning)
+        if matches:
+            return matches[0][0]
         raise UnknownModelError(self.unknown(kind, name, self[kind].items()))
 
     def unknown(self, kind: str, name: str, known: Iterable[str]) -> str:
@@ -201,37 +201,37 @@ def discovered() -> Installed:
         return _FOUND[0]
 
 
-def _discover(found: Installed) -> None:
+def _discover(discovery: Installed) -> None:
     """Load all plugins: first the models of all plugins, then the things given by name, which may look up models."""
     loaded: list[tuple[pluggy.HookRelay, Origin]] = []
     for entry_point, origin in _entry_points():
-        found.plugins.append(origin)
-        with _left_out_if_broken(found, origin):
+        discovery.plugins.append(origin)
+        with _left_out_if_broken(discovery, origin):
             hooks = _hooks(entry_point.load(), origin)
-            _add_models(hooks, origin, found)
+            _add_models(hooks, origin, discovery)
             loaded.append((hooks, origin))
     for hooks, origin in loaded:
-        with _left_out_if_broken(found, origin):
-            _add_kinds(hooks, found)
+        with _left_out_if_broken(discovery, origin):
+            _add_kinds(hooks, discovery)
     for hooks, origin in loaded:
-        with _left_out_if_broken(found, origin):
-            _add_named(hooks, origin, found)
+        with _left_out_if_broken(discovery, origin):
+            _add_named(hooks, origin, discovery)
 
 
 @contextmanager
-def _left_out_if_broken(found: Installed, origin: Origin) -> Iterator[None]:
+def _left_out_if_broken(discovery: Installed, origin: Origin) -> Iterator[None]:
     """Record any exception of a plugin, even an exit of the process, and go on; only Ctrl-C ends the program."""
     try:
         yield
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        found.broken.append(Broken(origin, described(error)))
+        discovery.broken.append(Broken(origin, described(error)))
 
 
 def _entry_points() -> list[tuple[EntryPoint, Origin]]:
     """Return the entry points of all installed distributions; of two copies of one, the first on `sys.path` counts."""
-    found: dict[str, list[tuple[EntryPoint, Origin]]] = {}
+    by_name: dict[str, list[tuple[EntryPoint, Origin]]] = {}
     left_out = {normal(name.removeprefix("-")) for name in re.split(r"[\s,]+", os.environ.get(SWITCH, ""))}
     for distribution in distributions():
         if f"[{hookspecs.PROJECT}]" in (distribution.read_text("entry_points.txt") or ""):  # parse only the few plugins
@@ -239,8 +239,8 @@ def _entry_points() -> list[tuple[EntryPoint, Origin]]:
             name, version = metadata["Name"], metadata["Version"]
             points = distribution.entry_points.select(group=hookspecs.PROJECT)
             if normal(name) not in left_out:
-                found.setdefault(normal(name), [(point, Origin(point.name, name, version)) for point in points])
-    return sorted(chain.from_iterable(found.values()), key=lambda pair: (pair[1].distribution, pair[1].entry_point))
+                by_name.setdefault(normal(name), [(point, Origin(point.name, name, version)) for point in points])
+    return sorted(chain.from_iterable(by_name.values()), key=lambda pair: (pair[1].distribution, pair[1].entry_point))
 
 
 def normal(name: str) -> str:
@@ -265,26 +265,26 @@ def use(path: str | os.PathLike[str]) -> None:
     InputError
         If it is no plugin, or another module of its name is loaded already.
     """
-    file, found = Path(path).resolve(), discovered()
+    file, discovery = Path(path).resolve(), discovered()
     if file.is_dir():
         file /= "__init__.py"
     place = file.parent if file.name == "__init__.py" else file
-    known = sys.modules.get(place.stem)
-    if known is not None and getattr(known, "__file__", None) != str(file):
+    loaded = sys.modules.get(place.stem)
+    if loaded is not None and getattr(loaded, "__file__", None) != str(file):
         raise InputError(f"plugin {shown(Path(path))}: there is another module called {place.stem!r}; rename the file")
-    if known is not None:
+    if loaded is not None:
         return
     try:
         origin = Origin(place.stem, place.name, hashlib.sha256(file.read_bytes()).hexdigest()[:8])
         sys.path.append(str(place.parent))
         hooks = _hooks(import_module(place.stem), origin)
-        _add_models(hooks, origin, found)
-        _add_kinds(hooks, found)
-        _add_named(hooks, origin, found)
+        _add_models(hooks, origin, discovery)
+        _add_kinds(hooks, discovery)
+        _add_named(hooks, origin, discovery)
     except Exception as error:
         sys.modules.pop(place.stem, None)
         raise InputError(f"plugin {shown(Path(path))}: cannot be used: {described(error)}") from error
-    found.plugins.append(origin)
+    discovery.plugins.append(origin)
 
 
 def _hooks(plugin: Any, origin: Origin) -> pluggy.HookRelay:
@@ -313,7 +313,7 @@ def _answers(hooks: pluggy.HookRelay, name: str) -> list[Any]:
     return answers
 
 
-def _add_models(hooks: pluggy.HookRelay, origin: Origin, found: Installed) -> None:
+def _add_models(hooks: pluggy.HookRelay, origin: Origin, discovery: Installed) -> None:
     for model in chain.from_iterable(_answers(hooks, "wearlaw_models")):
         kind = getattr(model, "kind", None)
         if kind not in MODELS or not isinstance(model, type):
@@ -321,53 +321,53 @@ def _add_models(hooks: pluggy.HookRelay, origin: Origin, found: Installed) -> No
         if inspect.isabstract(model):
             missing = sorted(model.__abstractmethods__)  # type: ignore[attr-defined]
             raise TypeError(f"{model.__name__} does not implement {', '.join(missing)}")
-        found[kind].add(getattr(model, "name", None), model, origin)
+        discovery[kind].add(getattr(model, "name", None), model, origin)
         if kind == "rig":
             for name, make in model.presets().items():  # type: ignore[attr-defined]
-                found["preset"].add(name, Preset(model, make), origin)
+                discovery["preset"].add(name, Preset(model, make), origin)
 
 
-def _add_kinds(hooks: pluggy.HookRelay, found: Installed) -> None:
+def _add_kinds(hooks: pluggy.HookRelay, discovery: Installed) -> None:
     for answer in _answers(hooks, "wearlaw_resources"):
         for kind, made in answer.get("kind", {}).items():
-            found.shelves[kind] = Shelf(kind, made.type)
-            found.explanations[kind] = made.explanation
+            discovery.shelves[kind] = Shelf(kind, made.type)
+            discovery.explanations[kind] = made.explanation
 
 
-def _add_named(hooks: pluggy.HookRelay, origin: Origin, found: Installed) -> None:
+def _add_named(hooks: pluggy.HookRelay, origin: Origin, discovery: Installed) -> None:
     """Add parameter sets, materials, resources and commands."""
     for name, item in chain.from_iterable(answer.items() for answer in _answers(hooks, "wearlaw_named")):
         if not isinstance(item, WearLaw):
-            _add_material(name, item, origin, found)
-        elif name in found["wear law"].providers:  # the look-up would give the law
-            of = found["wear law"].origin(name)
+            _add_material(name, item, origin, discovery)
+        elif name in discovery["wear law"].providers:  # the look-up would give the law
+            of = discovery["wear law"].origin(name)
             cause = f"parameter set '{name}' has the name of a wear law of {of}; give it another name"
-            found.broken.append(Broken(origin, cause))
+            discovery.broken.append(Broken(origin, cause))
         else:
-            found["parameter set"].add(name, known_as(name, item), origin)
+            discovery["parameter set"].add(name, known_as(name, item), origin)
     for kind, items in chain.from_iterable(answer.items() for answer in hooks.wearlaw_resources()):
         if kind == "kind":
             continue
-        if kind not in found.explanations:
-            raise TypeError(f"wearlaw_resources: no kind {shown(kind)}{did_you_mean(kind, found.explanations)}")
+        if kind not in discovery.explanations:
+            raise TypeError(f"wearlaw_resources: no kind {shown(kind)}{did_you_mean(kind, discovery.explanations)}")
         for name, item in items.items():
-            found[kind].add(name, item, origin)
+            discovery[kind].add(name, item, origin)
     for command in chain.from_iterable(_answers(hooks, "wearlaw_commands")):
-        found["command"].add(command.name, command, origin)
+        discovery["command"].add(command.name, command, origin)
 
 
-def _add_material(name: str, item: Any, origin: Origin, found: Installed) -> None:
+def _add_material(name: str, item: Any, origin: Origin, discovery: Installed) -> None:
     """Add a material and its class, or a class of materials under its own name."""
     cls = item if isinstance(item, type) else type(item)
     if not issubclass(cls, Material):
         raise TypeError(f"material {name!r} must be a Material or a class derived from it, got {shown(item)}")
     if not isinstance(item, type):
-        found["material"].add(name, known_as(name, item), origin)
+        discovery["material"].add(name, known_as(name, item), origin)
     elif name != cls.__name__:
         raise TypeError(f"a class of materials goes by its own name: write {cls.__name__!r} in place of {name!r}")
-    known = found["material type"].providers.get(cls.__name__, [])
-    if cls is not Material and all(one is not cls for one, _ in known):
-        found["material type"].add(cls.__name__, cls, origin)
+    listed = discovery["material type"].providers.get(cls.__name__, [])
+    if cls is not Material and all(other is not cls for other, _ in listed):
+        discovery["material type"].add(cls.__name__, cls, origin)
 
 
 def installed(kind: str) -> Mapping[str, Any]:
@@ -426,11 +426,11 @@ def wear_law(name: str, /, **options: Any) -> WearLaw:
 
     Parameters and errors are those of `contact_model`.
     """
-    found = discovered()
-    if name in found["parameter set"]:
-        known: WearLaw = found.find("parameter set", name)
-        return known_as(name, known.model_copy(update=options))
-    made: WearLaw = found.find("wear law", name)(**options)
+    discovery = discovered()
+    if name in discovery["parameter set"]:
+        preset: WearLaw = discovery.find("parameter set", name)
+        return known_as(name, preset.model_copy(update=options))
+    made: WearLaw = discovery.find("wear law", name)(**options)
     return made
 
 
@@ -453,13 +453,13 @@ def law(name: str, /, **options: Any) -> Law:
 
     Parameters and errors are those of `contact_model`.
     """
-    found = discovered()
-    if name in found["wear law"] or name in found["parameter set"]:
+    discovery = discovered()
+    if name in discovery["wear law"] or name in discovery["parameter set"]:
         return wear_law(name, **options)
-    if name not in found["law"]:
+    if name not in discovery["law"]:
         kinds = ("law", "wear law", "parameter set")
-        raise UnknownModelError(found.unknown("law", name, [known for kind in kinds for known in installed(kind)]))
-    made: Law = found.find("law", name)(**options)
+        raise UnknownModelError(discovery.unknown("law", name, [other for kind in kinds for other in installed(kind)]))
+    made: Law = discovery.find("law", name)(**options)
     return made
 
 
@@ -480,15 +480,15 @@ def material(name: str, /, **options: Any) -> Material:
     ConfigurationError
         If a field is missing or unknown, or has a wrong value.
     """
-    found = discovered()
-    if name in found["material"]:
-        known: Material = found.find("material", name)
-        changed = known.model_copy(update=options)
-        return known if changed == known else changed  # which keeps its name
-    if name not in found["material type"]:
-        names = [*found["material"].items(), *found["material type"].items()]
-        raise UnknownModelError(found.unknown("material", name, names))
-    made: Material = found.find("material type", name)(**options)
+    discovery = discovered()
+    if name in discovery["material"]:
+        stated: Material = discovery.find("material", name)
+        changed = stated.model_copy(update=options)
+        return stated if changed == stated else changed  # which keeps its name
+    if name not in discovery["material type"]:
+        names = [*discovery["material"].items(), *discovery["material type"].items()]
+        raise UnknownModelError(discovery.unknown("material", name, names))
+    made: Material = discovery.find("material type", name)(**options)
     return made
 
 

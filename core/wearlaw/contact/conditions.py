@@ -109,7 +109,7 @@ class Condition:
         """Return whether a value can be both this condition and another one of the same name."""
         if None in (self.check, other.check):  # the rig does not declare it
             return True
-        first, second = (one.unit or Unit("") for one in (self, other))
+        first, second = (condition.unit or Unit("") for condition in (self, other))
         if not alike(first.unit, second.unit):
             return False
         usual = ((end * unit_in_si(unit.unit) for end in unit.usual or UNKNOWN) for unit in (first, second))
@@ -119,8 +119,8 @@ class Condition:
     @property
     def meaning(self) -> str:
         """What it is: the docstring below it in its `TypedDict`, if it has one."""
-        own = item_docstrings(self.table).get(self.name) if self.table is not None else None
-        return own or meaning_of(self.name)
+        stated = item_docstrings(self.table).get(self.name) if self.table is not None else None
+        return stated or meaning_of(self.name)
 
 
 @cache
@@ -132,9 +132,11 @@ def declared(problem: Callable[..., object]) -> Mapping[str, Condition]:
     """
     signature = inspect.signature(problem)
     _, *parameters = signature.parameters.values()
-    any_name = [one for one in parameters if one.kind is one.VAR_KEYWORD]
+    any_name = [parameter for parameter in parameters if parameter.kind is parameter.VAR_KEYWORD]
     if not any_name:
-        return {one.name: Condition(one.name, one.default is one.empty) for one in parameters}
+        return {
+            parameter.name: Condition(parameter.name, parameter.default is parameter.empty) for parameter in parameters
+        }
     of = SimpleNamespace(__annotations__={"conditions": any_name[0].annotation})
     hint = hints_of(of, getattr(inspect.unwrap(problem), "__globals__", {}), include_extras=True)["conditions"]
     return of_table(get_args(hint)[0]) if get_origin(hint) is Unpack else {}
@@ -143,17 +145,17 @@ def declared(problem: Callable[..., object]) -> Mapping[str, Condition]:
 @cache
 def of_table(table: Any, of: str = "") -> Mapping[str, Condition]:
     """Return the conditions of a `TypedDict`; `of` says in words what declares them."""
-    found = {}
+    conditions = {}
     for name, hint in hints_of(table, include_extras=True).items():
         # `__required_keys__` does not see `Required` and `NotRequired` in postponed annotations before Python 3.13.
         wrapper = get_origin(hint) if get_origin(hint) in (Required, NotRequired) else None
         required = wrapper is Required or (wrapper is None and name in table.__required_keys__)
         value = get_args(hint)[0] if wrapper else hint
         checks = getattr(value, "__metadata__", ())
-        unit = next((one for one in checks if isinstance(one, Unit)), None)
+        unit = next((check for check in checks if isinstance(check, Unit)), None)
         check = coefficient if coefficient in checks else None if unit is None else unit.si
-        found[name] = Condition(name, required, unit, check, value == Friction, table, of)
-    return found
+        conditions[name] = Condition(name, required, unit, check, value == Friction, table, of)
+    return conditions
 
 
 def together(tables: Iterable[Mapping[str, Condition]]) -> dict[str, Condition]:
@@ -183,14 +185,14 @@ def friction_at(law: FrictionLaw, name: str, creep_speed: Array) -> Array:
     """Return μ [-] of a friction law in the shape of the creep speed, checked, since the law may come from anyone."""
     subject = f"{name}: friction law {type(law).__name__}"
     try:
-        given = law.coefficient(creep_speed)
+        result = law.coefficient(creep_speed)
     except (WearlawError, MemoryError):
         raise
     except Exception as error:
         raise ModelError(f"{subject} failed: {described(error)}") from error
     try:
-        found = coefficient(given, "its result")
-        return found if found.shape == creep_speed.shape else np.broadcast_to(found, creep_speed.shape)
+        friction = coefficient(result, "its result")
+        return friction if friction.shape == creep_speed.shape else np.broadcast_to(friction, creep_speed.shape)
     except (UnitError, ValueError) as error:
         low, high = extremes(creep_speed)
         raise ModelError(f"{subject} is wrong at creep speeds from {low:.4g} to {high:.4g} m/s: {error}") from None

@@ -31,16 +31,9 @@ PATCH_VARIABLES = (*NODE_VARIABLES, "wear_index")
 """The variables of a `Contact` with a mean over the patch."""
 
 LawVariable: TypeAlias = Literal[
-    "pressure",
-    "traction",
-    "slip",
-    "slip_speed",
-    "wear_index_density",
-    "frictional_power_density",
-    "wear_index",
-    "traction_bound",
-    "x",
-]
+    "pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density", "wear_index",
+    "traction_bound", "x",
+]  # fmt: skip
 """A variable of a `Contact` in which a law can branch, jump or be monotone."""
 
 LAW_VARIABLES: tuple[str, ...] = get_args(LawVariable)

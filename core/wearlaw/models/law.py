@@ -72,15 +72,15 @@ class Calibration(Configuration):
     @cached_property
     def range_in_si(self) -> dict[str, tuple[float, float]]:
         """The stated range in SI."""
-        found = {}
+        ends = {}
         for variable, low, high in self.stated_range:
             if variable not in LAW_VARIABLES:
                 raise InputError(
                     f"stated_range: unknown variable {shown(variable)}{did_you_mean(variable, LAW_VARIABLES)}"
                 )
             unit = Unit(UNITS[variable], positive=False)
-            found[variable] = float(unit.si(low, variable)), float(unit.si(high, variable))
-        return found
+            ends[variable] = float(unit.si(low, variable)), float(unit.si(high, variable))
+        return ends
 
     def __str__(self) -> str:
         if self.scale == "patch":
@@ -125,11 +125,11 @@ class Outcome(Variable):
         super().__post_init__()
         if self.of not in ("area mean", "patch"):
             raise InputError(f"outcome '{self.name}': of must be 'area mean' or 'patch', got {shown(self.of)}")
-        known = VARIABLES.get(self.name)
-        if known is None:
+        entry = VARIABLES.get(self.name)
+        if entry is None:
             self._check_unit()
-        elif self.name != WEAR and not isinstance(known, Outcome):
-            raise InputError(f"outcome '{self.name}': this name has a meaning, {known.long_name}; choose another one")
+        elif self.name != WEAR and not isinstance(entry, Outcome):
+            raise InputError(f"outcome '{self.name}': this name has a meaning, {entry.long_name}; choose another one")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -221,18 +221,18 @@ class Law(Model):
             if "outcome" in vars(cls):
                 declare(cls, cls.outcome)
             check_scale(cls, SCALES)
-            known = cls.__pydantic_fields__
+            fields = cls.__pydantic_fields__
             for name in Law.model_fields:
-                if known[name].default is None:
-                    known[name] = known.pop(name)  # last where fields are shown
+                if fields[name].default is None:
+                    fields[name] = fields.pop(name)  # last where fields are shown
 
     def check_variables(self) -> None:
         """Raise a `ModelError` if `breakpoints`, `jumps`, `monotone_in` or `valid_range` names no variable."""
         with Blame(self):
             points = {"breakpoints": self.breakpoints(self.numbers) or {}, "jumps": self.jumps(self.numbers)}
-            known = (*LAW_VARIABLES, *self.variables)
+            names = (*LAW_VARIABLES, *self.variables)
             declared = {
-                **{name: (variables, known) for name, variables in points.items()},
+                **{name: (variables, names) for name, variables in points.items()},
                 "monotone_in": (self.monotone_in, LAW_VARIABLES),
                 "valid_range": (self.valid_range, PATCH_VARIABLES),
             }
@@ -335,11 +335,11 @@ class Law(Model):
         UnitError
             If one has the wrong unit, or is out of bounds.
         """
-        found = dict(contact.conditions)
+        conditions = dict(contact.conditions)
         for name, condition in self.own_conditions().items():
-            value = found.get(name)
+            value = conditions.get(name)
             if isinstance(value, pint.Quantity):
-                found[name] = condition.in_si(value)
+                conditions[name] = condition.in_si(value)
             elif value is None and condition.required:
                 raise InputError(
                     f"{name}: is missing; {condition.of} needs it. Give it with the contact, as in"
@@ -347,9 +347,9 @@ class Law(Model):
                 )
         if not self.own_conditions():
             return contact
-        in_si = {name: value for name, value in found.items() if not isinstance(value, pint.Quantity)}
+        in_si = {name: value for name, value in conditions.items() if not isinstance(value, pint.Quantity)}
         problem = contact.problem and contact.problem.replaced(conditions=in_si)
-        return contact.replaced(conditions=found, problem=problem)
+        return contact.replaced(conditions=conditions, problem=problem)
 
     def check_not_negative(self, value: Array, error: Callable[[], Array] = lambda: np.zeros(())) -> None:
         """Raise a `ModelError` if an outcome without sign is negative by more than its numerical error, in SI.
@@ -405,10 +405,10 @@ class Law(Model):
     def variables(self) -> Mapping[str, Variable]:
         """The variables of the law's own by name."""
         with Blame(self):
-            own = self.own_variables
-        if not all(isinstance(variable, Variable) for variable in own):
-            raise fault(self, f"gives {shown([*own])} as `own_variables`; they must be of type wl.Variable")
-        return {variable.name: variable for variable in own}
+            variables = self.own_variables
+        if not all(isinstance(variable, Variable) for variable in variables):
+            raise fault(self, f"gives {shown([*variables])} as `own_variables`; they must be of type wl.Variable")
+        return {variable.name: variable for variable in variables}
 
     def value_at(self, contact: Contact, name: str) -> Array:
         """Return a variable of the law's own or of the contact at the nodes, in SI."""

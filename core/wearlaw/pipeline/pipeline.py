@@ -175,19 +175,19 @@ class Rig(Model):
         UnitError
             If a condition lacks its unit or is out of bounds.
         """
-        known = _own_conditions(cls)
+        declared = _own_conditions(cls)
         arrays: dict[str, Array] = {}
         laws: dict[str, FrictionLaw] = {}
         with OneWarning():
             for name, value in conditions.items():
-                condition = known.get(name)
+                condition = declared.get(name)
                 if value is None or condition is None or condition.check is None:
                     continue
                 if condition.law and is_friction_law(value):
                     laws[name] = value
                 else:
                     arrays[name] = condition.check(value, name)
-        cls._check_names(known, conditions)
+        cls._check_names(declared, conditions)
         for name, si in otherwise.items():
             arrays.setdefault(name, np.float64(si))  # type: ignore[arg-type]
         arrays = broadcast(arrays)
@@ -222,10 +222,10 @@ class Rig(Model):
             If the rig fails or does not return a problem.
         """
         declared = [condition for model in models for condition in model.own_conditions().values()]
-        given, arrays = _parted(self, conditions, declared) if declared else (conditions, {})
+        of_rig, arrays = _parted(self, conditions, declared) if declared else (conditions, {})
         try:
             with Blame(self):
-                problem = _in_batch(_posed(self, given))
+                problem = _in_batch(_posed(self, of_rig))
                 if declared:
                     problem = _with_conditions(problem, arrays)
         except (ModelError, ConditionsError) as error:
@@ -258,10 +258,10 @@ class Rig(Model):
             if name not in known:
                 raise ConditionsError(f"{name}: {unknown_condition(name, known, cls)}")
         for names in cls.choices:
-            given = [name for name in names if conditions.get(name) is not None]
-            if len(given) != 1:
+            stated = [name for name in names if conditions.get(name) is not None]
+            if len(stated) != 1:
                 raise ConditionsError(
-                    f"give exactly one of {', '.join(names)}; got {' and '.join(given) or 'none of them'}"
+                    f"give exactly one of {', '.join(names)}; got {' and '.join(stated) or 'none of them'}"
                 )
         for name, condition in known.items():
             if condition.required and conditions.get(name) is None:
@@ -316,13 +316,13 @@ def unknown_condition(name: str, known: Iterable[str], rig: type[Rig]) -> str:
 def _own_conditions(rig: type[Rig]) -> Mapping[str, Condition]:
     """Return the conditions of the nearest `problem` with a table; a subclass may hand its conditions on."""
     tables = (declared(base.problem) for base in rig.__mro__ if issubclass(base, Rig))
-    return next((one for one in tables if any(condition.table for condition in one.values())), {})
+    return next((conditions for conditions in tables if any(condition.table for condition in conditions.values())), {})
 
 
 @steady
 def _posed(rig: Rig, conditions: Mapping[str, Any]) -> Problem:
-    given = {name: value if type(value) in (str, float) else _read_only(value) for name, value in conditions.items()}
-    problem = rig.problem(**given)
+    checked = {name: value if type(value) in (str, float) else _read_only(value) for name, value in conditions.items()}
+    problem = rig.problem(**checked)
     if not isinstance(problem, Problem):
         raise fault(rig, f"returned {shown(problem)}, not a wearlaw.Problem")
     return problem
@@ -339,10 +339,10 @@ def _parted(
     for condition in declared:  # each checks its own bounds
         if (value := conditions.get(condition.name)) is not None:
             arrays[condition.name] = read_only(condition.in_si(value)) if np.ndim(value) else condition.in_si(value)
-    names, known = {condition.name for condition in declared}, rig.conditions()
-    given = {name: value for name, value in conditions.items() if name in known or name not in names}
+    names, taken = {condition.name for condition in declared}, rig.conditions()
+    of_rig = {name: value for name, value in conditions.items() if name in taken or name not in names}
     shape = broadcast(arrays)[next(iter(arrays))].shape if arrays else ()
-    for name, value in given.items() if shape else ():
+    for name, value in of_rig.items() if shape else ():
         try:
             quantity = parse(value) if isinstance(value, str) or with_units(value) else value
             plain = not isinstance(quantity, pint.Quantity)
@@ -350,8 +350,8 @@ def _parted(
         except UnitError:  # no number, such as a law of friction
             continue
         wide = np.broadcast_to(numbers, broadcast({name: numbers, **arrays})[name].shape)
-        return {**given, name: wide if plain else with_magnitude(quantity, wide)}, arrays
-    return given, arrays
+        return {**of_rig, name: wide if plain else with_magnitude(quantity, wide)}, arrays
+    return of_rig, arrays
 
 
 def _with_conditions(problem: Problem, arrays: Mapping[str, Array]) -> Problem:
@@ -605,10 +605,10 @@ class Pipeline(Configuration, Generic[P]):
         if resolved is not None and not resolved.any():
             raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
         self.warn_of_problem(problem)
-        found = self.watched(problem, watch, given)
+        prediction = self.watched(problem, watch, given)
         warn_of_unlike_materials(self.contact_model, problem)
         watch.warn()
-        return found
+        return prediction
 
     def warn_of_problem(self, problem: Problem) -> None:
         """Warn of parameters fitted for another shape of patch or other materials if only the problem shows them.

@@ -38,21 +38,21 @@ class Selection:
     @classmethod
     def by_label(cls, problem: Problem, labels: Mapping[str, Any]) -> Selection:
         """Return the selection of labels along the rig's own axes."""
-        found: dict[str, Position] = {}
-        for name, given in labels.items():
+        chosen: dict[str, Position] = {}
+        for name, wanted in labels.items():
             if name not in problem.dims:
-                known = " and ".join(f"{dim} {own}" for dim, own in problem.dims.items()) or "none"
+                axes = " and ".join(f"{dim} {entries}" for dim, entries in problem.dims.items()) or "none"
                 raise InputError(
                     f"sel: no labels for an axis {shown(name)}{did_you_mean(name, problem.dims)} Axes with labels:"
-                    f" {known}; isel takes positions along any axis"
+                    f" {axes}; isel takes positions along any axis"
                 )
-            own = problem.dims[name]
-            several = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str)
-            for label in given if several else [given]:
-                if label not in own:
-                    raise InputError(f"sel: axis {shown(name)} has no label {shown(label)}, only {own}")
-            found[name] = [own.index(label) for label in given] if several else own.index(given)
-        return cls(tuple(found.get(name, slice(None)) for name in axis_names(problem)))
+            entries = problem.dims[name]
+            several = isinstance(wanted, Sequence | np.ndarray) and not isinstance(wanted, str)
+            for label in wanted if several else [wanted]:
+                if label not in entries:
+                    raise InputError(f"sel: axis {shown(name)} has no label {shown(label)}, only {entries}")
+            chosen[name] = [entries.index(label) for label in wanted] if several else entries.index(wanted)
+        return cls(tuple(chosen.get(name, slice(None)) for name in axis_names(problem)))
 
     @classmethod
     def by_position(cls, problem: Problem, positions: Mapping[str, Any]) -> Selection:
@@ -60,8 +60,8 @@ class Selection:
         sizes = dict(zip(axis_names(problem), problem.batch_shape, strict=True))
         for name in positions:
             if name not in sizes:
-                known = ", ".join(f"{dim} ({size})" for dim, size in sizes.items()) or "none at one operating point"
-                raise InputError(f"isel: no axis {shown(name)}{did_you_mean(name, sizes)} Axes (with sizes): {known}")
+                axes = ", ".join(f"{dim} ({size})" for dim, size in sizes.items()) or "none at one operating point"
+                raise InputError(f"isel: no axis {shown(name)}{did_you_mean(name, sizes)} Axes (with sizes): {axes}")
         return cls(tuple(_position(name, positions.get(name, slice(None)), size) for name, size in sizes.items()))
 
     @classmethod
@@ -70,8 +70,8 @@ class Selection:
         names = axis_names(problem)
         positions = index if isinstance(index, tuple) else (index,)
         if len(positions) > len(names):
-            known = ", ".join(names) or "none: this is one operating point"
-            raise InputError(f"{shown(positions)}: are more positions than there are axes. Axes: {known}")
+            axes = ", ".join(names) or "none: this is one operating point"
+            raise InputError(f"{shown(positions)}: are more positions than there are axes. Axes: {axes}")
         return cls.by_position(problem, dict(zip(names, positions, strict=False)))
 
     def of(self, array: NDArray[Any]) -> NDArray[Any]:
@@ -103,19 +103,19 @@ class Selection:
         return contact[chosen[chosen >= 0]]
 
 
-def _position(name: str, given: Any, size: int) -> Position:
+def _position(name: str, position: Any, size: int) -> Position:
     """Return a position along an axis, without negative numbers; a mask has the entries where it is true."""
-    if isinstance(given, slice):
-        return given
-    numbers = np.asarray(given)
+    if isinstance(position, slice):
+        return position
+    numbers = np.asarray(position)
     if numbers.dtype == np.bool_ and numbers.shape == (size,):
         numbers = np.flatnonzero(numbers)
     if numbers.ndim > 1 or (numbers.size and numbers.dtype.kind not in "iu"):
-        raise InputError(f"isel: {name} must be an integer, a list of integers or a slice, got {shown(given)}")
+        raise InputError(f"isel: {name} must be an integer, a list of integers or a slice, got {shown(position)}")
     wrong = numbers[(numbers < -size) | (numbers >= size)]
     if wrong.size:
         raise InputError(
             f"isel: axis {shown(name)} has {size} entries, 0 to {size - 1}; there is no entry {wrong.flat[0]}"
         )
-    found: list[int] = (numbers % size).reshape(-1).tolist()
-    return found if numbers.ndim else found[0]
+    entries: list[int] = (numbers % size).reshape(-1).tolist()
+    return entries if numbers.ndim else entries[0]

@@ -16,32 +16,16 @@ ERROR = "_error"
 """Ending of the name of an outcome's numerical error in results."""
 
 OF_CONTACT = (
-    "tangential_force",
-    "longitudinal_force",
-    "lateral_force",
-    "spin_moment",
-    "traction_coefficient",
-    "wear_index",
-    "cell_wear_index",
-    "averaged_wear_index",
-    "wear_index_density",
-    "stick_ratio",
-    "mean_slip",
-    "first_yield",
+    "tangential_force", "longitudinal_force", "lateral_force", "spin_moment", "traction_coefficient", "wear_index",
+    "cell_wear_index", "averaged_wear_index", "wear_index_density", "stick_ratio", "mean_slip", "first_yield",
     "shakedown_limit",
-)
+)  # fmt: skip
 """Variables that depend on the contact model but not on the wear law; no prediction has all of them."""
 
 OF_POINT = (
-    "half_width",
-    "semi_axis_a",
-    "semi_axis_b",
-    "max_pressure",
-    "normal_force",
-    "normal_force_per_width",
-    "creepage",
-    "friction_coefficient",
-)
+    "half_width", "semi_axis_a", "semi_axis_b", "max_pressure", "normal_force", "normal_force_per_width",
+    "creepage", "friction_coefficient",
+)  # fmt: skip
 """Variables that depend on the operating point alone; no prediction has all of them."""
 
 OF_PATCH = ("lateral_creepage", "spin", "contact_angle")

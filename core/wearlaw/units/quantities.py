@@ -339,9 +339,7 @@ def real_array(value: object) -> NDArray[np.float64]:
     if array.dtype.kind not in "iuf":
         raise UnitError(f"{_describe(value)} is not a real number")
     if array.dtype != np.float64:
-        with np.errstate(
-            over="ignore", under="ignore"
-        ):  # of numbers with more than 64 bits; callers check for infinity
+        with np.errstate(over="ignore", under="ignore"):  # numbers with more than 64 bits; callers check for infinity
             array = array.astype(np.float64)
     return array if array.ndim else array[()]
 
