@@ -46,8 +46,8 @@ class _Commands(click.Group):
         return list(commands())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        own = {command.name: command for command in OWN}  # which tell what failed to load in their own way
-        asked = own.get(cmd_name)
+        builtin = {command.name: command for command in OWN}  # which tell what failed to load in their own way
+        asked = builtin.get(cmd_name)
         if asked is None and cmd_name in loader.discovered()["command"]:
             asked = loader.discovered().find("command", cmd_name)
         if asked is None:

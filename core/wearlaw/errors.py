@@ -189,14 +189,14 @@ class PluginWarning(WearlawWarning):
     """A plugin, or a part of it, could not be used and is left out."""
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
+def did_you_mean(word: str, words: Iterable[str]) -> str:
     """Return "; did you mean 'x'?" for the nearest known word, or a full stop if no word is near.
 
     Case does not matter. A word that is part of longer names, such as creepage in longitudinal_creepage, suggests the
     first of them.
     """
     sought = word.lower()
-    spelt = {name.lower(): name for name in reversed(list(known))}  # of equal names, the first counts
+    spelt = {name.lower(): name for name in reversed(list(words))}  # of equal names, the first counts
     longer = [name for name in reversed(spelt) if len(sought) > 2 and sought in name]
     near = [*longer, *get_close_matches(sought, spelt, n=1)]
     return f"; did you mean {shown(spelt[sought if sought in spelt else near[0]])}?" if near else "."

@@ -62,9 +62,9 @@ def specification(model: Model) -> dict[str, Any]:
     """
     key = "type" if model.kind == "rig" else "model"
     fields = model.model_dump(mode="json", exclude_none=True)
-    known = known_name(model)
-    if known is not None and known in loader.installed("parameter set") and loader.wear_law(known, **fields) == model:
-        return {key: known, **fields}
+    name = known_name(model)
+    if name is not None and name in loader.installed("parameter set") and loader.wear_law(name, **fields) == model:
+        return {key: name, **fields}
     return {key: loader.discovered()[model.kind].name_of(model.name, type(model)), **fields}
 
 
@@ -113,17 +113,17 @@ def _rig(value: Any) -> Any:
         return loader.rig(value)
     if not isinstance(value, Mapping):
         return value
-    given = dict(value)
-    if {"type", "preset"} <= given.keys():
+    table = dict(value)
+    if {"type", "preset"} <= table.keys():
         raise ConfigurationError("rig", [Fault(("preset",), "stands beside a type; keep one of them")])
-    if "type" in given:
-        return _named("rig", "type", given.pop("type"))(**given)
-    if "preset" in given:
-        preset = _named("preset", "preset", given.pop("preset"))
-        fields = preset_fields(preset)(**given)
+    if "type" in table:
+        return _named("rig", "type", table.pop("type"))(**table)
+    if "preset" in table:
+        preset = _named("preset", "preset", table.pop("preset"))
+        fields = preset_fields(preset)(**table)
         return preset.make(**{name: getattr(fields, name) for name in fields.model_fields_set})
     rigs, presets = loader.installed("rig"), loader.discovered()["preset"].items()
-    fitting = [name for name, rig in rigs.items() if given and given.keys() <= rig.model_fields.keys()]
+    fitting = [name for name, rig in rigs.items() if table and table.keys() <= rig.model_fields.keys()]
     raise InputError(
         f'needs a type, such as type = "{[*fitting, *rigs][0]}". Installed: {", ".join(rigs)}; or a preset:'
         f" {', '.join(presets)}"
@@ -144,9 +144,11 @@ def preset_fields(preset: Preset) -> type[Configuration]:
     fields: dict[str, Any] = {
         name: (
             annotations.get(name, Any),
-            Field(... if one.default is one.empty else one.default, description=docs.get(name) or None),
+            Field(
+                ... if parameter.default is parameter.empty else parameter.default, description=docs.get(name) or None
+            ),
         )
-        for name, one in parameters
+        for name, parameter in parameters
     }
     return create_model("preset", __base__=Configuration, **fields)
 

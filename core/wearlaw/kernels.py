@@ -81,7 +81,7 @@ def compiled_loop(signature: str, reorders: bool = False) -> Callable[[Callable[
         def run(*arguments: object) -> None:
             nonlocal seen
             # What has been compiled for a read-only array takes any other as well, so few calls compile it again.
-            read_only = seen.union(i for i, one in enumerate(arguments) if _is_read_only(one))
+            read_only = seen.union(i for i, argument in enumerate(arguments) if _is_read_only(argument))
             loop = made(read_only)
             seen = read_only
             loop(*arguments)
@@ -98,7 +98,7 @@ def _is_read_only(argument: object) -> bool:
 def _types_of(signature: str, read_only: frozenset[int]) -> Any:
     """Return the types of a signature of numba, with those of some arguments read-only."""
     types, returned = _numba().core.sigutils.normalize_signature(signature)
-    return returned(*(one.copy(readonly=True) if i in read_only else one for i, one in enumerate(types)))
+    return returned(*(kind.copy(readonly=True) if i in read_only else kind for i, kind in enumerate(types)))
 
 
 def compiled(function: Callable[..., Any], signature: object, **options: Any) -> Any:

@@ -125,7 +125,7 @@ def needed_for(use: str, extra: str | None) -> Iterator[None]:
         yield
     except ImportError as error:
         chain = (error, error.__cause__, error.__context__)  # pandas names what it misses in its text alone
-        cause = next((one for one in chain if isinstance(one, ImportError) and one.name), error)
+        cause = next((link for link in chain if isinstance(link, ImportError) and link.name), error)
         if extra is None or (cause.name or "").startswith("wearlaw"):
             raise
         what = f"needs {cause.name}" if isinstance(cause, ModuleNotFoundError) else f"cannot be loaded: {error}"

@@ -17,14 +17,14 @@ ConfigurationT = TypeVar("ConfigurationT", bound=Configuration)
 
 def numbers(record: Configuration) -> dict[str, Quantity | float]:
     """Return the numbers among the fields by name; a number of a record within a record is "outer.inner"."""
-    found: dict[str, Quantity | float] = {}
+    values: dict[str, Quantity | float] = {}
     for name in type(record).model_fields:
         value = getattr(record, name)
         if isinstance(value, Configuration):
-            found |= {f"{name}.{inner}": number for inner, number in numbers(value).items()}
+            values |= {f"{name}.{inner}": number for inner, number in numbers(value).items()}
         elif isinstance(value, pint.Quantity | float):
-            found[name] = value
-    return found
+            values[name] = value
+    return values
 
 
 def number_in_si(value: Quantity | float) -> float:
@@ -46,15 +46,15 @@ def number_like(number: Quantity | float, si: Any) -> Any:
 
 def changed(record: ConfigurationT, values: Mapping[str, Quantity | float]) -> ConfigurationT:
     """Return a copy with some of its `numbers` changed, checked like a new record."""
-    known = numbers(record)
+    names = numbers(record)
     fields: dict[str, Any] = {}
     nested: dict[str, dict[str, Any]] = {}
     for name, value in values.items():
-        if name not in known:
-            hint = did_you_mean(name, known)
+        if name not in names:
+            hint = did_you_mean(name, names)
             raise InputError(
                 f"{record.subject()}: {shown(name)} is not a number among its fields{hint} There are:"
-                f" {', '.join(known)}"
+                f" {', '.join(names)}"
             )
         outer, _, inner = name.partition(".")
         if inner:

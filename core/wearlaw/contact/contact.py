@@ -321,10 +321,10 @@ class Contact:
             If the shapes do not broadcast, the slip exceeds 1 or has the opposite sign of the traction anywhere, or
             traction has both signs in one contact.
         """
-        given = {"pressure": pressure, "traction": traction, "slip": slip, "area": area}
-        units = expected(*given, "rolling_speed", "density")
+        nodal = {"pressure": pressure, "traction": traction, "slip": slip, "area": area}
+        units = expected(*nodal, "rolling_speed", "density")
         speed = units["rolling_speed"].si(rolling_speed, "rolling_speed")
-        nodes = broadcast({name: units[name].si(value, name) for name, value in given.items()})
+        nodes = broadcast({name: units[name].si(value, name) for name, value in nodal.items()})
         p, q, s, a = nodes.values()
         if p.ndim <= speed.ndim:
             raise InputError(
@@ -376,15 +376,15 @@ class Contact:
         """
         added = {}
         for name, value in conditions.items():
-            given: Any = parse(value) if isinstance(value, str) or with_units(value) else value
-            if not isinstance(given, pint.Quantity):
-                given = Q(real_array(given), "")
+            condition: Any = parse(value) if isinstance(value, str) or with_units(value) else value
+            if not isinstance(condition, pint.Quantity):
+                condition = Q(real_array(condition), "")
             try:
-                added[name] = with_magnitude(given, np.broadcast_to(given.magnitude, self.rolling_speed.shape))
+                added[name] = with_magnitude(condition, np.broadcast_to(condition.magnitude, self.rolling_speed.shape))
             except ValueError:
                 raise InputError(
                     f"{name}: must be one value or of the shape of the contacts, {self.rolling_speed.shape}, got"
-                    f" {np.shape(given.magnitude)}"
+                    f" {np.shape(condition.magnitude)}"
                 ) from None
         return self.replaced(conditions={**self.conditions, **added})
 

@@ -219,9 +219,9 @@ def overload(
         if highest * _most_stressed(nu, friction) <= k:
             continue
         for measure, beyond in LIMITS:
-            known = worst is not None and worst.beyond_shakedown
-            least = worst.ratio if worst is not None and known == beyond else 1.0
-            if not known or beyond:  # beyond shakedown there is no need to check first yield
+            flows = worst is not None and worst.beyond_shakedown
+            least = worst.ratio if worst is not None and flows == beyond else 1.0
+            if not flows or beyond:  # beyond shakedown there is no need to check first yield
                 worst = _worse(worst, _furthest(measure, k, nu, friction, least, *flat))
     return worst
 
@@ -238,11 +238,11 @@ def _overload_at(k: float, nu: float, max_pressure: float, *point: float) -> Ove
     return None
 
 
-def _worse(one: Overload | None, other: Overload | None) -> Overload | None:
+def _worse(first: Overload | None, second: Overload | None) -> Overload | None:
     """Return the greater of two overloads."""
-    if one is None or other is None:
-        return other or one
-    return max(one, other)
+    if first is None or second is None:
+        return second or first
+    return max(first, second)
 
 
 def _most_stressed(poisson_ratio: float, friction_coefficient: _Value) -> _Value:
@@ -436,9 +436,9 @@ def _stresses(x: Array, z: Array, nu: float, axis_ratio: float) -> tuple[Array, 
 def _von_mises(pressed: Array, sheared: Array, share: Array) -> Array:
     """Return von Mises's stress over √3 at each share of the traction, the greater for its two directions."""
 
-    def product(one: Array, other: Array) -> Array:
-        normal = (one[:3] - one[[1, 2, 0]]) * (other[:3] - other[[1, 2, 0]])
-        total: Array = normal.sum(axis=0) / 6.0 + one[3] * other[3]
+    def product(first: Array, second: Array) -> Array:
+        normal = (first[:3] - first[[1, 2, 0]]) * (second[:3] - second[[1, 2, 0]])
+        total: Array = normal.sum(axis=0) / 6.0 + first[3] * second[3]
         return total
 
     mixed = np.abs(product(pressed, sheared))

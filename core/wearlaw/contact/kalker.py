@@ -202,8 +202,8 @@ def _between_rows(table: Array, ratio: Array) -> Array:
 def _of_reciprocals(values: Array, nu: Array) -> Array:
     """Return coefficients from their values at the three Poisson's ratios; the reciprocals are parabolas of ν."""
     at_0, at_1, at_2 = _parabolas(nu)
-    found: Array = 1.0 / (at_0 / values[:, 0] + at_1 / values[:, 1] + at_2 / values[:, 2])
-    return found
+    coefficient: Array = 1.0 / (at_0 / values[:, 0] + at_1 / values[:, 1] + at_2 / values[:, 2])
+    return coefficient
 
 
 def _parabolas(nu: Array) -> tuple[Array, Array, Array]:

@@ -70,7 +70,7 @@ class Material(Configuration):
         """Return the material of a table that names its type, or its fields if the type is this class."""
         if not isinstance(value, Mapping) or TYPE not in value:
             return value
-        fields = {name: one for name, one in value.items() if name != TYPE}
+        fields = {name: field for name, field in value.items() if name != TYPE}
         return fields if value[TYPE] == cls.__name__ else cls._look_up(value[TYPE], **fields)
 
     def resembles(self, other: Material) -> bool:
@@ -82,7 +82,7 @@ class Material(Configuration):
             (scalar_si(self.youngs_modulus, "Pa"), scalar_si(other.youngs_modulus, "Pa")),
             (scalar_si(self.density, "kg/m^3"), scalar_si(other.density, "kg/m^3")),
         )
-        return all(abs(one - two) <= ALIKE * two for one, two in pairs)
+        return all(abs(ours - theirs) <= ALIKE * theirs for ours, theirs in pairs)
 
 
 def _table(
@@ -140,8 +140,8 @@ def dundurs_beta(material_1: Material, material_2: Material) -> float:
     K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985.
     """
     (soft_1, ratio_1), (soft_2, ratio_2) = (
-        ((1.0 + one.poisson_ratio) / scalar_si(one.youngs_modulus, "Pa"), one.poisson_ratio)
-        for one in (material_1, material_2)
+        ((1.0 + material.poisson_ratio) / scalar_si(material.youngs_modulus, "Pa"), material.poisson_ratio)
+        for material in (material_1, material_2)
     )
     difference = (1.0 - 2.0 * ratio_1) * soft_1 - (1.0 - 2.0 * ratio_2) * soft_2
     return 0.5 * difference / ((1.0 - ratio_1) * soft_1 + (1.0 - ratio_2) * soft_2)

@@ -304,7 +304,7 @@ class Problem:
 
     def __init_subclass__(cls) -> None:
         """Put the results of a subclass into the table of variables."""
-        if not (isinstance(cls.results, tuple) and all(isinstance(one, Variable) for one in cls.results)):
+        if not (isinstance(cls.results, tuple) and all(isinstance(result, Variable) for result in cls.results)):
             raise InputError(
                 f'{cls.__name__}.results: must be a tuple of variables, such as (wl.Variable("wheel_load", unit="kN"),)'
             )
@@ -360,7 +360,7 @@ class Problem:
         ConditionsError
             If the arguments do not broadcast.
         """
-        given = {
+        quantities = {
             "normal_force": normal_force,
             "track_width": track_width,
             "relative_radius": relative_radius,
@@ -369,7 +369,7 @@ class Problem:
             "rolling_speed": rolling_speed,
             "density": density,
         }
-        si = _si(given, friction_coefficient, poisson_ratio)
+        si = _si(quantities, friction_coefficient, poisson_ratio)
         modulus = si.pop("shear_modulus") / (1.0 - si["poisson_ratio"])
         per_width = si.pop("normal_force") / si["track_width"]
         return cls.line_from_si(normal_force_per_width=per_width, effective_modulus=modulus, **si).checked()
@@ -377,7 +377,7 @@ class Problem:
     @classmethod
     def of(cls, problem: Problem, **fields: Any) -> Self:
         """Return another problem as one of this class, with the fields that the class adds, and others replaced."""
-        return cls(**{one.name: getattr(problem, one.name) for one in dataclasses.fields(Problem)} | fields)
+        return cls(**{field.name: getattr(problem, field.name) for field in dataclasses.fields(Problem)} | fields)
 
     def checked(self) -> Self:
         """Return the problem, or raise an error if its load or its coefficients are such as no contact has.
@@ -473,7 +473,7 @@ class Problem:
 
         The others, and the errors, are those of `line`.
         """
-        given = {
+        quantities = {
             "a": a,
             "b": b,
             "normal_force": normal_force,
@@ -484,7 +484,7 @@ class Problem:
             "rolling_speed": rolling_speed,
             "density": density,
         }
-        return cls.ellipse_from_si(**_si(given, friction_coefficient, poisson_ratio)).checked()
+        return cls.ellipse_from_si(**_si(quantities, friction_coefficient, poisson_ratio)).checked()
 
     @classmethod
     def ellipse_from_si(cls, *, shear_modulus: Array, poisson_ratio: Array, **fields: Any) -> Self:
@@ -615,7 +615,7 @@ class Problem:
             If no body has that name.
         """
         if not isinstance(name, str) or name not in self.bodies:
-            names = " and ".join(repr(one) for one in self.bodies) or "not named"
+            names = " and ".join(repr(name) for name in self.bodies) or "not named"
             wrong = "is missing" if name is None else f"this rig has no {shown(name)}"
             raise InputError(f"body: {wrong}; its bodies are {names}")
         return self.bodies[name]
@@ -711,13 +711,13 @@ class Problem:
         shape = self.batch_shape + values.shape[1:]
         if self.exists is None:
             return values.reshape(shape)
-        found = np.full(shape, np.nan if values.dtype.kind == "f" else "", values.dtype)
-        found[self.exists] = values
-        return found
+        whole = np.full(shape, np.nan if values.dtype.kind == "f" else "", values.dtype)
+        whole[self.exists] = values
+        return whole
 
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the problem with a function applied to each of its arrays; `of_strips` as in `Strips.mapped`."""
-        fields: dict[str, Any] = {one.name: getattr(self, one.name) for one in dataclasses.fields(self)}
+        fields: dict[str, Any] = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         for name in (*ARRAYS, *(variable.name for variable in self.results)):
             if fields[name] is not None:
                 fields[name] = function(fields[name])
@@ -728,7 +728,7 @@ class Problem:
         return type(self)(**fields)
 
 
-ARRAYS = tuple(one.name for one in dataclasses.fields(Problem) if "Array" in str(one.type).partition("[")[0])
+ARRAYS = tuple(field.name for field in dataclasses.fields(Problem) if "Array" in str(field.type).partition("[")[0])
 """The fields of a `Problem` that are arrays, some of them None if they do not apply."""
 
 
@@ -745,9 +745,9 @@ def _flat_strips(array: Array) -> Array:
 
 
 def _si(
-    given: Mapping[str, QuantityLike], friction_coefficient: ArrayLike, poisson_ratio: ArrayLike
+    quantities: Mapping[str, QuantityLike], friction_coefficient: ArrayLike, poisson_ratio: ArrayLike
 ) -> dict[str, Array]:
-    arrays = {name: VARIABLES[name].expected.si(value, name) for name, value in given.items()}
+    arrays = {name: VARIABLES[name].expected.si(value, name) for name, value in quantities.items()}
     arrays["friction_coefficient"] = coefficient(friction_coefficient, "friction_coefficient")
     arrays["poisson_ratio"] = _poisson_ratio(poisson_ratio)
     return broadcast(arrays)

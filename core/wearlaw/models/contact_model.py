@@ -106,7 +106,7 @@ class ContactModel(Model):
     def _cannot_solve(self, geometry: Geometry) -> CompositionError:
         return CompositionError(
             f"contact model '{self.name}' does not solve {PATCHES[geometry]}, only"
-            f" {' and '.join(PATCHES[known] for known in self.geometries())}"
+            f" {' and '.join(PATCHES[shape] for shape in self.geometries())}"
         )
 
     def tangential_force(self, problem: Problem) -> Array:
@@ -298,7 +298,7 @@ class Stage(Model):
         Contact
             Of the geometry and batch shape of `problem`.
         """
-        return inner(self.altered(problem, lambda one: inner(one).forces))
+        return inner(self.altered(problem, lambda part: inner(part).forces))
 
     @classmethod
     def alters_problem_only(cls) -> bool:

@@ -202,9 +202,9 @@ class Blame:
         raise fault(model, f"failed: {said}{hint}") from error
 
 
-def check_scale(model: type[Model], known: tuple[str, ...]) -> None:
+def check_scale(model: type[Model], scales: tuple[str, ...]) -> None:
     """Raise a `ModelError` if a class of models declares an unknown scale; it can also be a property."""
     scale = inspect.getattr_static(model, "scale")
-    if isinstance(scale, str) and scale not in known:
-        words = " or ".join(repr(one) for one in known)
-        raise ModelError(f"{model.__name__}.scale: is {scale!r}{did_you_mean(scale, known)} It must be {words}")
+    if isinstance(scale, str) and scale not in scales:
+        words = " or ".join(repr(word) for word in scales)
+        raise ModelError(f"{model.__name__}.scale: is {scale!r}{did_you_mean(scale, scales)} It must be {words}")

@@ -110,12 +110,12 @@ class Solved(ContactModel):
 
     def of(self, problem: Problem) -> Contact:
         """Return the contacts in the shape of the batch of their problem, flat or as a single one."""
-        found: Contact = self.contact
+        contact: Contact = self.contact
         if problem.batch_shape == ():
-            found = found[0]
-        if problem.batch_shape != found.rolling_speed.shape:
+            contact = contact[0]
+        if problem.batch_shape != contact.rolling_speed.shape:
             raise CompositionError("the contact is already solved; it holds no other operating points")
-        return found
+        return contact
 
     solve_line = of
     solve_ellipse = of

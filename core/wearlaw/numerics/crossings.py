@@ -67,13 +67,13 @@ def crossings(
         searched = None
         for value in values:
             level: Any = np.full(shape, value[:, 0] if np.ndim(value) else value) if shape else np.float64(value)
-            found = None
+            distance = None
             if name in NODE_VARIABLES:
                 per_speed = name in PER_SPEED
                 field = cast(FieldVariable, PER_SPEED.get(name, name))
-                found = model.crossings(problem, field, level / problem.rolling_speed if per_speed else level)
-            if found is not None:
-                distances.append(found)
+                distance = model.crossings(problem, field, level / problem.rolling_speed if per_speed else level)
+            if distance is not None:
+                distances.append(distance)
                 continue
             searched = searched or _Variable(model, problem, zone, name, variable)
             share = _searched(searched, level.reshape(-1, 1)).reshape(*shape, CROSSINGS)
@@ -129,7 +129,7 @@ def _searched(variable: _Variable, value: Array) -> Array:
     changes = above[:, 1:] != above[:, :-1]
     order = changes.cumsum(axis=-1)
     point, interval = np.nonzero(changes & (order <= CROSSINGS))
-    found = np.ones((samples.shape[0], CROSSINGS))
+    shares = np.ones((samples.shape[0], CROSSINGS))
     if point.size:
         root = _elementwise().find_root(
             lambda where, who: variable.at(where, who) - value[who.astype(np.intp), 0],
@@ -142,8 +142,8 @@ def _searched(variable: _Variable, value: Array) -> Array:
                 " cannot be found; it must be finite in the whole slip zone, and the same at each call"
             )
             raise ModelError(with_origin(variable.model, message))
-        found[point, order[point, interval] - 1] = root.x
-    return found
+        shares[point, order[point, interval] - 1] = root.x
+    return shares
 
 
 def _hidden_humps(samples: Array, level: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

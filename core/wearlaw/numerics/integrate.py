@@ -131,17 +131,17 @@ def integrate_slip(model: ContactModel, problem: Problem, solved_before: Contact
     solver = Solver(model)
 
     def of_block(part: Problem, _: slice) -> SlipTotals:
-        found = SlipTotals.of(solved_before or solver.solve(part))
+        slip = SlipTotals.of(solved_before or solver.solve(part))
         if isinstance(model, LineContactModel) and part.geometry == "line":
             area = model.slip_length(part.forward()) * part.track_width
-            found = found._replace(slip_area=area, patch_area=part.patch_area)
-        return found
+            slip = slip._replace(slip_area=area, patch_area=part.patch_area)
+        return slip
 
     if solved_before is None:
         return _by_block(solver, problem, of_block)
     part = problem if solved_before.rolling_speed.shape == problem.batch_shape else problem.flatten()
-    found: SlipTotals = each(problem.unflatten, solver.checked(of_block, part, ALL))
-    return found
+    slip: SlipTotals = each(problem.unflatten, solver.checked(of_block, part, ALL))
+    return slip
 
 
 @steady
@@ -194,12 +194,12 @@ def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: On
         values: list[Array] = []
         kept: list[Across | None] = []
         for law, p in laws:
-            seen, own = _contact_of(law, contact, part), _at_points(p, points)
+            seen, numbers = _contact_of(law, contact, part), _at_points(p, points)
             if law.outcome.of == "patch":
-                values.append(solver.rate(law, seen, part, _of_patches(own)))
+                values.append(solver.rate(law, seen, part, _of_patches(numbers)))
                 kept.append(None)
                 continue
-            of_nodes = _arrays(own, lambda values: values[..., None])  # an axis for the nodes and one for the strips
+            of_nodes = _arrays(numbers, lambda values: values[..., None])  # with an axis for the strips
             wear = seen.over_strip(split_rates(solver, law, seen, part, of_nodes))
             values.append((wear * seen.strip_width).sum(axis=-1) / area)
             kept.append(Across.of(seen, wear) if keeps else None)
@@ -238,8 +238,8 @@ def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlo
                 mean = _on_own_nodes(solver, law, _at_points(p, points), part, contact)
             else:
                 of = part.worn_on(law.body)
-                own = ramps if ramps is None or p is law.numbers else _ramps_at(ramps, points)
-                closed = None if own is None else closed_form(by_zones, own, of)
+                at_points = ramps if ramps is None or p is law.numbers else _ramps_at(ramps, points)
+                closed = None if at_points is None else closed_form(by_zones, at_points, of)
                 mean = closed or _over_zones(solver, law, _at_points(p, points), of)
             means.append(mean)
             sliding = mean.sliding if sliding is None else sliding
@@ -290,9 +290,9 @@ def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Total
     nodes are left out. In partial slip, this last estimate can be too small, by six times on 64 strips.
     """
     model, problem = prepared(model, problem)
-    value, known = totals.values[index], totals.errors[index]
-    if known is not None:
-        return known
+    value, error = totals.values[index], totals.errors[index]
+    if error is not None:
+        return error
     if model.scale == "patch":
         return EPS * np.abs(value)
     if problem.geometry == "line" and law.outcome.of == "area mean":
@@ -303,7 +303,7 @@ def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Total
         twice = model.refined()
         four_times = None if twice is None else twice.refined()
     if twice is not None and four_times is not None:
-        fine, finest = (integrate_laws(one, (law,), problem).values[0] for one in (twice, four_times))
+        fine, finest = (integrate_laws(finer, (law,), problem).values[0] for finer in (twice, four_times))
         return 4.0 / 3.0 * (np.abs(fine - value) + np.abs(finest - fine))
     if law.outcome.of == "patch":
         raise CompositionError(
@@ -352,11 +352,11 @@ def integrate_across(
         return Across.of(contact, contact.over_strip(split_rates(solver, law, contact, part, law.numbers)))
 
     if strips is None and solved_before is not None:
-        found = along(flat, solved_before)
+        across = along(flat, solved_before)
     else:
         block = max(ELLIPSE_NODES // solved(flat[:1]).pressure.size, 1)
-        found = by_block(flat, block, lambda part, _: along(part, solved(part)))
-    return each(problem.unflatten, found)  # type: ignore[no-any-return]
+        across = by_block(flat, block, lambda part, _: along(part, solved(part)))
+    return each(problem.unflatten, across)  # type: ignore[no-any-return]
 
 
 def _by_block(
@@ -484,17 +484,17 @@ def _over_slip_zone(solver: Solver, law: Law, p: Numbers, problem: Problem) -> M
     needed = inside.sum(axis=-1)
     most = int(needed.max())
     if needed.min() == most:
-        own = splits[inside].reshape(*needed.shape, most)
-        return _over_panels(solver, law, p, problem, (stick, slip), own, totals)
+        inner = splits[inside].reshape(*needed.shape, most)
+        return _over_panels(solver, law, p, problem, (stick, slip), inner, totals)
     whole: Any = None
     for count in np.unique(needed):
         points = np.flatnonzero(needed == count)
-        own = splits[points][inside[points]].reshape(points.size, count)
+        inner = splits[points][inside[points]].reshape(points.size, count)
         zones = stick[points], slip[points]
-        found = _over_panels(solver, law, _at_points(p, points), problem[points], zones, own, totals)
+        mean = _over_panels(solver, law, _at_points(p, points), problem[points], zones, inner, totals)
         if whole is None:
-            whole = each(lambda _: np.empty(problem.creepage.shape), found)
-        each(lambda values, some, points=points: values.__setitem__(points, some), whole, found)
+            whole = each(lambda _: np.empty(problem.creepage.shape), mean)
+        each(lambda values, some, points=points: values.__setitem__(points, some), whole, mean)
     return whole  # type: ignore[no-any-return]
 
 

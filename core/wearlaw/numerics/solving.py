@@ -113,15 +113,15 @@ class Solver:
         flat = problem if one_line else problem.flatten()
         if isinstance(self.model, Solved):
             block = max(flat.size, 1)
-        found = by_block(flat, block, partial(self.checked, function), on_block, kept)
-        return found if flat is problem else each(problem.unflatten, found)
+        results = by_block(flat, block, partial(self.checked, function), on_block, kept)
+        return results if flat is problem else each(problem.unflatten, results)
 
     def checked(self, function: OfBlock[ResultT], part: Problem, points: slice) -> ResultT:
         """Return the checked results of a function of one block; `points` is its slice of the whole problem."""
         with Blame(self.model):
-            found = function(part, points)
-        check_results(self.model, part, found)
-        return found
+            results = function(part, points)
+        check_results(self.model, part, results)
+        return results
 
     def solve(self, problem: Problem) -> Contact:
         """Return the contact on the model's own nodes."""
@@ -204,20 +204,20 @@ def _check_posed(maker: Model, problem: Problem, name: str, values: Any, least: 
         raise fault(maker, f"posed a problem with {_words(name)} of {wrong:g} in SI units; it must be finite{above}")
 
 
-def check_results(model: ContactModel, problem: Problem, found: Any, name: str = "result") -> None:
+def check_results(model: ContactModel, problem: Problem, result: Any, name: str = "result") -> None:
     """Raise a `ModelError` unless each array among results holds finite float64 for each operating point."""
-    if type(found) is Across:  # made of checked rates
+    if type(result) is Across:  # made of checked rates
         return
-    if isinstance(found, tuple):
-        one_point, names = problem.batch_shape == (), getattr(found, "_fields", (name,) * len(found))
-        for place, one in enumerate(found):
-            if one is None or (one_point and type(one) is np.float64 and math.isfinite(one)):
+    if isinstance(result, tuple):
+        one_point, names = problem.batch_shape == (), getattr(result, "_fields", (name,) * len(result))
+        for place, part in enumerate(result):
+            if part is None or (one_point and type(part) is np.float64 and math.isfinite(part)):
                 continue
-            check_results(model, problem, one, names[place])
+            check_results(model, problem, part, names[place])
         return
-    check_type(model, name, found, problem.batch_shape)
-    if not math.isfinite(_product(found, found)) and not np.isfinite(found).all():
-        raise _error(model, f"gave {_words(name)} that is not finite", problem, ~np.isfinite(found))
+    check_type(model, name, result, problem.batch_shape)
+    if not math.isfinite(_product(result, result)) and not np.isfinite(result).all():
+        raise _error(model, f"gave {_words(name)} that is not finite", problem, ~np.isfinite(result))
 
 
 def check_types(model: ContactModel, contact: Any, problem: Problem) -> None:
@@ -286,14 +286,14 @@ def _check_values(model: ContactModel, contact: Contact, problem: Problem, *, ar
         _check_bound(model, contact, problem)
 
 
-def _product(one: Array, other: Array) -> float:
+def _product(first: Array, second: Array) -> float:
     """Return the sum of the products of two arrays of one shape, which is finite only if all their entries are.
 
     This is the fastest test for finite entries. The sum can also overflow for finite entries.
     """
-    if one.size <= ONE_THREAD:
-        return float(np.vdot(one, other))
-    first, second = one.ravel(order="K"), other.ravel(order="K")
+    if first.size <= ONE_THREAD:
+        return float(np.vdot(first, second))
+    first, second = first.ravel(order="K"), second.ravel(order="K")
     total = 0.0
     for start in range(0, first.size, ONE_THREAD):
         total += float(np.vdot(first[start : start + ONE_THREAD], second[start : start + ONE_THREAD]))
@@ -349,8 +349,8 @@ def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> No
         if "energy_balance" not in model.exemptions and model.scale == "cells":
             sums["wear_index"] = contact.wear_index_density, limit * np.abs(problem.longitudinal_creepage)
     for name, (values, size) in {"normal_force": (contact.pressure, contact.normal_force), **sums}.items():
-        total, found = getattr(contact, name), contact.integral(values)
-        right = np.abs(found - total) <= error * size
+        total, summed = getattr(contact, name), contact.integral(values)
+        right = np.abs(summed - total) <= error * size
         if not right.all():
             wrong = ~right
             check_finite(model, contact, problem)
@@ -358,7 +358,7 @@ def _check_totals(model: ContactModel, contact: Contact, problem: Problem) -> No
             raise _error(
                 model,
                 f"gave {_words(name)} of {_shown(name, total[first])}, but its nodes sum to"
-                f" {_shown(name, found[first])}; they may differ by twice its `{declared}`, {0.5 * error:.2g}"
+                f" {_shown(name, summed[first])}; they may differ by twice its `{declared}`, {0.5 * error:.2g}"
                 " (declare a larger one for coarser nodes)",
                 problem,
                 wrong,

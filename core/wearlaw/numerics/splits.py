@@ -34,8 +34,8 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
     rate = solver.rate(law, contact, problem, p)
     with Blame(law, p):
         jumps = law.jumps(p)
-    known = {*NODE_VARIABLES, *law.variables}
-    levels = [(name, value) for name, values in jumps.items() if name in known for value in values]
+    names = {*NODE_VARIABLES, *law.variables}
+    levels = [(name, value) for name, values in jumps.items() if name in names for value in values]
     if not levels or contact.x.shape[-2] == 1:
         return rate
     step = np.diff(contact.x, axis=-2)
@@ -67,8 +67,8 @@ def split_rates(solver: Solver, law: Law, contact: Contact, problem: Problem, p:
         np.divide(level - low, high - low, out=shares[:, column], where=here[first])
     shares.sort(axis=-1)
     middle, part = 0.5 * (shares[:, 1:] + shares[:, :-1]), np.diff(shares, axis=-1) * step[first][:, None]
-    own = {name: value[point] if isinstance(value, np.ndarray) else value for name, value in p.items()}
-    there = law.checked_rate(_between(contact, first, second, middle), own)[..., 0]
+    numbers = {name: value[point] if isinstance(value, np.ndarray) else value for name, value in p.items()}
+    there = law.checked_rate(_between(contact, first, second, middle), numbers)[..., 0]
     in_first = middle < in_first_until
     split = rate.copy()
     for cell, in_cell in ((first, in_first), (second, ~in_first)):

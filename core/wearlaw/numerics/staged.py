@@ -66,15 +66,15 @@ class Staged(ContactModel):
         """
         there = problem.existing()
         with Blame(self.stage):
-            found = self.stage.altered(there, forces)
-            returned = (found.geometry, found.batch_shape) if isinstance(found, Problem) else type(found).__name__
+            posed = self.stage.altered(there, forces)
+            returned = (posed.geometry, posed.batch_shape) if isinstance(posed, Problem) else type(posed).__name__
         if returned != (due := (there.geometry, there.batch_shape)):
             raise fault(self.stage, f"returned {returned} from `altered`; it must return a wearlaw.Problem of {due}")
-        check_problem(self, found)
+        check_problem(self, posed)
         if there is problem:
-            return found
-        texts = {one.name: getattr(problem, one.name) for one in problem.results if one.text}
-        return found.mapped(problem.unflatten, problem.unflatten).replaced(
+            return posed
+        texts = {variable.name: getattr(problem, variable.name) for variable in problem.results if variable.text}
+        return posed.mapped(problem.unflatten, problem.unflatten).replaced(
             dims=problem.dims, exists=problem.exists, unloaded=problem.unloaded, **texts
         )
 
@@ -93,9 +93,9 @@ class Staged(ContactModel):
     def on_strips(self, problem: Problem, shares: Array) -> Contact | None:
         """Return the contact after the stage on chosen strips, or None if the model cannot choose them."""
 
-        def inner(one: Problem) -> Contact:
+        def inner(part: Problem) -> Contact:
             with Blame(self.model):
-                contact = self.model.on_strips(one, shares)
+                contact = self.model.on_strips(part, shares)
             if contact is None:
                 raise _CannotChooseError
             return contact
@@ -106,10 +106,10 @@ class Staged(ContactModel):
             return None
 
     def _around(self, problem: Problem, inner: Solve) -> Contact:
-        def checked(one: Problem) -> Contact:
-            if one is not problem:
-                check_problem(self, one)
-            return inner(one)
+        def checked(part: Problem) -> Contact:
+            if part is not problem:
+                check_problem(self, part)
+            return inner(part)
 
         with Blame(self.stage):
             return self.stage.solve(problem, checked)

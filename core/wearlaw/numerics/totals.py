@@ -234,14 +234,14 @@ def by_block(
     whole: Any = None
     for part in blocks(points, block):
         within = problem[part]
-        found = function(within, part)
+        results = function(within, part)
         if on_block is not None:
-            on_block(within, found)
+            on_block(within, results)
         if kept is not None:
-            found = kept(found)
+            results = kept(results)
         if whole is None:
-            whole = each(lambda values: np.empty((points, *values.shape[1:])), found)
-        each(lambda values, own, part=part: values.__setitem__(part, own), whole, found)
+            whole = each(lambda values: np.empty((points, *values.shape[1:])), results)
+        each(lambda values, entries, part=part: values.__setitem__(part, entries), whole, results)
     return whole  # type: ignore[no-any-return]
 
 

@@ -49,24 +49,24 @@ def law_among(laws: Sequence[Law], model: ContactModel, outcome: str, body: str 
 
     Without a body, there must be one law of the outcome. The contact model, with stages or without, is for the message.
     """
-    found = [index for index, law in enumerate(laws) if law.outcome.name == outcome]
-    if not found:
+    indices = [index for index, law in enumerate(laws) if law.outcome.name == outcome]
+    if not indices:
         if outcome == WEAR:
             inner = without_stages(model)
             add = f"the pipeline has no wear law; give one, as in rig | {inner!r} | wl.wear_law('usfd')"
             raise CompositionError(add)
-        known = list(named_outcomes(laws))
-        hint = did_you_mean(outcome, known)
+        others = list(named_outcomes(laws))
+        hint = did_you_mean(outcome, others)
         raise CompositionError(
-            f"no law of the pipeline predicts {shown(outcome)}{hint} Its laws predict: {', '.join(known) or 'nothing'}"
+            f"no law of the pipeline predicts {shown(outcome)}{hint} Its laws predict: {', '.join(others) or 'nothing'}"
         )
-    if body is None and len(found) > 1:
-        names = [laws[index].body for index in found]
+    if body is None and len(indices) > 1:
+        names = [laws[index].body for index in indices]
         ask = f"wear_rate_of('{names[0]}')" if outcome == WEAR else f"outcome('{outcome}', '{names[0]}')"
         raise CompositionError(f"{outcome}: has a law for each of {' and '.join(map(str, names))}; use {ask}")
-    fitting = found if body is None else [index for index in found if laws[index].body in (None, body)]
+    fitting = indices if body is None else [index for index in indices if laws[index].body in (None, body)]
     if not fitting:
-        names = [laws[index].body for index in found]
+        names = [laws[index].body for index in indices]
         raise CompositionError(
             f"{outcome}: no law predicts it for {shown(body)}, only for {' and '.join(map(str, names))}"
         )
@@ -78,20 +78,20 @@ def check_laws(laws: Sequence[Law], bodies: Iterable[str]) -> None:
 
     `bodies` are the bodies of the rig; none if they are not known.
     """
-    known = list(bodies)
+    names = list(bodies)
     for law in laws:
-        if law.body is not None and known and law.body not in known:
-            hint = did_you_mean(law.body, known)
+        if law.body is not None and names and law.body not in names:
+            hint = did_you_mean(law.body, names)
             raise CompositionError(
                 f"{law.kind} '{law.name}': the rig has no body {shown(law.body)}{hint} Its bodies are"
-                f" {' and '.join(known)}"
+                f" {' and '.join(names)}"
             )
-    for law, one in itertools.combinations(laws, 2):
-        if law.outcome.name == one.outcome.name and (None in (law.body, one.body) or one.body == law.body):
-            which = f" of {shown(law.body)}" if law.body is not None and law.body == one.body else ""
+    for law, other in itertools.combinations(laws, 2):
+        if law.outcome.name == other.outcome.name and (None in (law.body, other.body) or other.body == law.body):
+            which = f" of {shown(law.body)}" if law.body is not None and law.body == other.body else ""
             raise CompositionError(
-                f"{law.name} and {one.name} both predict '{law.outcome.name}'{which}; keep one of them, or give each"
-                f' its own body, as in body="{(known or ["rail"])[0]}"'
+                f"{law.name} and {other.name} both predict '{law.outcome.name}'{which}; keep one of them, or give each"
+                f' its own body, as in body="{(names or ["rail"])[0]}"'
             )
 
 
@@ -107,9 +107,9 @@ def check_scale(scale: Scale, model: ContactModel, law: Law, remedy: str = TAKE_
 def check_geometry(rig: Model, model: ContactModel, geometry: Geometry | None) -> None:
     """Raise an error if a contact model does not solve the geometry of a rig; None if the geometry is not known."""
     if geometry is not None and geometry not in model.geometries():
-        able = [name for name, one in loader.installed("contact model").items() if geometry in one.geometries()]
+        able = [name for name, other in loader.installed("contact model").items() if geometry in other.geometries()]
         raise CompositionError(
-            f"contact model '{model.name}' solves {' and '.join(PATCHES[known] for known in model.geometries())} only,"
+            f"contact model '{model.name}' solves {' and '.join(PATCHES[shape] for shape in model.geometries())} only,"
             f" but a {type(rig).__name__} makes {PATCHES[geometry]}; those that solve them: {', '.join(able)}"
         )
 
@@ -200,11 +200,11 @@ def warn_of_unlike_materials(model: ContactModel, problem: Problem) -> None:
     It does not matter if the traction was measured.
     """
     materials = [body.material for body in problem.bodies.values()]
-    if not materials or all(one is materials[0] for one in materials[1:]):
+    if not materials or all(material is materials[0] for material in materials[1:]):
         return
     if not model.assumes_like_materials or problem.traction_coefficient is not None:
         return
-    beta = max((dundurs_beta(materials[0], one) for one in materials[1:]), key=abs)
+    beta = max((dundurs_beta(materials[0], material) for material in materials[1:]), key=abs)
     share = COUPLING * abs(beta) / float(np.nanmin(problem.friction_coefficient))
     if share > MOST_COUPLING:
         warn(

@@ -251,30 +251,30 @@ class Rig(Model):
             cls._check_names(together([cls.conditions(), *(model.own_conditions() for model in models)]), conditions)
 
     @classmethod
-    def _check_names(cls, known: Mapping[str, Condition], conditions: Mapping[str, object]) -> None:
-        if not known:
+    def _check_names(cls, declared: Mapping[str, Condition], conditions: Mapping[str, object]) -> None:
+        if not declared:
             return
         for name in conditions:
-            if name not in known:
-                raise ConditionsError(f"{name}: {unknown_condition(name, known, cls)}")
+            if name not in declared:
+                raise ConditionsError(f"{name}: {unknown_condition(name, declared, cls)}")
         for names in cls.choices:
             stated = [name for name in names if conditions.get(name) is not None]
             if len(stated) != 1:
                 raise ConditionsError(
                     f"give exactly one of {', '.join(names)}; got {' and '.join(stated) or 'none of them'}"
                 )
-        for name, condition in known.items():
+        for name, condition in declared.items():
             if condition.required and conditions.get(name) is None:
                 raise ConditionsError(
-                    _missing(condition) if condition.of else f"{name}: is missing; {cls._fix(name, known)}"
+                    _missing(condition) if condition.of else f"{name}: is missing; {cls._fix(name, declared)}"
                 )
 
     @classmethod
-    def _fix(cls, name: str, known: Iterable[str]) -> str:
+    def _fix(cls, name: str, declared: Iterable[str]) -> str:
         """Return what to do about a missing condition."""
         example = cls.example.get(name)
         if example is None:
-            return f"rig '{cls.name}' takes {', '.join(known)}"
+            return f"rig '{cls.name}' takes {', '.join(declared)}"
         if isinstance(example, str) and " " in example:
             example = 'Q({}, "{}")'.format(*example.split(" ", 1))
         return f"give {name}={example}"
@@ -299,17 +299,17 @@ def _missing(condition: Condition) -> str:
     return f"{condition.name}: is missing; {condition.of} needs it. Give {condition.name}={condition.example!r}"
 
 
-def unknown_condition(name: str, known: Iterable[str], rig: type[Rig]) -> str:
+def unknown_condition(name: str, names: Iterable[str], rig: type[Rig]) -> str:
     """Return what is wrong with a condition that a rig does not have."""
     if name in rig.model_fields:
         return (
             f"is a field of rig '{rig.name}', with one value for all operating points; give it to the rig. The"
-            f" conditions are: {', '.join(known)}"
+            f" conditions are: {', '.join(names)}"
         )
-    hint = did_you_mean(name, known)
+    hint = did_you_mean(name, names)
     if hint == ".":
-        hint = did_you_mean(OTHER_NAMES.get(name.lower(), name), known)
-    return f"unknown condition{hint} The conditions are: {', '.join(known)}"
+        hint = did_you_mean(OTHER_NAMES.get(name.lower(), name), names)
+    return f"unknown condition{hint} The conditions are: {', '.join(names)}"
 
 
 @cache

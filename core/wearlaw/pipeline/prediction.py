@@ -105,20 +105,20 @@ class Prediction:
                 "contact: has no problem, so its bodies and creepages are not known; use contact | law for its wear"
                 " rate, or give it one with contact.replaced(problem=...)"
             )
-        for one in laws:
-            contact = one.under_conditions(contact)
+        for law in laws:
+            contact = law.under_conditions(contact)
         problem = contact.problem or problem
         model = Solved(contact=flat(contact, problem))
-        for one in laws:
-            check_scale(model.scale, model, one, "take the means first, contact.patch_mean() or --patch-mean")
-            one.check_variables()
+        for law in laws:
+            check_scale(model.scale, model, law, "take the means first, contact.patch_mean() or --patch-mean")
+            law.check_variables()
         check_laws(laws, problem.bodies)
-        for one in laws:
-            warn_of_parameters(problem.geometry, problem.bodies, model, model.scale, one)
+        for law in laws:
+            warn_of_parameters(problem.geometry, problem.bodies, model, model.scale, law)
         watch = RangeWatch(*laws)
-        found = solved(model, laws, problem, watch)
+        prediction = solved(model, laws, problem, watch)
         watch.warn()
-        return found
+        return prediction
 
     def sel(self, /, **labels: Label | Sequence[Label]) -> Prediction:
         """Return the prediction for some of the patches, by the labels of the rig's own axes.
@@ -178,7 +178,7 @@ class Prediction:
             return self._si(self._solution.value(index), self.laws[index].outcome.unit)
         if name.endswith(ERROR) and name.removesuffix(ERROR) in named:
             return self._error(named[name.removesuffix(ERROR)])
-        of_rig = next((one for one in self.problem.results if one.name == name), None)
+        of_rig = next((variable for variable in self.problem.results if variable.name == name), None)
         if of_rig is not None:
             value = np.asarray(getattr(self.problem, name))
             return quantity(value, of_rig.unit) if of_rig.text else self._si(value, of_rig.unit)
@@ -188,9 +188,9 @@ class Prediction:
                 return value
         if any(name == law.outcome.name for law in self.laws):
             return self.outcome(name)
-        known = dict.fromkeys([*outcome_units(self.laws), *default_variables(self)])
+        names = dict.fromkeys([*outcome_units(self.laws), *default_variables(self)])
         raise CompositionError(
-            f"there is no variable {shown(name)} here{did_you_mean(name, known)} There are: {', '.join(known)}"
+            f"there is no variable {shown(name)} here{did_you_mean(name, names)} There are: {', '.join(names)}"
         )
 
     def __iter__(self) -> Iterator[Prediction]:
@@ -208,7 +208,8 @@ class Prediction:
         """Return whether another prediction is one of the same contacts with the same models."""
         if not isinstance(other, Prediction):
             return NotImplemented
-        return same(*((one.problem, one.model, one.laws) for one in (self._solution, other._solution)))
+        mine, theirs = self._solution, other._solution
+        return same((mine.problem, mine.model, mine.laws), (theirs.problem, theirs.model, theirs.laws))
 
     def __hash__(self) -> int:
         return hash((self.problem.geometry, self.problem.batch_shape))

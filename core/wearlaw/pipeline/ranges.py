@@ -92,9 +92,9 @@ class RangeWatch:
 
     def see_outside(self, key: str, more: Seen) -> None:
         """Record points outside the range of a law, by a key as in `seen`."""
-        known = self.seen.get(key, Seen(more.lowest, more.highest, 0))
+        seen = self.seen.get(key, Seen(more.lowest, more.highest, 0))
         self.seen[key] = Seen(
-            min(known.lowest, more.lowest), max(known.highest, more.highest), known.outside + more.outside
+            min(seen.lowest, more.lowest), max(seen.highest, more.highest), seen.outside + more.outside
         )
 
     def see_ratios(self, ratios: Mapping[str, float]) -> None:
@@ -194,30 +194,30 @@ MOST = {name: ratio.most for name, ratio in RATIOS.items()}
 
 def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, float]:
     """Return the `RATIOS` of a problem that are unusual."""
-    found: dict[str, float] = {}
+    ratios: dict[str, float] = {}
     if problem.exists is not None:
         problem = problem.flatten()
         if not problem.size:
-            return found
+            return ratios
     pressure, a = extremes(problem.max_pressure)[1], extremes(problem.a)[1]
     if (friction := extremes(problem.friction_coefficient)[1]) > MOST["friction"]:
-        found["friction"] = friction
+        ratios["friction"] = friction
     measured = problem.traction_coefficient
     if measured is not None and (traction := extremes(measured)[1]) > MOST["traction"]:
-        found["traction"] = traction
+        ratios["traction"] = traction
     for body in problem.bodies.values():
         if pressure > MOST["strain"] * body.youngs_modulus:
-            found["strain"] = max(pressure / body.youngs_modulus, found.get("strain", 0.0))
+            ratios["strain"] = max(pressure / body.youngs_modulus, ratios.get("strain", 0.0))
         radius = body.rolling_radius
         relative = extremes(problem.a / radius)[1] if isinstance(radius, np.ndarray) else a / radius
         if relative > MOST["length"]:
-            found["length"] = max(relative, found.get("length", 0.0))
+            ratios["length"] = max(relative, ratios.get("length", 0.0))
     if problem.geometry != "line" and "rail" in problem.bodies and (b := 1e3 * extremes(problem.b)[1]) > MOST["width"]:
-        found["width"] = b
+        ratios["width"] = b
     for law in laws:
         if has_hardness(type(law)) and pressure > MOST["hardness"] * (hardness := hardness_of(law, problem)):
-            found["hardness"] = max(pressure / hardness, found.get("hardness", 0.0))
-    return found
+            ratios["hardness"] = max(pressure / hardness, ratios.get("hardness", 0.0))
+    return ratios
 
 
 @cache
@@ -228,12 +228,12 @@ def has_hardness(law: type[Law]) -> bool:
 
 def hardness_of(law: Law, problem: Problem) -> float:
     """Return the field `hardness` of a law, or else of the material that wears [Pa]; infinite if neither has one."""
-    known: float | None = law.numbers.get("hardness")
-    if known is None and problem.bodies:
+    hardness: float | None = law.numbers.get("hardness")
+    if hardness is None and problem.bodies:
         body = problem.bodies.get(law.body or "", next(iter(problem.bodies.values())))
         stated = getattr(body.material, "hardness", None)
-        known = None if stated is None else scalar_si(stated, "Pa")
-    return np.inf if known is None else known
+        hardness = None if stated is None else scalar_si(stated, "Pa")
+    return np.inf if hardness is None else hardness
 
 
 def overload_of(problem: Problem, tangential_force: Array, worst: Overload | None = None) -> Overload | None:
@@ -279,12 +279,12 @@ def elastic_limits(problem: Problem, tangential_force: Array) -> tuple[Array, Ar
     limits = np.full((2, *problem.batch_shape), np.nan)
     traction, friction = (tangential_force / problem.normal_force)[there], problem.friction_coefficient[there]
     ratio = 0.0 if problem.geometry == "line" else (problem.a / problem.b)[there]
-    found = [
+    of_bodies = [
         (
             first_yield(k, traction, friction, poisson_ratio=nu, axis_ratio=ratio),
             shakedown_limit(k, traction, friction, axis_ratio=ratio),
         )
         for k, nu in strengths
     ]
-    limits[:, there] = np.min(found, axis=0)
+    limits[:, there] = np.min(of_bodies, axis=0)
     return limits[0], limits[1]

@@ -160,10 +160,10 @@ class Solution:
         lacks = self.laws[index].outcome.of == "area mean" and "energy_balance" in model.exemptions
         if not lacks or model.scale != "cells":
             return error
-        found = self.slip.cell_wear_index
-        lacking = np.abs(self.power - found)
-        none = found <= 0.0  # False for the NaN of a missing patch
-        share = np.divide(lacking, found, out=np.zeros_like(found), where=~none)
+        dissipated = self.slip.cell_wear_index
+        lacking = np.abs(self.power - dissipated)
+        none = dissipated <= 0.0  # False for the NaN of a missing patch
+        share = np.divide(lacking, dissipated, out=np.zeros_like(dissipated), where=~none)
         return error + np.where(none & (lacking > 0.0), np.inf, np.abs(self.totals.values[index]) * share)
 
     def across(self, index: int, body: str, strips: int | None) -> Across:

@@ -68,8 +68,8 @@ def default_variables(
     the prediction does not show it.
     """
     of_rig = (variable.name for variable in prediction.problem.results)
-    known = (MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *of_rig, *MORE)
-    every = (*named_outcomes(prediction.laws), *offered(prediction, known, several_patches))
+    names = (MASS, *OF_CONTACT, *OF_POINT, *OF_PATCH, *of_rig, *MORE)
+    every = (*named_outcomes(prediction.laws), *offered(prediction, names, several_patches))
     left_out = {*without}
     return [name for name in dict.fromkeys(every) if name not in left_out]
 
@@ -97,10 +97,10 @@ def _has(prediction: Predicted, name: str) -> bool:
 
 def outcome_units(laws: Sequence[Law]) -> dict[str, str]:
     """Return the unit of each outcome of laws, and of the errors of means over the patch, by name."""
-    found = {}
+    units = {}
     for name, index in named_outcomes(laws).items():
         outcome = laws[index].outcome
-        found[name] = outcome.unit
+        units[name] = outcome.unit
         if outcome.of == "area mean":
-            found[f"{name}{ERROR}"] = outcome.unit
-    return found
+            units[f"{name}{ERROR}"] = outcome.unit
+    return units

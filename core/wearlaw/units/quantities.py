@@ -80,7 +80,7 @@ def parse(value: QuantityLike) -> Quantity:
     if with_units(value):
         first, *others = map(parse, value)
         try:
-            return Q([first.magnitude, *(one.m_as(first.units) for one in others)], str(first.units))
+            return Q([first.magnitude, *(entry.m_as(first.units) for entry in others)], str(first.units))
         except pint.DimensionalityError as error:
             raise UnitError(f"{shown(value)}: {error}") from None
     match = _QUANTITY_TEXT.fullmatch(value) if isinstance(value, str) else None
@@ -94,7 +94,7 @@ def parse(value: QuantityLike) -> Quantity:
 def with_units(value: object) -> TypeGuard[Sequence[Quantity | str]]:
     """Return whether a value is a list of quantities or their texts, such as [Q(1, "kN"), "2 kN"]."""
     return (
-        isinstance(value, list | tuple) and bool(value) and all(isinstance(one, pint.Quantity | str) for one in value)
+        isinstance(value, list | tuple) and bool(value) and all(isinstance(item, pint.Quantity | str) for item in value)
     )
 
 

@@ -95,13 +95,13 @@ def si_factor(quantity: Any, due: str) -> float:
 
 @functools.lru_cache(maxsize=512)
 def _factor(registry: pint.UnitRegistry[Any], container: Any, due: str) -> float:
-    given, due_unit = registry.Unit(container), parse_unit(registry, due)
-    if given.dimensionality != due_unit.dimensionality:
+    unit, due_unit = registry.Unit(container), parse_unit(registry, due)
+    if unit.dimensionality != due_unit.dimensionality:
         raise UnitError(f"which does not have the dimension of '{due}'" if due else "which is not a ratio")
-    zero, one = (registry.convert(value, given, due_unit) for value in (0.0, 1.0))
+    zero, unity = (registry.convert(value, unit, due_unit) for value in (0.0, 1.0))
     if zero != 0.0:  # degrees Celsius, decibel
         raise UnitError("whose unit has an offset or is logarithmic; convert it first")
-    return float(one) * unit_in_si(due)
+    return float(unity) * unit_in_si(due)
 
 
 def unit_in_si(unit: str) -> float:
@@ -159,8 +159,8 @@ def from_si(value: Any, unit: str) -> pint.Quantity[Any]:
     """Return SI floats as a quantity in `unit`; arrays without axes become plain numbers."""
     cls, container, factor = _shown_in(application_registry(), unit)
     shown = divided(value, factor) if isinstance(value, np.ndarray) and value.ndim else float(value) / factor
-    found: pint.Quantity[Any] = cls.of(shown, container)
-    return found
+    made: pint.Quantity[Any] = cls.of(shown, container)
+    return made
 
 
 @np.errstate(over="ignore", under="ignore")

@@ -114,15 +114,15 @@ def declare(cls: type, variable: Variable) -> None:
         If the name is that of an outcome, and the variable is none, or the other way round.
     """
     place = f"{cls.__module__}.{cls.__qualname__}"  # the same for a class that is defined again, as in a notebook
-    known, owner = VARIABLES.get(variable.name), OWNERS.get(variable.name)
-    if known is None or variable.unit != known.unit:
+    listed, owner = VARIABLES.get(variable.name), OWNERS.get(variable.name)
+    if listed is None or variable.unit != listed.unit:
         variable._check_unit()
-    if known is not None and owner != place:
+    if listed is not None and owner != place:
         both = f"variable '{variable.name}': {{}} in {place}, and {{}} in {owner or 'wearlaw'}; choose another name"
-        if not alike(variable.unit, known.unit):
-            raise UnitError(both.format(*(f"it has the unit {shown(one.unit)}" for one in (variable, known))))
-        if owner is not None and type(variable) is not type(known):
-            kinds = ("an outcome" if type(one) is not Variable else "a result of a rig" for one in (variable, known))
+        if not alike(variable.unit, listed.unit):
+            raise UnitError(both.format(*(f"it has the unit {shown(item.unit)}" for item in (variable, listed))))
+        if owner is not None and type(variable) is not type(listed):
+            kinds = ("an outcome" if type(item) is not Variable else "a result of a rig" for item in (variable, listed))
             raise InputError(both.format(*(f"it is {kind}" for kind in kinds)))
         return
     VARIABLES[variable.name], UNITS[variable.name], OWNERS[variable.name] = variable, variable.unit, place
@@ -143,14 +143,14 @@ def is_text(variable: str) -> bool:
 
 def name_of(variable: str) -> str:
     """Return the readable name of a variable; a condition that only its rig knows keeps the rig's name."""
-    known = VARIABLES.get(variable)
-    return known.long_name if known else variable.replace("_", " ")
+    listed = VARIABLES.get(variable)
+    return listed.long_name if listed else variable.replace("_", " ")
 
 
 def meaning_of(variable: str) -> str:
     """Return the meaning of a variable; for a condition that only its rig knows, its name."""
-    known = VARIABLES.get(variable)
-    return known.meaning if known else name_of(variable)
+    listed = VARIABLES.get(variable)
+    return listed.meaning if listed else name_of(variable)
 
 
 def expected(*names: str) -> dict[str, Unit]:
