@@ -121,11 +121,13 @@ def elements_dissipate_the_wear_index(reader: Reader) -> None:
 
 @rule(Reader, always=True)
 def problem_is_that_of_the_file(reader: Reader) -> None:
-    """The problem has the speed, density, load and largest pressure of the contact, and E* of its bodies."""
+    """The problem has speed, density, load, friction and largest pressure of the contact, and E* of its bodies."""
     contact = contact_of(reader)
     problem = _problem(contact)
     for name in ("rolling_speed", "density", "normal_force"):
         assert_close(getattr(problem, name), getattr(contact, name), f"the {name} of the problem", PRINTED)
+    bound = (1.0 + STATED) * problem.friction_coefficient * problem.normal_force
+    assert (np.abs(contact.tangential_force) <= bound).all(), "the tangential force is above μN of the problem"
     nodes = tuple(range(contact.rolling_speed.ndim, contact.pressure.ndim))
     if not _is_mean(contact):
         # Of four elements along the patch, those next to the largest pressure are below it by a quarter at the most.

@@ -64,21 +64,21 @@ def _has_two_bodies(rig: Rig) -> bool:
     return len(_bodies(rig)) == 2
 
 
-def _other_fields(record: Any, factor: float) -> Iterator[tuple[str, Any]]:
+def other_fields(record: Any, factor: float) -> Iterator[tuple[str, Any]]:
     """Yield fields that hold quantities or materials, each with another value; those of a record together."""
     for name, value in fields_of(record).items():
         if isinstance(value, pint.Quantity) and np.isfinite(value.magnitude) and value.magnitude != 0.0:
             yield name, value * factor
         elif isinstance(value, Material):
             yield name, other_material(value, 1.0 / factor)
-        elif isinstance(value, Configuration) and (inner := dict(_other_fields(value, factor))):
+        elif isinstance(value, Configuration) and (inner := dict(other_fields(value, factor))):
             yield name, value.model_copy(update=inner)
 
 
 def _problems(rig: Rig) -> Iterator[tuple[Any, str]]:
     """Yield the problems of the rig, of other materials and of one field after the other, those that there are."""
     yield problem_of(rig).existing(), ""
-    changes = [(name, {name: value}) for name, value in _other_fields(rig, SHORTER)]
+    changes = [(name, {name: value}) for name, value in other_fields(rig, SHORTER)]
     for name, change in [("materials", fields_of(of_other_materials(rig))), *changes]:
         try:
             problem = problem_of(rig.model_copy(update=change)).existing()
@@ -165,7 +165,7 @@ def each_field_matters(rig: Rig) -> None:
 
     A field with a default may belong to a condition that the example leaves out, and then is not tried.
     """
-    variants = [dict(_other_fields(rig, factor)) for factor in OTHERS]
+    variants = [dict(other_fields(rig, factor)) for factor in OTHERS]
     all_given = set(rig.conditions()) <= set(rig.example)
     tried = [name for name in variants[0] if all_given or type(rig).model_fields[name].is_required()]
     for name in filterfalse(left_out, tried):

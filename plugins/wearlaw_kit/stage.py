@@ -20,6 +20,7 @@ from wearlaw_kit.bisection import Indices, each_once, find_jumps
 from wearlaw_kit.contact import assert_digits
 from wearlaw_kit.examples import assert_close
 from wearlaw_kit.reduced import creeping, parts_of_power, random_lines
+from wearlaw_kit.rig_inputs import other_fields
 from wearlaw_kit.rules import rule
 from wearlaw_kit.shapes import (
     ELLIPSE,
@@ -50,6 +51,9 @@ ON_WAY = (
     *("effective_modulus", "density"),
 )
 """Numbers of a line contact, all above zero, that change along a path; messages give the first five."""
+
+FACTOR = 0.8
+"""Factor of a field that should matter."""
 
 FORCES = ("tangential_force", "wear_index")
 """Totals of a contact that are searched for jumps."""
@@ -179,7 +183,7 @@ def _same_bodies(after: Problem, before: Problem) -> bool:
 
 @rule(Stage)
 def stages_act_on_each_shape(stage: Stage) -> None:
-    """A stage that changes the contact on a line changes that on an ellipse too; strips have a given pressure."""
+    """A stage changes the contact on lines and ellipses alike; strips have a given pressure."""
     acts = []
     for shape in (LINE, ELLIPSE):
         problem = shape.draw(POINTS)
@@ -189,6 +193,18 @@ def stages_act_on_each_shape(stage: Stage) -> None:
         acts.append(any(not np.array_equal(getattr(before, name), getattr(after, name)) for name in names))
     on_line, on_ellipse = acts
     assert on_ellipse or not on_line, "on an ellipse the stage changes nothing, but on a line it does"
+    assert on_line or not on_ellipse, "on a line the stage changes nothing, but on an ellipse it does"
+
+
+@rule(Stage)
+def each_field_of_a_stage_matters(stage: Stage) -> None:
+    """Another value of each field with a unit changes the contact on a line or an ellipse."""
+    problems = [(shape, shape.draw(POINTS)) for shape in (LINE, ELLIPSE)]
+    for name, value in other_fields(stage, FACTOR):
+        changed = stage.model_copy(update={name: value})
+        pairs = [[_kept(one, shape, problem)[-1] for one in (stage, changed)] for shape, problem in problems]
+        same = all(np.array_equal(getattr(one, part), getattr(other, part)) for one, other in pairs for part in TOTALS)
+        assert not same, f"the contact is the same with another {name}; does the stage read the field?"
 
 
 @rule(Stage, "continuity")

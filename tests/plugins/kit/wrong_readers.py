@@ -46,6 +46,7 @@ CHANGES: dict[str, tuple[str, Callable[[wl.Contact], wl.Contact]]] = {
         lambda c: scaled(of_problem(c, 1.1, "density"), 1.1, "density"),
     ),
     "OtherLoad": ("problem_is_that_of_the_file", lambda c: of_problem(c, 1.1, "normal_force")),
+    "HalfTheFriction": ("problem_is_that_of_the_file", lambda c: of_problem(c, 0.5, "friction_coefficient")),
     "OtherStiffness": ("problem_is_that_of_the_file", lambda c: of_problem(c, 0.5, "effective_modulus")),
     "KilometresPerHour": (
         "contact_is_as_the_example_states",

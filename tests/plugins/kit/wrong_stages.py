@@ -63,6 +63,10 @@ WRONG_PROBLEMS: dict[str, tuple[str, Callable[[wl.Problem], wl.Problem]]] = {
         "stages_act_on_each_shape",
         lambda problem: Lubricated().altered(problem, None) if problem.geometry == "line" else problem,  # type: ignore[arg-type]
     ),
+    "OnEllipsesAlone": (
+        "stages_act_on_each_shape",
+        lambda problem: problem if problem.geometry == "line" else Lubricated().altered(problem, None),  # type: ignore[arg-type]
+    ),
     "FallsAtACreepage": (
         "stages_do_not_jump",
         lambda problem: problem.replaced(
@@ -253,7 +257,16 @@ RIGHT: list[Any] = [
 ]
 """Stages and laws that pass."""
 
+
+class Unread(Lubricated):
+    """Does not read its field."""
+
+    half_speed: Annotated[wl.Quantity, wl.Unit("m/s")] = wl.Q(20, "m/s")
+    """Speed at which friction should be half as high [m/s]."""
+
+
 CAUGHT: dict[Any, str] = {
+    Unread: "each_field_of_a_stage_matters",
     **{of_friction(name, friction): check for name, (check, friction) in WRONG_FRICTIONS.items()},
     **{of_problem(name, change): check for name, (check, change) in WRONG_PROBLEMS.items()},
     SinglePressure: "contact_is_in_double_precision",
