@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -9,10 +10,12 @@ from dataclasses import dataclass, field
 from threading import RLock, get_ident
 from typing import TextIO
 
-from wearlaw.errors import FitWarning, UnusualWarning, WearlawWarning, warn, with_problems
+from wearlaw.errors import FitWarning, RangeWarning, UnusualWarning, WearlawWarning, warn, with_problems
 from wearlaw.units.usual import OneWarning, apart
 
 _CATCHING = RLock()
+
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 NAMED = 3
 """Most subjects that a note names."""
@@ -77,7 +80,7 @@ class Notes:
         with caught_warnings() as caught, OneWarning():
             yield
         for warning in caught:
-            several = isinstance(warning, UnusualWarning | FitWarning)
+            several = isinstance(warning, UnusualWarning | FitWarning | RangeWarning)
             for text in str(warning).splitlines() if several else [str(warning)]:
                 self.add(f"{subject}: {text.strip()}", type(warning))
 
@@ -88,24 +91,41 @@ class Notes:
             warn(with_problems(first, others), kind)
 
 
+def warn_by_kind(caught: Iterable[Warning]) -> None:
+    """Raise warnings again, one a kind, with the same text once."""
+    kinds: dict[type[Warning], dict[str, None]] = {}
+    for warning in caught:
+        kinds.setdefault(type(warning), {})[str(warning)] = None
+    for kind, texts in kinds.items():
+        warn("\n".join(grouped(texts)), kind)
+
+
 def grouped(texts: Iterable[str]) -> list[str]:
     """Return notes with one in place of those that say the same of several subjects, up to their last semicolon.
 
-    It names the first subjects and counts the others.
+    It names the first subjects and counts the others. Of notes that differ in numbers alone, it has the one whose first
+    number is greatest.
     """
-    groups: dict[str, list[tuple[str, str]]] = {}
+    groups: dict[str, list[tuple[str, str, str]]] = {}
     for text in texts:
         subject, _, remark = text.partition(": ")
         head, _, tail = remark.rpartition("; ")
-        groups.setdefault(head or remark or text, []).append((subject, f"; {tail}" if head else ""))
+        key = head or _NUMBER.sub("#", remark) or text
+        groups.setdefault(key, []).append((subject, head or remark or text, f"; {tail}" if head else ""))
     notes = []
-    for head, members in groups.items():
-        subjects, tails = zip(*members, strict=True)
+    for members in groups.values():
+        subjects, heads, tails = zip(*members, strict=True)
+        head = heads[0]
         if subjects == (head,):
             notes.append(head)
+        elif len({*heads}) > 1:
+            worst, text, _ = max(members, key=lambda member: float(_NUMBER.findall(member[1])[0]))
+            others = [subject for subject in dict.fromkeys(subjects) if subject != worst]
+            named = "".join(f", {subject}" for subject in others[: NAMED - 1])
+            notes.append(f"{worst}: {text} ({len(heads) - 1} more with other numbers{named})")
         elif len({*tails}) == 1:
             named, more = ", ".join(subjects[:NAMED]), len(subjects) - NAMED
             notes.append(f"{named}{f' and {more} more' if more > 0 else ''}: {head}{tails[0]}")
         else:
-            notes.append(head + "".join(f"; {subject}: {tail[2:]}" for subject, tail in members))
+            notes.append(head + "".join(f"; {subject}: {tail[2:]}" for subject, _, tail in members))
     return notes

@@ -13,7 +13,7 @@ from wearlaw.models.law import Law, named_outcomes
 from wearlaw.pipeline.composition import TAKE_MEANS, check_geometry, check_scale
 from wearlaw.pipeline.variables import MASS, OUTSIDE_RANGE
 from wearlaw_apps.output.labels import labelled
-from wearlaw_apps.output.notes import caught_warnings
+from wearlaw_apps.output.notes import caught_warnings, warn_by_kind
 
 if TYPE_CHECKING:
     import xarray
@@ -100,8 +100,7 @@ class Pipelines(Generic[P]):
                 if model not in seen:  # the contact is the same for all laws
                     seen.add(model)
                     datasets.append(every.drop_vars(of_law).expand_dims({MODEL: [model]}))
-        for warning in {(type(warning), str(warning)): warning for warning in caught}.values():
-            warn(warning)
+        warn_by_kind(caught)
         models, laws = self._labels
         whole = xarray.merge(datasets, join="outer", compat="no_conflicts").sel({MODEL: models, LAW: laws})
         whole = whole.squeeze([dim for dim in (MODEL, LAW) if dim not in self._dims])

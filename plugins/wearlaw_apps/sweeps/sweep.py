@@ -22,7 +22,7 @@ from wearlaw.pipeline.pipeline import TOUCH_NOWHERE, Pipeline
 from wearlaw.pipeline.variables import default_variables
 from wearlaw_apps.output.datasets import names_in
 from wearlaw_apps.output.labels import unit_of
-from wearlaw_apps.output.notes import caught_warnings
+from wearlaw_apps.output.notes import caught_warnings, warn_by_kind
 from wearlaw_apps.sweeps.evaluation import Job, expect_pipeline, range_warnings, unsolved
 from wearlaw_apps.sweeps.located import posed
 from wearlaw_apps.sweeps.plan import planned
@@ -195,8 +195,7 @@ def computed(
             warn(kept(len(target.done), blocks, folder), ResumeWarning)
         with closing(target), Bar(points.size, progress) as bar:
             of_results = run(target, bar, workers, client)
-            for warning in of_results:
-                warn(warning)
+            warn_by_kind(of_results)
             return target.finish([*notes, *map(str, of_results)])
 
 

@@ -49,11 +49,12 @@ def test_a_study_is_run_and_its_files_are_listed_as_they_are(folder: Path) -> No
     assert {line.strip() for line in listing} == files(folder) - {"my case.toml", "out folder/.wearlaw-files"}
     assert listing[0] == "  out folder/report.html"
     notes = [line for line in result.stderr.splitlines() if line.startswith("note: ")]
-    subjects = ["usfd on exact", "brr on exact is left out", "sweep 'creepage'", "profile 'partial_slip'"]
+    subjects = ["usfd on exact", "brr on exact is left out", "sweep 'creepage'"]
     assert [note.split(": ")[1] for note in notes] == subjects
     assert max(map(len, notes)) <= 120
     whole = wearlaw("run", "my case.toml", "-o", "again", "--verbose").stderr.splitlines()
     assert [line.split(": ")[1] for line in whole] == subjects
+    assert whole[2].endswith(" more with other numbers, profile 'partial_slip')")
     assert whole[1].endswith('write stages = ["patch_mean"] in the case, or use the contact model "global"')
 
 

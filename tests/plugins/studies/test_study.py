@@ -201,6 +201,11 @@ def test_printed_notes_name_all_subjects_of_a_remark_once() -> None:
     ]
     said = ["a, c: check it", "results.csv is left out", "law: too low; b: 1 of 3; d: 2 of 3"]
     assert grouped(notes) == said
+    alike = [f"{subject}: p = {p} MPa is beyond {p // 2} MPa" for subject, p in (("a", 90), ("b", 1500), ("a", 70))]
+    assert grouped([*alike, "c: p = 3 GPa is beyond it"]) == [
+        "b: p = 1500 MPa is beyond 750 MPa (2 more with other numbers, a)",
+        "c: p = 3 GPa is beyond it",
+    ]
 
 
 def test_a_profile_that_no_model_resolves_is_left_out_and_noted() -> None:
