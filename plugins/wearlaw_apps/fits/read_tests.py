@@ -138,10 +138,15 @@ def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
 
 
 def parse_tests(
-    text: str, name: str, outcomes: Collection[str] = (), sep: str | None = None, decimal: str = "."
+    text: str,
+    name: str,
+    outcomes: Collection[str] = (),
+    sep: str | None = None,
+    decimal: str = ".",
+    columns: Columns = None,
 ) -> WearTests:
     """Return the tests of a CSV text; its `name` stands in errors, and for the source of tests that state none."""
-    return _checked(open_table(_text_file(text, name), sep=sep, decimal=decimal), name, outcomes)
+    return _checked(open_table(_text_file(text, name), sep=sep, decimal=decimal), name, outcomes, columns)
 
 
 def _text_file(text: str, name: str) -> io.StringIO:

@@ -97,7 +97,7 @@ def warn_by_kind(caught: Iterable[Warning]) -> None:
     for warning in caught:
         kinds.setdefault(type(warning), {})[str(warning)] = None
     for kind, texts in kinds.items():
-        warn("\n".join(grouped(texts)), kind)
+        warn("\n".join(texts), kind)
 
 
 def grouped(texts: Iterable[str]) -> list[str]:

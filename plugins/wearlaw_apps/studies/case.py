@@ -280,6 +280,7 @@ class Case(Configuration):
             else:
                 try:
                     check_rig(self.measured.data, self.rig)
+                    self.measured.on(self.rig)
                 except InputError as error:
                     yield Fault(("measured",), str(error))
 

@@ -493,11 +493,12 @@ def _measured(results: Results, x: str, y: str, units: Mapping[str, str]) -> Cur
     measured = results.case.measured
     _choose("measured", {x, y}, known_variables(measured.data) if measured else (), "is not known for the tests")
     assert measured is not None
-    values = measured_points(measured.data, results.case.rig)
+    tests = measured.on(results.case.rig)
+    values = measured_points(tests, results.case.rig)
     along_x, up = _converted(abs(values[x]), UNITS[x], units[x]), abs(values[y])
     there = np.isfinite(along_x) & np.isfinite(up)
     curve = Curve(measured.label, along_x[there], up[there], BLACK, points=True)
-    uncertainty = measured.data.wear_rate_uncertainty if y == "wear_rate" else None
+    uncertainty = tests.wear_rate_uncertainty if y == "wear_rate" else None
     if uncertainty is None:
         return curve
     spread = uncertainty.to(UNITS[y]).magnitude[there]

@@ -12,10 +12,12 @@ from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.errors import InputError
-from wearlaw.pipeline.pipeline import Rig
+from wearlaw.loader import contact_model, wear_law
+from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.text_files import beside
 from wearlaw.units.quantities import from_si, in_unit
 from wearlaw.units.variables import UNITS
+from wearlaw_apps.fits.measured_wear import in_outcomes
 from wearlaw_apps.fits.read_tests import parse_tests, text_of_tests
 from wearlaw_apps.fits.wear_tests import COLUMNS, LOADS, WearTests
 
@@ -39,6 +41,8 @@ class MeasuredTests(Configuration):
     """What separates the cells of the file; None for the first of semicolon, tab and comma that its header has."""
     decimal: str = "."
     """The decimal mark of the file."""
+    columns: dict[str, str] | None = None
+    """Heads of columns by their names in wearlaw, such as { revolutions = "Revs" }."""
 
     @field_validator("tests")
     @classmethod
@@ -59,7 +63,16 @@ class MeasuredTests(Configuration):
     @cached_property
     def data(self) -> WearTests:
         """The tests."""
-        return parse_tests(self.text, self.tests, (), self.sep, self.decimal)
+        return parse_tests(self.text, self.tests, (), self.sep, self.decimal, self.columns)
+
+    def on(self, rig: Rig) -> WearTests:
+        """Return the tests with wear in other measures, such as a mass loss, as wear rates on a rig."""
+        if not self.data.ways:
+            return self.data
+        # A wear rate depends on no numbers of the law.
+        pipeline: Pipeline[...] = Pipeline(rig=rig, contact_model=contact_model("global"), laws=(wear_law("usfd"),))
+        friction = None if "friction_coefficient" in self.data.columns else 1.0
+        return in_outcomes(self.data, pipeline, friction, None)[0]
 
     @property
     def shipped(self) -> bool:
@@ -71,7 +84,7 @@ def known_variables(tests: WearTests) -> tuple[str, ...]:
     """Return the variables that tests have."""
     conditions = [name for name in OF_TESTS if name != "friction_coefficient" or name in tests.columns]
     traction = OF_TRACTION if "traction_coefficient" in tests.columns else ()
-    return (*conditions, *traction, *(("wear_rate",) if "wear_rate" in tests.columns else ()))
+    return (*conditions, *traction, *(("wear_rate",) if "wear_rate" in tests.columns or tests.ways else ()))
 
 
 def check_rig(tests: WearTests, rig: Rig) -> None:

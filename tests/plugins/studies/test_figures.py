@@ -382,6 +382,19 @@ def points(measured: dict[str, Any], x: str, y: str) -> wl.Curve:
     return curve
 
 
+def test_mass_losses_are_shown_as_wear_rates_on_the_rig_of_the_case(tmp_path: Path) -> None:
+    """m/(n πD A), where Hertz's patch of two discs of 47 mm has a = 2 R p0/E* with R = 11.75 mm, and A = 2a · 10 mm."""
+    file = tmp_path / "campaign.csv"
+    file.write_text("Slip (%),max_pressure [MPa],Revs,Mass loss (mg)\n1,1500,40000,200\n5,1500,40000,300\n", "utf-8")
+    heads = {"creepage": "Slip (%)", "revolutions": "Revs"}
+    curve = points({"label": "my tests", "tests": str(file), "columns": heads}, "creepage", "wear_rate")
+    steel = wl.TwinDisc.suros().disc_1.material
+    modulus = steel.youngs_modulus.m_as("MPa") / (2.0 * (1.0 - steel.poisson_ratio**2))
+    area = 4.0 * 11.75 * 1500.0 / modulus * 10.0
+    due = np.array([200e3, 300e3]) / (40000 * np.pi * 0.047 * area)
+    np.testing.assert_allclose((curve.x, curve.y), ([1.0, 5.0], due), rtol=32 * EPS)
+
+
 def test_tests_are_shown_where_they_were_measured_with_their_uncertainty(measured: dict[str, Any]) -> None:
     traction = points(measured, "creepage", "traction_coefficient")
     np.testing.assert_allclose((traction.x, traction.y), ([1.0, 5.0], [0.3, 0.5]), rtol=4 * EPS)
