@@ -175,6 +175,8 @@ class Table:
                 selected[name] = self._find(name, text)
             except (DataError, UnitError) as error:
                 wrong.append(str(error))
+        if wrong and len(self.heads) == 1 and (begin := self.as_read()):
+            wrong.append(f'{begin}; begin lines above the heads with "#", or give sep')
         if wrong:
             raise DataError(f"{self.label} is wrong in:", wrong)
         return selected
@@ -416,6 +418,8 @@ class CsvTable(Table):
         self._skip, header, units = 0, "", ""
         with self._opened() as file:
             head = [file.readline() for _ in range(HEAD_LINES)]
+            if any("\0" in line for line in head):
+                raise DataError(f"{label} is no text; export it as text or as a spreadsheet, or give a table of pandas")
             self._of_blocks = _begins_blocks(head)
             if self._of_blocks:
                 self._source, sep, self.on_disk = _joined(label, [*head, *file]).encode(), "\t", False
@@ -564,7 +568,7 @@ def _pandas() -> Any:
 def _are_units(cells: Sequence[str], decimal: str) -> bool:
     """Return whether the cells below a header are units: no numbers, and units in more than half of those in use."""
     texts = [cell.strip("[]()") for cell in cells if cell]
-    if not any(map(str.isalpha, "".join(texts))) or any(_is_number(text, decimal) for text in texts):
+    if not any(map(str.isalpha, "".join(texts))) or any(_is_number(text, decimal) for text in {*texts} - {"1"}):
         return False
     known = 0
     for text in texts:

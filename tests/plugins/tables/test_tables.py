@@ -132,6 +132,8 @@ WRONG: dict[str, tuple[str, dict[str, Any], str]] = {
     "a unit that is unknown": ("\n".join(LINES), {"columns": {"f": "note [weights]"}}, "f: column 'note': 'weights'"),
     "no name": ("\n".join(LINES), {"columns": {"my force": "Fz"}}, "columns: 'my force'"),
     "no mapping": ("\n".join(LINES), {"columns": ["Fz"]}, r"columns: .*got \['Fz'\]"),
+    "titles above the heads": ("My run\nTime,Fz\n1,2\n", {"columns": {"f": "Fz"}}, "Time . Fz; 1 . 2; begin lines"),
+    "what is no text": ("a,b\n\0\0", {}, "is no text; export it as text"),
     "an empty file": ("\n# only a comment\n", {}, "is empty"),
     "a decimal mark": ("a\n1\n", {"decimal": "'"}, "decimal: "),
 }  # fmt: skip
@@ -170,7 +172,7 @@ def test_a_spreadsheet_is_a_table_with_the_rows_of_its_sheet(tmp_path: Path, inl
 
 @pytest.mark.parametrize(
     ("units", "expected"),
-    [("[kN],[-],", True), ("kN,-,m", True), ("(kN);-;", True), ("7,8,9", False), ("dry,wet,2", False)],
+    [("[kN],[-],", True), ("kN,-,m", True), ("kN,1,m", True), ("(kN);-;", True), ("7,8,9", False), ("dry,wet,2", False)],
 )
 def test_a_row_of_units_below_the_heads(units: str, expected: bool) -> None:
     mark = ";" if ";" in units else ","

@@ -411,6 +411,8 @@ def looped() -> tuple[Array, Array]:
         (Y, -Z, r"the wheel is upside down: z is positive down, but its flange has point .* mirror_z=True"),
         (-Y, -Z, "the wheel is upside down"),
         (Y + 70.0, Z, 'origin at the taping line, with the flange at y < 0, .* such as shift_y="-70 mm"'),
+        (Y + 100.0, Z, 'such as shift_y="-100 mm" if y = 30 mm is the back of the flange'),
+        (-70.0 - Y, Z, "the wheel is mirrored"),
     ],
 )
 def test_points_that_are_no_profile_are_refused_with_their_place(y: Array, z: Array, message: str) -> None:

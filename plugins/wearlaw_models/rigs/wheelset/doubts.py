@@ -10,6 +10,7 @@ from wearlaw import Array
 from wearlaw_models.rigs.wheelset.curve import Curve, through_points
 from wearlaw_models.rigs.wheelset.files import Kind
 from wearlaw_models.rigs.wheelset.measures import SIDE_DEPTH, flange, side
+from wearlaw_models.rigs.wheelset.points import FLANGE_BACK
 from wearlaw_models.rigs.wheelset.reach import LOST, STEEPEST, reach
 
 CROWN, WIDEST_HEAD = 12e-3, 92e-3
@@ -23,9 +24,6 @@ TILTED = np.radians(4.0)
 
 FAR = 20e-3
 """Height of a wheel at its taping line that no wear explains [m]."""
-
-FLANGE_BACK = -70e-3
-"""Place of the back of a flange for measures that are compared [m]."""
 
 MEASURES: Mapping[Kind, tuple[str, ...]] = {
     "wheel": ("the flange height", "the flange thickness", "the flange gradient"),

@@ -331,8 +331,7 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str, part: int | N
     table, last = _Table(), max(columns.index("X"), columns.index("Y"))
     for number, text in enumerate(texts[low:high], low + 1):
         if text:
-            cells = re.split(r"[\s;]+|,(?=.*\.)", text)
-            table.add([cell for cell in cells if cell], number, last + 1, last + 1)
+            table.add(_cells(text), number, last + 1, last + 1)
     values, rows = table.columns()
     x, y = values[columns.index("X")], values[columns.index("Y")]
     offset = {}
@@ -371,8 +370,12 @@ def _part(texts: Sequence[str], part: int | None) -> tuple[int, int]:
 
 def _is_point(line: str) -> bool:
     """Return whether a line holds numbers, commented out or not, before any remark."""
-    cells = line.strip().lstrip('!"%#').split()
-    return len(cells) > 1 and all(NUMBER.fullmatch(cell.rstrip(",;")) for cell in cells[:2])
+    cells = _cells(line.strip().lstrip('!"%#'))
+    return len(cells) > 1 and all(NUMBER.fullmatch(cell) for cell in cells[:2])
+
+
+def _cells(text: str) -> list[str]:
+    return [cell for cell in re.split(r"[\s;]+|,(?=.*\.)", text) if cell]
 
 
 def _tabbed(lines: Sequence[str], sep: str | None, decimal: str) -> str:
@@ -396,14 +399,16 @@ def _tabbed(lines: Sequence[str], sep: str | None, decimal: str) -> str:
 
     rows, width = [], 0
     for cells in map(cells_of, texts):
-        if not width and cells and not are_numbers(cells[:1]):  # a header or a title
+        if len(cells) == 1 and (cells[0].isalpha() if width > 1 else cells[0].isdigit()):  # "end"; a number of points
+            cells = []
+        elif not width and cells and not are_numbers(cells[:1]):  # a header or a title
             names = [HEAD.fullmatch(cell.lower()) for cell in cells]
             cells = cells if any(names) else []
             width = len(cells)
         elif cells:
             width = width or 2
             cells = cells[:width] if are_numbers(cells[:2]) else cells
-        rows.append("\t".join(cells))
+        rows.append("\t".join(re.sub(r"(?<=[\d.])[dD](?=[+-]?\d)", "e", cell) for cell in cells))
     return "\n".join(rows)
 
 

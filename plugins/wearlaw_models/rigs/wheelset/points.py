@@ -29,6 +29,8 @@ TIP = 1e-3
 """Height by which the top of a flange stands above both ends of the profile [m]."""
 UPRIGHT = np.radians(80.0)
 """Slope from which a side is too steep to touch [rad], so that two points are enough for a straight one."""
+FLANGE_BACK = -70e-3
+"""Usual place of the back of a flange [m]."""
 BACK = 5e-3
 """Distance from y = 0 up to which the end of a wheel's profile is taken for the back of its flange [m]."""
 MIRROR_Z = "mirror_z=True"
@@ -182,7 +184,7 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
             Repair(MIRROR_Z, matrix=((1.0, 0.0), (0.0, -1.0))),
         )
     place = int(np.argmax(z))
-    if kind != "wheel" or down <= CLEAR or y[place] < 0.0:
+    if kind != "wheel" or down <= CLEAR:
         return
     flange = point(place, y, z, name)
     if y[place] > 0.5 * (y.min() + y.max()):
@@ -191,10 +193,14 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
             " mirror_y=True. A left wheel has the same profile as a right one",
             Repair("mirror_y=True", matrix=((-1.0, 0.0), (0.0, 1.0))),
         )
+    if y[place] < 0.0 < y.max():
+        return
+    back = float(y.min()) if y.min() < 0.0 or y.min() > BACK else 0.0
+    shift = f'shift_y="{1e3 * (FLANGE_BACK - back):.6g} mm"'
     raise PointsError(
         f"the wheel must have its origin at the taping line, with the flange at y < 0, but its flange has {flange};"
-        ' shift it, in a file by shift_y, such as shift_y="-70 mm" if y = 0 is the back of the flange',
-        Repair('shift_y="-70 mm"', shift_y=-70e-3) if abs(y.min()) < BACK else None,
+        f" shift it, in a file by shift_y, such as {shift} if y = {_mm(back)} is the back of the flange",
+        Repair(shift, shift_y=FLANGE_BACK - back) if abs(y.min()) < BACK else None,
     )
 
 
