@@ -172,7 +172,14 @@ def test_a_spreadsheet_is_a_table_with_the_rows_of_its_sheet(tmp_path: Path, inl
 
 @pytest.mark.parametrize(
     ("units", "expected"),
-    [("[kN],[-],", True), ("kN,-,m", True), ("kN,1,m", True), ("(kN);-;", True), ("7,8,9", False), ("dry,wet,2", False)],
+    [
+        ("[kN],[-],", True),
+        ("kN,-,m", True),
+        ("kN,1,m", True),
+        ("(kN);-;", True),
+        ("7,8,9", False),
+        ("dry,wet,2", False),
+    ],
 )
 def test_a_row_of_units_below_the_heads(units: str, expected: bool) -> None:
     mark = ";" if ";" in units else ","

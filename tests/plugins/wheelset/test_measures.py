@@ -87,3 +87,14 @@ def test_the_plot_has_the_measures_and_the_depth_beside_a_new_profile() -> None:
     assert "flange height 28.00 mm" in wl.Profile.s1002().plot().texts[0].get_text()
     worn.plot(upper, new=new)
     assert len(figure.axes) == 2
+
+
+def test_a_rail_is_not_compared_with_a_wheel() -> None:
+    rail, wheel = wl.Profile.uic60(), wl.Profile.s1002()
+    for compared in (
+        lambda: rail.measures(new=wheel),
+        lambda: wheel.plot(new=rail),
+        lambda: rail.depth_to(wheel, Q(0, "mm")),
+    ):
+        with pytest.raises(wl.InputError, match="a worn wheel needs a new wheel to be compared with"):
+            compared()

@@ -68,11 +68,17 @@ def side(y: Array, z: Array, depth: float) -> float:
 
 def rail_wear(new: Curve, worn: Curve) -> tuple[float, float]:
     """Return the vertical wear of a rail at y = 0, and its side wear at one level below the top of the new one [m]."""
+    _check_alike(new, worn)
     reaches = max(new.y[0], worn.y[0]) < 0.0 < min(new.y[-1], worn.y[-1])
     vertical = worn.at(0.0)[1] - new.at(0.0)[1] if reaches else np.nan
     lower = float(worn.z.min() - new.z.min())
     sides = side(new.y, new.z, SIDE_DEPTH), side(worn.y, worn.z, SIDE_DEPTH - lower)
     return float(vertical), sides[1] - sides[0]
+
+
+def _check_alike(new: Curve, worn: Curve) -> None:
+    if new.sign != worn.sign:
+        raise wl.InputError("a worn wheel needs a new wheel to be compared with, and a worn rail a new rail")
 
 
 def hollow(z: Array) -> float:
@@ -83,6 +89,7 @@ def hollow(z: Array) -> float:
 
 def depth_between(new: Curve, worn: Curve, s: Array) -> Array:
     """Return the depth between two curves along the normals of the new one, at its arc lengths [m]."""
+    _check_alike(new, worn)
     y, z, angle, _ = new.at(s)
     place = worn.s[0] + (s - new.s[0]) / np.ptp(new.s) * np.ptp(worn.s)
     for _ in range(NEWTON):
