@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.plugins.wheelset.brute_force import positions
 from tests.plugins.wheelset.wheelsets import borne, through, wheelset
 from wearlaw import Array, Q
 from wearlaw_models.rigs import wheelset as ws
@@ -31,6 +33,17 @@ def worn() -> ws.Profile:
 
 
 WHEELS = {"new": ws.Profile.s1002(), "worn": worn()}
+
+
+def test_results_have_their_rows_where_the_wheels_stand() -> None:
+    """Where a worn flank lies along the rail, laying the rows again does not end: rows were millimetres away."""
+    pair = next(islice(positions(6, seed=408), 5, None)).pair
+    found = (pair | wl.contact_model("fastsim"))(
+        lateral_displacement=Q([6.0, 6.65, 6.75], "mm"), vertical_load="75.2 kN", friction_coefficient=1e-7
+    )
+    assert [text[:7] for text in found["status"].magnitude[:, 0, 0]] == ["balance", "a wheel", "balance"]
+    problem: Any = found.problem
+    assert np.isnan(problem.max_pressure[1]).all()
 
 
 def predicted(wheel: str, **conditions: Any) -> wl.Prediction:

@@ -45,6 +45,9 @@ LACKING = (
 )
 """Status of other positions, by the column of `Loads.left`."""
 
+SLIDES = "a wheel slides along its flank, and its rows do not lie where it stands"
+"""Status of positions at which no laying of the rows is the last one."""
+
 
 @dataclass
 class Loads:
@@ -209,6 +212,7 @@ class Loads:
         for point in np.flatnonzero((self.left.max(axis=-1) > ROUGH) & self.task.bears.any(axis=-1)):
             most = int(self.left[point].argmax())
             status[point] = LACKING[most].format(self.left[point, most])
+        status[(status == BALANCE) & (self._gathered("shift") > 1.0) & self.task.bears.any(axis=-1)] = SLIDES
         return status
 
     @property
