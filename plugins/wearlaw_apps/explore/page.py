@@ -81,7 +81,10 @@ def patch_figures(predictions: Mapping[str, wl.Prediction], patch: str = "") -> 
     figures = []
     for name, of in (("pressure", "pressure"), ("slip", "slip"), ("wear_rate", wear)):
         title = f"{label(name)}{f' by {law}' if name == 'wear_rate' else ''}{f', {patch}' if patch else ''}"
-        figures.append(wl.FigureData(name, title, (of_patch(prediction, of, PIXELS),)))
+        panel = of_patch(prediction, of, PIXELS)
+        if panel.map is not None:  # the title says what it shows
+            panel = replace(panel, map=replace(panel.map, label=""))
+        figures.append(wl.FigureData(name, title, (panel,)))
     return figures
 
 
@@ -123,11 +126,7 @@ def slider(condition: Any, name: str, value: object) -> Any:
     low = -high if bounds is not None and bounds.negative and not bounds.positive else 0.01 * high
     if condition is not None and condition.of and bounds is not None and bounds.usual:
         low, high = (float(wl.Q(end, bounds.unit).m_as(unit)) for end in bounds.usual)
-    text = label(name, units={name: unit}).removesuffix(" [-]")
-    ends = {"start": low, "end": high, "step": (high - low) / 200.0, "format": "0.[0000]"}
-    made: Any = pn.widgets.EditableFloatSlider(label=text, value=start, **ends, **STRETCHED)
-    made.unit = unit
-    return made
+    return _slider(label(name, units={name: unit}).removesuffix(" [-]"), unit, start, low, high)
 
 
 def of_rig(name: str, value: Any) -> Any:
@@ -138,6 +137,10 @@ def of_rig(name: str, value: Any) -> Any:
         return None
     low, high = sorted((0.5 * start, 1.5 * start)) if start else (-1.0, 1.0)
     text = f"{name.replace('_', ' ').replace('.', ': ')}{f' [{readable(unit)}]' if unit else ''}"
+    return _slider(text, unit, start, low, high)
+
+
+def _slider(text: str, unit: str, start: float, low: float, high: float) -> Any:
     ends = {"start": low, "end": high, "step": (high - low) / 200.0, "format": "0.[0000]"}
     made: Any = pn.widgets.EditableFloatSlider(label=text, value=start, **ends, **STRETCHED)
     made.unit = unit
