@@ -351,7 +351,8 @@ def open_table(
 ) -> Table:
     """Return a table without columns in use; arguments as for `read_table`."""
     if sheet is not None and not is_spreadsheet(source):
-        raise DataError(f"sheet: {shown(source)} is no spreadsheet; give one that ends in {', '.join(sheets.ENDINGS)}")
+        name = getattr(source, "name", source)
+        raise DataError(f"sheet: {shown(name)} is no spreadsheet; give one that ends in {', '.join(sheets.ENDINGS)}")
     if isinstance(source, str | os.PathLike):
         path, label = Path(source), f"table {shown(Path(source))}"
         if is_spreadsheet(path):

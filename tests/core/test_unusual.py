@@ -253,6 +253,10 @@ COLUMNS: list[tuple[dict[str, Any], str]] = [
         "is 46, usually 0.01 to 200 %; did you mean 46 %?",
     ),
     (
+        {"friction_coefficient": ("friction_coefficient", np.geomspace(0.2, 10.0, 12))},  # those of creepages
+        "column friction_coefficient: its greatest value is 10, usually 0.01 to 200 %",
+    ),
+    (
         {"wear_rate": ("wear_rate [mg/m/mm^2]", np.full(12, 100.0))},
         "0.0001 to 10000 µg/m/mm²; did you mean 100 µg/m/mm²?",
     ),
