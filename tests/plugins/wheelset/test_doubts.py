@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -273,3 +274,18 @@ def test_plausible_wheelsets_get_no_word(seed: int) -> None:
         vertical_load=Q(random.uniform(15.0, 125.0), "kN"),
         friction_coefficient=random.uniform(0.05, 0.6),
     )
+
+
+# Pressure ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
+def test_a_great_pressure_is_laid_to_measured_points_but_not_to_those_that_wearlaw_wore() -> None:
+    worn = WHEEL.worn(Q(1e3 * WHEEL.curve.s[[0, -1]], "mm"), "0 mm")
+    at = {"lateral_displacement": "0 mm", "vertical_load": "4000 kN", "friction_coefficient": 0.3}
+    for wheel, doubted in ((measured(WHEEL, "wheel"), True), (worn, False)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            (wheelset(wheel=wheel) | wl.contact_model("strip_theory"))(**at)
+        said = [text for text in caught if "the curve of wheel passes through every measured" in str(text.message)]
+        assert bool(said) == doubted

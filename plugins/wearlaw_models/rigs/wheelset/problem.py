@@ -156,9 +156,9 @@ def warn_of_points(problem: wl.Problem, rough: list[str]) -> None:
     greatest = np.nanmax(problem.max_pressure, initial=0.0)
     if rough and greatest > HIGH_PRESSURE:
         wl.errors.warn(
-            f"the maximum pressure of {1e-6 * greatest:.0f} MPa is that of single points:"
-            f" {' and '.join(rough)} run"
-            ' through all of theirs; give smoothing with the profile, such as "0.01 mm"',
+            f"the maximum pressure of {1e-6 * greatest:.0f} MPa is that of single points: the curve of"
+            f" {' and '.join(rough)} passes through every measured point; give smoothing with the profile, such as"
+            ' "0.01 mm"',
             wl.RangeWarning,
         )
 

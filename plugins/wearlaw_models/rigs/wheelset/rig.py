@@ -200,9 +200,11 @@ class Wheelset(wl.Rig):
 
     @property
     def _rough(self) -> list[str]:
-        """The fields of profiles that run through all of their points."""
+        """The fields of profiles that pass through every measured point; what wearlaw wore has none."""
         return [
-            name for name, profile in self._profiles.items() if not profile.formula and not profile.smoothing.magnitude
+            name
+            for name, profile in self._profiles.items()
+            if not (profile.formula or profile.smoothing.magnitude or profile._worn)
         ]
 
     @property
