@@ -56,7 +56,7 @@ def documented() -> Iterator[Documented]:
     for cls in CLASSES:
         for name, text in (*attributes(cls), *properties(cls)):
             yield read(name, cls.__name__, text)
-    for rig in (wl.TwinDisc, wl.WheelRail, wl.Wheelset):
+    for rig in (wl.TwinDisc, wl.WheelRail, wl.Wheelset, wl.ProfileContact):
         for name, condition in rig.conditions().items():
             yield read(name, "conditions", condition.meaning)
     for record in (wl.TwinDisc.suros(), wheel_rail(), wheelset(), falling_friction()):

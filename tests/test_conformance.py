@@ -88,6 +88,7 @@ RIGS: dict[str, wl.Rig] = {
     "mean_speed": wl.TwinDisc.suros(speed_of="mean"),
     "conical_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields),
     "hollow_wheel": wl.rig("wheel_rail", **wl.WheelRail.example_fields, wheel_profile_radius="-400 mm"),
+    "profile_contact": wl.rig("profile_contact", **wl.ProfileContact.example_fields),
     "wheelset": wl.rig("wheelset", **Wheelset.example_fields),
     "wheelset_of_ellipses": wl.rig("wheelset", **Wheelset.example_fields, patch="ellipse"),
 }

@@ -35,16 +35,17 @@ if TYPE_CHECKING:
     from wearlaw_models.laws.archard.coefficients import wear_coefficient
     from wearlaw_models.rigs.twin_disc import Disc, TwinDisc
     from wearlaw_models.rigs.wheel_rail import WheelRail
+    from wearlaw_models.rigs.wheelset.contacts import ProfileContact
     from wearlaw_models.rigs.wheelset.free_motion import free_motion
     from wearlaw_models.rigs.wheelset.profile import Profile, read_profile, write_profile
     from wearlaw_models.rigs.wheelset.rig import Wheelset
 
 __all__ = [
-    "CheckedClaim", "Curve", "Disc", "FigureData", "Panel", "PlotAxis", "Profile", "Section", "Study",
-    "TwinDisc", "WheelRail", "Wheelset", "compare", "creepage_for", "explore", "fit", "free_motion", "load_case",
-    "lognormal", "normal", "published_range", "read_contact", "read_profile", "read_subsurface", "read_table",
-    "read_tests", "run", "sweep", "to_dataframe", "uncertain_life", "uncertainty", "uniform", "wear_coefficient",
-    "wear_out", "wear_profiles", "write_profile",
+    "CheckedClaim", "Curve", "Disc", "FigureData", "Panel", "PlotAxis", "Profile", "ProfileContact", "Section",
+    "Study", "TwinDisc", "WheelRail", "Wheelset", "compare", "creepage_for", "explore", "fit", "free_motion",
+    "load_case", "lognormal", "normal", "published_range", "read_contact", "read_profile", "read_subsurface",
+    "read_table", "read_tests", "run", "sweep", "to_dataframe", "uncertain_life", "uncertainty", "uniform",
+    "wear_coefficient", "wear_out", "wear_profiles", "write_profile",
 ]  # fmt: skip
 
 PUBLIC = {
@@ -70,6 +71,7 @@ PUBLIC = {
     "wearlaw_models.laws.archard.coefficients": ("wear_coefficient",),
     "wearlaw_models.rigs.twin_disc": ("Disc", "TwinDisc"),
     "wearlaw_models.rigs.wheel_rail": ("WheelRail",),
+    "wearlaw_models.rigs.wheelset.contacts": ("ProfileContact",),
     "wearlaw_models.rigs.wheelset.free_motion": ("free_motion",),
     "wearlaw_models.rigs.wheelset.profile": ("Profile", "read_profile", "write_profile"),
     "wearlaw_models.rigs.wheelset.rig": ("Wheelset",),

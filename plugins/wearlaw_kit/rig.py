@@ -300,8 +300,8 @@ def bodies_are_those_of_the_problem(rig: Rig) -> None:
             f"`bodies` has the order {', '.join(tried.bodies)}, the problem {', '.join(problem.bodies)}"
         )
         for (name, body), other in zip(tried.bodies.items(), problem.bodies.values(), strict=False):
-            radii = body.rolling_radius, other.rolling_radius  # of several points they may differ from the nominal one
-            same = np.ndim(radii[1]) > 0 or radii[0] == radii[1]
+            radii = body.rolling_radius, other.rolling_radius  # of places on a profile they differ from the nominal one
+            same = np.ndim(radii[1]) > 0 or other.profile_position is not None or radii[0] == radii[1]
             assert same, f"the radius of {name} in `bodies` is not that of the body of the problem{which}"
             assert body.material == other.material, (
                 f"the material of {name} in `bodies` is not that of the body of the problem{which}"

@@ -56,7 +56,8 @@ class Line:
     ) -> None:
         with caught_warnings():  # the first step gives them
             first = posed(
-                points.part([slice(0, 1)]), lambda conditions: predict.rig.checked_problem(conditions, predict.models)
+                points.part([slice(0, 1), *(slice(None) for _ in points.dims[1:])]),
+                lambda conditions: predict.rig.checked_problem(conditions, predict.models),
             )
         check_importable(predict, workers, client)
         self.job = ProfileJob.of(predict, first, body, wl.Q(1e3 * at, "mm"), True)

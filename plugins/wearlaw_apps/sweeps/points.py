@@ -231,10 +231,11 @@ class Points:
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as arguments of a prediction, with an entry for each operating point."""
-        laid_out = {name: axis.given(self._laid_out(axis)) for name, axis in self.varying.items()}
+        laid_out = {name: axis.given(self.laid_out(axis)) for name, axis in self.varying.items()}
         return {**self.fixed, **laid_out}
 
-    def _laid_out(self, axis: Varying) -> Array:
+    def laid_out(self, axis: Varying) -> Array:
+        """Return the values of a condition or of a kept column at each operating point."""
         shape = [axis.sizes.get(dim, 1) for dim in self.dims]
         return np.broadcast_to(axis.values.reshape(shape), self.shape).reshape(-1)
 

@@ -40,10 +40,10 @@ def with_shares(points: Points, name: str, file: IO[bytes] | None) -> Points:
     DataError
         If shares are wrong, or times or distances do not grow.
     """
-    table = points.file
+    table, rows = points.file, points.dims[0]
     assert table is not None
     if name == EQUAL and SHARE not in points.kept:
-        count = points.size
+        count = points.sizes[rows]
         shares = np.full(count, 1.0 / count)
     else:
         column = points.kept[SHARE]
@@ -60,8 +60,7 @@ def with_shares(points: Points, name: str, file: IO[bytes] | None) -> Points:
             for lengths in every:
                 file.write(lengths.data)
             shares = cast(Array, OnDisk(file))
-    dim = next(iter(points.varying.values())).dim
-    return replace(points, kept={**points.kept, SHARE: Varying(dim, shares, None)})
+    return replace(points, kept={**points.kept, SHARE: Varying(rows, shares, None)})
 
 
 def _lengths(column: Varying, speed: Varying | None, name: str, table: Table) -> Iterator[Array]:

@@ -78,8 +78,10 @@ def operating_points(
     if summed and share == EQUAL and EQUAL not in (column.name for column in table.heads):
         keep = {name: text for name, text in (keep or {}).items() if name != SHARE}
     patterns, labels = _patterns(table, {**(keep or {}), **(columns or {})})
-    if labels and summed:
-        raise DataError(f"{table.label}: the rows are summed, so that a column must have one name, without {{...}}")
+    if summed and (several := labels.keys() - {"contact"}):
+        raise DataError(
+            f"{table.label}: the rows are summed over {{contact}} alone, not over {{{min(several)}}}; name one of it"
+        )
     first = {name: pattern.texts[0] for name, pattern in patterns.items()}
     keep, columns = (some and {name: first.get(name, text) for name, text in some.items()} for some in (keep, columns))
     kept, varying = _chosen(table, columns, keep, predict if ignoring else None)

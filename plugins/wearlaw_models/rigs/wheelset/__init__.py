@@ -6,18 +6,19 @@ from pathlib import Path
 from typing import Any
 
 import wearlaw as wl
+from wearlaw_models.rigs.wheelset.contacts import ProfileContact
 from wearlaw_models.rigs.wheelset.formulas import FORMULAS
 from wearlaw_models.rigs.wheelset.geometry import Geometry
 from wearlaw_models.rigs.wheelset.profile import Profile, read_profile, write_profile
 from wearlaw_models.rigs.wheelset.rig import Wheelset
 
-__all__ = ["Geometry", "Profile", "Wheelset", "read_profile", "write_profile"]
+__all__ = ["Geometry", "Profile", "ProfileContact", "Wheelset", "read_profile", "write_profile"]
 
 
 @wl.hookimpl
 def wearlaw_models() -> list[type[wl.Rig]]:
-    """Return the rig of this plugin."""
-    return [Wheelset]
+    """Return the rigs of this plugin."""
+    return [Wheelset, ProfileContact]
 
 
 @wl.hookimpl
