@@ -91,6 +91,7 @@ RIGS: dict[str, wl.Rig] = {
     "profile_contact": wl.rig("profile_contact", **wl.ProfileContact.example_fields),
     "wheelset": wl.rig("wheelset", **Wheelset.example_fields),
     "wheelset_of_ellipses": wl.rig("wheelset", **Wheelset.example_fields, patch="ellipse"),
+    "wheelset_on_rollers": wl.rig("wheelset", **Wheelset.example_fields, roller_radius="500 mm"),
 }
 
 
