@@ -253,6 +253,20 @@ def test_narrow_heads_are_rails_too() -> None:
     assert through(y[gauge_side], z[gauge_side], "rail").kind == "rail"  # higher than wide
 
 
+@pytest.mark.parametrize(("profile", "unit", "scale"), [(WHEEL, "cm", 10.0), (WHEEL, "inch", 25.4), (RAIL, "cm", 10.0)])
+def test_small_profiles_that_would_fit_in_another_unit_are_told(profile: wl.Profile, unit: str, scale: float) -> None:
+    y, z = sampled(profile)
+    with pytest.warns(wl.UnusualWarning, match=f'mm wide; is it in {unit}. If so, give units="{unit}"'):
+        through(y / scale, z / scale, profile.kind)
+    for rig in (4.0, 5.0):  # scaled rigs
+        assert through(y / rig, z / rig, profile.kind).kind == profile.kind
+
+
+def test_a_wheel_whose_field_side_falls_may_be_a_rail() -> None:
+    with pytest.warns(wl.UnusualWarning, match="the field side of the wheel falls by 3.* is it the profile of a rail"):
+        through(*sampled(RAIL), "wheel")
+
+
 @pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
 @pytest.mark.parametrize("seed", range(12))
 def test_plausible_wheelsets_get_no_word(seed: int) -> None:

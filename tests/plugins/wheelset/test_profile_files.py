@@ -415,7 +415,7 @@ def test_two_columns_are_read_as_programs_write_them(
     [
         "y z\n{}", "Wheel of car 7, worn\n\n{}", "y [mm]\tz [mm]\n{}", "! measured\n# by hand\n{}", "y z angle\n{}",
         "date 2024\n y  [mm]   z [mm]\n{}", "Y (mm)  Z (mm)\n{}", "Rail 60E1 (worn)\n{}",
-        "131\n{}", "worn\n 131\n{}\nend\n",
+        "131\n{}", "worn\n 131\n{}\nend\n", "x y\n{}",
     ],
 )  # fmt: skip
 def test_white_space_titles_and_remarks_between_columns(tmp_path: Path, text: str) -> None:
@@ -428,6 +428,15 @@ def test_white_space_titles_and_remarks_between_columns(tmp_path: Path, text: st
     lines[5] += " the field side"
     found = wl.read_profile(saved(tmp_path, "a.out", text.format("\n".join(lines))), kind="wheel")
     assert values(found) == pytest.approx(points, abs=1e-5)
+
+
+def test_columns_x_and_y_are_outwards_and_down(tmp_path: Path) -> None:
+    points = table()
+    numbered = np.column_stack([np.arange(len(points)), points])
+    path = saved(tmp_path, "a.csv", "Index,X [mm],Y [mm]\n" + rows(numbered, ","))
+    assert values(wl.read_profile(path, kind="wheel")) == pytest.approx(points, abs=1e-5)
+    # An ending of Simpack without its sections.
+    assert values(wl.read_profile(saved(tmp_path, "a.prw", rows(points)))) == pytest.approx(points, abs=1e-5)
 
 
 def test_a_spreadsheet_is_read(tmp_path: Path) -> None:

@@ -16,6 +16,12 @@ from wearlaw_models.rigs.wheelset.reach import LOST, STEEPEST, reach
 CROWN, WIDEST_HEAD = 12e-3, 92e-3
 """Depth below its top at which the width of a rail's head is taken, and the width beyond which it is doubted [m]."""
 
+NARROW_HEAD, FLANGES = 50e-3, (20e-3, 40e-3)
+"""Width of the narrowest heads of rails, and heights of flanges, from trams to freight wagons [m]."""
+
+UNITS = {"cm": 10.0, "inch": 25.4}
+"""Units that profiles may have been measured in, over millimetres."""
+
 OUTWARDS = 1.0 / 80.0
 """Lean of a rail outwards from which it is doubted: half of the smallest cant in use, 1 in 40 [rad]."""
 
@@ -79,8 +85,20 @@ def of_shape(kind: Kind, curve: Curve, lean: float) -> Iterator[str]:
                 f"the head of the rail leans inwards by {np.degrees(lean):.3g} deg, more than any cant in use; if"
                 f' it was measured turned, turn it, in a file by turn="{np.degrees(lean):.3g} deg"'
             )
+        depth, sides = curve.z - curve.z.min(), min(curve.z[0], curve.z[-1]) - curve.z.min()
+        heads = {unit: scale * float(np.ptp(curve.y[scale * depth < CROWN])) for unit, scale in UNITS.items()}
+        seen = [
+            unit for unit, head in heads.items() if NARROW_HEAD < head < WIDEST_HEAD and UNITS[unit] * sides > CROWN
+        ]
     else:
         yield from of_height(curve)
+        falls = float(curve.z[-1] - curve.z.min())
+        if falls > CROWN:
+            yield f"the field side of the wheel falls by {_mm(falls)}; is it the profile of a rail?"
+        heights = {unit: flange(scale * curve.y, scale * curve.z, FLANGE_BACK)[0] for unit, scale in UNITS.items()}
+        seen = [unit for unit, height in heights.items() if FLANGES[0] < height < FLANGES[1]]
+    if seen and np.ptp(curve.y) < NARROW_HEAD:
+        yield f'the {kind} is {_mm(float(np.ptp(curve.y)))} wide; is it in {seen[0]}? If so, give units="{seen[0]}"'
 
 
 def of_height(curve: Curve) -> Iterator[str]:

@@ -111,13 +111,14 @@ def points_of(
         for pattern, reason in REFUSED.items():
             if re.match(pattern, line):
                 raise FileError(f"line {number}: {wl.shown(line.strip()[:40])} {reason}")
+    first = next((line for line in lines if line.strip()), "")
     if ending[1:] in readers:
         points = _by_reader(readers[ending[1:]], path)
-    elif ending in SIMPACK or any(re.match(r"\s*spline\.begin", line) for line in lines):
+    elif (ending in SIMPACK and not _is_point(first)) or any(re.match(r"\s*spline\.begin", line) for line in lines):
         points = _simpack(lines, units)
     elif ending in MINIPROF or _is_miniprof(lines):
         points = _miniprof(lines, by_ending or kind, units, part)
-    elif ending in COLUMNS or kind is not None:
+    elif ending in (*COLUMNS, *SIMPACK) or kind is not None:
         source = path if ending in SPREADSHEETS else io.StringIO(_tabbed(lines, sep, decimal))
         points = _columns(source, units, decimal, sheet)
         if ending in GENSYS:  # y is positive towards the middle of the track
@@ -417,7 +418,8 @@ def _columns(source: Path | io.StringIO, units: str, decimal: str, sheet: str | 
     try:
         table = wl.read_table(source, decimal=decimal, sheet=sheet)
         named = {name.lower(): column for name, column in table.columns.items()}
-        columns = [named["y"], named["z"]] if {"y", "z"} <= named.keys() else list(named.values())[:2]
+        names = next((pair for pair in (("y", "z"), ("x", "y")) if {*pair} <= named.keys()), [*named][:2])
+        columns = [named[name] for name in names]
         if len(columns) < 2:
             raise FileError(f"line {table.header}: a profile has two columns, y and z, found {len(columns)}")
         y, z = (
