@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -296,7 +297,7 @@ def test_plausible_wheelsets_get_no_word(seed: int) -> None:
 @pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 def test_a_great_pressure_is_laid_to_measured_points_but_not_to_those_that_wearlaw_wore() -> None:
     worn = WHEEL.worn(Q(1e3 * WHEEL.curve.s[[0, -1]], "mm"), "0 mm")
-    at = {"lateral_displacement": "0 mm", "vertical_load": "4000 kN", "friction_coefficient": 0.3}
+    at: Any = {"lateral_displacement": "0 mm", "vertical_load": "4000 kN", "friction_coefficient": 0.3}
     for wheel, doubted in ((measured(WHEEL, "wheel"), True), (worn, False)):
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
