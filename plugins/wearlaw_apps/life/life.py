@@ -107,6 +107,20 @@ class Life:
         return distances
 
     @property
+    def rates(self) -> dict[str, float]:
+        """The change of each length among the measures, in mm in 1000 km, up to the first cut; {} for passages.
+
+        There are no rates of service beside them: no published ones with their line could be read.
+        """
+        table, along = self.table, str(self.table.columns[0])
+        if len(self.cuts):
+            table = table[table[along] <= self.cuts[along].iloc[0]].iloc[:-1]
+        distance = table[along].iloc[-1]
+        lengths = [str(column) for column in table if str(column).endswith("[mm]")] if "[km]" in along else []
+        first, last = table.iloc[0], table.iloc[-1]
+        return {name_and_unit(column)[0]: 1e3 * (last[column] - first[column]) / distance for column in lengths}
+
+    @property
     def profiles(self) -> xarray.Dataset:
         """Profiles over the distance: y, z and the depth along the normal of the first profile, at its places.
 

@@ -31,6 +31,7 @@ def test_section_has_the_life_and_which_states_wear_where(case: Path, monkeypatc
     monkeypatch.setattr(section, "OVER", wl.Q(100, "km"))
     found = section.section(wl.run(wl.load_case(str(case))))
     assert "not a service rate" in found.text
+    assert "In 1000 km it loses" in found.text
     assert found.tables["life"]["distance [km]"].iloc[-1] == pytest.approx(100.0)
     _, states = found.figures
     deepest = [[curve.x[curve.y.argmax()] for curve in panel.curves] for panel in states.panels]

@@ -89,6 +89,15 @@ def test_mass_worn_between_cuts_is_that_of_wheels_of_the_diameters_left(turned: 
     assert last(turned, "mass [kg]") == pytest.approx(7850.0 * volume, rel=1e-9)
 
 
+def test_rates_are_those_up_to_the_first_cut(turned: Life) -> None:
+    distance = turned.cuts["distance [km]"][0]
+    assert turned.rates["flange_thickness"] * distance / 1e3 == pytest.approx(32.42 - 32.5, abs=1e-3)  # 32.5 is rounded
+    before = np.flatnonzero(turned.table["distance [km]"] == distance)[0]
+    worn = turned.table["diameter [mm]"][before] - 920.0
+    assert turned.rates["diameter"] * distance / 1e3 == pytest.approx(worn, rel=1e-9)
+    assert "mass" not in turned.rates
+
+
 def test_repr_and_figure_say_which_limit_governs(turned: Life) -> None:
     text = repr(turned)
     assert f"cuts: {len(turned.cuts)} at the limit of flange thickness" in text
