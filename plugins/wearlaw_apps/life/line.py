@@ -15,6 +15,7 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw.errors import ResumeWarning, warn
 from wearlaw_apps.output.notes import caught_warnings
+from wearlaw_apps.sweeps.evaluation import Outputs
 from wearlaw_apps.sweeps.located import posed
 from wearlaw_apps.sweeps.points import Points
 from wearlaw_apps.sweeps.provenance import check_same, digest, provenance_of
@@ -29,6 +30,10 @@ NUMBER = re.compile(r"\d[\d.e+-]*")
 """A number in a warning. Steps repeat warnings with other numbers, and the first of them is enough."""
 
 
+SIDE = "side"
+"""Name of the axis of the left and the right wheel."""
+
+
 class Wear(NamedTuple):
     """Wear per metre rolled, or per passage over a rail, weighted by share."""
 
@@ -36,6 +41,21 @@ class Wear(NamedTuple):
     """Depth normal to the profile, (sides, positions) [m per metre or passage]."""
     mass: Array
     """Mass of a wheel [kg/m], or of a metre of rail [kg/m per passage], (sides,)."""
+    places: Array
+    """Number of patches whose middle lies at each position, (sides, positions)."""
+
+
+class WearJob(ProfileJob):
+    """The wear of a line, and where its patches lie."""
+
+    def outputs(self, prediction: wl.Prediction, part: Points) -> Outputs:
+        """Return the sums of a block, and the number of its patches at each position, (sides, positions)."""
+        problem, step, axes = prediction.problem, self.at[1] - self.at[0], list(self.dims)
+        middle = np.where(problem.normal_force > 0.0, problem.bodies[self.body].profile_position, np.nan)  # type: ignore[arg-type]
+        of_sides = np.moveaxis(middle, axes.index(SIDE) - len(axes), 0) if SIDE in axes else middle[None]
+        at = np.append(self.at - 0.5 * step, self.at[-1] + 0.5 * step)
+        places = [np.histogram(places, at)[0] for places in of_sides]
+        return {**super().outputs(prediction, part), "places": np.array(places, np.float64)}
 
 
 class Line:
@@ -60,7 +80,7 @@ class Line:
                 lambda conditions: predict.rig.checked_problem(conditions, predict.models),
             )
         check_importable(predict, workers, client)
-        self.job = ProfileJob.of(predict, first, body, wl.Q(1e3 * at, "mm"), True)
+        self.job = WearJob.of(predict, first, body, wl.Q(1e3 * at, "mm"), True)
         self.sides = len(self.job.dims.get("side", "-"))
         self.points = dataclasses.replace(points, weight=self.job.weight(first))
         self._workers, self._client, self._renewed = workers, client, renewed
@@ -105,11 +125,12 @@ class Line:
             total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at), points)
             remarks += run(total, lambda _: None, self._workers, self._client)
             notes = [[type(remark).__name__, str(remark)] for remark in remarks]
-            depth, mass = (wl.Q(total.arrays()[name], self.job.units[name]).to_base_units() for name in Wear._fields)
-            wear = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude))
+            arrays = total.arrays()
+            depth, mass = (wl.Q(arrays[name], self.job.units[name]).to_base_units() for name in ("depth", "mass"))
+            wear = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude), arrays["places"])
             if self._kept is not None:
-                arrays = {f"line_{name}": column.values for name, column in table.items()}
-                self._kept.add(step, {**wear._asdict(), **arrays}, {"notes": notes, "states": states})
+                given = {f"line_{name}": column.values for name, column in table.items()}
+                self._kept.add(step, {**wear._asdict(), **given}, {"notes": notes, "states": states})
         for kind, text in notes:
             if (words := NUMBER.sub("", text)) not in self._said:
                 self._said.add(words)

@@ -44,6 +44,7 @@ def wear_out(
     decimal: str = ".",
     depth_step: wl.QuantityLike = "0.05 mm",
     smoothing: wl.QuantityLike = "3 mm",
+    resolution: wl.QuantityLike = "0.4 mm",
     spacing: wl.QuantityLike = "0.1 mm",
     until: Mapping[str, wl.QuantityLike | float] | None = None,
     until_all: bool = False,
@@ -91,8 +92,11 @@ def wear_out(
     depth_step : Quantity or str
         Largest depth of a step, at most 0.1 mm [m].
     smoothing : Quantity or str
-        Standard deviation of the Gaussian kernel that smooths the summed wear [m]. It stands for what lies between the
-        states; zero does not smooth.
+        Largest standard deviation of the Gaussian kernel that smooths the wear of a tread [m]. It stands for further
+        states between those of the line: the kernel is as wide as the mean distance of their patches, so that it
+        vanishes with dense states. On flanges, steeper than 30°, there is none. Zero does not smooth.
+    resolution : Quantity or str
+        Standard deviation of the Gaussian kernel that smooths all wear [m], as instruments that measure profiles do.
     spacing : Quantity or str
         Distance between the positions of the wear along the profile [m].
     until : mapping, optional
@@ -142,10 +146,11 @@ def wear_out(
         If `store` holds anything but the same life, or a function returns other states for a finished step.
     """
     expect_pipeline(predict)
-    length = wl.Unit("mm")
+    length, width = wl.Unit("mm"), wl.Unit("mm", positive=False, negative=False)
     settings: dict[str, Any] = {
         "depth_step": float(length.si(depth_step, "depth_step")),
-        "smoothing": float(wl.Unit("mm", positive=False, negative=False).si(smoothing, "smoothing")),
+        "smoothing": float(width.si(smoothing, "smoothing")),
+        "resolution": float(width.si(resolution, "resolution")),
         "conicity_step": float(conicity_step),
     }
     if settings["depth_step"] > DEEPEST:

@@ -22,6 +22,9 @@ ACCURACY = 5e-11
 STEPS = 6
 """Most steps of the secant method for the factor; two are usual."""
 
+FLANGE = np.radians(30.0)
+"""Angle of a profile beyond which it is the flange of a wheel, or the gauge side of a rail [rad]."""
+
 EDGE = 1e-3
 """Share of the deepest wear at an end of a profile that says that the profile is too short."""
 
@@ -37,15 +40,50 @@ def even(profile: Profile) -> Profile:
     return profile.worn(wl.Q(1e3 * profile.curve.s[[0, -1]], "mm"), "0 mm")
 
 
-def smoothed(depth: Array, at: Array, length: float) -> Array:
-    """Return depths at even positions [m], smoothed by a Gaussian kernel of a standard deviation [m]; their sum stays.
+def widths(places: Array, at: Array, angle: Array, largest: float, least: float) -> Array:
+    """Return standard deviations of a kernel that stands for further states between those of a line [m].
 
-    The kernel reaches four times as far, and mirrors at the ends of the profile.
+    It is as wide as the mean distance of the patches, for which √12 times their standard deviation is their range, and
+    zero for a single patch. States in between move a patch along a tread, but hardly on a flange: with the angle δ of
+    the profile the width falls, as cos², to zero at 30°. It adds to `least` as variances do.
+
+    Parameters
+    ----------
+    places : ndarray, (sides, positions)
+        How many patches have their middle at each position.
+    at : ndarray, (positions,)
+        Positions [m].
+    angle : ndarray, (sides, positions)
+        Angle of the profile, δ [rad].
+    largest, least : float
+        Limits of the width [m].
     """
-    if not length:
-        return depth
-    smooth: Array = scipy.ndimage.gaussian_filter1d(depth, length / (at[1] - at[0]), mode="reflect")
-    return smooth
+    count = places.sum(axis=-1, keepdims=True)
+    share = places / count
+    middle = share @ at
+    distance = np.sqrt(12.0 * (share * (at - middle[:, None]) ** 2).sum(axis=-1, keepdims=True)) / count
+    steep = np.minimum(np.abs(angle) / FLANGE, 1.0)
+    width: Array = np.hypot(np.minimum(distance, largest) * np.cos(0.5 * np.pi * steep) ** 2, least)
+    return width
+
+
+def smoothed(depth: Array, at: Array, width: Array) -> Array:
+    """Return depths at even positions [m], each spread by a Gaussian kernel; their sum stays.
+
+    Parameters
+    ----------
+    depth : ndarray, (sides, positions)
+    at : ndarray, (positions,)
+    width : ndarray, (sides or 1, positions)
+        Standard deviation of the kernel at each position [m]; zero for none.
+    """
+    spread = depth.copy()
+    for row, wear, sigma in zip(spread, depth, np.broadcast_to(width, depth.shape), strict=True):
+        worn = np.flatnonzero((wear > 0.0) & (sigma > 0.0))
+        kernel = np.exp(-0.5 * ((at[:, None] - at[worn]) / np.maximum(sigma[worn], 1e-9)) ** 2)
+        row[worn] = 0.0
+        row += kernel @ (wear[worn] / kernel.sum(axis=0))
+    return spread
 
 
 def removed(profile: Profile, at: Array, depth: Array) -> Profile:

@@ -14,7 +14,7 @@ from wearlaw import Array
 from wearlaw.units.registry import unit_in_si
 from wearlaw_apps.life.life import NEAR, SIDES, measure_of, name_and_unit
 from wearlaw_apps.life.line import Line, Wear
-from wearlaw_apps.life.removal import conserving, positions, smoothed, swept
+from wearlaw_apps.life.removal import conserving, positions, smoothed, swept, widths
 
 if TYPE_CHECKING:
     from wearlaw_models.rigs.wheelset import Profile
@@ -149,6 +149,7 @@ class Steps:
     """The profiles at the start: one for both sides, or those of the left and the right side."""
     depth_step: float
     smoothing: float
+    resolution: float
     conicity_step: float
 
     @property
@@ -171,7 +172,9 @@ class Steps:
         except wl.InputError as error:
             done = f"{now.row[along]:.6g} {name_and_unit(along)[1] or along}"
             raise type(error)(f"step {now.number + 1}, after {done}: {error}") from None
-        wear = wear._replace(depth=smoothed(wear.depth, at, self.smoothing))
+        angle = np.array([np.interp(at, profile.curve.s, profile.curve.angle) for profile in self.new])
+        width = widths(self._of_profiles(wear.places), at, angle, self.smoothing, self.resolution)
+        wear = wear._replace(depth=smoothed(wear.depth, at, width))
         deepest = float(self._of_profiles(wear.depth).max())
         if not deepest > 0.0:
             raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
@@ -275,4 +278,6 @@ def _of_middle(now: State, wear: Wear, distance: float) -> Wear:
     change = np.divide(wear.depth - now.wear.depth, wear.depth, out=np.zeros_like(wear.depth), where=worn)
     depth = wear.depth * np.exp(share * change)
     sums = wear.depth.sum(axis=-1)
-    return Wear(depth, wear.mass * np.divide(depth.sum(axis=-1), sums, out=np.ones_like(sums), where=sums > 0.0))
+    return wear._replace(
+        depth=depth, mass=wear.mass * np.divide(depth.sum(axis=-1), sums, out=np.ones_like(sums), where=sums > 0.0)
+    )

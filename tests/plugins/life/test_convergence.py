@@ -14,6 +14,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.life.test_life import GIVEN, line, pipeline
 from tests.plugins.wheelset.wheelsets import cone, on_round_heads
+from wearlaw import Q
 from wearlaw_apps.life import Life
 
 pytestmark = pytest.mark.filterwarnings(
@@ -52,7 +53,13 @@ def test_smooth_wear_converges_in_first_order_of_the_step_at_least() -> None:
     predict = on_round_heads(cone(0.05), 0.3) | wl.contact_model("fastsim") | wl.wear_law("usfd", fitted_for="fastsim")
 
     def run(depth_step: str) -> Life:
-        given = {**GIVEN, "smoothing": "5 mm", "conicity_step": math.inf, "depth_step": depth_step}
+        given = {
+            **GIVEN,
+            "smoothing": "0 mm",
+            "resolution": "5 mm",
+            "conicity_step": math.inf,
+            "depth_step": depth_step,
+        }
         return wl.wear_out(predict, line(9, 2.0), over="3000 km", **given)
 
     assert min(orders((0.08, 0.04, 0.02, 0.01), run)) > 1.0
@@ -61,12 +68,14 @@ def test_smooth_wear_converges_in_first_order_of_the_step_at_least() -> None:
 def test_wear_with_jumps_converges_in_an_order_between_first_and_second() -> None:
     """On S1002 contacts jump as the profile wears: each jump leaves an error of first order, of its state's share."""
     (order,) = orders((0.04, 0.02, 0.01), lambda step: life(line(25, 2.0), "2000 km", depth_step=step))
-    assert order == pytest.approx(1.77, abs=0.1)
+    assert 1.0 < order < 2.2  # three runs give it to some tenths
 
 
 def test_error_falls_with_the_square_of_the_spacing() -> None:
     """Cells take means, of which the error is of second order."""
-    heights = [height(life(line(5), "500 km", spacing=f"{one} mm").profile) for one in (1.6, 0.8, 0.05)]
+    heights = [
+        height(life(line(5), "500 km", spacing=f"{one} mm", resolution="3 mm").profile) for one in (1.6, 0.8, 0.05)
+    ]
     errors = [np.sqrt(((one - heights[-1]) ** 2).mean()) for one in heights[:-1]]
     order = math.log2(errors[0] / errors[1])
     print(f"order in the spacing {order:.2f}, errors {errors}")
@@ -134,3 +143,28 @@ def test_a_millimetre_of_wear_leaves_the_tread_smooth() -> None:
     assert found.ended == "depth"
     assert variation < 300.0
     assert abs(found.table["factor"] - 1.0).max() < 0.01
+
+
+def test_mass_does_not_depend_on_the_smoothing_of_dense_states() -> None:
+    """A fixed kernel of 0.25 and 1 mm makes 7 % of difference."""
+    narrow, wide = (life(line(33, 2.0), "1500 km", smoothing=f"{width} mm").table for width in (0.25, 1.0))
+    masses = [table["mass [kg]"].iloc[-1] for table in (narrow, wide)]
+    print(f"masses {masses}")
+    assert masses[0] == pytest.approx(masses[1], rel=0.02)
+
+
+def test_a_flange_keeps_the_place_and_the_depth_of_its_wear() -> None:
+    """A state on the flange beside those of the tread, in one step."""
+    states = line(9)
+    flange = {"lateral_displacement [mm]": [6.2], "yaw [mrad]": [3.0], "share": [0.2]}
+    states["share"] *= 0.8
+    states = pd.concat([states.assign(**{"yaw [mrad]": 0.0}), pd.DataFrame(flange)])
+    found = life(states, "3 km", sides="each")
+    at = Q(np.linspace(-60.0, -28.0, 641), "mm")
+    depth = found.worn_profiles[0][1].depth_to(found.profile, at).m_as("um")
+    alone = pipeline()(lateral_displacement="6.2 mm", yaw="3 mrad", **GIVEN).wear_profile("wheel", at=at)["depth"]
+    direct = 0.2 * 3.0 * alone.sel(side="right").values  # um/km
+    print(f"deepest {depth.max():.3g} of {direct.max():.3g} um")
+    assert len(found.table) == 2
+    assert depth.max() == pytest.approx(direct.max(), rel=0.1)
+    assert at[depth.argmax()].m_as("mm") == pytest.approx(at[direct.argmax()].m_as("mm"), abs=0.25)

@@ -24,6 +24,7 @@ from wearlaw_apps.life.removal import (  # private: the parts of a step in close
     removed,
     smoothed,
     swept,
+    widths,
 )
 from wearlaw_apps.life.steps import Limits  # private: the limits alone
 from wearlaw_apps.output import Limit
@@ -90,11 +91,26 @@ def test_smoothing_keeps_the_sum_and_has_its_length() -> None:
     at = np.linspace(0.0, 60e-3, 601)
     depth = np.zeros(601)
     depth[[40, 300]] = 1.0, 2.0
-    found = smoothed(depth, at, 2e-3)
+    (found,) = smoothed(depth[None], at, np.full((1, 601), 2e-3))
     assert found.sum() == pytest.approx(3.0, rel=1e-12)
     peak = found[200:400] / found[200:400].sum()
     spread = np.sqrt((peak * (at[200:400] - at[300]) ** 2).sum())
-    assert spread == pytest.approx(2e-3, rel=1e-3)  # the kernel ends at four standard deviations
+    assert spread == pytest.approx(2e-3, rel=1e-3)
+
+
+def test_kernels_are_as_wide_as_patches_are_apart_but_on_flanges() -> None:
+    """For n patches that are g apart the standard deviation is g √((n² - 1)/12)."""
+    at = np.linspace(-20e-3, 40e-3, 601)
+    places, angle = np.zeros((1, 601)), np.zeros((1, 601))
+    places[0, 100:401:25] = 1.0  # 13 of them, 2.5 mm apart
+    distance = 2.5e-3 * np.sqrt(168.0) / 13.0
+    assert widths(places, at, angle, 3e-3, 0.0) == pytest.approx(distance, rel=1e-9)
+    assert widths(places, at, angle, 1e-3, 0.25e-3) == pytest.approx(np.hypot(1e-3, 0.25e-3), rel=1e-9)
+    for steep, share in ((10.0, 0.75), (30.0, 0.0), (-70.0, 0.0)):
+        found = widths(places, at, np.radians(angle + steep), 3e-3, 0.0)
+        assert found == pytest.approx(share * distance, abs=1e-12)
+    single = np.where(np.arange(601) == 300, 1.0, 0.0)[None]
+    assert widths(single, at, angle, 3e-3, 0.25e-3) == pytest.approx(0.25e-3, rel=1e-9)
 
 
 def test_one_factor_makes_the_mass_exact_on_a_flange() -> None:
@@ -127,7 +143,7 @@ def test_mass_of_the_first_step_is_that_of_the_prediction() -> None:
 
 def test_first_step_wears_the_weighted_sum_of_the_states() -> None:
     states = line(3)
-    found = wl.wear_out(pipeline(), states, over="10 km", smoothing="0 mm", **GIVEN)
+    found = wl.wear_out(pipeline(), states, over="10 km", smoothing="0 mm", resolution="0 mm", **GIVEN)
     (first,) = found.worn_profiles[0]
     at = positions([first], int(np.ceil(np.ptp(first.curve.s) / 0.1e-3)) + 1)
     r = pipeline()(lateral_displacement=Q(states.iloc[:, 0].to_numpy(), "mm"), **GIVEN)
