@@ -62,11 +62,25 @@ def locus(
     """
     sin_roll, cos_roll, sin_yaw, cos_yaw = turn
     tan_yaw = sin_yaw / cos_yaw
+    lean, ahead = tan_yaw * sin_roll, tan_yaw * cos_roll
+    if axes == 0.0:
+        return of_circle(y, radius, slope, displacement, turn, lean, ahead)
     meets = axes * (y + radius * slope)  # where the normals of a circle meet the axle
-    tilt = meets * tan_yaw * cos_roll / (1.0 - meets * sin_roll)
-    lean = tan_yaw * sin_roll - tilt * cos_roll
+    tilt = meets * ahead / (1.0 - meets * sin_roll)
+    lean, ahead = lean - tilt * cos_roll, ahead + tilt * sin_roll
+    x, across, z, steep = of_circle(y, radius, slope, displacement, turn, lean, ahead)
+    turned, above = axes * x, np.abs(1.0 - axes * z)  # of points beside any rail it may be negative
+    z = z - turned * x / (above + np.sqrt(above * above + turned * turned))
+    return x, across, z, steep / np.sqrt(1.0 + (tilt * cos_yaw) ** 2)
+
+
+def of_circle(
+    y: Any, radius: Any, slope: Any, displacement: Any, turn: tuple[Any, Any, Any, Any], lean: Any, ahead: Any
+) -> tuple[Any, ...]:
+    """Return the point of a circle at sin(α + β) = -ahead R' cos β with tan β = lean, and the slope there."""
+    sin_roll, cos_roll, sin_yaw, cos_yaw = turn
     scale = 1.0 / np.sqrt(1.0 + lean * lean)
-    sine = -(tan_yaw * cos_roll + tilt * sin_roll) * scale * slope
+    sine = -ahead * scale * slope
     cosine = np.sqrt(np.maximum(1.0 - sine * sine, 0.0))
     sin_angle = scale * (sine - lean * cosine)
     cos_angle = scale * (cosine + lean * sine)
@@ -74,13 +88,11 @@ def locus(
     across = y * cos_roll - upright * sin_roll
     normal_y = sin_angle * sin_yaw - cos_yaw * (slope * cos_roll + cos_angle * sin_roll)
     normal_z = cos_angle * cos_roll - slope * sin_roll
-    x, z = along * cos_yaw - across * sin_yaw, y * sin_roll + upright * cos_roll
-    turned, above = axes * x, np.abs(1.0 - axes * z)  # of points beside any rail it may be negative
     return (
-        x,
+        along * cos_yaw - across * sin_yaw,
         across * cos_yaw + along * sin_yaw + displacement,
-        z - turned * x / (above + np.sqrt(above * above + turned * turned)),
-        -normal_y / (normal_z * np.sqrt(1.0 + (tilt * cos_yaw) ** 2)),
+        y * sin_roll + upright * cos_roll,
+        -normal_y / normal_z,
     )
 
 
@@ -164,12 +176,16 @@ def touch(
     for patch in range(PATCHES):
         place[patch], height[patch], cell[patch] = np.nan, np.inf, -1
     moved = abs(turn[0]) + abs(turn[2])
+    lean, ahead = turn[2] / turn[3] * turn[0], turn[2] / turn[3] * turn[1]
     first, last = ends(tables[2])
     for k in range(begin, end, every):
         away = moved * (radius[k] + y[k])  # farther than roll and yaw move the point across the rail
         gap[k], rise[k] = np.inf, 0.0
         if first - away <= y[k] + shift <= last + away:
-            _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn, axes)
+            if axes != 0.0:
+                _, across, down, steep = locus(y[k], radius[k], slope[k], shift, turn, axes)
+            else:  # what all points share is outside of the loop, which saves a third
+                _, across, down, steep = of_circle(y[k], radius[k], slope[k], shift, turn, lean, ahead)
             if first <= across < last:
                 rail, rail_slope = at(across, tables[2])
                 gap[k], rise[k] = rail - down, rail_slope - steep
