@@ -35,6 +35,9 @@ LIFE = "life.json"
 @click.option("--until", metavar="MEASURE=VALUE", multiple=True, help="Limit that ends the life.")
 @click.option("--turn", metavar="MEASURE=VALUE", multiple=True, help="Limit at which the wheel is turned.")
 @click.option("--least-diameter", metavar="DIAMETER", help="Least diameter of a wheel, which ends the life.")
+@click.option("--published", metavar="PARAMETER", multiple=True,
+              help="Parameter of the law that further lives draw from its published range.")  # fmt: skip
+@click.option("--samples", type=click.IntRange(2), default=20, show_default=True, help="Number of these lives.")
 @click.option("--set", "settings", metavar="NAME=VALUE", multiple=True,
               help="Condition of all states, or argument of wl.wear_out, such as sides=each.")  # fmt: skip
 @click.option("--workers", type=click.IntRange(1), default=1, show_default=True, help="Number of processes.")
@@ -50,6 +53,8 @@ def life(
     until: tuple[str, ...],
     turn: tuple[str, ...],
     least_diameter: str | None,
+    published: tuple[str, ...],
+    samples: int,
     settings: tuple[str, ...],
     workers: int,
     resume: bool,
@@ -66,7 +71,8 @@ def life(
 
     The first contact model and the first wear law of the case predict. The folder then holds life.csv, the measures
     at every step; profiles.csv; a figure; the worn profile, worn.csv (or that of each side, worn_left.csv and
-    worn_right.csv); cuts.csv, if it was turned; and life.json.
+    worn_right.csv); cuts.csv, if it was turned; limits.csv, with the distances to the limits over the published range
+    of a parameter; and life.json.
     """  # noqa: D301
     folder = output or folder_for(str(line), "life")
     partial = folder.resolve().with_name(f"{folder.resolve().name}.partial")
@@ -78,19 +84,28 @@ def life(
             for stage in loaded.stages:
                 predict = predict | stage
             predict = predict | loaded.wear_laws[0]
-            result = wl.wear_out(
-                predict, line, over=value(over), columns=named or None,
-                sep=sep, decimal=decimal, until=values("--until", until),
-                turn=values("--turn", turn), least_diameter=least_diameter,
-                workers=workers, store=partial, resume=resume, progress=True, **arguments,
-            )  # fmt: skip
+            arguments |= {
+                "over": value(over), "columns": named or None, "sep": sep, "decimal": decimal,
+                "until": values("--until", until), "turn": values("--turn", turn), "least_diameter": least_diameter,
+                "workers": workers, "resume": resume, "progress": True,
+            }  # fmt: skip
+            result = wl.wear_out(predict, line, store=partial / "life", **arguments)
+            band = {name: wl.published_range() for name in published}
+            store = partial / "published"
+            uncertain = (
+                wl.uncertain_life(predict, line, law=band, samples=samples, store=store, **arguments) if band else None
+            )
         laws = [repr(law) for law in result.pipeline.laws]
         record = {"wearlaw": wl.__version__, "ended": result.ended, "laws": laws, "notes": notes.texts,
                   "notes_of_steps": result.notes}  # fmt: skip
-        names = write_files(fresh, LIFE, record, _tables(result), [result.figure()], figure_formats, latex)
+        tables, figures = _tables(result), [result.figure()]
+        if uncertain is not None:
+            tables["limits"] = uncertain.table().reset_index()
+            figures.append(uncertain.figure())
+        names = write_files(fresh, LIFE, record, tables, figures, figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
     texts, found = [*map(str, resumed), *notes.texts], {"ended": result.ended, "life": result.table}
-    answer(folder, names, texts, lambda: click.echo(repr(result)), found)
+    answer(folder, names, texts, lambda: click.echo("\n".join(map(repr, filter(None, (result, uncertain))))), found)
 
 
 def _tables(life: Life) -> dict[str, pd.DataFrame]:

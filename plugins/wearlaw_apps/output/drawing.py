@@ -186,6 +186,8 @@ def _fill_panel(axes: Axes, panel: Panel, styles: dict[tuple[int, int], int], no
         if axis.scale == "log":
             _label_ticks(drawn)
     for limit in panel.limits:
+        if (panel.y if limit.axis == "y" else panel.x).ends is None:
+            axes.autoscale(axis=limit.axis)  # a name far outside of the axes leaves no room for them
         _draw_limit(axes, limit)
     if panel.equal:
         axes.set_aspect("equal", adjustable="box")

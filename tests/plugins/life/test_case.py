@@ -57,3 +57,18 @@ def test_command_writes_tables_a_figure_and_the_worn_profile(case: Path, tmp_pat
     assert record["notes_of_steps"]
     assert not (tmp_path / "out.partial").exists()
     assert "Life of a wheel: 20 km" in result.output
+
+
+def test_command_turns_wheels_and_draws_from_a_published_range(case: Path, tmp_path: Path) -> None:
+    table, folder = tmp_path / "line.csv", tmp_path / "out"
+    line(3).to_csv(table, index=False)
+    case.write_text(TEXT.replace('{ model = "usfd", fitted_for = "exact" }', '"kth"'), encoding="utf-8")
+    limits = ["--until", "mass=0.0002 kg", "--turn", "depth=0.0002 mm", "--least-diameter", "900 mm"]
+    given = ["--set", "vertical_load=60 kN", "--set", "friction_coefficient=0.3", *limits]
+    options = ["--published", "coefficient", "--samples", "2", "-o", str(folder)]
+    result = CliRunner().invoke(life, [str(case), str(table), "--over", "1000 km", *given, *options])
+    assert result.exit_code == 0, result.output
+    assert len(pd.read_csv(folder / "cuts.csv")) >= 1
+    distances = pd.read_csv(folder / "limits.csv").set_index("measure").loc["mass [kg]"]
+    assert distances["low [km]"] < distances["median [km]"] < distances["high [km]"]
+    assert "2 lives of a wheel with uncertain coefficient" in result.output
