@@ -145,24 +145,28 @@ def test_two_patches_are_listed_at_a_jump_and_are_those_on_its_sides() -> None:
 # ------------------------------------------------------------------------------------------------ compiled loops
 
 
-def both_ways(displacement: Array, yaw: Array, roll: Array | None = None) -> list[tuple[Array, Touching]]:
+def both_ways(
+    displacement: Array, yaw: Array, roll: Array | None = None, pair: wl.Wheelset = STANDARD
+) -> list[tuple[Array, Touching]]:
     """Return roll and contact points by NumPy and by compiled loops."""
     found = []
     for compiled in (False, True):
         wl.accelerate(compiled)
-        found.append(searched(STANDARD._section, displacement, yaw, roll))
+        found.append(searched(pair._section, displacement, yaw, roll))
     return found
 
 
+@pytest.mark.parametrize("pair", [STANDARD, wheelset(roller_radius="350 mm")], ids=["rails", "rollers"])
 @pytest.mark.parametrize("rolled", [False, True])
-def test_compiled_loops_find_what_numpy_finds(rolled: bool) -> None:
+def test_compiled_loops_find_what_numpy_finds(rolled: bool, pair: wl.Wheelset) -> None:
     pytest.importorskip("numba")
     rng = np.random.default_rng(7)
     displacement, yaw = rng.uniform(-10e-3, 10e-3, 1000), rng.uniform(-30e-3, 30e-3, 1000)
     # Near jumps too, where the two may stand on different sides.
     displacement[:100] = np.concatenate([place + rng.uniform(-1e-9, 1e-9, 50) for place, _ in JUMPS])
     yaw[:100] = 0.0
-    (roll, one), (other_roll, other) = both_ways(displacement, yaw, rng.uniform(-2e-3, 2e-3, 1000) if rolled else None)
+    rolls = rng.uniform(-2e-3, 2e-3, 1000) if rolled else None
+    (roll, one), (other_roll, other) = both_ways(displacement, yaw, rolls, pair)
     assert other_roll == pytest.approx(roll, rel=0.0, abs=4.0 * ROLL_ACCURACY)
     assert other.least == pytest.approx(one.least, rel=0.0, abs=4.0 * ROLL_ACCURACY)
     # The order of two patches is free where their gaps are the same, to what the rolls leave open.
