@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
@@ -23,6 +26,8 @@ STATES = 7
 def section(study: wl.Study) -> wl.Section:
     """Return the section about the life of a wheel, on the states of the sweep "line", with equal shares.
 
+    Lateral displacements of a wheelset above zero are the amplitudes of its free motion.
+
     Raises
     ------
     InputError
@@ -36,16 +41,26 @@ def section(study: wl.Study) -> wl.Section:
     values = conditions.pop(name)
     unit = f"{values.units:~C}"
     states = pd.DataFrame({f"{name} [{unit}]": values.magnitude, "share": 1.0 / values.size})
+    waves = values[values.magnitude > 0.0]
+    free = name == "lateral_displacement" and waves.size and isinstance(study.pairs[0].pipeline.rig, wl.Wheelset)
+    motion: dict[str, Any] = {
+        "amplitudes": waves,
+        "shares": np.full(waves.size, 1.0 / max(waves.size, 1)),
+        "phases": 4,
+        "vertical_load": conditions.get("vertical_load"),
+    }
+    line = partial(wl.free_motion, **motion) if free else states
+    held = f"the {waves.size} amplitudes of Klingel's motion" if free else f"the {values.size} states"
     predict = study.pairs[0].pipeline
     with caught_warnings():  # the sweep of the study has said them
-        life = wear_out(predict, states, over=OVER, **conditions)
+        life = wear_out(predict, line, over=OVER, **conditions)
         figures = (life.figure(), _states(predict, name, values, conditions))
     head, *rows = repr(life).splitlines()
     rates = f"{life.rates['depth']:.3g} mm at its deepest place and {-life.rates['diameter']:.3g} mm of its diameter"
     return wl.Section(
         title="The life of a wheel",
-        text=f"An example, not a service rate: {OVER:~P} with equal shares of the {values.size} states of the sweep"
-        f" '{LINE}'. Real lines have curves, in which flanges wear. In 1000 km it loses {rates}. Compare them with"
+        text=f"An example and no prediction of service: {OVER:~P} with equal shares of {held} in the sweep '{LINE}'."
+        f" Real lines have curves, in which flanges wear. In 1000 km it loses {rates}. Compare them with"
         " rates of your own service: no published ones with their line could be read, so that none stand here.",
         tables={"life": life.table.rename(columns={CONICITY: f"{CONICITY} [-]"})},
         figures=figures,

@@ -30,7 +30,9 @@ def case(tmp_path: Path) -> Path:
 def test_section_has_the_life_and_which_states_wear_where(case: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(section, "OVER", wl.Q(100, "km"))
     found = section.section(wl.run(wl.load_case(str(case))))
-    assert "not a service rate" in found.text
+    assert "no prediction of service" in found.text
+    conicity = found.tables["life"]["equivalent_conicity [-]"]
+    assert conicity.iloc[-1] > conicity.iloc[0]  # states that are held wear the other way
     assert "In 1000 km it loses" in found.text
     assert found.tables["life"]["distance [km]"].iloc[-1] == pytest.approx(100.0)
     _, states = found.figures
