@@ -14,6 +14,10 @@ from wearlaw import Array, Q
 from wearlaw_models.rigs.wheelset.guidance import BORNE  # private: the accuracy that a search ends at
 from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
 
+# Rows stay where they are while a wheel moves by up to 50 µm along its rail. Over a relative curvature of 1/13 mm that is
+# 0.1 µm of the approach, of 50 µm on a flange, whose power of 1.5 the force is: a share of the load of a wheel.
+LAID = 3e-3
+
 PAIR = wheelset(rolling_speed="20 m/s") | wl.contact_model("strip_theory")
 RESULTS = ["lateral_displacement", "guiding_force", "wheel_load", "derailment_quotient"]
 
@@ -72,7 +76,8 @@ def test_displacements_found_give_the_forces_back(found: wl.Prediction) -> None:
     rest = {name: value for name, value in GIVEN.items() if name != "lateral_force"}
     again = guided(rest, lateral_displacement=Q(place, "m"))
     axle = GIVEN["vertical_load_left"] + GIVEN["vertical_load_right"]
-    assert (np.abs(si(again, "guiding_force").sum(axis=-1) - GIVEN["lateral_force"]) < 1.01 * BORNE * axle).all()
+    off = np.abs(si(again, "guiding_force").sum(axis=-1) - GIVEN["lateral_force"])
+    assert (off < (BORNE + 0.5 * LAID) * axle).all()
 
 
 def test_forces_of_displacements_give_the_displacements_back() -> None:
@@ -86,11 +91,11 @@ def test_forces_of_displacements_give_the_displacements_back() -> None:
     at = PAIR(lateral_displacement=Q(place, "m"), **common)
     force = si(at, "guiding_force").sum(axis=-1)
     back = si(PAIR(lateral_force=Q(force, "N"), **common), "lateral_displacement")[:, 0]
-    # 1.2 N of 120 kN over the stiffness there, which is least on the tread.
+    # The force that may be left over, over the stiffness there, which is least on the tread.
     ahead = PAIR(lateral_displacement=Q(place + 1e-6, "m"), **common)
     stiffness = (si(ahead, "guiding_force").sum(axis=-1) - force) / 1e-6
     assert (stiffness > 0.0).all()
-    assert (np.abs(back - place) < 2.0 * BORNE * 120e3 / stiffness + 1e-9).all()
+    assert (np.abs(back - place) < (BORNE * 120e3 + LAID * 60e3) / stiffness).all()
 
 
 def test_a_force_to_the_right_moves_the_right_flange_to_its_rail() -> None:

@@ -146,7 +146,7 @@ def test_wheels_under_service_load_are_pressed_as_in_contact(
 def test_pressure_and_gap_exclude_each_other(displacement: float, yaw: float, load: float, worn: bool) -> None:
     for stand in posed(PAIRS[worn], displacement, yaw, load, 0.3).loads.stands:
         pressed = stand.pressed
-        rows, now = stand.rows, pressed._now()
+        rows, now = stand.rows, pressed.now
         slack = SLACK * rows.deepest.max()
         assert (now[pressed.on] >= 0.0).all()  # pressure
         assert (now[~pressed.on] <= slack).all()  # overlap

@@ -8,8 +8,9 @@ is the lateral force H of the vehicle on the wheelset. As the wheelset moves out
 and steeply on a flange, and falls where the flange climbs. Of several displacements with this force, the wheelset takes
 one at which ∑ Y grows: there it is stable.
 
-The search begins where a rigid wheel passes from its tread to its flange. Newton's method, whose rates are those of the
-pressure, goes on between bounds. Where ∑ Y nowhere reaches H, the greatest ∑ Y lies where its rate vanishes.
+The search begins where rigid wheels bear the force without friction. From there on, wheelsets move by Newton's method
+between bounds, each with the creep forces that it had before; the rates are those of the pressure. Where ∑ Y nowhere
+reaches H, the greatest ∑ Y lies where its rate vanishes.
 """
 
 from __future__ import annotations
@@ -20,126 +21,176 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+import wearlaw as wl
 from wearlaw import Array
+from wearlaw_models.rigs.wheelset.geometry import patches
 from wearlaw_models.rigs.wheelset.loads import ROUGH, Loads
-from wearlaw_models.rigs.wheelset.task import Task
+from wearlaw_models.rigs.wheelset.search import Section, both_sides, searched
+from wearlaw_models.rigs.wheelset.stand import BALANCED
 
-STEP = 1e-3
-"""Steps in which rigid wheels are looked at [m]."""
-
-FARTHEST = 60e-3
-"""Greatest displacement that is tried [m]: the play of flanges is at most 40 mm."""
-
-HALVINGS = 10
-"""How often a step is halved to find where a rigid wheel climbs, to 1 µm."""
+STEP, FARTHEST = 0.1e-3, 60e-3
+"""Steps in which rigid wheels are looked at, and their end [m]: the play of flanges is at most 40 mm."""
 
 BEYOND = 0.5e-3
-"""Distance from there on that is searched too [m]: elastic flanges take the whole load some 0.1 mm later."""
+"""Distance past the steepest point of a rigid flange that is searched too [m]: an elastic one takes the whole load some
+0.1 mm later."""
 
-BORNE = 5e-3
-"""Lateral force that may be left over, as a share of the axle load: from there on, the pressure finds the rest."""
+BORNE, NEAR = 1e-4, 5e-3
+"""Lateral force that may be left over, over the axle load, and that from which on loads are balanced finely."""
 
-CLOSE = 1e-7
-"""Distance of the bounds at which the force jumps between them [m]."""
+LEAST, SMALL = 0.2, 1e-6
+"""Least whole rate over that of the pressure alone; least step that shows the rate of the creep forces [m]."""
 
-STEPS, SLOW = 40, 6
+CLOSE, SURE = 1e-8, 5e-3
+"""Distance of bounds between which the force jumps [m]; share of ∑ Y by which a greater one may be missed."""
+
+SHORTEST = 0.1e-3
+"""Step outwards that is allowed however near the steepest point is [m]; else it is half of the distance at most."""
+
+FLANGE, INWARDS = 0.8, 0.9
+"""Shares of the distance of the steepest point from which a flange may climb, and of that at which nothing balances to
+go on with.
+"""
+
+STEPS, SLOW = 40, 8
 """Greatest number of steps, and those after which every other one halves the bounds."""
 
 
-class Guided(NamedTuple):
-    """Where wheelsets stand under lateral forces, as arrays with one entry for each position.
+class Play(NamedTuple):
+    """How rigid wheelsets without yaw stand between their rails.
 
     Attributes
     ----------
     displacement : ndarray
-        Lateral displacement [m], nearly; where a wheel climbs, that with the greatest ∑ Y.
-    climbs : ndarray of bool
-        Whether no displacement bears the force.
-    greatest : ndarray
-        The greatest ∑ Y that was found towards that side [N].
+        Lateral displacements at which both wheels stand below the steepest points of their flanges [m].
+    slope : ndarray
+        The lateral force that they bear without friction, over the load of a wheel: tan δ of the right wheel less that
+        of the left one, where it falls that from before.
+    ends, treads : tuple of float
+        Displacements up to which a search may go, and up to which both wheels stand on their treads [m].
     """
 
     displacement: Array
-    climbs: NDArray[np.bool_]
-    greatest: Array
+    slope: Array
+    ends: tuple[float, float]
+    treads: tuple[float, float]
+
+    def at(self, share: Array) -> Array:
+        """Return displacements [m] at which rigid wheels bear lateral forces over the load of a wheel."""
+        return np.asarray(np.interp(share, self.slope, self.displacement))
+
+    def share(self, displacement: Array) -> Array:
+        """Return lateral forces over the load of a wheel that rigid wheels bear at displacements [m]."""
+        return np.asarray(np.interp(displacement, self.displacement, self.slope))
 
 
-def guided(
-    task: Task,
-    solved: Callable[[Task], Loads],
-    stands: Callable[[Array, NDArray[np.intp], bool], NDArray[np.bool_]],
-    begins: Callable[[Array], Array],
-) -> Guided:
-    """Return the displacements at which the rails bear the lateral forces of a task.
+def play(section: Section, flange_angle: float) -> Play:
+    """Return how rigid wheelsets stand between their rails; a wheel is on its flange beyond an angle [rad]."""
+    middle = round(FARTHEST / STEP)
+    displacement = np.asarray(STEP * np.arange(-middle, middle + 1), np.float64)
+    none = np.zeros_like(displacement)
+    roll, touching = searched(section, displacement, none)
+    arc = touching.arc[..., 0]
+    angle = patches(section, both_sides(displacement, roll, none), touching)["contact_angle"]
+    angle = np.abs(np.where(np.isnan(arc), np.inf, angle[..., 0]))
 
-    Parameters
+    def last(stands: NDArray[np.bool_]) -> tuple[int, int]:
+        """Return the first and the last place about the middle up to which both wheels stand so."""
+        both = np.append(stands.all(axis=-1), False)
+        return middle + 1 - int(np.argmin(both[middle::-1])), middle - 1 + int(np.argmin(both[middle:]))
+
+    begin, end = last(arc >= [pair.steepest for pair in section.sides])
+    first, final = displacement[list(last(~np.isnan(arc)))]
+    some = slice(begin, end + 1)
+    steep = np.tan(angle[some])
+    slope = np.asarray(np.maximum.accumulate(steep[:, 1] - steep[:, 0]), np.float64)
+    ends = max(displacement[begin] - BEYOND, first), min(displacement[end] + BEYOND, final)
+    treads = displacement[list(last(angle <= flange_angle))]
+    return Play(displacement[some], slope + 1e-9 * np.arange(slope.size), ends, (float(treads[0]), float(treads[1])))
+
+
+class Guided(NamedTuple):
+    """Where wheelsets stand under lateral forces.
+
+    Attributes
     ----------
-    task : Task
-        Its lateral force is given, and its displacement is not read.
-    solved : callable
-        Returns the loads of a part of the task.
-    stands : callable
-        Returns whether both rigid wheels stand on their rails, at displacements [m] of the positions in the second
-        argument; if the third one is true, below the steepest points of their flanges.
-    begins : callable
-        Returns where the search begins, by lateral forces over the load of a wheel: distances from the middle [m].
+    loads : Loads
+        Where a wheel climbs, those at which the search ended.
+    place, greatest : ndarray, (positions,)
+        Lateral displacement with the greatest ∑ Y towards that side which was met [m], and that ∑ Y [N].
+    climbs : ndarray of bool, (positions,)
+        Whether no displacement bears the force.
     """
+
+    loads: Loads
+    place: Array
+    greatest: Array
+    climbs: NDArray[np.bool_]
+
+
+def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: Play) -> Guided:
+    """Return where the rails bear the lateral forces of a task; loads without creep forces say where that begins."""
+    task = loads.task
     assert task.lateral_force is not None
-    force, count = task.lateral_force, task.lateral_force.size
-    left_over = BORNE * task.load.sum(axis=-1)
-
-    def borne(points: NDArray[np.intp], displacement: Array) -> tuple[Array, Array]:
-        """Return ∑ Y at positions [N], NaN where no loads balance, and its rate [N/m]."""
-        loads = solved(task.part(points, displacement))
-        balanced = (loads.left.max(axis=-1) <= ROUGH) | ~loads.task.bears.any(axis=-1)
-        return np.where(balanced, loads.lateral.sum(axis=-1), np.nan), loads.stiffness
-
-    # From here on, distances and forces are positive to the side to which the wheelset moves from the middle.
-    every = np.arange(count)
-    middle, _ = borne(every, np.zeros(count))
-    side = np.where(force < middle, -1.0, 1.0)
-    end = _last(lambda distance, points, below: stands(side[points] * distance, points, below), count)
-    low, high, at_low = np.zeros(count), np.full(count, np.inf), side * (middle - force)
-    most, place = at_low.copy(), np.zeros(count)
-    distance = np.where(
-        np.abs(at_low) <= left_over, 0.0, np.minimum(begins(np.abs(force) / task.load.mean(axis=-1)), end)
-    )
-    going, climbs = every[np.abs(at_low) > left_over], np.zeros(count, dtype=np.bool_)
+    count, axle = task.yaw.size, task.load.sum(axis=-1)
+    loads = loads.solved(forces, np.full(count, ROUGH))
+    excess = loads.lateral.sum(axis=-1) - task.lateral_force
+    rigid = play.at(play.share(task.displacement) - excess / task.load.mean(axis=-1))
+    # From here on, distances and forces are positive to the side on which the rails bear the force.
+    side = np.where(rigid < 0.0, -1.0, 1.0)
+    ends, steep = (np.where(side < 0.0, -left, right) for left, right in (play.ends, play.displacement[[0, -1]]))
+    distance, rigid = side * task.displacement, side * rigid
+    low, at_low, rise = np.full((3, count), -np.inf)  # the lower bound, with excess and rate there
+    high, most, place = ends.copy(), np.full(count, -np.inf), np.zeros(count)
+    last = np.full((3, count), np.nan)  # distance, excess and rate of the step before
+    slip = np.zeros(count)
+    reached, falls, climbs, fine = np.zeros((4, count), dtype=np.bool_)
+    going = np.arange(count)
     for step in range(STEPS):
+        if step:
+            goal = np.where(fine[going], BALANCED, ROUGH)
+            loads = loads.moved(forces, going, side[going] * distance[going], goal)
+        d, rate = distance[going], loads.stiffness[going]
+        balanced = (loads.left[:, :3].max(axis=-1) <= ROUGH) | ~loads.task.bears.any(axis=-1)
+        excess = (side * (np.where(balanced, loads.lateral.sum(axis=-1), np.nan) - task.lateral_force))[going]
+        near = np.abs(excess) <= BORNE * axle[going]
+        done = near & fine[going] & (rate > 0.0)
+        fine[going] |= np.abs(excess) <= NEAR * axle[going]
+        more = excess > most[going]
+        most[going], place[going] = np.fmax(most[going], excess), np.where(more, d, place[going])
+        # Bounds: friction may hold a flange, or the wheel climbs; a root or the greatest force lies before.
+        lost = np.isnan(excess) | ((rate <= 0.0) & (excess <= 0.0) & (d > FLANGE * steep[going]))
+        over = lost | (excess > 0.0)
+        vain = ~over & (d >= high[going]) & ~reached[going]
+        falls[going], reached[going] = np.where(over, lost, falls[going]), reached[going] | over
+        high[going] = np.where(over, d, high[going])
+        for array, value in ((low, d), (at_low, excess), (rise, rate)):
+            array[going] = np.where(over, array[going], value)
+        top = at_low[going] + rise[going] * (high - low)[going]  # the sum bends down before the wheel climbs
+        total = np.abs(most + side * task.lateral_force)[going]
+        vain |= falls[going] & (top < 0.0) & (top - most[going] < SURE * total)
+        vain |= reached[going] & (high - low <= CLOSE)[going]
+        climbs[going] = vain & ~done & (most[going] < 0.0)
+        # The next distance, by the rate of the pressure and what the last step shows of that of the creep forces.
+        by = d - last[0, going]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            chord = (excess - last[1, going]) / by - 0.5 * (rate + last[2, going])
+            slip[going] = np.where(np.isfinite(chord) & (np.abs(by) > SMALL), chord, slip[going])
+            slope = np.where(rate + slip[going] > LEAST * rate, rate + slip[going], rate)
+            ahead = d - excess / slope
+        last[:, going] = d, excess, rate
+        if step == 0:
+            ahead = np.where((np.abs(rigid - d) > SHORTEST) & (np.abs(rigid - d) < np.abs(ahead - d)), rigid, ahead)
+        limit = np.minimum(d + np.maximum(0.5 * (steep[going] - d), SHORTEST), high[going])
+        least = d - np.maximum(0.5 * (steep[going] + d), SHORTEST)
+        between = reached[going] & np.isfinite(low[going])
+        inside = (ahead > low[going]) & (~reached[going] | (ahead < high[going])) | fine[going]
+        inside &= (rate > 0.0) & ~lost & ~((step >= SLOW) & (step % 2 == 1) & between)
+        ahead = np.where(reached[going], np.maximum(ahead, least), np.minimum(ahead, limit))
+        middle = 0.5 * (np.where(between, low[going], 0.0) + high[going])
+        middle = np.where(between, middle, np.where(over, INWARDS * d, limit))
+        distance[going] = np.where(inside, ahead, middle)
+        going = going[~(done | vain)]
         if not going.size:
             break
-        x = distance[going]
-        total, rate = borne(going, side[going] * x)
-        excess = side[going] * (total - force[going])
-        most[going], place[going] = np.fmax(most[going], excess), np.where(excess > most[going], x, place[going])
-        over = (excess > 0.0) | np.isnan(excess)  # friction may hold a flange; the root is sought before that
-        beyond = ~over & (rate <= 0.0)  # the wheel climbs: a greater force lies before
-        over |= beyond
-        high[going] = np.where(over, x, high[going])
-        low[going] = np.where(over, low[going], x)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            ahead = x - excess / rate
-        bound = np.minimum(high[going], end[going])
-        inside = (ahead > low[going]) & (ahead < bound) & ~beyond & (rate > 0.0)
-        if step >= SLOW and step % 2:
-            inside[:] = False
-        distance[going] = np.where(inside, ahead, 0.5 * (low[going] + bound))
-        done = (np.abs(excess) <= left_over[going]) | (bound - low[going] <= CLOSE)
-        distance[going[np.abs(excess) <= left_over[going]]] = x[np.abs(excess) <= left_over[going]]
-        climbs[going] = done & (np.abs(excess) > left_over[going]) & (most[going] < 0.0)
-        going = going[~done]
-    return Guided(side * np.where(climbs, place, distance), climbs, side * most + force)
-
-
-def _last(stands: Callable[[Array, NDArray[np.intp], bool], NDArray[np.bool_]], count: int) -> Array:
-    """Return the farthest distances that are searched [m]."""
-    last, step = np.zeros(count), STEP
-    points = np.arange(count)
-    while points.size and last[points[0]] < FARTHEST:
-        points = points[stands(last[points] + step, points, True)]
-        last[points] += step
-    points = np.flatnonzero(last < FARTHEST)
-    for _ in range(HALVINGS):
-        step *= 0.5
-        last[points] += np.where(stands(last[points] + step, points, True), step, 0.0)
-    return last + np.where(stands(last + BEYOND, np.arange(count), False), BEYOND, 0.0)
+    return Guided(loads, side * place, side * most + task.lateral_force, climbs)

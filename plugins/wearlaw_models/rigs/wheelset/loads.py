@@ -16,7 +16,7 @@ from wearlaw_models.rigs.wheelset.motion import placed
 from wearlaw_models.rigs.wheelset.patches import Patches, joined
 from wearlaw_models.rigs.wheelset.rows import Lattice
 from wearlaw_models.rigs.wheelset.search import Section, Touching, both_sides
-from wearlaw_models.rigs.wheelset.stand import Stand
+from wearlaw_models.rigs.wheelset.stand import BALANCED, Creeping, Stand
 from wearlaw_models.rigs.wheelset.task import Elastic, Patch, Task
 
 AGAIN = 4
@@ -27,6 +27,9 @@ FARTHEST, MOST_ROLL = 0.5e-3, 1e-3
 
 BLOCK = 64
 """Positions that are solved at once: the influences of their elements take some 20 MB."""
+
+OUTWARDS = 0.05e-3
+"""Longest step outwards on a flange [m]."""
 
 ROUGH = 1e-3
 """Greatest imbalance of a result."""
@@ -88,23 +91,29 @@ class Loads:
                 loads.stands.append(each)
         return loads
 
-    def until_near(self, stand: Stand, forces: Callable[[wl.Problem], wl.CreepForces] | None = None) -> Iterator[Stand]:
-        """Yield a stand, and those of its positions that are laid again because they have moved far."""
+    def until_near(
+        self, stand: Stand, forces: Callable[[wl.Problem], wl.CreepForces] | None = None, goal: Array | None = None
+    ) -> Iterator[Stand]:
+        """Yield a stand, and those of its positions that are laid again because they have moved far.
+
+        With creep forces, they are balanced to the greatest imbalance of each position, (positions of the stand,).
+        """
         for number in range(AGAIN + 1):
             if forces is not None:
-                stand.balance(forces, self.patch, number == AGAIN)
+                assert goal is not None
+                stand.balance(forces, self.patch, number == AGAIN, goal)
             yield stand
             far = stand.shift > 1.0
             if number == AGAIN or not far.any():
                 return
-            points, (height, roll), displacement = stand.points[far], stand.now, stand.displacement[far]
+            points, (height, roll) = stand.points[far], stand.now
             height = np.clip(height, stand.height - FARTHEST, stand.height + FARTHEST)
             roll = np.clip(roll, stand.roll - MOST_ROLL, stand.roll + MOST_ROLL)
             stand = Stand.laid(
-                self.section, self.lattice, self.elastic, stand.task.part(np.flatnonzero(far), displacement), points,
-                height[far], roll[far], None,
-                None if forces is None else stand,
+                self.section, self.lattice, self.elastic, stand.task.part(np.flatnonzero(far)), points, height[far],
+                roll[far], None, None if forces is None else stand.creeping,
             )  # fmt: skip
+            goal = None if goal is None else goal[far]
 
     def under(self, conditions: Mapping[str, Array]) -> Loads:
         """Return the loads under conditions of contact models and stages, (positions,)."""
@@ -114,31 +123,84 @@ class Loads:
             stand.task = replace(stand.task, conditions=task.part(stand.points).conditions)
         return replace(self, task=task, stands=stands)
 
-    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces]) -> Loads:
-        """Return the loads that balance the creep forces of a problem with one entry for each patch."""
-        stands = [each for stand in self.stands for each in self.until_near(stand.copy(), forces)]
+    def solved(self, forces: Callable[[wl.Problem], wl.CreepForces], goal: Array) -> Loads:
+        """Return the loads that balance the creep forces of a problem with one entry for each patch.
+
+        `goal` is the greatest imbalance of each position.
+        """
+        stands = [each for stand in self.stands for each in self.until_near(stand.copy(), forces, goal[stand.points])]
         return self._kept(stands)
 
-    def guided(self, forces: Callable[[wl.Problem], wl.CreepForces], some: NDArray[np.bool_]) -> Loads:
-        """Return the loads with displacements near by at which the rails bear the lateral forces, at some positions."""
+    def outwards(self, forces: Callable[[wl.Problem], wl.CreepForces], there: Loads) -> Loads:
+        """Return the loads that balance the creep forces at displacements farther out, in steps from these.
+
+        `there` are those without creep forces, from which a position starts that loses its balance on the way.
+        """
+        displacement = there.task.displacement
+        rest = displacement - self.task.displacement
+        loads, moves = self.solved(forces, np.where(rest == 0.0, BALANCED, ROUGH)), rest != 0.0
+        while rest.any():
+            points = np.flatnonzero(rest)
+            rest -= np.clip(rest, -OUTWARDS, OUTWARDS)
+            goal = np.where(rest == 0.0, BALANCED, ROUGH)[points]
+            loads = loads.moved(forces, points, (displacement - rest)[points], goal)
+        lost = np.flatnonzero(moves & (loads.left[:, :3].max(axis=-1) > ROUGH))
+        return loads._again(forces, lost, *there._ahead(displacement), None, np.full(lost.size, BALANCED))
+
+    def moved(
+        self, forces: Callable[[wl.Problem], wl.CreepForces], points: NDArray[np.intp], displacement: Array, goal: Array
+    ) -> Loads:
+        """Return the loads with some positions at other displacements [m], with the creep forces that they had.
+
+        `goal` is the greatest imbalance of each of them.
+        """
+        whole = self.task.displacement.copy()
+        whole[points] = displacement
+        moved = replace(self, task=replace(self.task, displacement=whole))
+        return moved._again(forces, points, *self._ahead(whole), self._creeping, goal)
+
+    def _again(
+        self, forces: Callable[[wl.Problem], wl.CreepForces], points: NDArray[np.intp], height: Array, roll: Array,
+        creeping: Creeping | None, goal: Array,
+    ) -> Loads:  # fmt: skip
+        """Return the loads with some positions laid anew, by heights [m] and rolls [rad] of all."""
         stands = list(self.stands)
-        for stand in self.stands:
-            here = some[stand.points] & (self._last[stand.points] == self.stands.index(stand))
-            if here.any():
-                task = replace(stand.task.part(np.flatnonzero(here)), guided=True)
-                height, roll = stand.now
-                again = Stand.laid(
-                    self.section, self.lattice, self.elastic, task, stand.points[here], height[here], roll[here], None,
-                    stand,
-                )  # fmt: skip
-                stands += self.until_near(again, forces)
+        for start in range(0, points.size, BLOCK):
+            some = points[start : start + BLOCK]
+            stand = Stand.laid(
+                self.section, self.lattice, self.elastic, self.task.part(some), some, height[some], roll[some], None,
+                creeping,
+            )  # fmt: skip
+            stands += self.until_near(stand, forces, goal[start : start + BLOCK])
         return self._kept(stands)
+
+    def _ahead(self, displacement: Array) -> tuple[Array, Array]:
+        """Return heights of the axle at both wheels [m] and rolls [rad] at other displacements [m]."""
+        height, roll = np.empty((displacement.size, 2)), np.empty(displacement.size)
+        for stand in self.stands:
+            heights, roll[stand.points] = stand.ahead(displacement[stand.points])
+            height[stand.points] = heights
+        return height, roll
+
+    @property
+    def _creeping(self) -> Creeping:
+        """What the rows of all positions leave to those that are laid anew."""
+        last, parts = self._last, []
+        for number, stand in enumerate(self.stands):
+            each = stand.creeping
+            of = stand.points[stand.rows.wheel // 2]
+            parts.append([array[last[of] == number] for array in each[2:]])
+        keys, ratio, sine = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+        order = np.argsort(keys)
+        return Creeping(np.arange(last.size), self.rotation, keys[order], ratio[order], sine[order])
 
     def _kept(self, stands: list[Stand]) -> Loads:
-        """Return the loads of stands as results keep them, which need no influences any more."""
-        for stand in stands:
+        """Return the loads of stands as results keep them: the last ones, which need no influences any more."""
+        loads = replace(self, stands=stands)
+        loads.stands = [stands[number] for number in np.unique(loads._last)]
+        for stand in loads.stands:
             stand.pressed.influence = np.empty(0)
-        return replace(self, stands=stands)
+        return loads
 
     @property
     def _last(self) -> NDArray[np.intp]:
@@ -167,11 +229,6 @@ class Loads:
         return self._gathered("left")
 
     @cached_property
-    def displacement(self) -> Array:
-        """Lateral displacement of the wheelset, positive to the right [m]."""
-        return self._gathered("displacement")
-
-    @cached_property
     def vertical(self) -> Array:
         """Vertical force of each wheel on its rail, Q [N], (positions, 2)."""
         return self._gathered("vertical")
@@ -184,7 +241,7 @@ class Loads:
     @cached_property
     def stiffness(self) -> Array:
         """Rate of the sum of the lateral forces with the lateral displacement [N/m]."""
-        return self._gathered("stiffness")
+        return self._gathered("rates")[:, 2]
 
     @cached_property
     def roll(self) -> Array:

@@ -47,9 +47,6 @@ from which they join at the first solutions. On an area that grows, fewer leave 
 LONGEST = 1.0
 """Most by which a step changes the overlap anywhere, over the greatest overlap."""
 
-LOOPS = 400
-"""Passes of NumPy over one wheel, to judge whether compiled loops are worth while."""
-
 INTS, VECTOR, ROWS = "int64[::1]", "float64[::1]", "float64[:, ::1]"
 
 
@@ -60,6 +57,10 @@ class Pressed:
     Attributes
     ----------
     rows : Rows
+    modulus : float
+        E* [Pa].
+    loops : bool
+        Whether compiled loops are used.
     rates, weights : ndarray, (rows, unknowns)
         Rates of the overlap with the unknown displacements, and what the force of a row adds to the loads.
     first, table : ndarray of int, (wheels + 1,)
@@ -74,6 +75,10 @@ class Pressed:
         Which elements touch.
     response : ndarray, (elements, 1 + unknowns)
         Pressure where they touch, otherwise the overlap that is left, as a linear function of the displacements.
+    now : ndarray, (elements,)
+        Pressure [Pa] or overlap that is left [m] at the present displacements.
+    forces : ndarray, (rows, 1 + unknowns)
+        Forces of the rows as linear functions of the displacements [N].
     fresh : ndarray of bool, (wheels,)
         Whether the elements that touch have changed since the response was found.
     moved : ndarray, (positions, unknowns)
@@ -82,6 +87,7 @@ class Pressed:
 
     rows: Rows
     modulus: float
+    loops: bool
     rates: Array
     weights: Array
     first: NDArray[np.intp]
@@ -93,11 +99,13 @@ class Pressed:
     shape: Array
     on: NDArray[np.bool_]
     response: Array
+    now: Array
+    forces: Array
     fresh: NDArray[np.bool_]
     moved: Array
 
     @classmethod
-    def begun(cls, rows: Rows, modulus: float, rates: Array) -> Pressed:
+    def begun(cls, rows: Rows, modulus: float, rates: Array, loops: bool) -> Pressed:
         """Return elements for rows, of which those touch that overlap much."""
         size, columns = np.diff(rows.start), rows.columns
         both = rows.half[rows.wheel]
@@ -112,14 +120,15 @@ class Pressed:
         table = np.concatenate([[0], np.cumsum(size**2 * np.where(rows.half, 3 * columns - 1, 2 * columns - 1))])
         top = np.maximum.reduceat(shape, first[:-1])
         return cls(
-            rows, modulus, rates, np.zeros((rates.shape[0], 2)), first, table, np.empty(0), row, column, x, shape,
-            shape >= top[wheel] - (1.0 - BEGINS) * np.abs(top[wheel]), np.zeros((row.size, 1 + rates.shape[1])),
+            rows, modulus, loops, rates, np.zeros((rates.shape[0], 2)), first, table, np.empty(0), row, column, x,
+            shape, shape >= top[wheel] - (1.0 - BEGINS) * np.abs(top[wheel]), np.zeros((row.size, 1 + rates.shape[1])),
+            np.zeros(row.size), np.zeros((rates.shape[0], 1 + rates.shape[1])),
             np.ones(size.size, dtype=np.bool_), np.zeros((size.size // 2, rates.shape[1])),
         )  # fmt: skip
 
     def copy(self) -> Pressed:
         """Return a copy whose pressure changes on its own."""
-        names = "weights", "on", "response", "fresh", "moved"
+        names = "weights", "on", "response", "now", "forces", "fresh", "moved"
         return replace(self, **{name: getattr(self, name).copy() for name in names})
 
     def _influence(self) -> Array:
@@ -131,18 +140,13 @@ class Pressed:
             given = (
                 rows.start, *arrays, rows.dx, rows.columns, rows.half, self.modulus, self.table, self.influence,
             )  # fmt: skip
-            (influence_loop if wl.accelerated(LOOPS * rows.dx.size) else influences)(*given)
+            (influence_loop if self.loops else influences)(*given)
         return self.influence
 
     @property
     def pressure(self) -> Array:
         """The pressure of the elements [Pa]."""
-        return np.where(self.on, self._now(), 0.0)
-
-    def _now(self) -> Array:
-        moved = self.moved[self.rows.wheel[self.row] // 2]
-        now: Array = self.response[:, 0] + (self.response[:, 1:] * moved).sum(axis=-1)
-        return now
+        return np.where(self.on, self.now, 0.0)
 
     def overlap(self) -> Array:
         """Return the overlap of the undeformed bodies in rows [m]."""
@@ -171,54 +175,17 @@ class Pressed:
         offset = np.add.reduceat(pressure * self.x, begins) / np.where(sums > 0.0, sums, 1.0)
         return most, rows.place.x + np.where(rows.half[rows.wheel], 0.0, offset)
 
-    @property
-    def forces(self) -> Array:
-        """Forces of the rows as linear functions of the displacements, (rows, 1 + unknowns)."""
+    def carry(self, load: Array, points: NDArray[np.intp]) -> None:
+        """Find the pressure and the displacements that carry loads, (positions, unknowns) [N], at some positions."""
         rows = self.rows
         area = (np.where(rows.half, 2.0, 1.0) * rows.dx)[rows.wheel] * rows.width
-        begins = np.flatnonzero(np.diff(self.row, prepend=-1))
-        forces: Array = np.add.reduceat(np.where(self.on[:, None], self.response, 0.0), begins)
-        return forces * area[:, None]
-
-    def carry(self, load: Array) -> None:
-        """Find the pressure and the displacements that carry loads, (positions, unknowns) [N]."""
-        rows, wheel = self.rows, self.rows.wheel[self.row]
         deepest = rows.deepest.reshape(-1, 2).max(axis=-1)
-        point, slack = rows.start[:-1:2], SLACK * deepest[wheel // 2]
-        for number in range(MOST):
-            self._respond()
-            forces = self.forces
-            sums = np.add.reduceat(self.weights[:, :, None] * forces[:, None, :], point)
-            step = np.zeros(self.moved.shape)
-            held = load.shape[1]
-            found = np.linalg.solve(sums[..., 1 : 1 + held], (load - sums[..., 0])[..., None])[..., 0]
-            step[:, :held] = found - self.moved[:, :held]
-            most = np.maximum.reduceat(np.abs((self.rates * step[rows.wheel // 2]).sum(axis=-1)), point)
-            share = np.minimum(LONGEST * deepest / np.maximum(most, TINY), 1.0)
-            self.moved += share[:, None] * step
-            now = self._now()
-            leaves, joins = self.on & (now < 0.0), ~self.on & (now > slack)
-            if number < EARLY:
-                most = np.maximum.reduceat(np.where(joins, now, 0.0), self.first[:-1])
-                joins &= now >= JOIN * most[wheel]
-            if number >= TOGETHER:
-                joins &= ~np.logical_or.reduceat(leaves, self.first[:-1])[wheel]
-            self.fresh |= np.logical_or.reduceat(leaves | joins, self.first[:-1])
-            if not self.fresh.any() and (share == 1.0).all():
-                break
-            self.on = (self.on & ~leaves) | joins
-            for empty in np.flatnonzero(~np.logical_or.reduceat(self.on, self.first[:-1])):
-                self.on[self.first[empty] + now[self.first[empty] : self.first[empty + 1]].argmax()] = True
-
-    def _respond(self) -> None:
-        """Find the responses of wheels whose elements in touch have changed, in place."""
-        wheels, rows = np.flatnonzero(self.fresh), self.rows
         given = (
-            wheels, rows.start, rows.width, self.rates, rows.columns, rows.half, self.first, self.table,
-            self._influence(), self.row, self.column, self.shape, self.moved, self.on, self.response,
+            points, load, self.weights, self.rates, rows.start, rows.width, area, deepest, rows.columns, rows.half,
+            self.first, self.table, self._influence(), self.row, self.column, self.shape, self.on, self.response,
+            self.now, self.forces, self.moved, self.fresh,
         )  # fmt: skip
-        (respond_loop if wl.accelerated(LOOPS * wheels.size) else respond)(*given)
-        self.fresh[:] = False
+        (carry_loop if self.loops else carry)(*given)
 
 
 TINY = 1e-300
@@ -347,7 +314,8 @@ def influence_loop(
 
 
 def respond(
-    wheels: NDArray[np.intp],
+    wheel: int,
+    displacement: Array,
     start: NDArray[np.intp],
     width: Array,
     rates: Array,
@@ -359,42 +327,40 @@ def respond(
     row: NDArray[np.intp],
     column: NDArray[np.intp],
     shape: Array,
-    moved: Array,
     on: NDArray[np.bool_],
     response: Array,
 ) -> None:
-    """Fill in the responses of the elements of wheels to displacements, as `respond_loop` does."""
-    for wheel in wheels:
-        size, count = start[wheel + 1] - start[wheel], columns[wheel]
-        span = 3 * count - 1 if half[wheel] else 2 * count - 1
-        some = slice(first[wheel], first[wheel + 1])
-        of, of_row, of_column = response[some], row[some] - start[wheel], column[some]
-        of[:, 0], of[:, 1:] = shape[some], rates[row[some]]
-        touch = on[some]
-        at = np.flatnonzero(touch)
-        near = np.flatnonzero(touch | (of[:, 0] + of[:, 1:] @ moved[wheel // 2] > 0.0))
-        lead = of_row[near, None] * (size * span) + of_column[near, None]
-        trail = of_row[at] * span + count - 1
-        of_wheel = influence[table[wheel] : table[wheel + 1]]
-        matrix = of_wheel[lead + (trail - of_column[at])]
-        if half[wheel]:
-            matrix += of_wheel[lead + (trail + of_column[at] + 1)]
-        wide = width[row[some][at], None]
-        pressed = np.linalg.solve(matrix[touch[near]], of[at]) / wide
-        of[near] -= matrix @ (wide * pressed)
-        of[at] = pressed
+    """Fill in the responses of the elements of a wheel to displacements."""
+    size, count = start[wheel + 1] - start[wheel], columns[wheel]
+    span = 3 * count - 1 if half[wheel] else 2 * count - 1
+    begin, end = first[wheel], first[wheel + 1]
+    of, touches, place = response[begin:end], on[begin:end], row[begin:end] - start[wheel]
+    of[:, 0], of[:, 1:] = shape[begin:end], rates[row[begin:end]]
+    overlap = shape[begin:end].copy()
+    for k in range(displacement.size):
+        overlap += of[:, 1 + k] * displacement[k]
+    at, near = np.flatnonzero(touches), np.flatnonzero(touches | (overlap > 0.0))
+    across, along = place[near] * (size * span) + column[begin:end][near], column[begin:end][at]
+    middle = place[at] * span + count - 1
+    of_wheel = influence[table[wheel] : table[wheel + 1]]
+    matrix = of_wheel[(across.reshape(-1, 1) + (middle - along)).ravel()]
+    if half[wheel]:
+        matrix += of_wheel[(across.reshape(-1, 1) + (middle + along + 1)).ravel()]
+    matrix = matrix.reshape((near.size, at.size))
+    pressed = np.linalg.solve(matrix[np.flatnonzero(touches[near])], of[at])
+    of[near] -= matrix @ pressed
+    of[at] = pressed / width[row[begin:end][at]].reshape(-1, 1)
 
 
-@wl.compiled_loop(
-    f"void({INTS}, {INTS}, {VECTOR}, {ROWS}, {INTS}, boolean[::1], {INTS}, {INTS}, {VECTOR}, {INTS}, {INTS}, {VECTOR},"
-    f" {ROWS}, boolean[::1], {ROWS})",
-    reorders=True,
-)
-def respond_loop(
-    wheels: NDArray[np.intp],
+def carry(
+    points: NDArray[np.intp],
+    load: Array,
+    weights: Array,
+    rates: Array,
     start: NDArray[np.intp],
     width: Array,
-    rates: Array,
+    area: Array,
+    deepest: Array,
     columns: NDArray[np.intp],
     half: NDArray[np.bool_],
     first: NDArray[np.intp],
@@ -403,72 +369,61 @@ def respond_loop(
     row: NDArray[np.intp],
     column: NDArray[np.intp],
     shape: Array,
-    moved: Array,
     on: NDArray[np.bool_],
     response: Array,
+    now: Array,
+    forces: Array,
+    moved: Array,
+    fresh: NDArray[np.bool_],
 ) -> None:
-    """Fill in the responses of the elements of wheels to displacements, by the Cholesky factors of those that touch."""
-    unknowns = rates.shape[1]
-    for wheel in wheels:
-        i0, e0, size, count = start[wheel], first[wheel], start[wheel + 1] - start[wheel], columns[wheel]
-        both = half[wheel]
-        span = 3 * count - 1 if both else 2 * count - 1
-        of_wheel = influence[table[wheel] : table[wheel + 1]]
-        total = first[wheel + 1] - e0
-        at, lead = np.empty(total, np.int64), np.empty(total, np.int64)
-        trail, mirrored = np.empty(total, np.int64), np.empty(total, np.int64)
-        near = np.empty(total, np.int64)
-        held = others = 0
-        for e in range(e0, e0 + total):
-            now = response[e, 0] = shape[e]
-            for k in range(unknowns):
-                response[e, 1 + k] = rates[row[e], k]
-                now += rates[row[e], k] * moved[wheel // 2, k]
-            if on[e]:
-                i = row[e] - i0
-                at[held], lead[held] = e, i * size * span + column[e]
-                trail[held], mirrored[held] = i * span + count - 1 - column[e], i * span + count + column[e]
-                held += 1
-            elif now > 0.0:
-                near[others] = e
-                others += 1
-        lower, right = np.empty((held, held)), np.empty((1 + unknowns, held))
-        for i in range(held):
-            for r in range(1 + unknowns):
-                right[r, i] = response[at[i], r]
-            for j in range(i + 1):
-                lower[i, j] = of_wheel[lead[i] + trail[j]]
-                if both:
-                    lower[i, j] += of_wheel[lead[i] + mirrored[j]]
-        for j in range(held):
-            for i in range(j, held):
-                value = lower[i, j]
-                for k in range(j):
-                    value -= lower[i, k] * lower[j, k]
-                lower[i, j] = math.sqrt(value) if i == j else value / lower[j, j]
-        for r in range(1 + unknowns):
-            for j in range(held):
-                value = right[r, j]
-                for k in range(j):
-                    value -= lower[j, k] * right[r, k]
-                right[r, j] = value / lower[j, j]
-            for j in range(held - 1, -1, -1):
-                value = right[r, j] = right[r, j] / lower[j, j]
-                for k in range(j):
-                    right[r, k] -= value * lower[j, k]
-        moves = np.empty(held)
-        for i in range(others):
-            begin = (row[near[i]] - i0) * size * span + column[near[i]]
-            for j in range(held):
-                moves[j] = of_wheel[begin + trail[j]]
-            if both:
-                for j in range(held):
-                    moves[j] += of_wheel[begin + mirrored[j]]
-            for r in range(1 + unknowns):
-                value = 0.0
-                for j in range(held):
-                    value += moves[j] * right[r, j]
-                response[near[i], r] -= value
-        for i in range(held):
-            for r in range(1 + unknowns):
-                response[at[i], r] = right[r, i] / width[row[at[i]]]
+    """Fill in pressure, forces and displacements that carry loads at some positions, as `Pressed.carry` asks."""
+    held = load.shape[1]
+    for point in points:
+        rows, wheels = slice(start[2 * point], start[2 * point + 2]), (2 * point, 2 * point + 1)
+        for number in range(MOST):
+            for wheel in wheels:
+                if fresh[wheel]:
+                    respond(
+                        wheel, moved[point], start, width, rates, columns, half, first, table, influence, row, column,
+                        shape, on, response,
+                    )  # fmt: skip
+                    some, begin, end = slice(first[wheel], first[wheel + 1]), start[wheel], start[wheel + 1]
+                    place, touches = row[some] - begin, np.where(on[some], 1.0, 0.0)
+                    for k in range(1 + moved.shape[1]):
+                        per_area = np.bincount(place, touches * response[some, k], end - begin)
+                        forces[begin:end, k] = area[begin:end] * per_area
+            sums = weights[rows].T @ forces[rows]
+            step = np.zeros(moved.shape[1])
+            step[:held] = np.linalg.solve(
+                np.ascontiguousarray(sums[:, 1 : 1 + held]), load[point] - sums[:, 0]
+            ) - moved[point, :held]  # fmt: skip
+            most = np.abs(rates[rows] @ step).max()
+            share = min(LONGEST * deepest[point] / max(most, TINY), 1.0)
+            moved[point] += share * step
+            settled = share == 1.0
+            for wheel in wheels:
+                some = slice(first[wheel], first[wheel + 1])
+                touches, value = on[some], response[some, 0].copy()
+                for k in range(moved.shape[1]):
+                    value += response[some, 1 + k] * moved[point, k]
+                now[some] = value
+                leaves, joins = touches & (value < 0.0), ~touches & (value > SLACK * deepest[point])
+                if number < EARLY:
+                    joins &= value >= JOIN * np.where(joins, value, 0.0).max()
+                if number >= TOGETHER and leaves.any():
+                    joins[:] = False
+                fresh[wheel] = (leaves | joins).any()
+                if fresh[wheel]:
+                    settled = False
+                    on[some] = (touches & ~leaves) | joins
+                    if not on[some].any():
+                        on[first[wheel] + value.argmax()] = True
+            if settled:
+                break
+
+
+FLAGS = "boolean[::1]"
+carry_loop = wl.compiled_loop(
+    f"void({INTS}, {ROWS}, {ROWS}, {ROWS}, {INTS}, {VECTOR}, {VECTOR}, {VECTOR}, {INTS}, {FLAGS}, {INTS}, {INTS},"
+    f" {VECTOR}, {INTS}, {INTS}, {VECTOR}, {FLAGS}, {ROWS}, {VECTOR}, {ROWS}, {ROWS}, {FLAGS})"
+)(carry)

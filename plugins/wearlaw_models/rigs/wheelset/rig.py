@@ -16,7 +16,7 @@ from wearlaw import Array
 from wearlaw_models.rigs.wheelset.conicity import NOTHING, equivalent_conicity
 from wearlaw_models.rigs.wheelset.fitting import check_fit
 from wearlaw_models.rigs.wheelset.geometry import Geometry, geometry, patches, profiles
-from wearlaw_models.rigs.wheelset.guidance import FARTHEST, guided
+from wearlaw_models.rigs.wheelset.guidance import FARTHEST, Play, guided, play
 from wearlaw_models.rigs.wheelset.loads import BALANCE, Loads
 from wearlaw_models.rigs.wheelset.pictures import Profiles, contact_figure, wear_figure
 from wearlaw_models.rigs.wheelset.problem import (
@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 
 JUST_TOUCHING = 1e-3
 """Share of the load of the other wheel with which a lifted one is taken to touch its rail."""
+
+LOOPS = 400
+"""Passes of NumPy over one wheel, to judge whether compiled loops are worth while."""
 
 MARGIN = 1e-3
 """Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
@@ -374,12 +377,17 @@ class Wheelset(wl.Rig):
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, WheelsetProblem)
         # A position has the same condition on both sides.
-        loads = problem.loads.under({name: array[..., 0, 0].ravel() for name, array in problem.conditions.items()})
-        if loads.task.lateral_force is None:
-            loads = loads.solved(forces)
+        there = problem.loads.under({name: array[..., 0, 0].ravel() for name, array in problem.conditions.items()})
+        task = there.task
+        if task.lateral_force is None:
+            # Where a flange bears, friction may hold it or not; the wheelset comes there from the tread.
+            begin = np.clip(task.displacement, *self._play.treads)
+            moves = (begin != task.displacement).any()
+            loads = self._loads(replace(task, displacement=begin), task.roll) if moves else there
+            loads = loads.outwards(forces, there)
             status = loads.status
         else:
-            loads, status = self._guided(loads, forces)
+            loads, status = self._guided(there, forces)
         warn_of_climbing(loads)
         warn_of_missing(loads, status)
         whole = self._whole(loads, status, problem.shape)
@@ -387,21 +395,26 @@ class Wheelset(wl.Rig):
         return whole
 
     def _task(self, conditions: Mapping[str, Array], friction: tuple[Friction, Friction]) -> Task:
-        """Return what is asked at positions; with a lateral force, they are in the middle of the track at first."""
+        """Return what is asked at positions; with a lateral force, they are where rigid wheels bear it."""
         speed = np.full(conditions["yaw"].shape, wl.scalar_si(self.rolling_speed, "m/s"))
         speed = conditions.get("rolling_speed", speed)
-        none, load = np.zeros(speed.shape), conditions.get("vertical_load")
+        load = conditions.get("vertical_load")
         loads = np.stack(
             [conditions[f"vertical_load_{side}"] if load is None else load for side in DIMS["side"]], axis=-1
         )
         bears = loads > 0.0
         touching = JUST_TOUCHING * np.maximum(loads.max(axis=-1, keepdims=True), 1.0)
+        force = conditions.get("lateral_force")
+        if force is None:
+            displacement = conditions["lateral_displacement"]
+        else:
+            displacement = self._play.at(force / np.where(bears, loads, touching).mean(axis=-1))
         return Task(
-            conditions.get("lateral_displacement", none), conditions["yaw"], speed, conditions["lateral_velocity"],
+            displacement, conditions["yaw"], speed, conditions["lateral_velocity"],
             conditions["yaw_velocity"], conditions["yaw_velocity"] + speed / conditions["curve_radius"],
             np.where(bears, loads, touching), bears, friction, wl.scalar_si(self.flange_angle, "rad"),
-            conditions.get("axle_torque", none), conditions.get("angular_speed"), conditions.get("roll"),
-            conditions.get("lateral_force"),
+            conditions.get("axle_torque", np.zeros(speed.shape)), conditions.get("angular_speed"),
+            conditions.get("roll"), force, wl.accelerated(LOOPS * bears.size),
         )  # fmt: skip
 
     def _rigid(self, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
@@ -422,44 +435,20 @@ class Wheelset(wl.Rig):
         self, loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces]
     ) -> tuple[Loads, NDArray[np.object_]]:
         """Return the loads of wheelsets where the rails bear their lateral forces, and the status of each."""
-        task = loads.task
-        assert task.lateral_force is not None
-        rolls = None if task.free else loads.roll
-
-        def solved(part: Task) -> Loads:
-            return self._loads(part, part.roll).solved(forces)
-
-        steepest = np.array([pair.steepest for pair in self._section.sides])
-
-        def stands(displacement: Array, points: NDArray[np.intp], below: bool) -> NDArray[np.bool_]:
-            _, touching = self._rigid(displacement, task.yaw[points], None if rolls is None else rolls[points])
-            return np.asarray((touching.arc[..., 0] >= (steepest if below else -np.inf)).all(axis=-1))
-
-        place, climbs, greatest = guided(task, solved, stands, self._begins)
-        loads = solved(replace(task, displacement=place)).guided(forces, ~climbs)
-        status = loads.status
-        for point in np.flatnonzero(climbs):
-            side = DIMS["side"][int(place[point] > 0.0)]
+        sought = guided(loads, forces, self._play)
+        status = sought.loads.status
+        for point in np.flatnonzero(sought.climbs):
+            place = sought.place[point]
             status[point] = (
-                f"the greatest lateral force is {1e-3 * greatest[point]:.4g} kN, at {1e3 * place[point]:.4g} mm;"
-                f" beyond it the {side} wheel climbs its rail or leaves it"
+                f"the greatest lateral force is {1e-3 * sought.greatest[point]:.4g} kN, at {1e3 * place:.4g} mm;"
+                f" beyond it the {DIMS['side'][int(place > 0.0)]} wheel climbs its rail or leaves it"
             )
-        return loads, status
-
-    def _begins(self, share: Array) -> Array:
-        """Return distances from the middle at which tan δ of rigid wheels passes half of a share [m]."""
-        distance, slope = self._slopes
-        return np.asarray(np.interp(0.5 * share, slope, distance))
+        return sought.loads, status
 
     @cached_property
-    def _slopes(self) -> tuple[Array, Array]:
-        """Distances from the middle [m], and the greatest tan δ of rigid right wheels up to there."""
-        distance = np.arange(0.0, FARTHEST, 0.1e-3)
-        distance = distance[np.logical_and.accumulate(self.on_rails(distance))]
-        roll, touching = searched(self._section, distance, np.zeros_like(distance))
-        angle = patches(self._section, both_sides(distance, roll, np.zeros_like(distance)), touching)["contact_angle"]
-        slope = np.maximum.accumulate(np.tan(np.abs(angle[:, 1, 0])))
-        return distance, np.asarray(slope + 1e-9 * np.arange(distance.size), np.float64)
+    def _play(self) -> Play:
+        """How rigid wheelsets stand between their rails."""
+        return play(self._section, wl.scalar_si(self.flange_angle, "rad"))
 
     def _whole(self, loads: Loads, status: NDArray[np.object_], shape: tuple[int, ...]) -> wl.Problem:
         """Return the problem of all patches, with the axes of the conditions, "side" and "patch"."""
@@ -501,7 +490,7 @@ class Wheelset(wl.Rig):
             "roll": wide(loads.roll[point]),
             "penetration": wide(patches.approach),
             "imbalance": wide(loads.left.max(axis=-1)[point]),
-            "lateral_displacement": wide(loads.displacement[point]),
+            "lateral_displacement": wide(loads.task.displacement[point]),
             "guiding_force": wide(loads.lateral[wheel]),
             "wheel_load": wide(loads.vertical[wheel]),
             "derailment_quotient": wide((loads.lateral / loads.vertical)[wheel]),

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -126,6 +126,33 @@ class Sequence:
         return np.asarray(new - (share * moves).sum(axis=1))
 
 
+class Creeping(NamedTuple):
+    """What rows that are laid anew take over from earlier ones, in the order of `keys`.
+
+    Attributes
+    ----------
+    points, rotation : ndarray, (positions,)
+        Positions of the whole task in their order, and their speeds of rotation [rad/s].
+    keys : ndarray, (rows,)
+        Twenty times the position, ten more on the right, and the arc length of the rail [m].
+    ratio, sine : ndarray, (rows,)
+        As in `Stand`.
+    """
+
+    points: NDArray[np.intp]
+    rotation: Array
+    keys: Array
+    ratio: Array
+    sine: Array
+
+    def of(self, points: NDArray[np.intp], wheel: NDArray[np.intp], arc: Array) -> tuple[Array, Array, Array]:
+        """Return speeds of rotation of positions, and ratio and sine of the rows nearest to other rows of theirs."""
+        keys = 20.0 * points[wheel // 2] + 10.0 * (wheel % 2) + arc
+        after = np.clip(np.searchsorted(self.keys, keys), 1, self.keys.size - 1)
+        nearest = np.where(keys - self.keys[after - 1] < self.keys[after] - keys, after - 1, after)
+        return self.rotation[np.searchsorted(self.points, points)], self.ratio[nearest], self.sine[nearest]
+
+
 @dataclass(eq=False)
 class Stand:
     """Wheelsets on their rails at some positions, whose rows stay while their loads are balanced.
@@ -168,7 +195,7 @@ class Stand:
     @classmethod
     def laid(
         cls, section: Section, lattice: Lattice, elastic: Elastic, task: Task, points: NDArray[np.intp], height: Array,
-        roll: Array, least: Array | None = None, before: Stand | None = None,
+        roll: Array, least: Array | None = None, before: Creeping | None = None,
     ) -> Stand:  # fmt: skip
         """Return wheelsets with rows at heights and rolls; with the least gaps of rigid wheels, at those under load."""
         pairs = both_sides(task.displacement, roll, task.yaw)
@@ -194,24 +221,16 @@ class Stand:
             rates: Any = [laid.down, side * laid.lean]
         else:
             rates = [laid.down * (1 - right), laid.down * right]
-        if task.lateral_force is not None:
-            rates.append(side * laid.out)
-        rates = np.stack(rates, axis=-1)
-        pressed = Pressed.begun(laid, elastic.modulus, rates)
+        rates = np.stack([*rates, side * laid.out], axis=-1)
+        pressed = Pressed.begun(laid, elastic.modulus, rates, task.loops)
         none, count = np.zeros(side.shape), roll.size
         stand = cls(
             section, elastic, task, points, height, roll, laid, pressed, Creepages((none,) * 3, (none,) * 3), none,
             none, np.zeros(count), np.zeros((count, 4)), np.zeros((count, 2)), np.zeros((count, 2)),
         )  # fmt: skip
-        if before is not None:  # with the creep forces that it had
-            old = np.searchsorted(points, before.points)
-            old = np.where(points[np.minimum(old, points.size - 1)] == before.points, old, -1)[before.rows.wheel // 2]
-            keys = 20.0 * old + 10.0 * (before.rows.wheel % 2) + before.rows.place.rail_arc
-            some = np.flatnonzero(old >= 0)
-            nearest = np.searchsorted(keys[some], 10.0 * laid.wheel + laid.place.rail_arc)
-            nearest = some[np.minimum(nearest, some.size - 1)]
-            stand.ratio, stand.sine = before.ratio[nearest], before.sine[nearest]
-        stand._carry()
+        if before is not None:
+            stand.rotation, stand.ratio, stand.sine = before.of(points, laid.wheel, laid.place.rail_arc)
+        stand._carry(np.ones(count, dtype=np.bool_))
         force = stand._row_force()
         turn = np.zeros(count)
         if task.free:
@@ -223,7 +242,7 @@ class Stand:
             section.roller,
         )  # fmt: skip
         if before is not None:
-            stand.rotation = before.rotation[np.isin(before.points, points)]
+            pass
         elif task.rotation is not None:
             stand.rotation = task.rotation.copy()
         else:
@@ -233,6 +252,13 @@ class Stand:
         stand.patches = stand._found()
         stand._sum(None, stand.patches)
         return stand
+
+    @property
+    def creeping(self) -> Creeping:
+        """Return what rows that are laid anew take over."""
+        wheel = self.rows.wheel
+        keys = 20.0 * self.points[wheel // 2] + 10.0 * (wheel % 2) + self.rows.place.rail_arc
+        return Creeping(self.points, self.rotation, keys, self.ratio, self.sine)
 
     def copy(self) -> Stand:
         """Return a copy whose loads change on their own."""
@@ -248,19 +274,13 @@ class Stand:
         force: Array = forces[:, 0] + (forces[:, 1:] * self.pressed.moved[point]).sum(axis=-1)
         return np.maximum(force, 0.0)
 
-    def _carry(self) -> None:
-        """Find the pressure that carries the loads with the creep forces as they are."""
+    def _carry(self, some: NDArray[np.bool_]) -> None:
+        """Find the pressure that carries the loads with the creep forces as they are, at some positions."""
         rows = self.rows
         right, angle = np.where(rows.wheel % 2 == 1, 1.0, 0.0), rows.place.angle
         weight = np.maximum(np.cos(angle) + self.ratio * self.sine, LEAST_WEIGHT)
-        weights: list[Array] = [weight * (1 - right), weight * right]
-        load = self.task.load
-        if self.task.guided:
-            assert self.task.lateral_force is not None
-            weights.append(self._across())
-            load = np.append(load, self.task.lateral_force[:, None], axis=-1)
-        self.pressed.weights = np.stack(weights, axis=-1)
-        self.pressed.carry(load)
+        self.pressed.weights = np.stack([weight * (1 - right), weight * right], axis=-1)
+        self.pressed.carry(self.task.load, np.flatnonzero(some))
 
     def _across(self) -> Array:
         """Return what the force of each row adds to the sum of the lateral forces [-]."""
@@ -366,13 +386,13 @@ class Stand:
         self.left[some, :2] = np.abs(self.vertical / task.load - 1.0)[some]
         if force is not None and task.rotation is None:
             self.left[some, 2] = np.abs((torque - task.torque) / np.maximum(grip, TINY))[some]
-        if task.guided:
+        if task.lateral_force is not None:
             lacks = self.lateral.sum(axis=-1) - task.lateral_force
             self.left[some, 3] = np.abs(lacks / task.load.mean(axis=-1))[some]
         return np.asarray(torque - task.torque)
 
-    def balance(self, forces: Callable[[wl.Problem], wl.CreepForces], patch: Patch, last: bool) -> None:
-        """Balance the loads with the creep forces, in place."""
+    def balance(self, forces: Callable[[wl.Problem], wl.CreepForces], patch: Patch, last: bool, goal: Array) -> None:
+        """Balance the loads with the creep forces, in place, to the greatest imbalance of each position."""
         task, count = self.task, self.roll.size
         going, scale = np.ones(count, dtype=np.bool_), SCALE / self.rotation
         sequence = Sequence()
@@ -387,28 +407,27 @@ class Stand:
                 )
                 self.rotation = np.where(going, kept[2], self.rotation)
             if step:
-                self._carry()
+                self._carry(going)
                 self.patches = self._found()
             some = self.patches.part(going[self.patches.point])
             problem = some.posed(task, self.elastic, self.rotation, patch)
             force = forces(problem)
             excess = self._sum(force, some, problem.friction_coefficient)
-            most = self.left.max(axis=-1)
+            most = self.left[:, :3].max(axis=-1)
             nearer, best = most < best, np.minimum(most, best)
             rows = nearer[self.rows.wheel // 2]
             kept = (
                 np.where(rows, self.ratio, kept[0]), np.where(rows, self.sine, kept[1]),
                 np.where(nearer, self.rotation, kept[2]),
             )  # fmt: skip
-            going = going & (most > BALANCED)
+            going = going & (most > goal)
             if step and not last:
                 going &= self.shift <= 1.0
             if not going.any() or step == STEPS:
                 return
             rate, drift = self._rates(some, problem, force)
-            turn = np.zeros(count)
+            turn, widest = np.zeros(count), MOST_TURN * self.rotation
             if task.rotation is None:
-                widest = MOST_TURN * self.rotation
                 turn = np.clip(-excess / np.maximum(rate, TINY), -widest, widest)
             row, of = self.of_row
             used = self.ratio[row[np.flatnonzero(np.diff(of, prepend=-1))]]
@@ -420,7 +439,7 @@ class Stand:
             new[slot] = (force.lateral + drift * turn[some.point]) / some.force
             new = sequence.next(now, new)
             if task.rotation is None:
-                ahead = new[:, 0] / scale
+                ahead = np.clip(new[:, 0] / scale, self.rotation - widest, self.rotation + widest)
                 # The torque grows with Ω, steeply at first and then hardly, so bounds help once the loads hardly move.
                 still = self.left[:, :2].max(axis=-1) < STILL * self.left[:, 2]
                 low = np.where(still, np.where(excess < 0.0, self.rotation, low), -np.inf)
@@ -479,7 +498,7 @@ class Stand:
         lowered = (height - self.height)[point, rows.wheel % 2]
         leaned = side * (roll - self.roll)[point]
         angle = rows.place.angle
-        aside = side * (self.displacement - self.task.displacement)[point] - rows.place.z * leaned
+        aside = -rows.place.z * leaned
         moved = aside * np.cos(angle) + (lowered + rows.place.y * leaned) * np.sin(angle)
         shift = np.zeros(self.roll.size)
         np.maximum.at(shift, point, np.where(self._row_force() > 0.0, np.abs(moved) / SHIFT, 0.0))
@@ -496,15 +515,21 @@ class Stand:
         return self.height + moved[:, :2], self.roll
 
     @property
-    def displacement(self) -> Array:
-        """Lateral displacement of the wheelset, positive to the right [m]."""
-        return self.task.displacement + (self.pressed.moved[:, 2] if self.task.guided else 0.0)
+    def rates(self) -> Array:
+        """Rates with the lateral displacement under the same loads, without slip's change, (positions, 3).
 
-    @property
-    def stiffness(self) -> Array:
-        """Rate of the sum of the lateral forces with the lateral displacement, without slip's change [N/m]."""
+        The first are those of the heights of the axle at both wheels [-], or of its height and its roll [rad/m], where
+        the roll is free; the last is that of the sum of the lateral forces [N/m].
+        """
         rows, forces = self.rows, self.pressed.forces[:, 1:]
-        weights = np.concatenate([self.pressed.weights[:, :2], self._across()[:, None]], axis=-1)
-        rates = np.add.reduceat(weights[:, :, None] * forces[:, None, :], rows.start[:-1:2])
-        moves = np.linalg.solve(rates[:, :2, :2], rates[:, :2, 2:])
-        return np.asarray((rates[:, 2:, 2:] - rates[:, 2:, :2] @ moves)[:, 0, 0])
+        weights = np.concatenate([self.pressed.weights, self._across()[:, None]], axis=-1)
+        sums = np.add.reduceat(weights[:, :, None] * forces[:, None, :], rows.start[:-1:2])
+        moves = -np.linalg.solve(sums[:, :2, :2], sums[:, :2, 2:])
+        return np.concatenate([moves, sums[:, 2:, 2:] + sums[:, 2:, :2] @ moves], axis=1)[..., 0]
+
+    def ahead(self, displacement: Array) -> tuple[Array, Array]:
+        """Return heights of the axle [m] and rolls [rad] at other displacements [m], by their rates."""
+        (height, roll), moves = self.now, self.rates * (displacement - self.task.displacement)[:, None]
+        if self.task.free:
+            return height + moves[:, :1], roll + moves[:, 1]
+        return height + moves[:, :2], roll

@@ -54,10 +54,10 @@ class Task:
         Given roll, ρ [rad], which stays and has no rate; if it is None, the wheelset finds its roll.
     lateral_force : ndarray or None
         Given sum of the lateral forces on the rails, H [N]; the displacement then follows.
-    guided : bool
-        Whether the displacement is sought with that force, near the given displacement.
     conditions : mapping of str to ndarray
         Conditions of contact models and stages.
+    loops : bool
+        Whether compiled loops find the pressure, by the size of the whole task.
     """
 
     displacement: Array
@@ -74,7 +74,7 @@ class Task:
     rotation: Array | None
     roll: Array | None
     lateral_force: Array | None = None
-    guided: bool = False
+    loops: bool = False
     conditions: Mapping[str, Array] = field(default_factory=dict)
 
     @property
@@ -82,14 +82,14 @@ class Task:
         """Whether the wheelset finds its roll."""
         return self.roll is None
 
-    def part(self, points: NDArray[np.intp] | slice, displacement: Array | None = None) -> Task:
-        """Return what is asked at some positions, at other displacements if they are given [m]."""
+    def part(self, points: NDArray[np.intp]) -> Task:
+        """Return what is asked at some positions."""
         some: dict[str, Any] = {
             name: array[points] for name, array in vars(self).items() if isinstance(array, np.ndarray)
         }
         some["friction"] = tuple(mu[points] if isinstance(mu, np.ndarray) else mu for mu in self.friction)
         some["conditions"] = {name: array[points] for name, array in self.conditions.items()}
-        return replace(self, **some | ({} if displacement is None else {"displacement": displacement}))
+        return replace(self, **some)
 
     def friction_of(self, point: NDArray[np.intp], flange: Array, creep_speed: Array) -> Array:
         """Return friction coefficients of patches [-] by their shares of load on the flange and creep speeds [m/s]."""
