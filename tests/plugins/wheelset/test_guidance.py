@@ -14,8 +14,8 @@ from wearlaw import Array, Q
 from wearlaw_models.rigs.wheelset.guidance import BORNE  # private: the accuracy that a search ends at
 from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
 
-# Rows stay where they are while a wheel moves by up to 50 µm along its rail. Over a relative curvature of 1/13 mm that is
-# 0.1 µm of the approach, of 50 µm on a flange, whose power of 1.5 the force is: a share of the load of a wheel.
+# Rows stay while a wheel moves by up to 50 µm along its rail. Over a relative curvature of 1/13 mm that is 0.1 µm of
+# the approach, of 50 µm on a flange, whose power of 1.5 the force is: a share of the load of a wheel.
 LAID = 3e-3
 
 PAIR = wheelset(rolling_speed="20 m/s") | wl.contact_model("strip_theory")
