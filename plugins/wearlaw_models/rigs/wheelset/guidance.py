@@ -41,7 +41,7 @@ BORNE, NEAR = 1e-4, 5e-3
 LEAST, SMALL = 0.2, 1e-6
 """Least whole rate over that of the pressure alone; least step that shows the rate of the creep forces [m]."""
 
-CLOSE, SURE = 1e-8, 5e-3
+CLOSE, SURE = 1e-8, 2e-3
 """Distance of bounds between which the force jumps [m]; share of ∑ Y by which a greater one may be missed."""
 
 SHORTEST = 0.1e-3

@@ -440,7 +440,7 @@ class Wheelset(wl.Rig):
         for point in np.flatnonzero(sought.climbs):
             place = sought.place[point]
             status[point] = (
-                f"the greatest lateral force is {1e-3 * sought.greatest[point]:.4g} kN, at {1e3 * place:.4g} mm;"
+                f"the greatest lateral force is {1e-3 * sought.greatest[point]:.3g} kN, at {1e3 * place:.3g} mm;"
                 f" beyond it the {DIMS['side'][int(place > 0.0)]} wheel climbs its rail or leaves it"
             )
         return sought.loads, status
