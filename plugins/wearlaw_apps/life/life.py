@@ -36,7 +36,10 @@ SEEN = 10.0
 PLACES = 601
 """Places along a profile in `Life.profiles`."""
 
-NOT_DRAWN = ("depth", "worn_area", "factor")
+RAIL = "rail_"
+"""Beginning of the names of the measures of a rail that wears with a wheel."""
+
+NOT_DRAWN = ("depth", "worn_area", "factor", "passages")
 """Measures that are drawn over the distance only if they have a limit."""
 
 
@@ -70,7 +73,8 @@ class Life:
         The measures at the start and after each step, with units in the heads. `depth` is the largest depth along the
         normal of the first profile. `mass` is what a wheel lost, or a metre of rail. `worn_area` is the area between
         the sections of the first profile and this one. `factor` is what the step's depths were multiplied by so that
-        the removed mass is the predicted one. Where each side has its own profile, the names of their columns end with
+        the removed mass is the predicted one. Measures of a rail that wears with its wheel begin with "rail_"; its
+        last profile is that of the pipeline. Where each side has its own profile, the names of their columns end with
         "_left" and "_right". A cut has a row of its own, at the distance of the row before it.
     notes : tuple of tuple of str
         Notes on each step, such as how many patches lie outside the range of the law.
@@ -191,14 +195,15 @@ class Life:
             columns = [
                 column for column in (of_sides if of_sides[0] in table else [head]) if table[column].notna().any()
             ]
+            body = "rail" if measure.startswith(RAIL) else self.body
             curves = tuple(
-                wl.Curve(f"{side} {self.body}" if len(columns) > 1 else "", table[along].to_numpy(),
+                wl.Curve(f"{side} {body}" if len(columns) > 1 else "", table[along].to_numpy(),
                          table[column].to_numpy(), colour=number + MOST_CURVES)
                 for number, (side, column) in enumerate(zip(("left", "right"), columns, strict=False))
             )  # fmt: skip
             unit = readable(unit)
             limits = sorted({self.limits[column] for column in columns if column in self.limits})
-            if not curves or (measure in NOT_DRAWN and not limits):
+            if not curves or (measure.removeprefix(RAIL) in NOT_DRAWN and not limits):
                 continue
             lines = tuple(Limit(f"limit {limit:g} {unit}".rstrip(), limit) for limit in limits)
             yield wl.Panel(wl.PlotAxis(along), wl.PlotAxis(f"{words(measure)} [{unit or '-'}]"), curves, limits=lines)
@@ -215,7 +220,7 @@ class Life:
         lines = [f"Life of a {self.body}: {short(last.iloc[0])} {unit or along}, {steps}{why}"]
         for column in map(str, self.table.columns[1:]):
             of_side = len(self.worn_profiles[0]) == 1 and column.partition(" ")[0].endswith(("_left", "_right"))
-            if not (column.startswith("factor") or of_side) and np.isfinite(last[column]):
+            if not (column.removeprefix(RAIL).startswith("factor") or of_side) and np.isfinite(last[column]):
                 unit, digits = readable(name_and_unit(column)[1]), 6 if column.startswith("diameter") else 4
                 low, high = (short(row[column], digits) for row in (first, last))
                 lines.append(f"  {words(column):<26}{low} to {high} {unit}".rstrip())

@@ -6,7 +6,7 @@ import dataclasses
 import json
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -30,6 +30,9 @@ NUMBER = re.compile(r"\d[\d.e+-]*")
 """A number in a warning. Steps repeat warnings with other numbers, and the first of them is enough."""
 
 
+HEADS = ("", "beside_")
+"""Beginnings of the names of the outputs of the first body, and of a second one that wears with it."""
+
 SIDE = "side"
 """Name of the axis of the left and the right wheel."""
 
@@ -44,9 +47,19 @@ class Wear(NamedTuple):
     places: Array
     """Number of patches whose middle lies at each position, (sides, positions)."""
 
+    @classmethod
+    def of(cls, sums: Mapping[str, Array], head: str, units: Mapping[str, str]) -> Wear:
+        """Return the wear in SI from sums whose names begin with `head`, in the units of a job."""
+        depth, mass = (wl.Q(sums[head + name], units[name]).to_base_units().magnitude for name in ("depth", "mass"))
+        return cls(np.atleast_2d(depth), np.atleast_1d(mass), sums[f"{head}places"])
 
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
 class WearJob(ProfileJob):
     """The wear of a line, and where its patches lie."""
+
+    beside: WearJob | None = None
+    """The job of a second body that wears in the same predictions."""
 
     def outputs(self, prediction: wl.Prediction, part: Points) -> Outputs:
         """Return the sums of a block, and the number of its patches at each position, (sides, positions)."""
@@ -55,11 +68,16 @@ class WearJob(ProfileJob):
         of_sides = np.moveaxis(middle, axes.index(SIDE) - len(axes), 0) if SIDE in axes else middle[None]
         at = np.append(self.at - 0.5 * step, self.at[-1] + 0.5 * step)
         places = [np.histogram(places, at)[0] for places in of_sides]
-        return {**super().outputs(prediction, part), "places": np.array(places, np.float64)}
+        beside = {} if self.beside is None else self.beside.outputs(prediction, part)
+        return {
+            **super().outputs(prediction, part),
+            "places": np.array(places, np.float64),
+            **{f"{HEADS[1]}{name}": values for name, values in beside.items()},
+        }
 
 
 class Line:
-    """The states of a line, whose wear at positions `at` along the profile [m] is summed with their shares.
+    """The states of a line, whose wear at positions along the profile of each body [m] is summed with their shares.
 
     `points` are those of the first step. Where they follow from the profiles, `renewed` returns those of a rig.
     """
@@ -68,8 +86,7 @@ class Line:
         self,
         predict: wl.Pipeline[...],
         points: Points,
-        body: str,
-        at: Array,
+        at: Mapping[str, Array],
         workers: int,
         client: Any,
         renewed: Callable[[wl.Rig], Points] | None = None,
@@ -80,7 +97,8 @@ class Line:
                 lambda conditions: predict.rig.checked_problem(conditions, predict.models),
             )
         check_importable(predict, workers, client)
-        self.job = WearJob.of(predict, first, body, wl.Q(1e3 * at, "mm"), True)
+        self.jobs = [WearJob.of(predict, first, body, wl.Q(1e3 * places, "mm"), True) for body, places in at.items()]
+        self.job = dataclasses.replace(self.jobs[0], beside=self.jobs[1] if len(self.jobs) > 1 else None)
         self.sides = len(self.job.dims.get("side", "-"))
         self.points = dataclasses.replace(points, weight=self.job.weight(first))
         self._workers, self._client, self._renewed = workers, client, renewed
@@ -98,8 +116,8 @@ class Line:
             warn(text, ResumeWarning)
         return self._kept
 
-    def wear(self, step: int, predict: wl.Pipeline[...], at: Array) -> tuple[Wear, tuple[str, ...]]:
-        """Return the wear of both sides at arc lengths of the profiles at the beginning of a step [m], and notes on it.
+    def wear(self, step: int, predict: wl.Pipeline[...], at: Sequence[Array]) -> tuple[list[Wear], tuple[str, ...]]:
+        """Return the wear of both sides of each body at arc lengths [m] at the beginning of a step, and notes on it.
 
         A note of a new kind is a warning, too.
 
@@ -120,19 +138,22 @@ class Line:
         part = None if self._kept is None else self._kept[step]
         if self._kept is not None and part is not None:
             check_same(self._kept.path, {f"step {step + 1}": part.record["states"]}, {f"step {step + 1}": states})
-            wear, notes = Wear(*(part.arrays[name] for name in Wear._fields)), part.record["notes"]
+            wears = [Wear(*(part.arrays[f"{head}{name}"] for name in Wear._fields)) for head in HEADS[: len(at)]]
+            notes = part.record["notes"]
         else:
-            total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at), points)
+            beside = self.job.beside and dataclasses.replace(self.job.beside, at=at[1])
+            total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at[0], beside=beside), points)
             remarks += run(total, lambda _: None, self._workers, self._client)
             notes = [[type(remark).__name__, str(remark)] for remark in remarks]
             arrays = total.arrays()
-            depth, mass = (wl.Q(arrays[name], self.job.units[name]).to_base_units() for name in ("depth", "mass"))
-            wear = Wear(np.atleast_2d(depth.magnitude), np.atleast_1d(mass.magnitude), arrays["places"])
+            wears = [Wear.of(arrays, head, job.units) for head, job in zip(HEADS, self.jobs, strict=False)]
             if self._kept is not None:
                 given = {f"line_{name}": column.values for name, column in table.items()}
-                self._kept.add(step, {**wear._asdict(), **given}, {"notes": notes, "states": states})
+                for head, wear in zip(HEADS, wears, strict=False):
+                    given |= {f"{head}{name}": values for name, values in wear._asdict().items()}
+                self._kept.add(step, given, {"notes": notes, "states": states})
         for kind, text in notes:
             if (words := NUMBER.sub("", text)) not in self._said:
                 self._said.add(words)
                 warn(f"step {step + 1}: {text}" if step else text, getattr(wl, kind))
-        return wear, tuple(text for _, text in notes)
+        return wears, tuple(text for _, text in notes)

@@ -51,6 +51,7 @@ def wear_out(
     turn: Mapping[str, wl.QuantityLike | float] | None = None,
     least_diameter: wl.QuantityLike | None = None,
     body: str = "wheel",
+    passages_per_km: float | None = None,
     sides: Literal["mean", "each"] = "mean",
     conicity_step: float = 0.005,
     workers: int = 1,
@@ -111,7 +112,10 @@ def wear_out(
     least_diameter : Quantity or str, optional
         Least diameter of a wheel at the taping line [m]. It ends the life, as does a cut that would go below it.
     body : str
-        "wheel" or "rail".
+        "wheel", "rail", or "both" for a wheel and a rail in one life. The life is then that of the wheel, and the
+        measures of the rail begin with "rail_".
+    passages_per_km : float, optional
+        With "both": wheels that pass over the rail while this wheel runs 1 km; all of them have its profile.
     sides : "mean" or "each"
         With "mean" both sides have one profile, which wears by the mean of both, as on a vehicle that turns. With
         "each" they wear for themselves.
@@ -157,12 +161,15 @@ def wear_out(
         raise wl.InputError(f"depth_step: must be at most {1e3 * DEEPEST:g} mm, since contacts move as a profile wears")
     if not conicity_step > 0.0:
         raise wl.InputError(f"conicity_step: must be positive, or math.inf for no limit; got {conicity_step:g}")
-    new = tuple(even(profile) for profile in _profiles(predict.rig, body, sides))
+    body, *beside = bodies = ["wheel", "rail"] if body == "both" else [body]
+    news = {name: tuple(even(profile) for profile in _profiles(predict.rig, name, sides)) for name in bodies}
     rolls = bool(np.isfinite(predict.rig.bodies[body].rolling_radius))
-    distance = _distance(over, rolls)
-    predict = with_profiles(predict, body, new)
-    longest = max(np.ptp(profile.curve.s) for profile in new)
-    at = positions(new, math.ceil(longest / length.si(spacing, "spacing")) + 1)
+    distance, passages = _distance(over, rolls), _passages(passages_per_km, predict.rig, bool(beside))
+    at = {}
+    for name, new in news.items():
+        predict = with_profiles(predict, name, new)
+        longest = max(np.ptp(profile.curve.s) for profile in new)
+        at[name] = positions(new, math.ceil(longest / length.si(spacing, "spacing")) + 1)
     reading = (conditions, columns, {SHARE: share}, {"sep": sep, "decimal": decimal})
 
     def of_rig(rig: wl.Rig) -> Points:
@@ -181,12 +188,13 @@ def wear_out(
                 if renewed is None
                 else renewed(predict.rig)
             )
-            of_line = Line(predict, points, body, at, workers, client, renewed)
+            of_line = Line(predict, points, at, workers, client, renewed)
         except wl.InputError as error:
             if renewed is None:
                 raise
             raise type(error)(f"step 1: {error}") from None
-        steps = Steps(of_line, body, rolls, new, **settings)
+        rail = Steps(of_line, "rail", False, news["rail"], **settings) if beside else None
+        steps = Steps(of_line, body, rolls, news[body], **settings, rail=rail, passages=1e-3 * passages)
         now = steps.begin(predict)
         rows, profiles = [now.row], [now.profiles]
         notes: list[tuple[str, ...]] = []
@@ -198,6 +206,7 @@ def wear_out(
         last = now.row
         if store is not None:
             settings |= {"sides": sides, "limits": limits.ends, "turn": sorted(cutting), "until_all": until_all}
+            settings |= {"passages_per_km": passages} if beside else {}
             stack.enter_context(closing(steps.line.keep(store, settings, resume)))
         along, _ = limits.ends["over"]
         bar = stack.enter_context(Bar(round(distance), progress))
@@ -243,6 +252,19 @@ def _distance(over: Any, rolls: bool) -> float:
     return float(over)
 
 
+def _passages(per_km: float | None, rig: wl.Rig, both: bool) -> float:
+    """Return the passages over a rail in a kilometre of a wheel."""
+    if both and np.isfinite(rig.bodies["rail"].rolling_radius):
+        raise wl.InputError(f"body: 'both' takes a rail, and rig {rig.name!r} has a roller; wear its 'wheel' or 'rail'")
+    passages = 0.0 if per_km is None else float(wl.coefficient(per_km, "passages_per_km", positive=False))
+    if (per_km is not None) != both or passages < 0.0:
+        raise wl.InputError(
+            f'passages_per_km: with body="both" alone, give how many wheels pass over the rail while this wheel runs'
+            f" 1 km, such as 20; got {wl.shown(per_km)}"
+        )
+    return passages
+
+
 def _profiles(rig: Any, body: str, sides: str) -> tuple[Profile, ...]:
     """Return the profiles of a rig that wear: one, or those of the left and the right side."""
     right: Any = getattr(rig, body, None)
@@ -250,7 +272,7 @@ def _profiles(rig: Any, body: str, sides: str) -> tuple[Profile, ...]:
     if body not in rig.bodies or not hasattr(right, "worn"):
         raise wl.InputError(
             f"body: the rig {rig.name!r} has no profile of {wl.shown(body)} that can wear; take a rig with profiles,"
-            " such as wearlaw.Wheelset, and its 'wheel' or 'rail'"
+            " such as wearlaw.Wheelset, and its 'wheel', 'rail' or 'both'"
         )
     if sides == "each" and hasattr(rig, left):
         return getattr(rig, left) or right, right

@@ -12,7 +12,7 @@ import numpy as np
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw.units.registry import unit_in_si
-from wearlaw_apps.life.life import NEAR, SIDES, measure_of, name_and_unit
+from wearlaw_apps.life.life import NEAR, RAIL, SIDES, measure_of, name_and_unit
 from wearlaw_apps.life.line import Line, Wear
 from wearlaw_apps.life.removal import conserving, positions, smoothed, swept, widths
 
@@ -87,7 +87,7 @@ class Limits:
             value = float(wl.Unit(unit).si(limit, what) / unit_in_si(unit) if unit else wl.coefficient(limit, what))
             for measure in measures:
                 first = start[there[measure]]
-                towards = TOWARDS.get(measure_of(measure), value - first)
+                towards = TOWARDS.get(measure_of(measure).removeprefix(RAIL), value - first)
                 if (value - first) * towards <= 0.0:
                     must = {1.0: "lie above", -1.0: "lie below"}.get(towards, "differ from")
                     has = f"{first:.4g} {unit}".rstrip()
@@ -135,6 +135,8 @@ class State(NamedTuple):
     """Change of the conicity in the last step."""
     notes: tuple[str, ...] = ()
     """Notes on the last step."""
+    rail: State | None = None
+    """That of the rail that wears with the wheel."""
 
 
 @dataclass(frozen=True)
@@ -151,6 +153,10 @@ class Steps:
     smoothing: float
     resolution: float
     conicity_step: float
+    rail: Steps | None = None
+    """Those of a rail that wears with the wheel."""
+    passages: float = 0.0
+    """Passages over this rail in a metre of the wheel."""
 
     @property
     def along(self) -> tuple[str, float]:
@@ -161,26 +167,33 @@ class Steps:
         """Return the state of the new profiles, at the start or after another state, whose step comes next."""
         done, mass = (0.0, np.zeros(self.line.sides)) if after is None else (after.row[self.along[0]], after.mass)
         begun = self._state(predict, self.new, done, mass, [1.0] * len(self.new))
+        if self.rail is not None:  # a cut restores the wheel, and the rail stays
+            rail = after.rail._replace(wear=None) if after and after.rail else self.rail.begin(predict)
+            begun = _with_rail(begun, rail)
         return begun if after is None else begun._replace(number=after.number)
 
     def step(self, now: State, limits: Limits) -> State:
         """Return the state after one more step."""
-        at = positions(now.profiles, self.line.job.at.size)
+        worn = [now.profiles] if now.rail is None else [now.profiles, now.rail.profiles]
+        at, *at_rail = every = [
+            positions(profiles, job.at.size) for profiles, job in zip(worn, self.line.jobs, strict=True)
+        ]
         along, unit = self.along
         try:
-            wear, notes = self.line.wear(now.number, now.predict, at)
+            (wear, *of_rail), notes = self.line.wear(now.number, now.predict, every)
         except wl.InputError as error:
             done = f"{now.row[along]:.6g} {name_and_unit(along)[1] or along}"
             raise type(error)(f"step {now.number + 1}, after {done}: {error}") from None
-        angle = np.array([np.interp(at, profile.curve.s, profile.curve.angle) for profile in self.new])
-        width = widths(self._of_profiles(wear.places), at, angle, self.smoothing, self.resolution)
-        wear = wear._replace(depth=smoothed(wear.depth, at, width))
-        deepest = float(self._of_profiles(wear.depth).max())
-        if not deepest > 0.0:
-            raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
+        wear, deepest = self._smoothed(wear, at)
         distance = min(self._distance(now, wear), (limits.ends["over"][1] - now.row[along]) / unit)
+        rail: tuple[Array, Wear] | None = None
+        if self.rail is not None and now.rail is not None and self.passages:
+            smooth, deepest_of_rail = self.rail._smoothed(of_rail[0], at_rail[0])
+            rail = at_rail[0], smooth
+            distance = min(distance, self.rail._distance(now.rail, smooth) / self.passages)
+            deepest = max(deepest, self.passages * deepest_of_rail)
         least = min(LEAST * self.depth_step / deepest, distance)
-        after = self._after(now, at, wear, distance)
+        after = self._after(now, at, wear, distance, rail)
         for _ in range(TRIES - 1):
             if after.change > self.conicity_step and distance * deepest > SHORTEST * self.depth_step:
                 distance *= max(AIM * self.conicity_step / after.change, 0.25)
@@ -188,8 +201,18 @@ class Steps:
                 distance = max(share * distance, least)
             else:
                 break
-            after = self._after(now, at, wear, distance)
+            after = self._after(now, at, wear, distance, rail)
         return after._replace(notes=notes)
+
+    def _smoothed(self, wear: Wear, at: Array) -> tuple[Wear, float]:
+        """Return the smoothed wear of this body, and its largest depth per metre or passage."""
+        angle = np.array([np.interp(at, profile.curve.s, profile.curve.angle) for profile in self.new])
+        width = widths(self._of_profiles(wear.places), at, angle, self.smoothing, self.resolution)
+        wear = wear._replace(depth=smoothed(wear.depth, at, width))
+        deepest = float(self._of_profiles(wear.depth).max())
+        if not deepest > 0.0:
+            raise wl.ConditionsError("line: no state wears the profile; the distance that wears a depth is infinite")
+        return wear, deepest
 
     def _distance(self, now: State, wear: Wear) -> float:
         """Return the distance that a step tries first."""
@@ -204,8 +227,14 @@ class Steps:
             distance = min(distance, AIM * self.conicity_step / now.change * now.step)
         return distance
 
-    def _after(self, now: State, at: Array, wear: Wear, distance: float) -> State:
-        """Return the state after a distance, with the wear of its middle."""
+    def _after(
+        self, now: State, at: Array, wear: Wear, distance: float, of_rail: tuple[Array, Wear] | None = None
+    ) -> State:
+        """Return the state after a distance, with the wear of its middle, and that of a rail beside it."""
+        rail, predict = now.rail, now.predict
+        if self.rail is not None and rail is not None and of_rail is not None:
+            rail = self.rail._after(rail._replace(predict=predict), *of_rail, self.passages * distance)
+            predict, rail = rail.predict, rail._replace(change=0.0)  # the wheel's state has the change of both
         middle = _of_middle(now, wear, distance)
         body = now.predict.rig.bodies[self.body]
         density, radius = wl.scalar_si(body.material.density, "kg/m^3"), float(np.asarray(body.rolling_radius))
@@ -216,9 +245,10 @@ class Steps:
         profiles, factors = zip(*worn, strict=True)
         along, unit = self.along
         mass = now.mass + distance * middle.mass
-        after = self._state(now.predict, profiles, now.row[along] + unit * distance, mass, factors)
+        after = self._state(predict, profiles, now.row[along] + unit * distance, mass, factors)
         change = abs(after.row[CONICITY] - now.row[CONICITY])
-        return after._replace(number=now.number + 1, step=distance, wear=wear, change=change)
+        after = after._replace(number=now.number + 1, step=distance, wear=wear, change=change)
+        return after if rail is None else _with_rail(after, rail)
 
     def _of_profiles(self, values: Array) -> Array:
         """Return values of both sides for each profile: as they are, or their mean."""
@@ -256,6 +286,12 @@ class Steps:
             row[CONICITY] = math.nan
         row |= {f"factor{side}": factor for side, factor in zip(sides, factors, strict=True)}
         return State(predict, profiles, mass, row)
+
+
+def _with_rail(wheel: State, rail: State) -> State:
+    """Return the state of a wheel with that of the rail beside it, and the measures of both."""
+    of_rail = {f"{RAIL}{name}": value for name, value in rail.row.items() if name != CONICITY}
+    return wheel._replace(rail=rail, row=wheel.row | of_rail)
 
 
 def with_profiles(predict: wl.Pipeline[...], body: str, profiles: tuple[Profile, ...]) -> wl.Pipeline[...]:

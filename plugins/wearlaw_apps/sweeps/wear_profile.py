@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import xarray
@@ -69,7 +69,7 @@ class ProfileJob(Job):
         at: QuantityLike,
         summed: bool,
         others: Mapping[str, str] = {},
-    ) -> ProfileJob:
+    ) -> Self:
         """Return the job of a pipeline, after a prediction at the first operating point.
 
         Raises
