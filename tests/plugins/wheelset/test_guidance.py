@@ -182,6 +182,19 @@ def test_a_force_that_no_flange_bears_is_warned_of_with_the_greatest_one(sign: f
     assert np.isfinite(si(found, "guiding_force")[0]).all()
 
 
+def test_a_worn_flange_takes_its_load_without_a_jump() -> None:
+    # Of the two balances on it, one has twice the lateral force: a third of the steps changed it by 80 kN.
+    new = wl.Profile.s1002()
+    arc = np.arange(new.curve.s[0], new.curve.s[-1], 0.2e-3)
+    depth = 0.48 * np.exp(-(((new.curve.at(arc)[0] + 37e-3) / 5e-3) ** 2))
+    pair = wheelset(wheel=new.worn(Q(1e3 * arc, "mm"), Q(depth, "mm")), rolling_speed="20 m/s")
+    at = (pair | wl.contact_model("fastsim"))(
+        lateral_displacement=Q(np.arange(6.78, 6.805, 0.0025), "mm"), vertical_load="80 kN", friction_coefficient=0.3,
+        curve_radius="400 m",
+    )  # fmt: skip
+    assert (np.abs(np.diff(1e-3 * si(at, "guiding_force").sum(axis=-1))) < 8.0).all()
+
+
 # -------------------------------------------------------------------------------------------------------- their places
 
 

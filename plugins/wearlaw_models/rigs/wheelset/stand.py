@@ -10,8 +10,8 @@ of rotation Ω. The overlap of the bodies is linear in heights and roll, so the 
 the creep forces only Fy/N of each patch enters there. It hardly depends on the load, so a few rounds of pressure and
 creep forces are enough; the rates of the creep forces with Ω are estimated.
 
-Rows are laid where the wheel stands under its load alone. Where creep forces move it along the rail by more than
-`SHIFT`, they are laid again.
+Rows are laid where the wheel stands under its load alone, or where it is expected by rates of an earlier state. Where
+it moves along the rail by more than `SHIFT`, they are laid again.
 """
 
 from __future__ import annotations
