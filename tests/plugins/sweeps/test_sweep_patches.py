@@ -163,5 +163,5 @@ def test_a_sweep_repeats_the_first_warning_of_its_rig(workers: int, tmp_path: Pa
         warnings.simplefilter("always")
         found = wl.sweep(predict, workers=workers, store=tmp_path / "map.zarr", **given)
     said = [str(one.message) for one in caught if "climbs" in str(one.message)]
-    assert said == ["the wheel climbs at 7 mm"]
+    assert [text.count("the wheel climbs at 7 mm") for text in said] == [1]  # beside the notes of other models
     assert "the wheel climbs at 7 mm" in found.attrs["notes"]
