@@ -139,12 +139,15 @@ class Loads:
         displacement = there.task.displacement
         rest = displacement - self.task.displacement
         loads, moves = self.solved(forces, np.where(rest == 0.0, BALANCED, ROUGH)), rest != 0.0
-        while rest.any():
-            points = np.flatnonzero(rest)
-            rest -= np.clip(rest, -OUTWARDS, OUTWARDS)
+        while True:
+            points = np.flatnonzero((rest != 0.0) & (loads.left[:, :3].max(axis=-1) <= ROUGH))
+            if not points.size:
+                break
+            rest[points] -= np.clip(rest[points], -OUTWARDS, OUTWARDS)
             goal = np.where(rest == 0.0, BALANCED, ROUGH)[points]
             loads = loads.moved(forces, points, (displacement - rest)[points], goal)
         lost = np.flatnonzero(moves & (loads.left[:, :3].max(axis=-1) > ROUGH))
+        loads = replace(loads, task=there.task)
         return loads._again(forces, lost, *there._ahead(displacement), None, np.full(lost.size, BALANCED))
 
     def moved(
@@ -178,8 +181,9 @@ class Loads:
         """Return heights of the axle at both wheels [m] and rolls [rad] at other displacements [m]."""
         height, roll = np.empty((displacement.size, 2)), np.empty(displacement.size)
         for stand in self.stands:
-            heights, roll[stand.points] = stand.ahead(displacement[stand.points])
-            height[stand.points] = heights
+            (high, leaned), (heights, rolls) = stand.now, stand.ahead(displacement[stand.points])
+            height[stand.points] = np.clip(heights, high - FARTHEST, high + FARTHEST)
+            roll[stand.points] = np.clip(rolls, leaned - MOST_ROLL, leaned + MOST_ROLL)
         return height, roll
 
     @property

@@ -45,6 +45,9 @@ JUST_TOUCHING = 1e-3
 LOOPS = 400
 """Passes of NumPy over one wheel, to judge whether compiled loops are worth while."""
 
+HOLDS = 0.01
+"""Friction coefficient up to which friction holds no flange."""
+
 MARGIN = 1e-3
 """Displacement beyond the amplitude at which the conicity needs radii [m]: waves need not be about the middle."""
 
@@ -381,7 +384,9 @@ class Wheelset(wl.Rig):
         task = there.task
         if task.lateral_force is None:
             # Where a flange bears, friction may hold it or not; the wheelset comes there from the tread.
-            begin = np.clip(task.displacement, *self._play.treads)
+            none = np.zeros(task.yaw.size)
+            holds = task.friction_of(np.arange(none.size), none + 1.0, none) > HOLDS
+            begin = np.where(holds, np.clip(task.displacement, *self._play.treads), task.displacement)
             moves = (begin != task.displacement).any()
             loads = self._loads(replace(task, displacement=begin), task.roll) if moves else there
             loads = loads.outwards(forces, there)
