@@ -73,7 +73,7 @@ class Life:
         The measures at the start and after each step, with units in the heads. `depth` is the largest depth along the
         normal of the first profile. `mass` is what a wheel lost, or a metre of rail. `worn_area` is the area between
         the sections of the first profile and this one. `factor` is what the step's depths were multiplied by so that
-        the removed mass is the predicted one. Measures of a rail that wears with its wheel begin with "rail_"; its
+        the removed mass is the predicted one. Measures of a rail that wears with its wheel begin with `rail_`; its
         last profile is that of the pipeline. Where each side has its own profile, the names of their columns end with
         "_left" and "_right". A cut has a row of its own, at the distance of the row before it.
     notes : tuple of tuple of str

@@ -113,7 +113,7 @@ def wear_out(
         Least diameter of a wheel at the taping line [m]. It ends the life, as does a cut that would go below it.
     body : str
         "wheel", "rail", or "both" for a wheel and a rail in one life. The life is then that of the wheel, and the
-        measures of the rail begin with "rail_".
+        measures of the rail begin with `rail_`.
     passages_per_km : float, optional
         With "both": wheels that pass over the rail while this wheel runs 1 km; all of them have its profile.
     sides : "mean" or "each"
