@@ -96,7 +96,7 @@ def shipped_models() -> Iterator[wl.Law | wl.ContactModel]:
 def shipped_laws() -> tuple[wl.Law, ...]:
     """Return the shipped laws of other outcomes than wear, all of their numbers given."""
     points = {"threshold": "20 N", "peak": "65 N", "balance": "175 N", "peak_damage": 1e-5}
-    return (wl.law("wlrm", **points, beyond="zero"),)
+    return wl.law("wlrm", **points, beyond="zero"), wl.law("averaged_wear_index")
 
 
 def shipped_stages() -> tuple[wl.Stage, ...]:

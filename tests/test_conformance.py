@@ -72,7 +72,10 @@ WEAR_LAWS: list[wl.WearLaw] = [
 LAWS: list[wl.Law] = [
     wl.law("wlrm", threshold="20 N", peak="65 N", balance="175 N", peak_damage=1e-5, beyond=beyond, traction=traction)
     for beyond, traction in itertools.product(("falls", "zero"), ("either", "driving", "braking"))
-] + [wl.law("wlrm", threshold="20 N", peak="65 N", balance="175 N", peak_damage=1e-5, beyond="falls", spin="left_out")]
+] + [
+    wl.law("wlrm", threshold="20 N", peak="65 N", balance="175 N", peak_damage=1e-5, beyond="falls", spin="left_out"),
+    wl.law("averaged_wear_index"),
+]
 
 STAGES: list[wl.Stage] = [
     wl.patch_mean(),

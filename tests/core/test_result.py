@@ -75,7 +75,6 @@ def test_every_property_has_its_unit_and_value(creepage: float) -> None:
         "wear_index_density": (force * creepage / area, "N/m^2", "N/mm^2"),
         "stick_ratio": (1 - slip_share, "", ""),
         "mean_slip": (mean_slip, "", "%"),
-        "averaged_wear_index": (mean_slip / slip_share * force, "N", "N"),
         "cell_wear_index": (force * creepage, "N", "N"),
         "longitudinal_force": (force, "N", "N"),
         "lateral_force": (0.0, "N", "N"),
@@ -90,16 +89,6 @@ def test_every_property_has_its_unit_and_value(creepage: float) -> None:
         # `quad` was asked for 1e-10; the kink of the law makes it miss by a little more.
         assert quantity.to(si).magnitude == pytest.approx(value, rel=1e-8), name
         assert isinstance(quantity.magnitude, float), name
-
-
-def test_the_averaged_wear_index_equals_the_wear_index_in_full_slip_and_exceeds_it_before() -> None:
-    contact = RIG | wl.contact_model("exact")
-    full = contact(creepage=Q(2 * SATURATION, ""), **CONDITIONS)
-    # In full slip the mean slip is the creepage.
-    assert full.averaged_wear_index.magnitude == pytest.approx(full.wear_index.magnitude, rel=1e-13)
-    partial = contact(creepage=Q(0.3 * SATURATION, ""), **CONDITIONS)
-    assert partial.averaged_wear_index > 1.5 * partial.wear_index
-    assert contact(creepage="0 %", **CONDITIONS).averaged_wear_index.magnitude == 0.0
 
 
 @pytest.mark.parametrize(

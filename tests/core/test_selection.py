@@ -26,7 +26,7 @@ from wearlaw.numerics import integrate  # private: integrals at the size of bloc
 
 EVERY = (
     "wear_rate", "wear_rate_error", "longitudinal_force", "lateral_force", "spin_moment", "tangential_force",
-    "traction_coefficient", "wear_index", "cell_wear_index", "averaged_wear_index", "wear_index_density",
+    "traction_coefficient", "wear_index", "cell_wear_index", "wear_index_density",
     "normal_force", "creepage", "friction_coefficient", "semi_axis_a", "semi_axis_b", "max_pressure", "first_yield",
     "shakedown_limit", "outside_range", "patch_area", "stick_ratio", "mean_slip", "mass_per_distance",
 )  # fmt: skip

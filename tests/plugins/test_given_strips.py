@@ -183,7 +183,7 @@ def test_strips_that_fill_up_a_batch_change_no_result(model: wl.ContactModel, ri
                 np.testing.assert_allclose(data[name].values[..., :strips], values.values, 1e-9, allowed, err_msg=name)
 
     assert_same(there.to_dataset(), here.to_dataset(), None)
-    for name in ("wear_index", "cell_wear_index", "stick_ratio", "mean_slip", "averaged_wear_index"):
+    for name in ("wear_index", "cell_wear_index", "stick_ratio", "mean_slip"):
         np.testing.assert_allclose(axles.of(there, name), axles.of(here, name), rtol=1e-9, err_msg=name)
     profile, due = there.wear_profile("wheel"), here.wear_profile("wheel")
     assert_same(profile, due, axles.STRIPS)

@@ -350,23 +350,6 @@ class Prediction:
 
     @property
     @steady
-    def averaged_wear_index(self) -> Quantity:
-        """The averaged wear index of Tassini et al. 2010, section 3.2.3 [N].
-
-        The mean slip of the slipping part of the patch times the sum of the tractions. It exceeds the dissipated energy
-        wherever part of the patch sticks; `wear_index` is consistent with the dissipated energy.
-        """
-        slip = self._solution.slip
-        slipping = np.divide(
-            slip.mean_slip * slip.patch_area,
-            slip.slip_area,
-            out=np.zeros_like(slip.slip_area),
-            where=slip.slip_area > 0,
-        )
-        return self._si(slipping * np.abs(self._solution.force), "N")
-
-    @property
-    @steady
     def wear_index_density(self) -> Quantity:
         """Wear index over the area of the patch, Tγ/A [N/m²]."""
         return self._si(self._solution.power / self._solution.patch_area, "N/mm^2")

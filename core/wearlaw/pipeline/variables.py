@@ -17,7 +17,7 @@ ERROR = "_error"
 
 OF_CONTACT = (
     "tangential_force", "longitudinal_force", "lateral_force", "spin_moment", "traction_coefficient", "wear_index",
-    "cell_wear_index", "averaged_wear_index", "wear_index_density", "stick_ratio", "mean_slip", "first_yield",
+    "cell_wear_index", "wear_index_density", "stick_ratio", "mean_slip", "first_yield",
     "shakedown_limit",
 )  # fmt: skip
 """Variables that depend on the contact model but not on the wear law; no prediction has all of them."""
@@ -42,8 +42,8 @@ MORE = ("patch_area", OUTSIDE_RANGE)
 
 OF_OTHERS: Mapping[Geometry, frozenset[str]] = {
     "line": frozenset({"longitudinal_force", "lateral_force", "spin_moment", "cell_wear_index"}),
-    "ellipse": frozenset({"averaged_wear_index", "creepage"}),
-    "strips": frozenset({"averaged_wear_index", "creepage"}),
+    "ellipse": frozenset({"creepage"}),
+    "strips": frozenset({"creepage"}),
 }
 """Variables that results leave out for a shape of patch because they repeat another one or say nothing."""
 

@@ -102,7 +102,8 @@ class FigureSpec(Window):
     profile: str | None = None
     """The profile to show."""
     x: Annotated[str, _Schema("x", "y")] = "x"
-    """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it."""
+    """The variable along the x axis. For a profile it is the position: "x" along the patch or "y" across it.
+    An outcome of a law can stand there if each contact model has at most one pair with that outcome."""
     pairs: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """The pairs whose wear rates or other outcomes are shown, such as "usfd on exact". Default: all."""
     contact_models: Annotated[tuple[str, ...], Field(min_length=1)] | None = None

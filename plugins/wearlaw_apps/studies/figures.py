@@ -229,7 +229,7 @@ def _figure(results: Results, name: str, spec: FigureSpec) -> FigureData:
             data = data.assign(creepage=("x", np.full(data.sizes["x"], level)))
         if spec.sweep:
             axis = _axis_along(data, spec.x, case.rig.creepage)
-            data, free = along(data, axis), {axis}
+            data, free = along(_beside(results, data, spec.x), axis), {axis}
             data = data.isel({axis: _thinned(data.sizes[axis], MOST_POINTS)})
         panels, wrong = [], []
         for number, window in enumerate(spec.windows()):
@@ -266,6 +266,16 @@ def _conditions(grid: Any, free: Collection[str], units: Mapping[str, str]) -> I
             level = grid.level(name, units)
             value = level if isinstance(level, str) else f"{level:.5g} {readable(units[name])}"
             yield f"{name_of(name)} {value}".rstrip()
+
+
+def _beside(results: Results, sweep: xarray.Dataset, x: str) -> xarray.Dataset:
+    """Return a sweep in which an outcome on the x axis stands beside all pairs of its contact model."""
+    pairs = predicting(results, x, sweep.pair.values.tolist())
+    models = [results.pair(pair).contact_model for pair in pairs]
+    if not pairs or len({*models}) < len(models):
+        return sweep
+    values = sweep[x].sel(pair=pairs).drop_vars([name for name in sweep[x].coords if str(name).startswith("pair")])
+    return sweep.assign({x: values.rename(pair="contact_model").assign_coords(contact_model=models)})
 
 
 def _axis_along(sweep: xarray.Dataset, x: str, creepage: str | None) -> str:

@@ -24,9 +24,7 @@ from wearlaw_apps.fits.wear_tests import COLUMNS, LOADS, WearTests
 OF_TESTS = ("half_width", "max_pressure", "normal_force", "normal_force_per_width", "creepage", "friction_coefficient")
 """Variables of the conditions of tests, on a rig with line contact."""
 
-OF_TRACTION = (
-    "traction_coefficient", "tangential_force", "wear_index", "averaged_wear_index", "wear_index_density",
-)  # fmt: skip
+OF_TRACTION = ("traction_coefficient", "tangential_force", "wear_index", "wear_index_density")
 """Variables of tests with a measured traction."""
 
 
@@ -115,10 +113,7 @@ def _conditions(tests: WearTests) -> dict[str, Any]:
 
 
 def measured_points(tests: WearTests, rig: Rig) -> dict[str, Array]:
-    """Return the variables of tests, each of shape (tests,) in its usual unit, NaN where unknown.
-
-    No test measures the averaged wear index. It is taken as Tγ, as Tassini et al. (2010) do.
-    """
+    """Return the variables of tests, each of shape (tests,) in its usual unit, NaN where unknown."""
     problem = rig.checked_problem(_conditions(tests))
     force = tests.traction_coefficient.magnitude * problem.normal_force
     wear_index = force * abs(problem.creepage)
@@ -127,7 +122,6 @@ def measured_points(tests: WearTests, rig: Rig) -> dict[str, Array]:
         **{name: getattr(problem, name) for name in OF_TESTS},
         "tangential_force": force,
         "wear_index": wear_index,
-        "averaged_wear_index": wear_index,
         "wear_index_density": wear_index / problem.patch_area,
     }
     return {name: in_unit(values[name], UNITS[name]) for name in known_variables(tests)}

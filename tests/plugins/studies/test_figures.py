@@ -230,9 +230,9 @@ def test_a_strip_shows_where_the_contact_of_any_model_is_beyond_shakedown_in_the
             [("relative slip s, exact", 3, 1), ("creepage", 5, 0)],
         ),
         (
-            {"sweep": "creepage", "x": "creepage", "y": ["wear_index", "averaged_wear_index"]},
+            {"sweep": "creepage", "x": "creepage", "y": ["wear_index", "tangential_force"]},
             [("wear index Tγ, global", 0, 0), ("wear index Tγ, exact", 0, 1),
-             ("averaged wear index, global", 1, 0), ("averaged wear index, exact", 1, 1)],
+             ("tangential force T, global", 1, 0), ("tangential force T, exact", 1, 1)],
         ),
     ],
 )  # fmt: skip
@@ -301,6 +301,7 @@ def test_a_figure_runs_along_an_axis_on_which_its_x_varies(x: str) -> None:
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({**WEAR, "sweep": "crepage"}, "sweep"),
     ({**WEAR, "x": "wear_indx"}, "x"),
+    ({**WEAR, "x": "wear_rate", "y": "wear_index"}, "x"),  # of two laws on each contact model
     ({"sweep": "creepage", "y": "wear_rate"}, "x"),
     ({**WEAR, "y": "wear_rat"}, "y"),
     ({**PATCH, "y": ["slip", "pressure"]}, "y"),
@@ -399,7 +400,7 @@ def test_tests_are_shown_where_they_were_measured_with_their_uncertainty(measure
     traction = points(measured, "creepage", "traction_coefficient")
     np.testing.assert_allclose((traction.x, traction.y), ([1.0, 5.0], [0.3, 0.5]), rtol=4 * EPS)
     assert traction.low is None
-    by_index = points(measured, "averaged_wear_index", "wear_rate")
+    by_index = points(measured, "wear_index", "wear_rate")
     np.testing.assert_allclose((by_index.x, by_index.y), ([21.0], [20.0]), rtol=8 * EPS)
     wear = points(measured, "creepage", "wear_rate")
     np.testing.assert_allclose((wear.x, wear.y), ([1.0, 10.0], [20.0, 60.0]), rtol=4 * EPS)

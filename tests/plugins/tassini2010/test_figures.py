@@ -8,6 +8,7 @@ import tomllib
 import numpy as np
 import pytest
 
+import wearlaw as wl
 from tests.plugins.studies.panels import assert_shows, by_label, by_name, one_panel
 from tests.plugins.tassini2010.paper import (
     AREA,
@@ -21,6 +22,7 @@ from tests.plugins.tassini2010.paper import (
     SPEED,
 )
 from tests.strategies import EPS
+from wearlaw import Q
 from wearlaw_apps.output.curves import Curve, FigureData  # private: figures without their files
 from wearlaw_apps.studies.case import Case, case_text, load_case  # private: a case without its files
 from wearlaw_apps.studies.study import run  # private: a case run without its files
@@ -154,6 +156,15 @@ def test_figure_5_shows_the_tests_and_figure_6_the_band_of_kth(paper: dict[str, 
         assert kth.low is not None
         assert kth.high is not None
         np.testing.assert_allclose((kth.low[i], kth.y[i], kth.high[i]), (3.523, 19.377, 35.231), rtol=2e-4)
+
+
+def test_the_averaged_wear_index_is_the_wear_index_in_full_slip_exceeds_it_before_and_is_zero_without_slip() -> None:
+    predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.law("averaged_wear_index")
+    result = predict(max_pressure="1500 MPa", creepage=Q([5, 0.2, 0], "%"), friction_coefficient=FRICTION)
+    averaged, index = (result[name].m_as("N") for name in ("averaged_wear_index", "wear_index"))
+    assert averaged[0] == pytest.approx(index[0], rel=1e-13)  # in full slip the mean slip is the creepage
+    assert averaged[1] > 1.5 * index[1]
+    assert averaged[2] == 0.0
 
 
 def test_figures_7_and_8_are_against_the_averaged_wear_index(paper: dict[str, FigureData]) -> None:

@@ -7,6 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import wearlaw as wl
+from wearlaw_apps.papers.tassini2010.averaged_wear_index import AveragedWearIndex
+
+
+@wl.hookimpl
+def wearlaw_models() -> list[type[wl.Law]]:
+    """Return the averaged wear index of Tassini et al."""
+    return [AveragedWearIndex]
 
 
 @wl.hookimpl
