@@ -157,7 +157,7 @@ LOADS = ("normal_force", "normal_force_per_width", "max_pressure")
 
 OF_CONTACT = (
     "longitudinal_force", "lateral_force", "spin_moment", "traction_coefficient",
-    "cell_wear_index", "averaged_wear_index", "wear_index_density", "normal_force", "normal_force_per_width",
+    "cell_wear_index", "wear_index_density", "normal_force", "normal_force_per_width",
     "creepage", "lateral_creepage", "spin", "contact_angle", "friction_coefficient", "half_width", "semi_axis_a",
     "semi_axis_b", "max_pressure", "first_yield", "shakedown_limit", "patch_area", "stick_ratio", "mean_slip",
 )  # fmt: skip
@@ -171,6 +171,8 @@ def seen(prediction: wl.Prediction, contact: bool) -> dict[str, Any]:
     values = {name: prediction[name] for name in names} | _properties(prediction, OF_LAWS)
     if contact:
         values |= _properties(prediction, OF_CONTACT)
+        if prediction.problem.geometry == "line":
+            values["averaged_wear_index"] = (prediction.contact | wl.law("averaged_wear_index")).value
     if any(name.startswith("wear_rate") for name in names):
         for body in prediction.problem.bodies:
             for name in PER_BODY:
