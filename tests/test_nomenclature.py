@@ -30,7 +30,8 @@ OF_OTHER_KINDS = {"geometry", "problem", "strips", "bodies", "dims", "exists", "
 """Fields of records that are no numbers with a unit."""
 
 
-IN_NO_CLASS = {"wear_rate_low", "wear_rate_high", "wear_rate_uncertainty", "frictional_heat", "rcf_damage"}
+IN_NO_CLASS = {"wear_rate_low", "wear_rate_high", "wear_rate_uncertainty", "frictional_heat", "rcf_damage",
+               "averaged_wear_index"}  # fmt: skip
 """Columns of results and of files with tests, which the page explains below its table."""
 
 

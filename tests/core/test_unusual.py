@@ -67,7 +67,7 @@ SLIPS: list[tuple[Callable[[], Any], str]] = [
     (lambda: on_rail(normal_force="60 N"), "normal_force: is 60 N, usually 0.1 to 300 kN; did you mean 60 kN?"),
     (lambda: on_rail(spin="0.3 rad/mm"), "spin: is 0.3 rad/mm, usually -100 to 100 1/m; did you mean 0.3 1/m?"),
     (lambda: on_rail(friction_coefficient=30.0), "friction_coefficient: reaches 30, usually at most 2; is it in perc"),
-    (lambda: on_rail({"rail_head_radius": "300 m"}), "b: half the patch's width on the rail reaches"),
+    (lambda: on_rail({"rail_head_radius": "300 m"}), "b: half the patch's width reaches"),
     (
         lambda: (wl.TwinDisc.suros() | EXACT)(**DISCS | {"max_pressure": "1200 GPa"}),
         "max_pressure: is 1200 GPa, usually 5 to 10000 MPa; did you mean 1200 MPa?",

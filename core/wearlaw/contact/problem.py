@@ -74,6 +74,8 @@ class Body:
     profile_direction : float or ndarray
         1 where the arc length grows with y, -1 where it falls, as on the left wheel if y is to the right and the arc
         runs outwards.
+    usual_width : float
+        Greatest usual half width of a patch on the body that is no line [m]; a wider one gets an `UnusualWarning`.
     """
 
     material: Material
@@ -81,6 +83,7 @@ class Body:
     profile_position: Array | float | None = None
     profile_direction: float | Array = 1.0
     surface_radius: float | Array | None = None
+    usual_width: float = math.inf
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -103,7 +106,7 @@ class Body:
             return self
         values: dict[str, Any] = {name: getattr(self, name) for name in OF_BODY}
         values |= {name: function(value) for name, value in values.items() if isinstance(value, np.ndarray)}
-        return Body(self.material, **values)
+        return dataclasses.replace(self, **values)
 
 
 _ZERO: Any = None

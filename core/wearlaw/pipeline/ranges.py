@@ -168,9 +168,9 @@ RATIOS: Mapping[str, Ratio] = {
         " take the patch to be small. Check the load, the radii and Young's moduli",
     ),
     "width": Ratio(
-        20.0,
+        1.0,
         "b",
-        "half the patch's width on the rail reaches {:.3g} mm, usually at most 20 mm; check the load, the lateral radii"
+        "half the patch's width reaches {:.3g} times what is usual on such a body; check the load, the lateral radii"
         " and Young's moduli",
     ),
     "strain": Ratio(
@@ -185,7 +185,7 @@ RATIOS: Mapping[str, Ratio] = {
         " hardness",
     ),
 }
-"""Ratios that only the contact shows. They are generous: a corner of a rail with a radius of 13 mm is usual."""
+"""Ratios that only the contact shows. They are generous."""
 
 
 MOST = {name: ratio.most for name, ratio in RATIOS.items()}
@@ -200,6 +200,7 @@ def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, floa
         if not problem.size:
             return ratios
     pressure, a = extremes(problem.max_pressure)[1], extremes(problem.a)[1]
+    b = 0.0 if problem.geometry == "line" else extremes(problem.b)[1]
     if (friction := extremes(problem.friction_coefficient)[1]) > MOST["friction"]:
         ratios["friction"] = friction
     measured = problem.traction_coefficient
@@ -212,8 +213,8 @@ def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, floa
         relative = extremes(problem.a / radius)[1] if isinstance(radius, np.ndarray) else a / radius
         if relative > MOST["length"]:
             ratios["length"] = max(relative, ratios.get("length", 0.0))
-    if problem.geometry != "line" and "rail" in problem.bodies and (b := 1e3 * extremes(problem.b)[1]) > MOST["width"]:
-        ratios["width"] = b
+        if b > body.usual_width:
+            ratios["width"] = b / body.usual_width
     for law in laws:
         if has_hardness(type(law)) and pressure > MOST["hardness"] * (hardness := hardness_of(law, problem)):
             ratios["hardness"] = max(pressure / hardness, ratios.get("hardness", 0.0))

@@ -20,6 +20,9 @@ Angle = Annotated[wl.Quantity, wl.Unit("deg", positive=False)]
 LEAST_RADIUS = 1e-150
 """Least magnitude of a radius of curvature [m]; its square is a float of full precision."""
 
+USUAL_WIDTH = 20e-3
+"""Greatest usual half width of a patch on a rail [m]; a corner with a radius of 13 mm has less."""
+
 
 class WheelRailConditions(TypedDict, total=False):
     """The conditions of a wheel on a rail; exactly one of the first two gives the load. Arrays broadcast.
@@ -158,7 +161,7 @@ class WheelRail(wl.Rig):
     def _bodies(self) -> dict[str, wl.Body]:
         return {
             "wheel": wl.Body(self.material, wl.scalar_si(self.wheel_radius, "m")),
-            "rail": wl.Body(self.rail_material or self.material, self._roller),
+            "rail": wl.Body(self.rail_material or self.material, self._roller, usual_width=USUAL_WIDTH),
         }
 
     @np.errstate(all="ignore")  # `checked` rejects what overflows

@@ -83,6 +83,9 @@ RESULTS = (
 )
 """The results for a wheelset and its wheels."""
 
+USUAL_WIDTH = 20e-3
+"""Greatest usual half width of a patch on a rail [m]."""
+
 HIGH_PRESSURE = 3.5e9
 """Maximum pressure that only the noise of points gives [Pa]: new flanges have up to about 3."""
 

@@ -23,6 +23,7 @@ from wearlaw_models.rigs.wheelset.problem import (
     ANGLE,
     DIMS,
     DISPLACEMENT,
+    USUAL_WIDTH,
     YAW,
     WheelsetConditions,
     WheelsetProblem,
@@ -218,7 +219,7 @@ class Wheelset(wl.Rig):
         """The "wheel" and the "rail"; the radius is the nominal one, and problems have those of their patches."""
         return {
             "wheel": wl.Body(self.material, wl.scalar_si(self.nominal_radius, "m")),
-            "rail": wl.Body(self.rail_material or self.material, self._roller),
+            "rail": wl.Body(self.rail_material or self.material, self._roller, usual_width=USUAL_WIDTH),
         }
 
     @property
@@ -483,6 +484,7 @@ class Wheelset(wl.Rig):
                 np.inf if self.roller_radius is None else wide(self._roller - patches.rail_z),
                 profile_position=wide(patches.rail_arc),
                 profile_direction=side,
+                usual_width=USUAL_WIDTH,
             ),
         }
         fields: dict[str, Any] = {
