@@ -38,20 +38,18 @@ from wearlaw.hookspecs import Command, ResourceKind, hookimpl
 from wearlaw.kernels import accelerate, accelerated, compiled_loop
 from wearlaw.loader import contact_model, installed, law, material, patch_mean, rig, stage, use, wear_law
 from wearlaw.models.contact_model import ContactModel, CreepForceModel, Forces, LineContactModel, Solve, Stage
-from wearlaw.models.law import BreakpointMap, Calibration, Law, LocalOutcome, Numbers, Outcome, WearLaw
+from wearlaw.models.law import BreakpointMap, Calibration, Law, Numbers, Outcome, WearLaw
 from wearlaw.models.model import Claim, Exempt
 from wearlaw.models.reader import Reader
 from wearlaw.pipeline.pipeline import Pipeline, Rig
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.text_files import beside, read_file
 from wearlaw.units.quantities import (
-    Density,
     Length,
     Q,
     Quantity,
     QuantityLike,
     Speed,
-    Stress,
     Unit,
     coefficient,
     parse,
@@ -63,11 +61,11 @@ from wearlaw.version import __version__
 __all__ = [
     "Array", "Body", "BreakpointMap", "Calibration", "CalibrationWarning", "Claim", "Coefficient", "Command",
     "Condition", "ConditionsError", "Configuration", "ConfigurationError", "Contact", "ContactModel",
-    "ContactModelField", "CreepForceModel", "CreepForces", "Creepage", "Density", "Exempt", "FallingFriction", "Forces",
+    "ContactModelField", "CreepForceModel", "CreepForces", "Creepage", "Exempt", "FallingFriction", "Forces",
     "Friction", "Geometry", "InputError", "Law", "LawVariable", "Length", "LineContactModel", "LineFields",
-    "LocalOutcome", "Material", "MaterialField", "Nodes", "Numbers", "Outcome", "Pipeline", "PlasticityWarning",
+    "Material", "MaterialField", "Nodes", "Numbers", "Outcome", "Pipeline", "PlasticityWarning",
     "Prediction", "Problem", "Q", "Quantity", "QuantityLike", "RangeWarning", "Reader", "ResourceKind", "Rig", "Solve",
-    "Speed", "Stage", "Stress", "Strips", "Unit", "UnitError", "UnusualWarning", "Variable", "WearLaw", "WearLawField",
+    "Speed", "Stage", "Strips", "Unit", "UnitError", "UnusualWarning", "Variable", "WearLaw", "WearLawField",
     "WearlawError", "WearlawWarning", "__version__", "accelerate", "accelerated", "beside", "coefficient",
     "compiled_loop", "contact_model", "elastic_limit", "errors", "hertz", "hertz_ellipse", "hookimpl", "installed",
     "kalker", "law", "material", "parse", "patch_mean", "read_file", "read_law", "rig", "scalar_si", "shown", "stage",

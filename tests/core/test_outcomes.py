@@ -273,7 +273,7 @@ class Switch(wl.WearLaw):
     name: ClassVar[str] = "switch"
     source: ClassVar[str] = "test"
     variable: Literal["frictional_power_density", "power"] = "frictional_power_density"
-    border: wl.Stress = Q(1.0, "MPa")  # at 1 m/s, 1 MPa is 1 W/mm²
+    border: Annotated[wl.Quantity, wl.Unit("GPa")] = Q(1.0, "MPa")  # at 1 m/s, 1 MPa is 1 W/mm²
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         above = contact.frictional_power_density >= p["border"]

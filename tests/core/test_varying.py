@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ class Stepped(wl.WearLaw):
     name: ClassVar[str] = "stepped"
     source: ClassVar[str] = "made up for the tests"
 
-    threshold: wl.Stress = Q(4.0, "MPa")
+    threshold: Annotated[wl.Quantity, wl.Unit("GPa")] = Q(4.0, "MPa")
     """Where the rate triples."""
     exponent: float = 1.5
     """Of q·s."""

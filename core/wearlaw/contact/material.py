@@ -10,7 +10,7 @@ from pydantic import Field
 from pydantic_core import core_schema
 
 from wearlaw.configuration import Configuration, known_name
-from wearlaw.units.quantities import Density, Quantity, QuantityLike, Unit, scalar_si
+from wearlaw.units.quantities import Quantity, QuantityLike, Unit, scalar_si
 
 ALIKE = 0.1
 """Relative difference in E and in ρ up to which two materials are alike. Grades of steel differ by less; bronze, cast
@@ -35,7 +35,7 @@ class Material(Configuration):
     """Young's modulus, E [Pa]."""
     poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5, strict=True)]
     """Poisson's ratio, ν [-]."""
-    density: Density
+    density: Annotated[Quantity, Unit("kg/m^3", usual=(500.0, 25000.0))]
     """Mass density, ρ [kg/m³]."""
     shear_yield_stress: Annotated[Quantity, Unit("GPa", usual=(1e-3, 10.0))] | None = None
     """Yield stress in shear, k [Pa]; None if not known, and then no contact counts as yielding."""

@@ -425,10 +425,6 @@ Length = Annotated[Quantity, Unit("mm")]
 """A field of a model that takes a length, as a quantity or its text."""
 Speed = Annotated[Quantity, Unit("m/s", usual=(1e-4, 200.0))]
 """A field of a model that takes a speed, as a quantity or its text."""
-Stress = Annotated[Quantity, Unit("GPa")]
-"""A field of a model that takes a stress, as a quantity or its text."""
-Density = Annotated[Quantity, Unit("kg/m^3", usual=(500.0, 25000.0))]
-"""A field of a model that takes a density, as a quantity or its text."""
 WEAR_RATE = "ug/m/mm^2"
 """The unit for showing wear rates: mass lost per metre rolled and contact area."""
 

@@ -63,7 +63,7 @@ class ContactMat(wl.Reader):
     """Material of the wheel; E and ν are those of the file."""
     rail: wl.MaterialField = wl.steel()
     """Material of the rail; E and ν are those of the file."""
-    density: wl.Density | None = None
+    density: Annotated[wl.Quantity, wl.Unit("kg/m^3", usual=(500.0, 25000.0))] | None = None
     """Density of both bodies, ρ [kg/m³]; None for those of their materials."""
     wheel_radius: wl.Length | None = None
     """Rolling radius of the wheel; None for that of the file. Without one, depths are per passage."""

@@ -84,7 +84,7 @@ class KTH(wl.WearLaw):
     """Hardness, H [Pa]. Not printed in the paper; 2.1 GPa is 0.8 H in the wear map."""
     threshold_over_hardness: Annotated[float, Field(gt=0.0, strict=True)] = THRESHOLD_OVER_HARDNESS
     """Pressure at which seizure begins, over the hardness [-]; 0.8 in the wear map."""
-    pressure_threshold: wl.Stress | None = Field(default=None, examples=["2.1 GPa"])
+    pressure_threshold: Annotated[wl.Quantity, wl.Unit("GPa")] | None = Field(default=None, examples=["2.1 GPa"])
     """Pressure at which seizure begins [Pa]; None for that share of the hardness."""
     lower_slip_speed: wl.Speed = Field(default="0.2 m/s", validate_default=True)
     """Slip speed at which severe wear begins [m/s]."""

@@ -42,7 +42,9 @@ class ThermalProperties(wl.Configuration):
 
     conductivity: Conductivity = Field(default="50 W/m/K", validate_default=True)
     """Thermal conductivity, λ [W/(m K)]."""
-    density: wl.Density = Field(default="7850 kg/m^3", validate_default=True)
+    density: Annotated[wl.Quantity, wl.Unit("kg/m^3", usual=(500.0, 25000.0))] = Field(
+        default="7850 kg/m^3", validate_default=True
+    )
     """Mass density, ρ [kg/m³]."""
     specific_heat: SpecificHeat = Field(default="450 J/kg/K", validate_default=True)
     """Specific heat capacity, c [J/(kg K)]."""

@@ -25,7 +25,7 @@ class Bounded(wl.Configuration):
     offset: Annotated[wl.Quantity, wl.Unit("mm", positive=False, limit=20.0)] = Q(1.0, "mm")
     ratio: Annotated[wl.Quantity, wl.Unit("", limit=1.0)] = Q(50.0, "%")
     power: Annotated[float, Field(ge=1.0, le=2.0)] | None = 1.5
-    stress: wl.Stress | None = Q(1.0, "GPa")
+    stress: Annotated[wl.Quantity, wl.Unit("GPa")] | None = Q(1.0, "GPa")
 
 
 class Outer(wl.Configuration):

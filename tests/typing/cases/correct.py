@@ -9,6 +9,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Q
+from wearlaw.models.law import LocalOutcome  # private: what `contact | law` returns
 
 rig = wl.TwinDisc.suros()
 assert_type(rig, wl.TwinDisc)
@@ -267,8 +268,8 @@ assert_type(predicted.outcome("rcf_damage", "rail"), wl.Quantity)
 assert_type(predicted.outcome("flash_temperature"), wl.Quantity)
 assert_type(predicted.wear_rate_of("rail"), wl.Quantity)
 assert_type(predicted.laws, tuple[wl.Law, ...])
-assert_type(predicted.contact | Fatigue(threshold=Q(15, "N")), wl.LocalOutcome)
-assert_type(predicted.contact | wl.wear_law("usfd"), wl.LocalOutcome)
+assert_type(predicted.contact | Fatigue(threshold=Q(15, "N")), LocalOutcome)
+assert_type(predicted.contact | wl.wear_law("usfd"), LocalOutcome)
 assert_type((predicted.contact | Fatigue(threshold=Q(15, "N"))).value, wl.Quantity)
 
 

@@ -26,7 +26,9 @@ class SteelWithHardness(wl.Material):
     """Young's modulus, E [Pa]."""
     poisson_ratio: Annotated[float, Field(ge=0.0, le=0.5, strict=True)] = 0.28
     """Poisson's ratio, ν [-]."""
-    density: wl.Density = Field(default="7850 kg/m^3", validate_default=True)
+    density: Annotated[wl.Quantity, wl.Unit("kg/m^3", usual=(500.0, 25000.0))] = Field(
+        default="7850 kg/m^3", validate_default=True
+    )
     """Mass density, ρ [kg/m³]."""
     shear_yield_stress: Annotated[wl.Quantity, wl.Unit("GPa", usual=(1e-3, 10.0))] | None = Field(
         default="541.3 MPa", validate_default=True
