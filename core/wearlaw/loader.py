@@ -171,9 +171,9 @@ class Installed:
             return matches[0][0]
         raise UnknownModelError(self.unknown(kind, name, self[kind].items()))
 
-    def unknown(self, kind: str, name: str, known: Iterable[str]) -> str:
+    def unknown(self, kind: str, name: str, choices: Iterable[str]) -> str:
         """Return the message for an unknown name, with the installed names and the plugins that were left out."""
-        names = list(known)
+        names = list(choices)
         message = (
             f"no {kind} is called {shown(name)}{did_you_mean(str(name), names)} Installed: {', '.join(names) or 'none'}"
         )

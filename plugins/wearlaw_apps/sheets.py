@@ -79,7 +79,7 @@ def _of_xlsx(archive: zipfile.ZipFile) -> Iterator[tuple[str, Rows]]:
         targets = {link.get("Id"): posixpath.join("/xl", link.get("Target", "")).lstrip("/") for link in links}
         entries = ElementTree.fromstring(archive.read("xl/workbook.xml")).findall(".//{*}sheet")
         ids = [next(value for name, value in entry.items() if name.endswith("}id")) for entry in entries]
-        named = {targets[one]: entry.get("name", "") for one, entry in zip(ids, entries, strict=True)}
+        named = {targets[key]: entry.get("name", "") for key, entry in zip(ids, entries, strict=True)}
         sheets = {file: name for file, name in named.items() if file in sheets}  # others are charts
     for file, name in sheets.items():
         rows: Rows = {}

@@ -353,8 +353,8 @@ def _of_law(law: Law) -> Iterator[str]:
 
 
 def _level(law: Law, variable: str, value: float) -> str:
-    own = law.variables.get(variable)
-    return repr(from_si(value, own.unit if own else UNITS[variable]))
+    declared = law.variables.get(variable)
+    return repr(from_si(value, declared.unit if declared else UNITS[variable]))
 
 
 def wrapped(prefix: str, text: str) -> list[str]:

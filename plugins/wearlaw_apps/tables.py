@@ -571,12 +571,12 @@ def _are_units(cells: Sequence[str], decimal: str) -> bool:
     texts = [cell.strip("[]()") for cell in cells if cell]
     if not any(map(str.isalpha, "".join(texts))) or any(_is_number(text, decimal) for text in {*texts} - {"1"}):
         return False
-    known = 0
+    matched = 0
     for text in texts:
         with suppress(UnitError):
             _known(text)
-            known += 1
-    return 2 * known > len(texts)
+            matched += 1
+    return 2 * matched > len(texts)
 
 
 def _begins_blocks(lines: Sequence[str]) -> bool:

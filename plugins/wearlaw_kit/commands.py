@@ -106,10 +106,10 @@ def check(
         for source in sources
     ]
     chosen = [(model, list(checks(model))) for model in models]
-    known = {model_check.name for _, model_checks in chosen for model_check in model_checks}
-    for unknown in (check_name for check_name in only if check_name not in known):
+    available = {model_check.name for _, model_checks in chosen for model_check in model_checks}
+    for unknown in (check_name for check_name in only if check_name not in available):
         raise InputError(
-            f"--only: no check of {name or distribution} is called '{unknown}'{did_you_mean(unknown, known)}"
+            f"--only: no check of {name or distribution} is called '{unknown}'{did_you_mean(unknown, available)}"
         )
     total: Counter[str] = Counter()
     for model, model_checks in chosen:
@@ -118,7 +118,7 @@ def check(
         of_model = reasons if name is not None else {c.name: reasons[c.name] for c in model_checks if c.name in reasons}
         for lacking in validate_expected("--expect-failure", model, model_checks, of_model):
             click.echo(f"note: this version of wearlaw has no check '{lacking}'")
-        total += _checked(model, [c for c in model_checks if c.name in (only or known)], of_model, durations)
+        total += _checked(model, [c for c in model_checks if c.name in (only or available)], of_model, durations)
     as_expected = f"{total['failed as expected']} failed as expected, " if total["failed as expected"] else ""
     click.echo(f"{total['ok']} ok, {total['failed']} failed, {as_expected}{total['not claimed']} not claimed")
     if total["failed"]:

@@ -324,8 +324,8 @@ def strips_that_fill_up_a_batch_add_nothing(model: ContactModel, shape: Shape) -
     _assert_same_contact(model, problem, filled, "with strips that fill up a batch")
     contact, count = model.solve(filled), problem.strips.y.shape[-1]
     for name in ("pressure", "traction", "slip", "area"):
-        found = getattr(contact, name)[..., count:]
-        assert (found == 0.0).all(), f"strips that fill up a batch have a {name} of {np.abs(found).max():.3g}"
+        values = getattr(contact, name)[..., count:]
+        assert (values == 0.0).all(), f"strips that fill up a batch have a {name} of {np.abs(values).max():.3g}"
 
 
 @on_shapes(PATCH)

@@ -112,5 +112,5 @@ def assert_close(
     wrong = ~(np.abs(actual - expected) <= allowed)
     if wrong.any():
         worst = np.unravel_index(np.argmax(np.where(wrong, np.abs(actual - expected), 0.0)), expected.shape)
-        found, due = actual[worst].item(), expected[worst].item()
-        raise AssertionError(f"{message}: {found!r} instead of {due!r} (allowed: {allowed[worst]:.1e})")
+        value, due = actual[worst].item(), expected[worst].item()
+        raise AssertionError(f"{message}: {value!r} instead of {due!r} (allowed: {allowed[worst]:.1e})")

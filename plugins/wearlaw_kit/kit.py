@@ -54,9 +54,9 @@ def exemptions_are_claims(model: Model) -> None:
         exemption = as_exempt(reason)
         assert exemption.reason.strip(), f"the exemption from '{claim}' has no reason"
         for name in exemption.parts:
-            known = parts_of(model)
-            assert name in known, (
-                f"the exemption from '{claim}' names no part of it: '{name}'{did_you_mean(name, known)}"
+            parts = parts_of(model)
+            assert name in parts, (
+                f"the exemption from '{claim}' names no part of it: '{name}'{did_you_mean(name, parts)}"
             )
         assert exemption.upto is None or exemption.upto > 0.0, (
             f"`upto` of the exemption from '{claim}' is not above zero"

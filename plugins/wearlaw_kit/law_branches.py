@@ -108,8 +108,8 @@ def rate_does_not_jump_with_direction(law: Law) -> None:
             rolling_speed=contact.rolling_speed[index],
             density=contact.density[index],
         )
-        found: Array = law.rate(with_problem(turned, law), law.numbers)[:, 0, 0]
-        return found
+        values: Array = law.rate(with_problem(turned, law), law.numbers)[:, 0, 0]
+        return values
 
     for _, share, before, behind in find_jumps(rate, TURNS):
         raise AssertionError(f"the rate jumps from {before:.6g} to {behind:.6g} at {360.0 * share:.4g}° to rolling")

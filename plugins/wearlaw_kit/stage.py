@@ -202,8 +202,10 @@ def each_field_of_a_stage_matters(stage: Stage) -> None:
     problems = [(shape, shape.draw(POINTS)) for shape in (LINE, ELLIPSE)]
     for name, value in other_fields(stage, FACTOR):
         changed = stage.model_copy(update={name: value})
-        pairs = [[_kept(one, shape, problem)[-1] for one in (stage, changed)] for shape, problem in problems]
-        same = all(np.array_equal(getattr(one, part), getattr(other, part)) for one, other in pairs for part in TOTALS)
+        pairs = [[_kept(variant, shape, problem)[-1] for variant in (stage, changed)] for shape, problem in problems]
+        same = all(
+            np.array_equal(getattr(before, part), getattr(after, part)) for before, after in pairs for part in TOTALS
+        )
         assert not same, f"the contact is the same with another {name}; does the stage read the field?"
 
 

@@ -101,7 +101,7 @@ class ContactModel(Model):
             "ellipse": (cls.solve_ellipse, ContactModel.solve_ellipse),
             "strips": (cls.solve_strips, ContactModel.solve_strips),
         }
-        return tuple(shape for shape, (own, inherited) in methods.items() if own is not inherited)
+        return tuple(shape for shape, (method, inherited) in methods.items() if method is not inherited)
 
     def _cannot_solve(self, geometry: Geometry) -> CompositionError:
         return CompositionError(

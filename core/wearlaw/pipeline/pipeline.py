@@ -600,12 +600,14 @@ class Pipeline(Configuration, Generic[P]):
         """
         return self._predicted(problem, RangeWatch(*self.laws, on_block=on_block))
 
-    def _predicted(self, problem: Problem, watch: RangeWatch, given: Mapping[str, Any] | None = None) -> Prediction:
+    def _predicted(
+        self, problem: Problem, watch: RangeWatch, conditions: Mapping[str, Any] | None = None
+    ) -> Prediction:
         resolved = None if problem.exists is None else problem.resolved
         if resolved is not None and not resolved.any():
             raise ConditionsError(TOUCH_NOWHERE.format(self.rig.name))
         self.warn_of_problem(problem)
-        prediction = self.watched(problem, watch, given)
+        prediction = self.watched(problem, watch, conditions)
         warn_of_unlike_materials(self.contact_model, problem)
         watch.warn()
         return prediction
@@ -625,14 +627,14 @@ class Pipeline(Configuration, Generic[P]):
             if not rig.bodies:
                 warn_of_materials(problem.bodies, law)
 
-    def watched(self, problem: Problem, watch: RangeWatch, given: Mapping[str, Any] | None = None) -> Prediction:
+    def watched(self, problem: Problem, watch: RangeWatch, conditions: Mapping[str, Any] | None = None) -> Prediction:
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""
         if problem.geometry == "line":
             check_traction(self.contact_model, problem)
         if problem.dims:
             watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
-        return solved(model, self.laws, problem, watch, given)
+        return solved(model, self.laws, problem, watch, conditions)
 
 
 def _several(*parts: Any, **more: Any) -> Any:

@@ -618,17 +618,17 @@ def solved(
     laws: tuple[Law, ...],
     problem: Problem,
     watch: RangeWatch,
-    given: Mapping[str, Any] | None = None,
+    conditions: Mapping[str, Any] | None = None,
 ) -> Prediction:
     """Return the prediction of laws in the contacts of a model, without warnings; `watch` sees the operating points.
 
-    `given` are the conditions.
+    `conditions` are those of the pipeline.
     """
     if problem.exists is not None and not problem.size:
         totals = Totals.missing(problem, laws)
     else:
         totals = integrate.integrate_laws(model, laws, problem, watch.see)
-    solution = Solution(problem, model, laws, totals, given)
+    solution = Solution(problem, model, laws, totals, conditions)
     for index, law in enumerate(laws):
         if law.outcome.of == "patch":
             law.check_not_negative(totals.values[index])

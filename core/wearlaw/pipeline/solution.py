@@ -27,8 +27,8 @@ class Solution:
     """The contacts of a problem, and the outcomes of laws in them.
 
     Arrays have the shape of the batch. What the integration did not give is computed when it is first read. The model
-    includes its stages, and the totals are the outcomes of the laws or, without laws, the forces alone. `given` are the
-    conditions of the pipeline; `whole` is the solution that this one is a part of, and which part.
+    includes its stages, and the totals are the outcomes of the laws or, without laws, the forces alone.
+    `conditions` are those of the pipeline; `whole` is the solution that this one is a part of, and which part.
     """
 
     def __init__(
@@ -37,14 +37,14 @@ class Solution:
         model: ContactModel,
         laws: tuple[Law, ...],
         totals: Totals,
-        given: Mapping[str, Any] | None = None,
+        conditions: Mapping[str, Any] | None = None,
         whole: tuple[Solution, Selection] | None = None,
     ) -> None:
         self.problem = problem
         self.model = model
         self.laws = laws
         self.totals = totals
-        self.given = given
+        self.conditions = conditions
         self.whole = whole
 
     def part(self, chosen: Selection) -> Solution:

@@ -206,10 +206,10 @@ def _quantity_class(registry: pint.UnitRegistry[Any]) -> type[Any]:
 
 
 def _digits(magnitude: Any) -> str:
-    def one(number: Any) -> str:
+    def text(number: Any) -> str:
         return f"{number:#.{_SIGNIFICANT_DIGITS}g}".rstrip(".")
 
     if np.ndim(magnitude) == 0:
-        return one(magnitude) if isinstance(magnitude, (int, float, np.number)) else repr(magnitude)
-    formatter: Any = {"float_kind": one}
+        return text(magnitude) if isinstance(magnitude, (int, float, np.number)) else repr(magnitude)
+    formatter: Any = {"float_kind": text}
     return np.array2string(np.asarray(magnitude), formatter=formatter)

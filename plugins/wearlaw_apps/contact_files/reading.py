@@ -73,8 +73,8 @@ def _read(path: Path, chosen: str | Reader | None, options: dict[str, Any]) -> C
     if isinstance(chosen, Reader):
         reader: Reader = chosen.model_copy(update=options) if options else chosen
     else:
-        found = _recognised(path, head) if chosen is None else loader.discovered().find("reader", chosen)
-        reader = found(**options)
+        kind = _recognised(path, head) if chosen is None else loader.discovered().find("reader", chosen)
+        reader = kind(**options)
     with Blame(reader):
         contact = reader.read(path)
     if not isinstance(contact, Contact) or contact.problem is None:

@@ -157,8 +157,8 @@ class Page:
 
     def __init__(self, subject: Subject, conditions: Mapping[str, Any]) -> None:
         self.subject, self.start = subject, subject.conditions(conditions)
-        own = {name: value for name, value in self.start.items() if name not in subject.declared}
-        subject.rig.checked_problem(own)  # an error of what is given, before there is a page with notes
+        rest = {name: value for name, value in self.start.items() if name not in subject.declared}
+        subject.rig.checked_problem(rest)  # an error of what is given, before there is a page with notes
         every = {**subject.declared, **subject.rig.conditions()}
         sliders = {name: slider(every.get(name), name, value) for name, value in self.start.items()}
         self.sliders = {name: control for name, control in sliders.items() if control is not None}

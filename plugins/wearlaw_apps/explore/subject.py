@@ -83,9 +83,9 @@ class Subject:
     @property
     def declared(self) -> dict[str, Any]:
         """The conditions of all models in the menus beside those of the rig, by name."""
-        own = self.rig.conditions()
+        of_rig = self.rig.conditions()
         every = {name: condition for model in self.codes for name, condition in model.own_conditions().items()}
-        return {name: condition for name, condition in every.items() if name not in own}
+        return {name: condition for name, condition in every.items() if name not in of_rig}
 
     def pipeline(self, model: str, law: str) -> Any:
         """Return the pipeline of a contact model and a law, by their labels; a law of patch means gets them."""

@@ -88,9 +88,9 @@ def _check_names(tests: WearTests, names: Sequence[str]) -> None:
         for ending in UNCERTAIN:
             rest = rest.removesuffix(ending)
         if rest and rest[1:] not in names:
-            known = [*names, *(ending[1:] for ending in UNCERTAIN)]
+            choices = [*names, *(ending[1:] for ending in UNCERTAIN)]
             raise DataError(
-                f"{name}: the bodies of this rig are {' and '.join(names)}{did_you_mean(rest[1:], known)} A standard"
+                f"{name}: the bodies of this rig are {' and '.join(names)}{did_you_mean(rest[1:], choices)} A standard"
                 f" uncertainty is {way}_uncertainty"
             )
 
@@ -123,18 +123,18 @@ class _Weighing:
         factor = self._of_outcome(outcome, terms[0][1])
         count = sum(len(bodies) if self.weighed == BOTH and not suffix else 1 for suffix, bodies in terms)
         every = [self._measured(suffix, bodies) for suffix, bodies in terms]
-        value = factor / count * np.sum([one.mass for one in every], axis=0)
-        error = factor / count * np.sqrt(np.sum([one.uncertainty**2 for one in every], axis=0))
-        known = self.tests.measured(name, outcome.unit)
-        self._refuse(~np.isnan(known) & ~np.isnan(value), f"their wear stands in {name} and in another column")
-        tests = _with(self.tests, name, outcome.unit, np.where(np.isnan(known), value, known))
+        value = factor / count * np.sum([term.mass for term in every], axis=0)
+        error = factor / count * np.sqrt(np.sum([term.uncertainty**2 for term in every], axis=0))
+        measured = self.tests.measured(name, outcome.unit)
+        self._refuse(~np.isnan(measured) & ~np.isnan(value), f"their wear stands in {name} and in another column")
+        tests = _with(self.tests, name, outcome.unit, np.where(np.isnan(measured), value, measured))
         stated = f"{name}{UNCERTAIN[0]}"
         if not np.isnan(error).all():
             before = self.tests.measured(stated, outcome.unit)
-            tests = _with(tests, stated, outcome.unit, np.where(np.isnan(known), error, before))
+            tests = _with(tests, stated, outcome.unit, np.where(np.isnan(measured), error, before))
         area = self.problem.patch_area
         ends = " to ".join(f"{end:.4g}" for end in dict.fromkeys((1e6 * area.min(), 1e6 * area.max())))
-        return tests, [f"{words} and the patch's area, {ends} mm²" for one in every for words in one.words]
+        return tests, [f"{words} and the patch's area, {ends} mm²" for term in every for words in term.words]
 
     def of_weighed(self, law: Law) -> Law:
         """Return a law for the weighed body if its material differs from that of the first one."""
@@ -170,20 +170,20 @@ class _Weighing:
     def _measured(self, suffix: str, bodies: tuple[str, ...]) -> Measured:
         """Return the mass per distance rolled from all ways with an ending."""
         count = len(self.tests)
-        found = Measured(np.full(count, np.nan), np.full(count, np.nan), [])
+        measured = Measured(np.full(count, np.nan), np.full(count, np.nan), [])
         for way, variable in WAYS.items():
             values = self.tests.measured(f"{way}{suffix}", variable.unit)
             there = ~np.isnan(values)
             if not there.any():
                 continue
-            self._refuse(there & ~np.isnan(found.mass), f"their wear stands in {way} and in another column")
+            self._refuse(there & ~np.isnan(measured.mass), f"their wear stands in {way} and in another column")
             factor, words = self._per_distance(way, bodies, there)
-            found.mass[there] = (values * factor)[there]
-            found.uncertainty[there] = (self._uncertainty(way, suffix) * factor)[there]
+            measured.mass[there] = (values * factor)[there]
+            measured.uncertainty[there] = (self._uncertainty(way, suffix) * factor)[there]
             whose = "both bodies, half to each" if len(bodies) > 1 else "".join(bodies)
             tests = "" if there.all() else f" in {there.sum()} of {count} tests"
-            found.words.append(f"{way}{suffix}{tests}, of {whose}{words}")
-        return found
+            measured.words.append(f"{way}{suffix}{tests}, of {whose}{words}")
+        return measured
 
     def _uncertainty(self, way: str, suffix: str) -> Array:
         """Return the standard uncertainty of a measurement in SI, NaN where it is not known.

@@ -306,9 +306,9 @@ class Fit:
             name: np.atleast_1d(value.magnitude) * si_factor(value, str(value.units)) for name, value in chosen.items()
         }
 
-    def fitted(self, one: Observations) -> Array:
+    def fitted(self, observations: Observations) -> Array:
         """Return the fitted values of a kind of measurement in SI, (tests,)."""
-        predicted: Array = one.predicted(self.values_in_si())[0]
+        predicted: Array = observations.predicted(self.values_in_si())[0]
         return predicted
 
     def __repr__(self) -> str:
@@ -345,8 +345,8 @@ class Fit:
 
 def symbol_of(parameter: str) -> str:
     """Return the symbol of a parameter, such as "μ", or else its name, which of laws is the symbol, or words."""
-    known = VARIABLES.get(parameter)
-    return (known and known.symbol) or (parameter if len(parameter) <= LONGEST else parameter.replace("_", " "))
+    variable = VARIABLES.get(parameter)
+    return (variable and variable.symbol) or (parameter if len(parameter) <= LONGEST else parameter.replace("_", " "))
 
 
 def _plural(observable: str) -> str:
@@ -360,8 +360,8 @@ def _panel(fit: Fit, observed: Observations, x: str | None) -> Panel:
     if x is None and len(varied) != 1:
         return _parity(observed, fit.fitted(observed))
     if x not in (None, WEAR_INDEX_DENSITY, *numbers):
-        known = [*numbers, WEAR_INDEX_DENSITY]
-        raise InputError(f"x: there is no {shown(x)}{did_you_mean(str(x), known)} There are: {', '.join(known)}")
+        choices = [*numbers, WEAR_INDEX_DENSITY]
+        raise InputError(f"x: there is no {shown(x)}{did_you_mean(str(x), choices)} There are: {', '.join(choices)}")
     conditions = dict(observed.conditions)
     if len(varied) == 1:
         order = np.argsort(numbers[varied[0]], kind="stable")

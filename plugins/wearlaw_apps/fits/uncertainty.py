@@ -125,23 +125,23 @@ class Sampler:
     """A pipeline whose laws predict at probabilities of the uncertain inputs, with the conditions that are given."""
 
     predict: Pipeline[...]
-    given: Mapping[str, Any]
+    certain: Mapping[str, Any]
     inputs: tuple[Uncertain, ...]
 
     @cached_property
-    def known(self) -> dict[str, Known]:
+    def levels(self) -> dict[str, Known]:
         """The numeric conditions that are not distributed."""
-        numbers = {name: Known.of(value) for name, value in self.given.items()}
+        numbers = {name: Known.of(value) for name, value in self.certain.items()}
         return {name: number for name, number in numbers.items() if number is not None}
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
         """The shape of the conditions that are not distributed."""
-        broadcast({name: number.values for name, number in self.known.items()})  # an error names shapes that do not fit
+        broadcast({name: level.values for name, level in self.levels.items()})  # an error names shapes that do not fit
         # An error here is one of the conditions, not of single samples.
         conditions, _ = self._at(np.full(len(self.inputs), 0.5))
         shape: tuple[int, ...] = self.predict.posed(
-            {**self.given, **conditions}, of_one_patch="uncertainty"
+            {**self.certain, **conditions}, of_one_patch="uncertainty"
         ).batch_shape
         return shape
 
@@ -156,12 +156,12 @@ class Sampler:
             check_samples(part_at(self.predict, place), of_part(numbers, place.kind, place.index))
         fixed = {
             name: number.values[..., None] if number.unit is None else Q(number.values[..., None], number.unit)
-            for name, number in self.known.items()
+            for name, number in self.levels.items()
         }
         with steadily():
             try:
                 with OneWarning() as unusual:
-                    problem = self.predict.posed({**self.given, **fixed, **conditions})
+                    problem = self.predict.posed({**self.certain, **fixed, **conditions})
                     if not warns:
                         unusual.clear()
             except InputError as error:
@@ -261,7 +261,7 @@ class Uncertainty:
         ends of its interval under "wear_rate_low" and "wear_rate_high".
         """
         columns = {}
-        for name, condition in self.sampler.known.items():
+        for name, condition in self.sampler.levels.items():
             head = f"{name} [{condition.unit}]" if condition.unit else name
             columns[head] = np.broadcast_to(condition.values, self.sampler.shape).reshape(-1)
         for single in map(self.of, self.outcomes):
@@ -401,7 +401,7 @@ def _cumulative(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
 
 
 def _along_axis(uncertainty: Uncertainty, outcome: PlotAxis) -> Panel:
-    axes = {name: condition for name, condition in uncertainty.sampler.known.items() if np.size(condition.values) > 1}
+    axes = {name: condition for name, condition in uncertainty.sampler.levels.items() if np.size(condition.values) > 1}
     if len(axes) != 1:
         raise InputError(f"plot: needs one condition with several values, or none; there are {', '.join(axes)}")
     ((name, condition),) = axes.items()

@@ -234,7 +234,7 @@ class WearTests:
     @classmethod
     def checked(
         cls,
-        given: Mapping[str, Values],
+        raw: Mapping[str, Values],
         labels: Sequence[str],
         source: str,
         outcomes: Collection[str],
@@ -242,18 +242,18 @@ class WearTests:
         place: Callable[[str, int], str],
     ) -> Self:
         """Return tests from columns of one length, with the names of those that are outcomes."""
-        outcomes = {*outcomes, *(name for name in given if is_way(name))}
-        wrong = faulty_names(given, outcomes)
+        outcomes = {*outcomes, *(name for name in raw if is_way(name))}
+        wrong = faulty_names(raw, outcomes)
         columns: dict[str, Array] = {}
         for name in COLUMNS:
             try:
-                if name in given:
-                    columns[name] = _in_si(name, COLUMNS[name].unit, given[name])
+                if name in raw:
+                    columns[name] = _in_si(name, COLUMNS[name].unit, raw[name])
             except UnitError as error:
                 wrong.append(f"{name}: {error}")
-        others = {name: values for name, values in given.items() if name not in COLUMNS}
+        others = {name: values for name, values in raw.items() if name not in COLUMNS}
         wrong = wrong or [
-            f"{place(name, int(i))}: {rule}, got {plain(given[name])[i]:g}"
+            f"{place(name, int(i))}: {rule}, got {plain(raw[name])[i]:g}"
             for name, faulty, rule in _faulty_values(columns, others, outcomes)
             for i in np.flatnonzero(faulty)
         ]
@@ -261,7 +261,7 @@ class WearTests:
             raise DataError(f"{subject} are wrong in:", wrong)
         columns = _with_traction(columns)
         measured = {name: others.pop(name) for name in list(others) if name in outcomes}
-        units = {name: _unit(given[name]) for name in columns if name in given}
+        units = {name: _unit(raw[name]) for name in columns if name in raw}
         return cls(columns, tuple(map(str, labels)), source, others, measured, units)
 
     @property

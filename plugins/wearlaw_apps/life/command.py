@@ -104,8 +104,8 @@ def life(
             figures.append(uncertain.figure())
         names = write_files(fresh, LIFE, record, tables, figures, figure_formats, latex)
     shutil.rmtree(partial, ignore_errors=True)
-    texts, found = [*map(str, resumed), *notes.texts], {"ended": result.ended, "life": result.table}
-    answer(folder, names, texts, lambda: click.echo("\n".join(map(repr, filter(None, (result, uncertain))))), found)
+    texts, written = [*map(str, resumed), *notes.texts], {"ended": result.ended, "life": result.table}
+    answer(folder, names, texts, lambda: click.echo("\n".join(map(repr, filter(None, (result, uncertain))))), written)
 
 
 def _tables(life: Life) -> dict[str, pd.DataFrame]:

@@ -148,10 +148,10 @@ class Line:
             arrays = total.arrays()
             wears = [Wear.of(arrays, head, job.units) for head, job in zip(HEADS, self.jobs, strict=False)]
             if self._kept is not None:
-                given = {f"line_{name}": column.values for name, column in table.items()}
+                results = {f"line_{name}": column.values for name, column in table.items()}
                 for head, wear in zip(HEADS, wears, strict=False):
-                    given |= {f"{head}{name}": values for name, values in wear._asdict().items()}
-                self._kept.add(step, given, {"notes": notes, "states": states})
+                    results |= {f"{head}{name}": values for name, values in wear._asdict().items()}
+                self._kept.add(step, results, {"notes": notes, "states": states})
         for kind, text in notes:
             if (words := NUMBER.sub("", text)) not in self._said:
                 self._said.add(words)

@@ -101,8 +101,10 @@ def uncertain_life(
     probability = scipy.stats.qmc.LatinHypercube(len(inputs), scramble=False, rng=np.random.default_rng(seed)).random(
         samples
     )
-    drawn = {key: values for one, row in zip(inputs, probability.T, strict=True) for key, values in one.at(row).items()}
-    given = {"until_all": True, **{name: value for name, value in arguments.items() if name not in drawn}}
+    drawn = {
+        key: values for source, row in zip(inputs, probability.T, strict=True) for key, values in source.at(row).items()
+    }
+    fixed = {"until_all": True, **{name: value for name, value in arguments.items() if name not in drawn}}
     items = []
     for life in range(samples):
         conditions = {key: values[life] for key, values in drawn.items() if isinstance(key, str)}
@@ -113,7 +115,7 @@ def uncertain_life(
             items.append(Item(life, _with_numbers(predict, numbers), conditions))
         except wl.InputError as error:
             raise wl.InputError(f"{error}{OTHERS}") from None
-    task = partial(_worn, line, given)
+    task = partial(_worn, line, fixed)
     every: Iterator[tuple[int, tuple[Life, list[Warning]]]] = (
         enumerate(map(task, items)) if workers == 1 else each_in_processes(min(workers, samples), task, items)
     )

@@ -75,7 +75,7 @@ class Conditions:
             whole, chosen = solution.whole
             return cls.of(whole).chosen(chosen)
         shape = solution.problem.batch_shape
-        return cls(solution.given or {}, shape[: len(shape) - len(solution.problem.dims)])
+        return cls(solution.conditions or {}, shape[: len(shape) - len(solution.problem.dims)])
 
     def chosen(self, selection: Selection) -> Conditions:
         """Return the conditions of some of the operating points."""

@@ -261,7 +261,7 @@ def _choose(path: str, asked: Collection[Any], choices: Collection[Any], fault: 
 
 def _conditions(grid: Any, free: Collection[str], units: Mapping[str, str]) -> Iterator[str]:
     """Yield the conditions of a figure in words, without those that vary in it; axes are at their middle value."""
-    for name in grid.given:
+    for name in grid.written:
         if name not in free:
             level = grid.level(name, units)
             value = level if isinstance(level, str) else f"{level:.5g} {readable(units[name])}"

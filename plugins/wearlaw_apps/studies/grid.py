@@ -102,13 +102,13 @@ class Conditions(Configuration, extra="allow"):
     """Conditions of a rig as a case file writes them, by the names that the rig gives them."""
 
     @property
-    def given(self) -> Mapping[str, Any]:
+    def written(self) -> Mapping[str, Any]:
         """The conditions as written in the case."""
         return self.__pydantic_extra__ or {}
 
     def ordered(self, rig: Rig) -> Self:
         """Return the conditions in the order in which the rig names them, and then those of models."""
-        order = [*rig.conditions(), *self.given]
+        order = [*rig.conditions(), *self.written]
         return type(self)(**dict(sorted(self, key=lambda item: order.index(item[0]) if item[0] in order else -1)))
 
 
@@ -126,13 +126,13 @@ class Grid(Conditions):
     @cached_property
     def _axes(self) -> dict[str, Varying]:
         """The conditions that are axes, each in the unit of its first value."""
-        read = ((name, _values(value)) for name, value in self.given.items())
+        read = ((name, _values(value)) for name, value in self.written.items())
         return {name: Varying(name, *axis) for name, axis in read if axis is not None}
 
     @cached_property
     def _known(self) -> dict[str, Varying | Known | None]:
         """All conditions; None for what is no number."""
-        return {name: self._axes.get(name) or Known.of(value) for name, value in self.given.items()}
+        return {name: self._axes.get(name) or Known.of(value) for name, value in self.written.items()}
 
     def axes(self) -> dict[str, int]:
         """Return the number of values of each axis, in the order of the grid."""
@@ -147,14 +147,14 @@ class Grid(Conditions):
         """Return the grid of the first value of each axis."""
         first = {name: (float(axis.values[0]), axis.unit) for name, axis in self._axes.items()}
         points = {name: (f"{value!r} {unit}" if unit else value,) for name, (value, unit) in first.items()}
-        return Grid(**{**self.given, **points})
+        return Grid(**{**self.written, **points})
 
     def faults(self, rig: Rig, models: Iterable[Model] = ()) -> list[Fault]:
         """Return what a rig and models find wrong at the ends of the axes, one fault for each condition."""
         faults: dict[tuple[str, ...], Fault] = {}
         for end in (np.min, np.max):
-            ends = {name: axis.given(float(end(axis.values))) for name, axis in self._axes.items()}
-            for fault in wrong_conditions(rig, {**self.given, **ends}, models):
+            ends = {name: axis.argument(float(end(axis.values))) for name, axis in self._axes.items()}
+            for fault in wrong_conditions(rig, {**self.written, **ends}, models):
                 faults.setdefault(fault.path, fault)
         return list(faults.values())
 
@@ -174,7 +174,7 @@ class Grid(Conditions):
 
         Two values, or values of both signs, are linear.
         """
-        condition = self.given[name]
+        condition = self.written[name]
         if isinstance(condition, Axis):
             return condition.spacing
         values = np.unique(np.abs(self._axes[name].values))
@@ -195,27 +195,27 @@ class Grid(Conditions):
             name: Varying(name, *_converted(name, axis.values, axis.unit, units[name]))
             for name, axis in self._axes.items()
         }
-        return Points({name: value for name, value in self.given.items() if name not in varying}, varying)
+        return Points({name: value for name, value in self.written.items() if name not in varying}, varying)
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as arguments of a pipeline; each axis is an array along a dimension of its own."""
         last = len(self._axes) - 1
         shapes = {name: (-1,) + (1,) * (last - number) for number, name in enumerate(self._axes)}
-        axes = {name: axis.given(axis.values.reshape(shapes[name])) for name, axis in self._axes.items()}
-        return {**self.given, **axes}
+        axes = {name: axis.argument(axis.values.reshape(shapes[name])) for name, axis in self._axes.items()}
+        return {**self.written, **axes}
 
     def level(self, name: str, units: Mapping[str, str]) -> float | str:
         """Return the value of a condition in the given unit, or its text; for an axis, its middle value."""
         condition = self._known[name]
         if condition is None:
-            return self.given[name]  # type: ignore[no-any-return]
+            return self.written[name]  # type: ignore[no-any-return]
         middle = np.ravel(condition.values)[condition.values.size // 2]
         return float(_converted(name, middle, condition.unit or "", units[name])[0])
 
     def problem(self, rig: Rig, models: Iterable[Model] = ()) -> Any:
         """Return the contact problem of the first operating point, for a rig and the models of a case."""
-        first = {name: axis.given(float(axis.values[0])) for name, axis in self._axes.items()}
-        return _quietly(rig, {**self.given, **first}, models)
+        first = {name: axis.argument(float(axis.values[0])) for name, axis in self._axes.items()}
+        return _quietly(rig, {**self.written, **first}, models)
 
 
 def wrong_conditions(rig: Rig, point: Mapping[str, Any], models: Iterable[Model] = ()) -> Iterator[Fault]:

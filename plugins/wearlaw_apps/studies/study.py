@@ -267,7 +267,7 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
     first, units = grid.problem(case.rig, case.models), case.result_units
     points = grid.points(case.units)
     usable = _usable(f"sweep '{name}'", grid, pairs, notes)
-    levels = {v: grid.level(v, case.units) for v in grid.given}
+    levels = {v: grid.level(v, case.units) for v in grid.written}
     fixed = {v: level for v, level in levels.items() if isinstance(level, float)}
     # A condition for all patches is not the variable of one of them.
     conditions = fixed if first.dims else points.varying
@@ -332,7 +332,7 @@ def _of_contact(
     """
     with caught_warnings():  # the sweep repeats them
         prediction = pair.pipeline.without_law().predict(problem)
-    of_rig = (one.name for one in problem.results if not one.text and one.name not in grid.given)
+    of_rig = (result.name for result in problem.results if not result.text and result.name not in grid.written)
     of_contact = [v for v in (*offered(prediction, OF_CONTACT), *of_rig) if v not in conditions]
     # A rig may use the name of a variable for something else.
     same = (v for v in offered(prediction, (*OF_POINT, *OF_PATCH)) if case.units.get(v, UNITS[v]) == UNITS[v])
@@ -342,7 +342,7 @@ def _of_contact(
 
 def _usable(subject: str, grid: Grid, pairs: list[Pair], notes: Notes) -> list[Pair]:
     """Leave out pairs that cannot use a traction coefficient, if the grid gives one."""
-    if "traction_coefficient" not in grid.given:
+    if "traction_coefficient" not in grid.written:
         return pairs
     usable = [pair for pair in pairs if pair.pipeline.contact_model.uses_measured_traction]
     for pair in pairs:

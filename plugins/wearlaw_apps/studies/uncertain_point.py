@@ -91,12 +91,12 @@ class UncertainPoint(Conditions):
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as arguments of `uncertainty`."""
         return {
-            name: value.distribution() if isinstance(value, Spread) else value for name, value in self.given.items()
+            name: value.distribution() if isinstance(value, Spread) else value for name, value in self.written.items()
         }
 
     def varies(self, law: str) -> bool:
         """Return whether a condition, or a parameter of this law, is distributed."""
-        return bool(any(isinstance(value, Spread) for value in self.given.values()) or self.laws.get(law))
+        return bool(any(isinstance(value, Spread) for value in self.written.values()) or self.laws.get(law))
 
     def parameters(self, law: str) -> dict[str, Distribution | PublishedRange]:
         """Return the distributed parameters of a law."""

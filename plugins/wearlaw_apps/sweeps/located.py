@@ -49,7 +49,7 @@ def _located(
         part = points.part([slice(start, stop), *(slice(None) for _ in points.dims[1:])])
         conditions = part.conditions()
         if single and part.size == 1:
-            conditions |= {name: axis.given(float(axis.values.flat[0])) for name, axis in part.varying.items()}
+            conditions |= {name: axis.argument(float(axis.values.flat[0])) for name, axis in part.varying.items()}
         try:
             pose(conditions)
         except InputError as wrong:

@@ -77,7 +77,7 @@ class Varying:
         """Whether the values are read from disk when used."""
         return isinstance(cast(object, self.values), OnDisk)
 
-    def given(self, values: Array | float) -> Any:
+    def argument(self, values: Array | float) -> Any:
         """Return values as an argument of a prediction."""
         return values if self.unit is None else Q(values, self.unit)
 
@@ -231,7 +231,7 @@ class Points:
 
     def conditions(self) -> dict[str, Any]:
         """Return the conditions as arguments of a prediction, with an entry for each operating point."""
-        laid_out = {name: axis.given(self.laid_out(axis)) for name, axis in self.varying.items()}
+        laid_out = {name: axis.argument(self.laid_out(axis)) for name, axis in self.varying.items()}
         return {**self.fixed, **laid_out}
 
     def laid_out(self, axis: Varying) -> Array:

@@ -148,7 +148,7 @@ class ProfileJob(Job):
         if PATCH in self.dims:
             mass = np.nansum(mass, axis=self._patches)
         share = part.kept[SHARE]
-        shares = coefficient(share.given(part.laid_out(share)), SHARE, positive=False)
+        shares = coefficient(share.argument(part.laid_out(share)), SHARE, positive=False)
         return {
             name: np.asarray(np.tensordot(shares, loss, axes=1), np.float64)
             for name, loss in {**losses, "mass": mass}.items()

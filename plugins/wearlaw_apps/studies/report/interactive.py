@@ -192,7 +192,7 @@ def _traces(curve: Curve, panel: Panel, number: str, style: int) -> list[Json]:
     if curve.low is None or curve.high is None:
         return lines
     band = [list(ends) for ends in zip(_numbers(curve.low), _numbers(curve.high), strict=True)]
-    lines = [{**one, "customdata": band} for one in lines]
+    lines = [{**trace, "customdata": band} for trace in lines]
     if not curve.points:
         return [{**common, **_band(curve, panel, colour), "showlegend": False}, *lines]
     ends = {"array": _numbers(curve.high - curve.y), "arrayminus": _numbers(curve.y - curve.low)}

@@ -71,7 +71,7 @@ def _shortened(case_text: str) -> str:
     """Return a case without most numbers of long lists, such as the points of a profile."""
     many = re.compile(r"\[\s*((?:-?[\d.e+-]+,\s*){3})((?:-?[\d.e+-]+,\s*){20,})(-?[\d.e+-]+),?\s*\]")
     return many.sub(
-        lambda found: f"[{' '.join(found[1].split())} … {found[2].count(',')} more …, {found[3]}]", case_text
+        lambda match: f"[{' '.join(match[1].split())} … {match[2].count(',')} more …, {match[3]}]", case_text
     )
 
 

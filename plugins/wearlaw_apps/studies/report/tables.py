@@ -138,7 +138,7 @@ def _as_mass_and_depth(study: Study, name: str, label: str) -> str:
     pipeline = study.pair(label).pipeline
     parts = []
     with caught_warnings():  # the study has them
-        prediction = pipeline.predict(pipeline.posed(study.case.sweeps[name].given))
+        prediction = pipeline.predict(pipeline.posed(study.case.sweeps[name].written))
         parts.append(f"{_compact(Q(float(prediction.mass_per_distance.m_as('g/km')), 'g'))}/km")
         body = pipeline.laws[0].body or next(iter(study.case.rig.bodies), None)
         if body is not None:

@@ -73,8 +73,8 @@ class Grid:
         far: Array = self.step * np.arange(columns + 1.0)
         tables = influence(far, apart[..., None], self.step, width[:, None], self.poisson_ratio)
         signs = 1.0, 1.0, -1.0  # on the other side, at negative distances
-        both = (np.concatenate([s * one[..., :0:-1], one], axis=-1) for s, one in zip(signs, tables, strict=True))
-        along, across, mixed = (np.diff(one[..., :-1], axis=-1) / (math.pi * self.step) for one in both)
+        both = (np.concatenate([s * table[..., :0:-1], table], axis=-1) for s, table in zip(signs, tables, strict=True))
+        along, across, mixed = (np.diff(table[..., :-1], axis=-1) / (math.pi * self.step) for table in both)
         return along, across, mixed
 
     def _spectra(self, kernels: Array) -> Spectra:
@@ -142,7 +142,7 @@ class Grid:
         x = np.append(self.x, self.x[-1] + self.step) if columns % 2 else self.x
         y = np.append(self.y, self.y[-1] + self.width[-1]) if rows % 2 else self.y
         width = np.append(self.width, self.width[-1]) if rows % 2 else self.width
-        x, y, width = (one.reshape(-1, 2).mean(axis=1) for one in (x, y, 2.0 * width))
+        x, y, width = (values.reshape(-1, 2).mean(axis=1) for values in (x, y, 2.0 * width))
         return Grid(x, y, width, self.poisson_ratio)
 
 
@@ -174,7 +174,7 @@ def influence(
     section 3.6. With ν = 0 the first one is also 2πG/(1-ν) times the displacement along the normal by a unit
     pressure, after A. E. H. Love, Phil. Trans. R. Soc. Lond. A 228 (1929) 377-420.
     """
-    shape = np.broadcast_shapes(*(np.shape(one) for one in (x, y, length, width, poisson_ratio)))
+    shape = np.broadcast_shapes(*(np.shape(values) for values in (x, y, length, width, poisson_ratio)))
     along, across, mixed = (np.zeros(shape) for _ in range(3))
     for i, sign_i in ((x + 0.5 * length, 1.0), (x - 0.5 * length, -1.0)):
         for j, sign_j in ((y + 0.5 * width, 1.0), (y - 0.5 * width, -1.0)):

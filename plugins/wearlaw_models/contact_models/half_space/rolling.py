@@ -133,7 +133,7 @@ class Patch:
         for number, rho in enumerate(STEPS / self.grid.stiffness):
             if friction.falls:
                 before = bound
-                bound, slope = (self.pressure * one for one in friction.at(self.slipped(q, slips, creepages)))
+                bound, slope = (self.pressure * value for value in friction.at(self.slipped(q, slips, creepages)))
                 share = DAMPED.get(number, share)
                 if share < 1.0 and left > CLOSE:
                     bound, slope = before + share * (bound - before), 0.0 * slope

@@ -92,7 +92,7 @@ class Step:
         single, none = np.where(sticks, 1.0, 0.0), np.zeros(sticks.shape)
         self.exact = np.stack([[single - axis[1], axis[0]], [none, single]])
         self.axes, self.axis, self.slope, self.rest = (
-            one.astype(np.float32) for one in (self.exact, axis, slope, rest)
+            array.astype(np.float32) for array in (self.exact, axis, slope, rest)
         )
         """Unit vectors of both unknowns, without that along a traction, (2, 2, rows, columns)."""
         self.along = np.square(self.axis).sum(axis=0)

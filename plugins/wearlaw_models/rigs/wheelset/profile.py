@@ -509,9 +509,9 @@ def _named(text: str) -> Any:
     return _of_file(File(file=text))
 
 
-def _of_file(given: File) -> Fields:
+def _of_file(file: File) -> Fields:
     """Return the fields of the profile in a file."""
-    return read_profile(wl.beside(given.file), **{name: of for name, of in given if name != "file"})._fields(told=True)
+    return read_profile(wl.beside(file.file), **{name: of for name, of in file if name != "file"})._fields(told=True)
 
 
 def read_profile(
@@ -568,12 +568,12 @@ def read_profile(
         If the file cannot be read, or does not hold a profile. The message names the file and the line.
     """
     try:
-        given: dict[str, Any] = {
+        options: dict[str, Any] = {
             "file": os.fspath(path), "kind": kind, "units": units, "sep": sep, "decimal": decimal, "part": part,
             "sheet": sheet, "mirror_y": mirror_y, "mirror_z": mirror_z, "turn": turn, "shift_y": shift_y,
             "shift_z": shift_z, "smoothing": smoothing, "repair": repair,
         }  # fmt: skip
-        return Profile.model_validate(fields_of(Path(path), File(**given)))
+        return Profile.model_validate(fields_of(Path(path), File(**options)))
     except wl.ConfigurationError as error:
         raise wl.errors.DataError(f"profile {wl.shown(path)}: {'; '.join(map(str, error.problems))}") from None
     except wl.InputError as error:

@@ -36,25 +36,25 @@ class File(wl.Configuration):
     repair: Annotated[bool, Field(strict=True)] = False
 
 
-def fields_of(path: Path, given: File) -> Fields:
+def fields_of(path: Path, file: File) -> Fields:
     """Return the fields of the profile in a file; see `read_profile`."""
-    points, told = points_of(path, given.kind, given.units, given.sep, given.decimal, given.part, given.sheet)
-    y, z = (-points.y if given.mirror_y else points.y), (-points.z if given.mirror_z else points.z)
-    angle = wl.scalar_si(given.turn, "rad")
+    points, told = points_of(path, file.kind, file.units, file.sep, file.decimal, file.part, file.sheet)
+    y, z = (-points.y if file.mirror_y else points.y), (-points.z if file.mirror_z else points.z)
+    angle = wl.scalar_si(file.turn, "rad")
     if angle:
         y, z = np.cos(angle) * y - np.sin(angle) * z, np.sin(angle) * y + np.cos(angle) * z
-    y = y + wl.scalar_si(given.shift_y, "m")
-    points, mended = repaired(replace(points, y=y, z=z), told, given.repair)
+    y = y + wl.scalar_si(file.shift_y, "m")
+    points, mended = repaired(replace(points, y=y, z=z), told, file.repair)
     if mended:
         wl.errors.warn(f"profile {wl.shown(path)}, repaired: {'; '.join(mended)}", wl.UnusualWarning)
     y, z = points.y, points.z
     if points.taped and y.min() <= 0.0 <= y.max():
         way = slice(None, None, -1 if y[-1] < y[0] else 1)
         across, down = filled(y[way], z[way])
-        width = wl.scalar_si(given.smoothing, "m")
+        width = wl.scalar_si(file.smoothing, "m")
         z = z - float(through_points(across, down, width, None, CONVEX[told]).at(0.0)[1])
-    z = z + wl.scalar_si(given.shift_z, "m")
-    fields = Fields(kind=told, y=wl.Q(1e3 * y, "mm"), z=wl.Q(1e3 * z, "mm"), smoothing=given.smoothing)
+    z = z + wl.scalar_si(file.shift_z, "m")
+    fields = Fields(kind=told, y=wl.Q(1e3 * y, "mm"), z=wl.Q(1e3 * z, "mm"), smoothing=file.smoothing)
     if points.weights is not None:
         fields["weights"] = tuple(points.weights.tolist())
     if points.diameter is not None:

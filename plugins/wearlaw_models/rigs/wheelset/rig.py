@@ -281,18 +281,20 @@ class Wheelset(wl.Rig):
         """Return the right wheel and its rail in the middle of the track, as SI arrays."""
         return profiles(self._section, wl.scalar_si(self.nominal_radius, "m"))
 
-    def profile_figures(self, found: Mapping[str, wl.Prediction], name: str = "state") -> tuple[wl.FigureData, ...]:
+    def profile_figures(
+        self, predictions: Mapping[str, wl.Prediction], name: str = "state"
+    ) -> tuple[wl.FigureData, ...]:
         """Return figures of the contacts on the profiles, and of the wear along them by each of several laws.
 
         Parameters
         ----------
-        found : mapping of str to Prediction
+        predictions : mapping of str to Prediction
             Predictions of one operating point, whose contact model resolves the patches, by name of the law.
         name : str
             Name of the operating point.
         """
-        profiles, first = self.profiles_in_track(), next(iter(found.values()))
-        return contact_figure(profiles, name, first), wear_figure(profiles, name, found)
+        profiles, first = self.profiles_in_track(), next(iter(predictions.values()))
+        return contact_figure(profiles, name, first), wear_figure(profiles, name, predictions)
 
     def equivalent_conicity(self, *, amplitude: wl.QuantityLike, roll: bool = True) -> wl.Quantity:
         """Return the equivalent conicity tan γe [-] at an amplitude of the lateral displacement, after Klingel.

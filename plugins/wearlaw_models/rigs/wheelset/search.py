@@ -172,7 +172,7 @@ class Section:
         if self.left is None:
             return _at(getattr(self, name), x)
         x, side = np.broadcast_arrays(x, side)
-        of_left, of_right = (_at(getattr(one, name), x) for one in self.sides)
+        of_left, of_right = (_at(getattr(half, name), x) for half in self.sides)
         return tuple(np.where(side == 0, left, right) for left, right in zip(of_left, of_right, strict=True))
 
     @property
@@ -385,9 +385,9 @@ def touching(section: Section, position: Position, every: int = 1) -> Touching:
     """
     if section.left is not None:
         single = []
-        for side, one in enumerate(section.sides):
+        for side, half in enumerate(section.sides):
             here = Position(*(array[:, [side]] for array in position))
-            single.append(touching(one, here, every))
+            single.append(touching(half, here, every))
         return Touching(*(np.concatenate(pair, axis=1) for pair in zip(*single, strict=True)))
     points = Coarse(*(array[::every] for array in section.coarse))
     around = _gaps(position.widened(), points.y, points.radius, points.slope, section.axes, section.rail_z.near)
@@ -396,10 +396,10 @@ def touching(section: Section, position: Position, every: int = 1) -> Touching:
     low = falls[..., :-1] & ~falls[..., 1:]
     low |= (rise[..., :-1] < 0.0) & np.isinf(gap[..., 1:]) & np.isfinite(gap[..., :-1])  # on an end of a profile
     index = _smallest(np.where(low, np.minimum(gap[..., :-1], gap[..., 1:]), np.inf))
-    found = np.take_along_axis(low, index, axis=-1)
-    arc = np.full(found.shape, np.nan)
-    height = np.full(found.shape, np.inf)
-    place = np.nonzero(found)
+    valid = np.take_along_axis(low, index, axis=-1)
+    arc = np.full(valid.shape, np.nan)
+    height = np.full(valid.shape, np.inf)
+    place = np.nonzero(valid)
     arcs = np.broadcast_to(points.arc, gap.shape)
     left, right = ((*place[:-1], index[place] + step) for step in (0, 1))
     there = Position(*(array[place[:-1]] for array in position))
@@ -419,12 +419,12 @@ def touching(section: Section, position: Position, every: int = 1) -> Touching:
 def _smallest(values: Array) -> NDArray[np.intp]:
     """Return the indices of the smallest values along the last axis, `PATCHES` of them."""
     values = values.copy()
-    found = []
+    indices = []
     for _ in range(PATCHES):
         index = values.argmin(axis=-1)[..., None]
         np.put_along_axis(values, index, np.inf, axis=-1)
-        found.append(index)
-    return np.concatenate(found, axis=-1)
+        indices.append(index)
+    return np.concatenate(indices, axis=-1)
 
 
 def _root(section: Section, position: Position, left: Array, right: Array) -> Array:
@@ -437,9 +437,9 @@ def _root(section: Section, position: Position, left: Array, right: Array) -> Ar
         value = gaps(section, position, root).rise
         going = np.abs(at_right) >= ROUNDING  # a place that is found stays, whatever others do
         same = value * at_right > 0.0
-        found = np.where(same, left, right), np.where(same, 0.5 * at_left, at_right), root, value
+        moved = np.where(same, left, right), np.where(same, 0.5 * at_left, at_right), root, value
         left, at_left, right, at_right = (
-            np.where(going, new, old) for new, old in zip(found, (left, at_left, right, at_right), strict=True)
+            np.where(going, new, old) for new, old in zip(moved, (left, at_left, right, at_right), strict=True)
         )
         if not going.any():
             break
@@ -464,7 +464,7 @@ def searched(section: Section, displacement: Array, yaw: Array, roll: Array | No
     Where a wheel stands on the end of a profile, its own or the rail's, there is no contact point.
     """
     if wl.accelerated(LOOPS * displacement.size):
-        rolls, found = _compiled(section, displacement, yaw, roll)
+        rolls, places = _compiled(section, displacement, yaw, roll)
     else:
         rolls = np.empty(displacement.shape)
         parts = []
@@ -472,11 +472,11 @@ def searched(section: Section, displacement: Array, yaw: Array, roll: Array | No
             some = slice(start, start + BLOCK)
             rolls[some], part = _searched(section, displacement[some], yaw[some], None if roll is None else roll[some])
             parts.append(part)
-        found = Touching(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+        places = Touching(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
     position = both_sides(displacement, rolls, yaw).widened()
-    arc = np.where(np.isnan(found.arc), _starts(section), found.arc)
+    arc = np.where(np.isnan(places.arc), _starts(section), places.arc)
     edge = np.abs(gaps(section, position, arc).rise) > ON_EDGE
-    return rolls, found._replace(arc=np.where(edge, np.nan, found.arc))
+    return rolls, places._replace(arc=np.where(edge, np.nan, places.arc))
 
 
 def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | None) -> tuple[Array, Touching]:
@@ -486,37 +486,37 @@ def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | N
     least = np.empty(shape[:2])
     compiled_search(
         np.ascontiguousarray(displacement), np.ascontiguousarray(yaw), roll is not None,
-        tuple(tuple(one.coarse) for one in section.sides), tuple(one.tables for one in section.sides), section.axes,
+        tuple(tuple(half.coarse) for half in section.sides), tuple(half.tables for half in section.sides), section.axes,
         roll_found, arc, above, least,
     )  # fmt: skip
     return roll_found, Touching(arc, above, least)
 
 
-def _searched(section: Section, displacement: Array, yaw: Array, given: Array | None) -> tuple[Array, Touching]:
-    roll = np.zeros_like(displacement) if given is None else given
-    found = touching(section, both_sides(displacement, roll, yaw), every=1 if given is not None else FIRST)
-    if given is not None:
-        return roll, found
+def _searched(section: Section, displacement: Array, yaw: Array, fixed: Array | None) -> tuple[Array, Touching]:
+    roll = np.zeros_like(displacement) if fixed is None else fixed
+    places = touching(section, both_sides(displacement, roll, yaw), every=1 if fixed is not None else FIRST)
+    if fixed is not None:
+        return roll, places
     open_ = np.arange(displacement.size)
     for _ in range(ROLLS):
-        _level(section, displacement, yaw, roll, found, open_)
+        _level(section, displacement, yaw, roll, places, open_)
         position = both_sides(displacement[open_], roll[open_], yaw[open_])
         whole = touching(section, position)
-        for old, new in zip(found, whole, strict=True):
+        for old, new in zip(places, whole, strict=True):
             old[open_] = new
         with np.errstate(invalid="ignore"):  # both wheels may be beside their rails
             tilted = np.asarray(np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY)
         open_ = open_[tilted]
         if not open_.size:
             break
-    return roll, found
+    return roll, places
 
 
 def _level(
-    section: Section, displacement: Array, yaw: Array, roll: Array, found: Touching, rows: NDArray[np.intp]
+    section: Section, displacement: Array, yaw: Array, roll: Array, places: Touching, rows: NDArray[np.intp]
 ) -> None:
     """Roll the wheelset, in place, until the contact points near those found touch on both sides."""
-    least, arc = found.least[rows], found.arc[rows, :, 0]
+    least, arc = places.least[rows], places.arc[rows, :, 0]
     for _ in range(ROLLS):
         lost = np.isnan(arc).any(axis=-1)
         excess = np.subtract(least[:, 1], least[:, 0], out=np.zeros(rows.size), where=~lost)
@@ -535,9 +535,9 @@ def _followed(section: Section, position: Position, arc: Array) -> tuple[Array, 
     The gap has the same constant as `Touching.least`. The arc length is NaN where a point is lost, or has moved by more
     than `COARSE`.
     """
-    known = ~np.isnan(arc)
-    position = Position(*(np.broadcast_to(array, arc.shape)[known] for array in position))
-    start = place = arc[known]
+    valid = ~np.isnan(arc)
+    position = Position(*(np.broadcast_to(array, arc.shape)[valid] for array in position))
+    start = place = arc[valid]
     at = gaps(section, position, place)
     rise, step = at.rise, np.full(place.shape, PROBE)
     lost = going = np.zeros(place.shape, dtype=np.bool_)
@@ -553,7 +553,7 @@ def _followed(section: Section, position: Position, arc: Array) -> tuple[Array, 
         if not going.any():
             break
     moved, gap = np.full((2, *arc.shape), np.nan)
-    moved[known], gap[known] = np.where(lost | going, np.nan, place), at.gap
+    moved[valid], gap[valid] = np.where(lost | going, np.nan, place), at.gap
     return moved, gap
 
 
@@ -565,4 +565,4 @@ def both_sides(displacement: Array, roll: Array, yaw: Array) -> Position:
 
 def _starts(section: Section) -> Array:
     """Return the arc length of the first point of each side's wheel, of shape (sides, 1) [m]."""
-    return np.array([[one.wheel_y.start] for one in section.sides])
+    return np.array([[half.wheel_y.start] for half in section.sides])

@@ -124,8 +124,8 @@ def at(x: float, table: tuple[float, float, Array]) -> tuple[float, float]:
     share = (x - start) / step
     index = min(max(int(share), 0), cubics.shape[1] - 1)
     of_cell = cubics[0, index], cubics[1, index], cubics[2, index], cubics[3, index]
-    found: tuple[float, float] = cubic(share - index, step, of_cell)
-    return found
+    values: tuple[float, float] = cubic(share - index, step, of_cell)
+    return values
 
 
 def ends(table: tuple[float, float, Array]) -> tuple[float, float]:
@@ -157,12 +157,12 @@ def touch(
     height: Array,
     cell: Any,
     place: Array,
-    found: Array,
+    contacts: Array,
     above: Array,
 ) -> tuple[float, float]:
     """Find the contact points of one wheel, and return its least gap and the lever of a roll [m].
 
-    One in `every` coarse points is read. If that is zero, they are looked for around the first of those in `found`.
+    One in `every` coarse points is read. If that is zero, they are looked for around the first of those in `contacts`.
     """
     arc, y, radius, slope = points
     spacing = arc[2] - arc[1]
@@ -170,7 +170,7 @@ def touch(
     begin, end = 0, arc.size
     if not every:
         every = 1
-        middle = int((found[0] - arc[0]) / spacing) + 1
+        middle = int((contacts[0] - arc[0]) / spacing) + 1
         begin = min(max(middle - WINDOW // 2, 0), arc.size - WINDOW)
         end = begin + WINDOW
     for patch in range(PATCHES):
@@ -246,7 +246,7 @@ def touch(
         across, down, _, _, rail_slope = below(place[0], tables, shift, turn, axes)
         lever = across + rail_slope * down
     for patch in range(PATCHES):
-        found[patch] = place[patch]
+        contacts[patch] = place[patch]
         above[patch] = height[patch] - height[0] if cell[patch] >= 0 else np.nan
     return height[0], lever
 
@@ -258,12 +258,12 @@ def touch(
 def compiled_search(
     displacement: Array,
     yaw: Array,
-    given: bool,
+    fixed: bool,
     points: tuple[Any, Any],
     tables: tuple[Any, Any],
     axes: float,
     roll: Array,
-    found: Array,
+    contacts: Array,
     above: Array,
     least: Array,
 ) -> None:
@@ -276,7 +276,7 @@ def compiled_search(
     height, cell, place = np.empty(PATCHES), np.empty(PATCHES, np.int64), np.empty(PATCHES)
     for point in range(displacement.size):
         sin_yaw, cos_yaw = math.sin(yaw[point]), math.cos(yaw[point])
-        every = 1 if given else FIRST  # all points once the roll is found
+        every = 1 if fixed else FIRST  # all points once the roll is found
         for _ in range(ROLLS):
             sin_roll, cos_roll, levers = math.sin(roll[point]), math.cos(roll[point]), 0.0
             for side in range(2):
@@ -284,13 +284,13 @@ def compiled_search(
                 least[point, side], lever = touch(
                     out * displacement[point], (out * sin_roll, cos_roll, out * sin_yaw, cos_yaw), axes,
                     every, points[side], tables[side], gap, rise, height, cell, place,
-                    found[point, side], above[point, side],
+                    contacts[point, side], above[point, side],
                 )  # fmt: skip
                 levers += lever
             excess = least[point, 1] - least[point, 0]
-            lost = math.isnan(found[point, 0, 0]) or math.isnan(found[point, 1, 0])
+            lost = math.isnan(contacts[point, 0, 0]) or math.isnan(contacts[point, 1, 0])
             level = not abs(excess) > ROLL_ACCURACY
-            if given or (every == 1 and level):
+            if fixed or (every == 1 and level):
                 break
             every = 1 if lost or level else 0
             if not every:
