@@ -7,9 +7,9 @@ provide the conditions of contact problems.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypedDict, Unpack
 
 import numpy as np
 import pint
@@ -325,21 +325,16 @@ class WearTests:
         columns |= {
             name: condition for name, condition in self.other_conditions.items() if isinstance(condition, pint.Quantity)
         }
-        medians: dict[str, tuple[Unit, float, str]] = {}
+        seen: dict[str, _Sizes] = {}
         for name, values in columns.items():
             sizes = np.abs(values.magnitude[~np.isnan(values.magnitude)])
             unit = USUAL.get(name, units.get(name))
             if sizes.size and unit is not None:
-                medians[name] = unit, float(np.median(sizes)), str(values.units)
+                seen[name] = _Sizes(name, unit, float(np.median(sizes)), float(sizes.max()), str(values.units))
         remarks: dict[str, str] = {}
-        for name, (unit, median, shown_in) in medians.items():
-            sizes = {"median": median}
-            if name in ("friction_coefficient", "traction_coefficient"):  # no test of dry friction passes their range
-                sizes["greatest value"] = float(np.nanmax(np.abs(columns[name].magnitude)))
-            for which, size in sizes.items():
-                if text := unit.unusual(name, Q(size, shown_in)):
-                    remarks[f"column {name}"] = f"its {which} {text}{_swapped(name, medians)}"
-                    break
+        for name, of_column in seen.items():
+            if text := of_column.unusual(of_column):
+                remarks[f"column {name}"] = text + _swapped(of_column, seen.values(), "did you mean" in text)
         return remarks
 
     def digests(self, name: str, unit: str) -> tuple[str, ...]:
@@ -459,14 +454,34 @@ class WearTests:
         return from_si(self.columns.get(name, missing), COLUMNS[name].unit)
 
 
-def _swapped(name: str, medians: Mapping[str, tuple[Unit, float, str]]) -> str:
-    """Return the question whether an unusual column is another one, if both are usual with each other's numbers."""
-    unit, median, shown_in = medians[name]
-    for other, (its_unit, its_median, its) in medians.items():
-        if other != name and not (
-            unit.unusual(name, Q(its_median, shown_in)) or its_unit.unusual(other, Q(median, its))
-        ):
-            return f"; are the columns {name} and {other} swapped?"
+class _Sizes(NamedTuple):
+    """The median and the greatest size in a column, in a unit, with what is usual for the column."""
+
+    name: str
+    usual: Unit
+    median: float
+    greatest: float
+    shown_in: str
+
+    def unusual(self, numbers: _Sizes) -> str:
+        """Return what is unusual about the numbers of a column in this one, or ""."""
+        sizes = {"median": numbers.median}
+        if self.name in ("friction_coefficient", "traction_coefficient"):  # no test of dry friction passes their range
+            sizes["greatest value"] = numbers.greatest
+        texts = {which: self.usual.unusual(self.name, Q(size, self.shown_in)) for which, size in sizes.items()}
+        return next((f"its {which} {text}" for which, text in texts.items() if text), "")
+
+
+def _swapped(column: _Sizes, others: Iterable[_Sizes], explained: bool) -> str:
+    """Return the question whether an unusual column is another one, if both are usual with each other's numbers.
+
+    If a unit explains the numbers, a swap is as likely only with a column of the same dimension.
+    """
+    for other in others:
+        alike = other.usual.unit == column.usual.unit
+        usual = other is not column and not (column.unusual(other) or other.unusual(column))
+        if usual and (alike or not explained):
+            return f"{' Or' if explained else ';'} are the columns {column.name} and {other.name} swapped?"
     return ""
 
 

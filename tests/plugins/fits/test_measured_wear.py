@@ -338,3 +338,19 @@ def test_columns_that_look_swapped_are_told_before_the_fit(creepage: Any, tracti
     remarks = tests.unusual(EXACT)
     assert says in remarks.get("column traction_coefficient", "")
     assert bool(remarks) == bool(says)
+
+
+def test_a_unit_that_explains_a_column_comes_before_a_swap() -> None:
+    """Loads in N under kN are usual wear rates, but their unit explains them, and leaves the wear rates as they are."""
+    tests = WearTests.from_arrays(
+        creepage=Q([1.0, 2.0, 5.0], "%"),
+        normal_force=Q([7400.0, 5200.0, 6300.0], "kN"),
+        friction_coefficient=0.4,
+        wear_rate=Q([20.0, 40.0, 45.0], "ug/m/mm^2"),
+    )
+    said = tests.unusual(EXACT)
+    assert said == {"column normal_force": "its median is 6300 kN, usually 0.01 to 300 kN; did you mean 6300 N?"}
+    percent = WearTests.from_arrays(
+        creepage=Q([1.0, 5.0, 10.0], "%"), normal_force="7 kN", friction_coefficient=45.0, wear_rate="20 ug/m/mm^2"
+    )
+    assert percent.unusual(EXACT)["column friction_coefficient"].endswith("did you mean 45 %?")
