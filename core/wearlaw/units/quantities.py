@@ -18,8 +18,8 @@ import pint
 from pydantic_core import core_schema
 
 from wearlaw.arrays import extremes
-from wearlaw.errors import UnitError, shown
-from wearlaw.units.registry import divided, quantity, si_factor, symbol, unit_in_si
+from wearlaw.errors import UnitError, WearlawWarning, shown, warn
+from wearlaw.units.registry import HARDNESS, divided, quantity, si_factor, symbol, unit_in_si
 from wearlaw.units.registry import from_si as from_si
 from wearlaw.units.usual import in_words, likely_slip, remark
 
@@ -45,7 +45,7 @@ def Q(value: ArrayLike, unit: str) -> Quantity:
     value : array_like
         A number or an array of numbers.
     unit : str
-        Its unit, such as "kN", "%" or "ug/m/mm^2"; "" for a ratio.
+        Its unit, such as "kN", "%" or "ug/m/mm^2"; "" for a ratio. HB and HV are kgf/mm², with a warning that says so.
 
     Returns
     -------
@@ -62,6 +62,12 @@ def Q(value: ArrayLike, unit: str) -> Quantity:
         array = real_array(value)
         magnitude = float(array) if array.ndim == 0 else array
     result: Quantity = quantity(magnitude, unit)
+    if HARDNESS.fullmatch(str(unit)):
+        warn(
+            f"{unit}: taken as kgf/mm², here {from_si(result.to('Pa').magnitude, 'GPa')!r}: the load over the surface"
+            " of the indentation, for Brinell and Vickers alike; over its projected area it is up to 11 % more",
+            WearlawWarning,
+        )
     return result
 
 

@@ -35,8 +35,12 @@ _POWER = re.compile(
 )
 """A number or a ratio as the power of a unit, to which no other power belongs."""
 
-_HARDNESS = re.compile(r"H(BW?|V|R[A-Z]*)[\d\s./]*")
-"""A scale of hardness in place of a unit, such as "HB", "HBW 10/3000", "HV30" or "HRC"."""
+HARDNESS = re.compile(r"H(BW?|V|R[A-Z]*)[\d\s./]*")
+"""A scale of hardness in place of a unit, such as "HB", "HBW 10/3000", "HV30" or "HRC".
+
+The surface of an indentation exceeds its projected area by 1/sin 68° under Vickers's pyramid, and by 2/(1 + √(1 -
+(d/D)²)) under a ball of diameter D, by 11 % at the greatest diameter of ISO 6506-1, d = 0.6 D.
+"""
 
 _ready: object = None
 """The last registry in force, which is certain to be complete."""
@@ -57,7 +61,7 @@ def application_registry() -> pint.UnitRegistry[Any]:
 @functools.lru_cache(maxsize=512)
 def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
     """Return the unit of a text, or raise a `UnitError`; for the scales of Brinell and Vickers kgf/mm²."""
-    if scale := _HARDNESS.fullmatch(str(unit)):
+    if scale := HARDNESS.fullmatch(str(unit)):
         if scale[1].startswith("R"):
             raise UnitError(
                 f"{unit} measures a depth of indentation, which is no pressure; find HB or HV in the tables of ISO"
