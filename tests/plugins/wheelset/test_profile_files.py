@@ -227,6 +227,18 @@ def test_height_of_a_miniprof_wheel_counts_from_its_taping_line(tmp_path: Path) 
         wl.Profile(kind="rail", formula="uic60", diameter="900 mm")
 
 
+def test_a_miniprof_wheel_whose_x_runs_inwards_is_mirrored_about_the_back_of_its_flange(tmp_path: Path) -> None:
+    """The taping line is 70 mm from that back, whichever way X runs."""
+    points = table()
+    text = NEW.format(columns="X,Y", count=len(points), more="WheelDiameterTaperline=70.0000")
+    path = saved(tmp_path, "a.whl", text + rows((points + BACK) * [-1.0, 1.0], " "))
+    with pytest.raises(DataError, match=r"the wheel is mirrored: .* mirror_y=True"):
+        wl.read_profile(path)
+    assert values(wl.read_profile(path, mirror_y=True)) == pytest.approx(points, abs=1e-5)
+    with pytest.warns(wl.UnusualWarning, match="repaired: mirror_y=True"):
+        assert values(wl.read_profile(path, repair=True)) == pytest.approx(points, abs=1e-5)
+
+
 def test_points_of_miniprof_may_be_commented_out_and_named_otherwise(tmp_path: Path) -> None:
     points = table()
     lines = rows(points + BACK, " ").splitlines()

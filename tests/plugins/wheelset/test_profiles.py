@@ -407,7 +407,11 @@ def looped() -> tuple[Array, Array]:
         (Y * 0.03, Z * 0.03, "3.9 mm wide, but a profile has 5 to 300 mm$"),
         (Z, Y, r"the wheel lies on its side: it is 30.6\d* mm wide and 130 mm high; are y and z swapped"),
         (0.1 * Z, Y, "3.06.* mm wide, but a profile has 5 to 300 mm; are y and z swapped"),
-        (-Y, Z, r"the wheel is mirrored: its flange must be at y < 0, but has point \d+ \(y = 5\d.* mirror_y=True"),
+        (
+            -Y,
+            Z,
+            r"the wheel is mirrored: its flange must be where y is least, but has point \d+ \(y = 5\d.* mirror_y=True",
+        ),
         (Y, -Z, r"the wheel is upside down: z is positive down, but its flange has point .* mirror_z=True"),
         (-Y, -Z, "the wheel is upside down"),
         (Y + 70.0, Z, 'origin at the taping line, with the flange at y < 0, .* such as shift_y="-70 mm"'),

@@ -52,6 +52,19 @@ RADIUS = 1e-3
 UPRIGHT = np.radians(80.0)
 """Slope from which the inner side of a flange is its back [rad]."""
 
+STRAIGHT, CROOKED = 6e-3, 0.03e-3
+"""Length of a straight piece of the back of a flange, and the root mean square distance up to which points are straight
+[m]. An arc has a radius of at least 45 mm then, while those of flanges have up to 25 mm."""
+
+LEANING = np.radians(1.0)
+"""Lean beyond which a wheel is doubted [rad]: of the back of a flange, a turned plane across the axle, or of a tread
+from a cone in use."""
+
+TREAD, STEEPEST_CONE, HOLLOW = (-15e-3, 35e-3), 0.1, 80.0
+"""Where the conicity of a tread is measured [m], its greatest value in use [-], and by how much a hollow changes it
+over the height from the lowest to the highest point beside the straight line [1/m]: by 76 at most, for bells from 8 to
+20 mm."""
+
 ROUNDED = 0.1
 """Slope at the end of a profile up to which the top of a flange is there [rad]. On a top with a radius of 20 mm, which
 is more than in use, it is 0.1 mm from the end."""
@@ -92,6 +105,7 @@ def of_shape(kind: Kind, curve: Curve, lean: float) -> Iterator[str]:
         ]
     else:
         yield from of_height(curve)
+        yield from of_turn(curve)
         falls = float(curve.z[-1] - curve.z.min())
         if falls > CROWN:
             yield f"the field side of the wheel falls by {_mm(falls)}; is it the profile of a rail?"
@@ -108,6 +122,36 @@ def of_height(curve: Curve) -> Iterator[str]:
             f"the wheel has z = {_mm(height)} at y = 0, its taping line, where its radius is the nominal one if z is"
             f' zero; shift it, in a file by shift_z="{-1e3 * height:.6g} mm"'
         )
+
+
+def of_turn(curve: Curve) -> Iterator[str]:
+    """Yield whether a wheel is turned: the back of its flange is not upright, or its tread is no cone in use."""
+    turn = _lean_of_back(curve)
+    doubted, text = abs(turn) > LEANING, f"the back of the flange leans by {np.degrees(abs(turn)):.2g} deg"
+    if np.isnan(turn) and curve.y[0] < TREAD[0] < TREAD[1] < curve.y[-1]:
+        y = np.linspace(*TREAD, 101)
+        z = np.interp(y, curve.y, curve.z)
+        slope = float(np.polyfit(y, z, 1)[0])
+        slack = LEANING + HOLLOW * np.ptp(z - slope * y)
+        doubted, turn = not -slack < -slope < STEEPEST_CONE + slack, float(np.arctan(-slope - 0.5 * STEEPEST_CONE))
+        text = f"the tread has a conicity of {-slope:.2g} on average, and cones in use have 0 to {STEEPEST_CONE:g}"
+    if doubted:
+        yield f'{text}; if the wheel was measured turned, turn it back, in a file by turn="{np.degrees(turn):.2g} deg"'
+
+
+def _lean_of_back(curve: Curve) -> float:
+    """Return the lean of the straightest piece of the back of a flange [rad]; NaN if none is steep and straight."""
+    s = curve.s[: int(np.argmax(np.where(curve.y < 0.0, curve.z, -np.inf))) + 1]
+    straightest, lean = CROOKED, np.nan
+    for start in np.arange(s[0], s[-1] - STRAIGHT, 0.2 * STRAIGHT):
+        along = np.linspace(start, start + STRAIGHT, 31)
+        y, z = (np.interp(along, curve.s, value) for value in (curve.y, curve.z))
+        if np.ptp(z) > np.sin(UPRIGHT) * STRAIGHT:
+            slope, place = np.polyfit(z, y, 1)
+            crooked = float(np.sqrt(np.mean((y - place - slope * z) ** 2)))
+            if crooked < straightest:
+                straightest, lean = crooked, float(np.arctan(slope))
+    return lean
 
 
 def of_ends(curve: Curve, cant: float, point_near: Callable[[float, float], str]) -> Iterator[str]:

@@ -72,8 +72,9 @@ class FileError(wl.InputError):
 class Points:
     """The points of a file [m], outwards and down, each with its line; the kind is that of the content, if any.
 
-    The height of points that are `taped` counts from the taping line, wherever that is, and the diameter is there [m].
-    Points that are `scanned` by a hand may run back.
+    The points of a MiniProf wheel have the distance of the `taping` line from the back of the flange, from which their
+    file counts [m]; their height counts from that line, wherever it is, and the diameter is there [m]. Points that are
+    `scanned` by a hand may run back.
     """
 
     y: Array
@@ -81,9 +82,13 @@ class Points:
     weights: Array | None
     lines: NDArray[np.intp]
     kind: Kind | None
-    taped: bool = False
+    taping: float | None = None
     diameter: float | None = None
     scanned: bool = False
+
+    def mirrored(self) -> Array:
+        """Return y after a change of sign: of a MiniProf wheel about the back of its flange, from which X counts."""
+        return -self.y - 2.0 * (self.taping or 0.0)
 
 
 def points_of(
@@ -347,8 +352,8 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str, part: int | N
     x, y = factor * (x + offset["xoffset"]), factor * (y + offset["yoffset"])
     if kind == "wheel":
         diameter = factor * offset[DIAMETER.lower()] or None
-        x, taped = x - factor * offset[TAPING.lower()], True
-        return Points(x, y, None, rows, None, taped=taped, diameter=diameter, scanned=True)
+        taping = factor * offset[TAPING.lower()]
+        return Points(x - taping, y, None, rows, None, taping=taping, diameter=diameter, scanned=True)
     return Points(-x, -y, None, rows, None, scanned=True)
 
 

@@ -33,8 +33,8 @@ FLANGE_BACK = -70e-3
 """Usual place of the back of a flange [m]."""
 BACK = 5e-3
 """Distance from y = 0 up to which the end of a wheel's profile is taken for the back of its flange [m]."""
-MIRROR_Z = "mirror_z=True"
-"""What mends points that are upside down."""
+MIRROR_Y, MIRROR_Z = "mirror_y=True", "mirror_z=True"
+"""What mends points that are mirrored or upside down."""
 BLOCK = 64
 """Steps in a block whose bounding box is compared with those of others."""
 
@@ -189,9 +189,9 @@ def check_orientation(kind: str, y: Array, z: Array, name: Name) -> None:
     flange = point(place, y, z, name)
     if y[place] > 0.5 * (y.min() + y.max()):
         raise PointsError(
-            f"the wheel is mirrored: its flange must be at y < 0, but has {flange}; change the sign of y, in a file by"
-            " mirror_y=True. A left wheel has the same profile as a right one",
-            Repair("mirror_y=True", matrix=((-1.0, 0.0), (0.0, 1.0))),
+            f"the wheel is mirrored: its flange must be where y is least, but has {flange}; change the sign of y, in a"
+            f" file by {MIRROR_Y}. A left wheel has the same profile as a right one",
+            Repair(MIRROR_Y),
         )
     if y[place] < 0.0 < y.max():
         return

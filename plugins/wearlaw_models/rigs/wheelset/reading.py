@@ -39,7 +39,7 @@ class File(wl.Configuration):
 def fields_of(path: Path, file: File) -> Fields:
     """Return the fields of the profile in a file; see `read_profile`."""
     points, told = points_of(path, file.kind, file.units, file.sep, file.decimal, file.part, file.sheet)
-    y, z = (-points.y if file.mirror_y else points.y), (-points.z if file.mirror_z else points.z)
+    y, z = (points.mirrored() if file.mirror_y else points.y), (-points.z if file.mirror_z else points.z)
     angle = wl.scalar_si(file.turn, "rad")
     if angle:
         y, z = np.cos(angle) * y - np.sin(angle) * z, np.sin(angle) * y + np.cos(angle) * z
@@ -48,7 +48,7 @@ def fields_of(path: Path, file: File) -> Fields:
     if mended:
         wl.errors.warn(f"profile {wl.shown(path)}, repaired: {'; '.join(mended)}", wl.UnusualWarning)
     y, z = points.y, points.z
-    if points.taped and y.min() <= 0.0 <= y.max():
+    if points.taping is not None and y.min() <= 0.0 <= y.max():
         way = slice(None, None, -1 if y[-1] < y[0] else 1)
         across, down = filled(y[way], z[way])
         width = wl.scalar_si(file.smoothing, "m")

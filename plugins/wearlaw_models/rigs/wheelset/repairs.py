@@ -7,7 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from wearlaw_models.rigs.wheelset.files import Kind, Points
-from wearlaw_models.rigs.wheelset.points import MIRROR_Z, PointsError, Repair, check_orientation, check_points, filled
+from wearlaw_models.rigs.wheelset.points import (
+    MIRROR_Y,
+    MIRROR_Z,
+    PointsError,
+    Repair,
+    check_orientation,
+    check_points,
+    filled,
+)
 
 MOST = 0.1
 """Greatest share of the points that are left out."""
@@ -54,6 +62,8 @@ def repaired(points: Points, kind: Kind, every: bool) -> tuple[Points, list[str]
 def _mended(points: Points, repair: Repair) -> Points:
     """Return the points after a repair."""
     y, z, lines, weights = points.y, points.z, points.lines, points.weights
+    if repair.text == MIRROR_Y:
+        return replace(points, y=points.mirrored())
     if repair.fill:
         more_values = () if weights is None else (weights,)
         y, z, numbers, *more = filled(y, z, lines.astype(np.float64), *more_values, every=True)
