@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from matplotlib.quiver import Quiver
 
+import wearlaw as wl
 from docs import choosing, pictures, regimes
 from docs.conventions import conventions
 from tests.environments import ROOT
-from wearlaw.loader import discovered  # private: all that is installed, by kind
 
 
 def test_the_theory_states_the_errors_that_are_computed() -> None:
@@ -57,13 +57,8 @@ def test_the_picture_of_the_readme_has_the_regimes_laws_and_tests_of_the_papers(
 
 def test_every_shipped_contact_model_and_law_can_be_chosen() -> None:
     shown = [name for _, name in (*choosing.MODELS, *choosing.LAWS) if name]
-    plugins = discovered()
-    shipped = [
-        name
-        for kind in map(plugins.__getitem__, ("contact model", "wear law", "law"))
-        for name in kind.items()
-        if kind.origin(name).distribution == "wearlaw"
-    ]
+    installed = wl.installed("contact model") | wl.installed("wear law") | wl.installed("law")
+    shipped = [name for name, cls in installed.items() if cls.__module__.startswith("wearlaw_models.")]
     assert sorted(shown) == sorted({*shipped})
     page = (ROOT / "docs" / "choosing.md").read_text(encoding="utf-8")
     assert [name for name in shown if f"`{name}`" not in page] == []
