@@ -14,7 +14,7 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.motion import placed
 from wearlaw_models.rigs.wheelset.patches import Patches, joined
-from wearlaw_models.rigs.wheelset.rows import Lattice
+from wearlaw_models.rigs.wheelset.rows import Samples
 from wearlaw_models.rigs.wheelset.search import Section, Touching, both_sides
 from wearlaw_models.rigs.wheelset.stand import BALANCED, Creeping, Stand
 from wearlaw_models.rigs.wheelset.task import Elastic, Patch, Task
@@ -63,7 +63,7 @@ class Loads:
     """
 
     section: Section
-    lattice: Lattice
+    samples: Samples
     elastic: Elastic
     task: Task
     patch: Patch
@@ -71,18 +71,18 @@ class Loads:
 
     @classmethod
     def begun(
-        cls, section: Section, lattice: Lattice, elastic: Elastic, task: Task, roll: Array, touching: Touching,
+        cls, section: Section, samples: Samples, elastic: Elastic, task: Task, roll: Array, touching: Touching,
         patch: Patch,
     ) -> Loads:  # fmt: skip
         """Return the loads without creep forces, under which the wheelset turns with the mean of its radii."""
         place = placed(section, both_sides(task.displacement, roll, task.yaw), touching.arc[..., 0])
         lever = place.y + place.z * np.tan(place.angle)
-        loads = cls(section, lattice, elastic, task, patch, [])
+        loads = cls(section, samples, elastic, task, patch, [])
         kept = 0
         for start in range(0, roll.size, BLOCK):
             some = np.arange(start, min(start + BLOCK, roll.size))
             stand = Stand.laid(
-                section, lattice, elastic, task.part(some), some, touching.least[some], roll[some], lever[some]
+                section, samples, elastic, task.part(some), some, touching.least[some], roll[some], lever[some]
             )
             for each in loads.until_near(stand):
                 kept += each.pressed.influence.size
@@ -110,7 +110,7 @@ class Loads:
             height = np.clip(height, stand.height - FARTHEST, stand.height + FARTHEST)
             roll = np.clip(roll, stand.roll - MOST_ROLL, stand.roll + MOST_ROLL)
             stand = Stand.laid(
-                self.section, self.lattice, self.elastic, stand.task.part(np.flatnonzero(far)), points, height[far],
+                self.section, self.samples, self.elastic, stand.task.part(np.flatnonzero(far)), points, height[far],
                 roll[far], None, None if forces is None else stand.creeping,
             )  # fmt: skip
             goal = None if goal is None else goal[far]
@@ -171,7 +171,7 @@ class Loads:
         for start in range(0, points.size, BLOCK):
             some = points[start : start + BLOCK]
             stand = Stand.laid(
-                self.section, self.lattice, self.elastic, self.task.part(some), some, height[some], roll[some], None,
+                self.section, self.samples, self.elastic, self.task.part(some), some, height[some], roll[some], None,
                 creeping,
             )  # fmt: skip
             stands += self.until_near(stand, forces, goal[start : start + BLOCK])

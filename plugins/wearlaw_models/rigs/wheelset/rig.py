@@ -32,7 +32,7 @@ from wearlaw_models.rigs.wheelset.problem import (
     warn_of_points,
 )
 from wearlaw_models.rigs.wheelset.profile import Profile
-from wearlaw_models.rigs.wheelset.rows import Lattice, lattice
+from wearlaw_models.rigs.wheelset.rows import Samples, samples
 from wearlaw_models.rigs.wheelset.search import Section, Touching, both_sides, searched, section
 from wearlaw_models.rigs.wheelset.search_loops import PATCHES
 from wearlaw_models.rigs.wheelset.task import Elastic, Friction, Patch, Task
@@ -437,7 +437,7 @@ class Wheelset(wl.Rig):
         """Return the loads of a task without creep forces."""
         rolls, touching = self._rigid(task.displacement, task.yaw, roll)
         self._check_contact(task.displacement, touching)
-        return Loads.begun(self._section, self._lattice, self._elastic, task, rolls, touching, self.patch)
+        return Loads.begun(self._section, self._samples, self._elastic, task, rolls, touching, self.patch)
 
     def _guided(
         self, loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces]
@@ -539,8 +539,8 @@ class Wheelset(wl.Rig):
         return replace(right, left=of(self.left_wheel or self.wheel, self.left_rail or self.rail))
 
     @cached_property
-    def _lattice(self) -> Lattice:
-        return lattice(self._section)
+    def _samples(self) -> Samples:
+        return samples(self._section)
 
     @cached_property
     def _elastic(self) -> Elastic:

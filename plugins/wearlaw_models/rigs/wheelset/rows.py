@@ -10,7 +10,7 @@ the row, around which the gap grows as c (x - crest)². A small displacement v o
 v·n' / (n·n'), n' being the normal of the wheel. It is linear in the height of the axle, in the roll and in the lateral
 displacement, all of which the balance seeks.
 
-The width of rows is a millimetre or a binary fraction of it, by the width in which the undeformed bodies overlap, so
+The width of rows follows in small steps that in which the undeformed bodies overlap, and rows lie at its multiples, so
 that each patch has some twenty rows, wherever it lies and whatever else is computed with it.
 """
 
@@ -27,11 +27,11 @@ from wearlaw_models.rigs.wheelset.motion import Place, curvature_along, in_space
 from wearlaw_models.rigs.wheelset.search import Position, Section
 from wearlaw_models.rigs.wheelset.search_loops import locus
 
-CELL, SAMPLES = 1e-3, 4
-"""Width of the widest rows [m], and samples in it of the gap by which rows are chosen."""
+SAMPLE = 0.25e-3
+"""Distance along the rail of the samples of the gap by which rows are chosen [m]."""
 
-LEVELS = 6
-"""Numbers of halvings of a row, from none."""
+WIDEST, NARROWEST, STEP = 1e-3, 3e-5, 2.0**0.25
+"""Greatest and least width of rows [m], and the ratio of two widths that follow each other."""
 
 ROWS = 26
 """Fewest rows over the width of an overlap, unless they are the narrowest ones."""
@@ -48,8 +48,8 @@ SECANTS, FARTHEST = 12, 2e-3
 CLOSE = 1e-7
 """Distance of that point from the normal [m]."""
 
-MARGIN = 1
-"""Cells beside the overlap whose rows may touch as well, once the loads balance."""
+MARGIN = 8
+"""Samples beside the overlap whose rows may touch as well, once the loads balance."""
 
 STRAIGHT = 0.2
 """Greatest difference between crests of rows, over half the length of the area, with which it is symmetric."""
@@ -66,6 +66,9 @@ LEAST = 1e-6
 APART = -1.0
 """Overlap where a row does not face the wheel [m]."""
 
+TINY = 1e-300
+"""Keeps divisors from zero."""
+
 FACING = 0.5
 """Least cosine of the angle between the normals of wheel and rail."""
 
@@ -77,41 +80,20 @@ overlap: N/(E* ∫ o dy), and a/L. They follow from the closed form, K. L. Johns
 """
 
 
-@dataclass(frozen=True)
-class Lattice:
-    """Places of rows of all widths on the rails, (sides, rows): y, z [m], contact angle [rad] and arc length [m].
-
-    Those that are halved `k` times begin at `first[k]`; the samples of the gap are the rows of that width.
-    """
+class Samples(NamedTuple):
+    """Places on the rails, (sides, samples): y, z [m], contact angle [rad]; and their arc lengths, (samples,) [m]."""
 
     y: Array
     z: Array
     angle: Array
     arc: Array
-    first: NDArray[np.intp]
-    cells: int
 
 
-def lattice(section: Section) -> Lattice:
-    """Return the places of rows on both rails."""
-    ends = [(side.rail_position.value[0], side.rail_position.value[-1]) for side in section.sides]
-    begin = np.floor(min(end[0] for end in ends) / CELL)
-    cells = int(np.ceil(max(end[1] for end in ends) / CELL) - begin)
-    counts = cells * 2 ** np.arange(LEVELS)
-    arc = CELL * np.concatenate([begin + (np.arange(count) + 0.5) * cells / count for count in counts])
-    places = []
-    for side in section.sides:
-        table = side.rail_position
-        y = np.interp(arc, table.value, table.start + table.step * np.arange(table.value.size), -np.inf, np.inf)
-        inside = np.isfinite(y)
-        at = np.where(inside, y, table.start)
-        for _ in range(2):
-            value, slope = table.at(at)
-            at = np.where(inside, at - (value - arc) / slope, at)
-        z, slope = side.rail_z.at(at)
-        places.append(np.stack([at, np.where(inside, z, np.inf), np.arctan(slope)]))
-    y, z, angle = np.stack(places, axis=1)
-    return Lattice(y, z, angle, arc, np.concatenate([[0], np.cumsum(counts)]), cells)
+def samples(section: Section) -> Samples:
+    """Return the samples of both rails."""
+    ends = np.array([(side.rail_position.value[0], side.rail_position.value[-1]) for side in section.sides])
+    arc = SAMPLE * np.arange(np.floor(ends.min() / SAMPLE), np.ceil(ends.max() / SAMPLE) + 1.0)
+    return Samples(*section.on_rails(arc, np.array([[0], [1]])), arc)
 
 
 @dataclass(frozen=True)
@@ -192,19 +174,19 @@ class Near:
         depth = np.full(load.shape, 5e-5)
         for _ in range(6):
             overlap = np.maximum(self.overlap(least + depth), 0.0)
-            most, width = overlap.max(axis=-1), (overlap > 0.0).sum(axis=-1) * CELL / SAMPLES
-            shape = np.log10(np.sqrt(2.0 * self.radius * np.maximum(most, LEAST)) / np.maximum(0.5 * width, 0.1 * CELL))
-            volume = (overlap * self.cosine).sum(axis=-1) * CELL / SAMPLES
+            most, width = overlap.max(axis=-1), (overlap > 0.0).sum(axis=-1) * SAMPLE
+            shape = np.log10(
+                np.sqrt(2.0 * self.radius * np.maximum(most, LEAST)) / np.maximum(0.5 * width, 0.4 * SAMPLE)
+            )
+            volume = (overlap * self.cosine).sum(axis=-1) * SAMPLE
             borne = modulus * np.interp(shape, HERTZ[0], HERTZ[1]) * volume
             depth *= np.clip(load / np.maximum(borne, 1e-3 * load), 0.2, 5.0) ** 0.6
         return depth
 
 
-def near(section: Section, position: Position, places: Lattice) -> Near:
+def near(section: Section, position: Position, places: Samples) -> Near:
     """Return the gaps of wheels, whose positions are arrays of shape (wheels,), at the samples."""
-    chosen = slice(places.first[2], places.first[3])
-    side = np.asarray(position.side)
-    y, z, angle = (array[side, chosen] for array in (places.y, places.z, places.angle))
+    y, z, angle = (array[np.asarray(position.side)] for array in places[:3])
     wide = position.widened()
     arc, inside = _arc_below(section, wide, y)
     at = _surface(section, wide, arc)
@@ -264,23 +246,21 @@ def _arc_below(section: Section, position: Position, y: Array) -> tuple[Array, N
     across = y - position.displacement + radius * np.sin(position.roll)
     arc = np.empty(across.shape)
     for number, side in enumerate(section.sides):
-        table = side.wheel_y
         here = np.broadcast_to(np.asarray(position.side) == number, across.shape)
-        arcs = table.start + table.step * np.arange(table.value.size)
-        arc[here] = np.interp(across[here], table.value, arcs, -np.inf, np.inf)
+        arc[here] = side.wheel_y.inverse(across[here])
     inside = np.isfinite(arc)
     return np.where(inside, arc, section.wheel_y.start), inside
 
 
-def rows(section: Section, places: Lattice, position: Position, height: Array, around: Near) -> Rows:
+def rows(section: Section, places: Samples, position: Position, height: Array, around: Near) -> Rows:
     """Return the rows of wheels near their rails at heights of the axle, (wheels,) [m].
 
     Rows of a wheel that does not overlap its rail are those for an overlap of `LEAST`.
     """
-    wheel, index, width, region = _chosen(around.overlap(height), places)
+    wheel, rail_arc, width, region = _chosen(around.overlap(height), places.arc)
     side = np.asarray(position.side)[wheel]
     here = Position(*(array[wheel] for array in position))
-    y, z, angle, rail_arc = places.y[side, index], places.z[side, index], places.angle[side, index], places.arc[index]
+    y, z, angle = section.on_rails(rail_arc, side)
     arc, inside = _arc_below(section, here, y)
     inside &= np.isfinite(z)
     z = np.where(inside, z, 0.0)
@@ -339,41 +319,32 @@ def rows(section: Section, places: Lattice, position: Position, height: Array, a
     )  # fmt: skip
 
 
-def _chosen(overlap: Array, places: Lattice) -> tuple[NDArray[np.intp], NDArray[np.intp], Array, NDArray[np.intp]]:
-    """Return wheel, place in the lattice, width [m] and part of the area of the rows of wheels.
+def _chosen(overlap: Array, arc: Array) -> tuple[NDArray[np.intp], Array, Array, NDArray[np.intp]]:
+    """Return wheel, arc length [m], width [m] and part of the area of the rows of wheels.
 
-    The overlap is that of samples, (wheels, samples) [m].
+    The overlap is that of samples, (wheels, samples) [m], at their arc lengths.
     """
     overlap = overlap + np.maximum(LEAST - overlap.max(axis=-1, keepdims=True), 0.0)
-    wheels, over = overlap.shape[0], overlap > 0.0
-    held = np.zeros((wheels, places.cells + 2), dtype=np.bool_)  # with an empty cell on both sides
-    held[:, 1:-1] = over.reshape(wheels, places.cells, SAMPLES).any(axis=-1)
-    part = np.cumsum(held & ~np.roll(held, 1, axis=1)).reshape(held.shape) - 1
-    samples = np.zeros(held.shape)
-    samples[:, 1:-1] = over.reshape(wheels, places.cells, SAMPLES).sum(axis=-1)
-    width = np.bincount(part[held], samples[held]) * CELL / SAMPLES
+    over, aside = overlap > 0.0, ((0, 0), (MARGIN + 1, MARGIN + 1))
+    held = np.pad(over, aside)
+    held = np.logical_or.reduce([np.roll(held, shift, axis=1) for shift in range(-MARGIN, MARGIN + 1)])
+    edges = np.flatnonzero(np.diff(held.ravel(), prepend=False))  # first sample of a part, and the one behind its last
+    wheel, begin = np.divmod(edges[::2], held.shape[1])
+    size = edges[1::2] - edges[::2]
+    width = SAMPLE * np.add.reduceat(np.pad(over, aside).ravel(), edges, dtype=np.intp)[::2]
     # Rows are narrower where the overlap bends more.
     with np.errstate(invalid="ignore"):  # beside the rail
         bend = np.abs(overlap[:, 2:] - 2.0 * overlap[:, 1:-1] + overlap[:, :-2])
         deepest = overlap.max(axis=-1, keepdims=True)
-        bend = np.where(overlap[:, 1:-1] > 0.25 * deepest, bend, 0.0) * SAMPLES**2 / (FINE * deepest)
-    bends = np.zeros(held.shape)
-    bends[:, 1:-1] = np.pad(bend, ((0, 0), (1, 1))).reshape(wheels, places.cells, SAMPLES).max(axis=-1)
-    most = np.zeros(width.size)
-    np.maximum.at(most, part[held], bends[held])
-    level = np.log2(np.maximum(ROWS * CELL / np.maximum(width, 1e-6), np.sqrt(most)))
-    level = np.clip(np.ceil(level), 0, LEVELS - 1).astype(np.intp)
-    finer = np.where(held, level[np.where(held, part, 0)], -1)
-    for _ in range(MARGIN):
-        left, right = np.roll(finer, 1, axis=1), np.roll(finer, -1, axis=1)
-        more = (finer < 0) & (np.maximum(left, right) >= 0)
-        part = np.where(more & (left < 0), np.roll(part, -1, axis=1), part)
-        finer = np.where(more, np.maximum(left, right), finer)
-    finer = finer[:, 1:-1]
-    wheel, cell = np.nonzero(finer >= 0)
-    finer, part = finer[wheel, cell], part[:, 1:-1][wheel, cell]
-    count = 2**finer
-    which = np.repeat(np.arange(wheel.size), count)
-    within = np.arange(which.size) - np.repeat(np.cumsum(count) - count, count)
-    index = (places.first[finer] + cell * count)[which] + within
-    return wheel[which], index, CELL / count[which], part[which]
+        bend = np.where(overlap[:, 1:-1] > 0.25 * deepest, bend, 0.0) * (WIDEST / SAMPLE) ** 2 / (FINE * deepest)
+    bend = np.pad(bend, ((0, 0), (MARGIN + 2, MARGIN + 2))).ravel()
+    most = np.maximum.reduceat(bend, edges)[::2]
+    asked = np.minimum(width / ROWS, WIDEST / np.sqrt(np.maximum(most, TINY)))
+    steps = np.ceil(np.log(WIDEST / np.clip(asked, NARROWEST, WIDEST)) / np.log(STEP))
+    asked = WIDEST * STEP**-steps
+    low = arc[0] + SAMPLE * (begin - MARGIN - 1.5)
+    first = np.ceil(low / asked)
+    count = (np.floor((low + SAMPLE * size) / asked) - first).astype(np.intp)
+    part = np.repeat(np.arange(count.size), count)
+    number = np.arange(part.size) - np.repeat(np.cumsum(count) - count, count)
+    return wheel[part], asked[part] * (first[part] + number + 0.5), asked[part], part

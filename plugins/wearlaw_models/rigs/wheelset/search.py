@@ -117,6 +117,11 @@ class Table(NamedTuple):
         value, slope = self.at(np.where(inside, x, self.start))
         return np.where(inside, value, np.inf), slope
 
+    def inverse(self, value: Array) -> Array:
+        """Return abscissae at which a growing function has values, by lines; infinite ones beyond its ends."""
+        places = self.start + self.step * np.arange(self.value.size)
+        return np.asarray(np.interp(value, self.value, places, -np.inf, np.inf))
+
 
 class Coarse(NamedTuple):
     """Points on a wheel at even arc lengths: distance from the middle of the wheelset, radius and its slope dR/dy.
@@ -174,6 +179,22 @@ class Section:
         x, side = np.broadcast_arrays(x, side)
         of_left, of_right = (_at(getattr(half, name), x) for half in self.sides)
         return tuple(np.where(side == 0, left, right) for left, right in zip(of_left, of_right, strict=True))
+
+    def on_rails(self, arc: Array, side: NDArray[np.intp]) -> tuple[Array, Array, Array]:
+        """Return y, z [m] and the slope's angle [rad] of rails at arc lengths of their profiles [m], on sides.
+
+        Beyond the ends of a rail z is infinite.
+        """
+        y = np.empty(np.broadcast_shapes(arc.shape, side.shape))
+        for number, section in enumerate(self.sides):
+            y = np.where(side == number, section.rail_position.inverse(arc), y)
+        beyond = np.isinf(y)
+        y = np.where(beyond, 0.0, y)
+        for _ in range(2):
+            value, slope = self.at("rail_position", y, side)
+            y = np.where(beyond, 0.0, y - (value - arc) / slope)
+        z, slope = self.at("rail_z", y, side)
+        return y, np.where(beyond, np.inf, z), np.arctan(slope)
 
     @property
     def tables(self) -> tuple[tuple[float, float, Array], ...]:

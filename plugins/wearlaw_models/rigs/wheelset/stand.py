@@ -28,7 +28,7 @@ from wearlaw import Array
 from wearlaw_models.rigs.wheelset.motion import Creepages, Place, creepages, roll_rate
 from wearlaw_models.rigs.wheelset.patches import Patches
 from wearlaw_models.rigs.wheelset.pressure import Pressed
-from wearlaw_models.rigs.wheelset.rows import SPARE, Lattice, Near, Rows, near, rows
+from wearlaw_models.rigs.wheelset.rows import SPARE, Near, Rows, Samples, near, rows
 from wearlaw_models.rigs.wheelset.search import Position, Section, both_sides
 from wearlaw_models.rigs.wheelset.search_loops import LEAST_LEVER, PATCHES
 from wearlaw_models.rigs.wheelset.task import Elastic, Patch, Task
@@ -75,7 +75,7 @@ TINY = 1e-300
 
 
 def _held(
-    section: Section, lattice: Lattice, elastic: Elastic, task: Task, height: Array, roll: Array, position: Position,
+    section: Section, samples: Samples, elastic: Elastic, task: Task, height: Array, roll: Array, position: Position,
     around: Near,
 ) -> tuple[Array, Array, Position, Near]:  # fmt: skip
     """Return heights and rolls at which no wheel is lost, as one may be by a step that was too long."""
@@ -97,7 +97,7 @@ def _held(
             lacks = (lacks - lever * change[:, None] * (-1.0, 1.0)).mean(axis=-1, keepdims=True) + np.zeros(2)
             pairs = both_sides(task.displacement, roll, task.yaw)
             position = Position(*(np.ascontiguousarray(array).reshape(-1) for array in pairs))
-            around = near(section, position, lattice)
+            around = near(section, position, samples)
         height = height + lacks
     return height, roll, position, around
 
@@ -194,13 +194,13 @@ class Stand:
 
     @classmethod
     def laid(
-        cls, section: Section, lattice: Lattice, elastic: Elastic, task: Task, points: NDArray[np.intp], height: Array,
+        cls, section: Section, samples: Samples, elastic: Elastic, task: Task, points: NDArray[np.intp], height: Array,
         roll: Array, least: Array | None = None, before: Creeping | None = None,
     ) -> Stand:  # fmt: skip
         """Return wheelsets with rows at heights and rolls; with the least gaps of rigid wheels, at those under load."""
         pairs = both_sides(task.displacement, roll, task.yaw)
         position = Position(*(np.ascontiguousarray(array).reshape(-1) for array in pairs))
-        around = near(section, position, lattice)
+        around = near(section, position, samples)
         if least is not None:
             depth = around.sunk(task.load.reshape(-1), height.reshape(-1), elastic.modulus).reshape(-1, 2)
             if task.free:
@@ -213,8 +213,8 @@ class Stand:
                 around = around.rolled((change[:, None] * (-1.0, 1.0)).reshape(-1))
             height = height + depth
         else:
-            height, roll, position, around = _held(section, lattice, elastic, task, height, roll, position, around)
-        laid = rows(section, lattice, position, height.reshape(-1), around)
+            height, roll, position, around = _held(section, samples, elastic, task, height, roll, position, around)
+        laid = rows(section, samples, position, height.reshape(-1), around)
         side = np.where(laid.wheel % 2 == 1, 1.0, -1.0)
         right = laid.wheel % 2
         if task.free:
