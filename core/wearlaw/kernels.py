@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Callable
-from types import FunctionType
+from collections.abc import Callable, Mapping
+from types import FunctionType, MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -52,7 +52,9 @@ def accelerated(points: int) -> bool:
     return points >= WORTHWHILE and os.environ.get(SETTING, "1") != "0" and _numba() is not None
 
 
-def compiled_loop(signature: str, reorders: bool = False) -> Callable[[Callable[..., None]], Callable[..., None]]:
+def compiled_loop(
+    signature: str, reorders: bool = False, instead: Mapping[str, Callable[..., Any]] = MappingProxyType({})
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Return a decorator that compiles a function of loops over arrays, which writes its results into some of them.
 
     The function is compiled at its first call, so call it only if `accelerated` returns True. Division by zero gives
@@ -66,6 +68,8 @@ def compiled_loop(signature: str, reorders: bool = False) -> Callable[[Callable[
         functions of its module with the same limits.
     reorders : bool
         Whether sums may be added up in any order, so that several terms are added at once.
+    instead : mapping of str to callable
+        Functions of loops that take the place of functions of the module, by the names of these.
     """
     options = {"fastmath": {"contract", "reassoc"} if reorders else {"contract"}, "error_model": "numpy"}
 
@@ -75,7 +79,7 @@ def compiled_loop(signature: str, reorders: bool = False) -> Callable[[Callable[
         @functools.cache
         def made(read_only: frozenset[int]) -> Any:
             types = _types_of(signature, read_only)
-            return compiled(_with_compiled(function, _numba().njit(**options)), types, **options)
+            return compiled(_with_compiled(function, _numba().njit(**options), instead), types, **options)
 
         @functools.wraps(function)
         def run(*arguments: object) -> None:
@@ -110,12 +114,14 @@ def compiled(function: Callable[..., Any], signature: object, **options: Any) ->
         return njit([signature], **options)(function)
 
 
-def _with_compiled(function: Any, compiler: Callable[[FunctionType], Any]) -> FunctionType:
+def _with_compiled(
+    function: Any, compiler: Callable[[FunctionType], Any], instead: Mapping[str, Callable[..., Any]]
+) -> FunctionType:
     """Return a copy of a function that calls compiled copies of the functions of its module."""
-    namespace = dict(function.__globals__)
+    namespace = function.__globals__ | instead
     for name in function.__code__.co_names:
         if isinstance(namespace.get(name), FunctionType):
-            namespace[name] = compiler(_with_compiled(namespace[name], compiler))
+            namespace[name] = compiler(_with_compiled(namespace[name], compiler, instead))
     copy = FunctionType(function.__code__, namespace, function.__name__, function.__defaults__, function.__closure__)
     copy.__module__ = function.__module__
     return copy

@@ -313,6 +313,21 @@ def influence_loop(
                         influence[to - number] = influence[back - number] = value
 
 
+def coefficients(influence: Array, ahead: NDArray[np.intp], behind: NDArray[np.intp]) -> Array:
+    """Return influences at the sums of indices of two sets of elements."""
+    matrix: Array = influence[ahead[:, None] + behind]
+    return matrix
+
+
+def coefficients_loop(influence: Array, ahead: NDArray[np.intp], behind: NDArray[np.intp]) -> Array:
+    """Return influences at the sums of indices of two sets of elements."""
+    matrix = np.empty((ahead.size, behind.size))
+    for i in range(ahead.size):
+        for j in range(behind.size):
+            matrix[i, j] = influence[ahead[i] + behind[j]]
+    return matrix
+
+
 def respond(
     wheel: int,
     displacement: Array,
@@ -340,13 +355,12 @@ def respond(
     for k in range(displacement.size):
         overlap += of[:, 1 + k] * displacement[k]
     at, near = np.flatnonzero(touches), np.flatnonzero(touches | (overlap > 0.0))
-    across, along = place[near] * (size * span) + column[begin:end][near], column[begin:end][at]
+    ahead, along = place[near] * (size * span) + column[begin:end][near], column[begin:end][at]
     middle = place[at] * span + count - 1
     of_wheel = influence[table[wheel] : table[wheel + 1]]
-    matrix = of_wheel[(across.reshape(-1, 1) + (middle - along)).ravel()]
+    matrix = coefficients(of_wheel, ahead, middle - along)
     if half[wheel]:
-        matrix += of_wheel[(across.reshape(-1, 1) + (middle + along + 1)).ravel()]
-    matrix = matrix.reshape((near.size, at.size))
+        matrix += coefficients(of_wheel, ahead, middle + along + 1)
     pressed = np.linalg.solve(matrix[np.flatnonzero(touches[near])], of[at])
     of[near] -= matrix @ pressed
     of[at] = pressed / width[row[begin:end][at]].reshape(-1, 1)
@@ -425,5 +439,6 @@ def carry(
 FLAGS = "boolean[::1]"
 carry_loop = wl.compiled_loop(
     f"void({INTS}, {ROWS}, {ROWS}, {ROWS}, {INTS}, {VECTOR}, {VECTOR}, {VECTOR}, {INTS}, {FLAGS}, {INTS}, {INTS},"
-    f" {VECTOR}, {INTS}, {INTS}, {VECTOR}, {FLAGS}, {ROWS}, {VECTOR}, {ROWS}, {ROWS}, {FLAGS})"
+    f" {VECTOR}, {INTS}, {INTS}, {VECTOR}, {FLAGS}, {ROWS}, {VECTOR}, {ROWS}, {ROWS}, {FLAGS})",
+    instead={"coefficients": coefficients_loop},
 )(carry)

@@ -33,7 +33,7 @@ SAMPLE = 0.25e-3
 WIDEST, NARROWEST, STEP = 1e-3, 3e-5, 2.0**0.25
 """Greatest and least width of rows [m], and the ratio of two widths that follow each other."""
 
-ROWS = 26
+ROWS = 30
 """Fewest rows over the width of an overlap, unless they are the narrowest ones."""
 
 COLUMNS = 4
