@@ -92,7 +92,7 @@ class Samples(NamedTuple):
 def samples(section: Section) -> Samples:
     """Return the samples of both rails."""
     ends = np.array([(side.rail_position.value[0], side.rail_position.value[-1]) for side in section.sides])
-    arc = SAMPLE * np.arange(np.floor(ends.min() / SAMPLE), np.ceil(ends.max() / SAMPLE) + 1.0)
+    arc = SAMPLE * (np.arange(np.floor(ends.min() / SAMPLE), np.ceil(ends.max() / SAMPLE)) + 0.5)
     return Samples(*section.on_rails(arc, np.array([[0], [1]])), arc)
 
 
