@@ -64,6 +64,7 @@ def first(pair: wl.Wheelset, displacement: Any, yaw: Any = 0.0) -> xarray.Datase
     held_to="{metres:g} m and rad",
     metres=2e-10,
 )
+@pytest.mark.filterwarnings("ignore:the tread has a conicity of 0.2:wearlaw.UnusualWarning")
 @pytest.mark.parametrize(("conicity", "head"), [(0.025, 0.08), (0.025, 0.3), (0.05, 0.08), (0.05, 0.3), (0.2, 0.08)])
 def test_cones_touch_round_heads_where_the_closed_form_says(conicity: float, head: float, metres: float) -> None:
     # In the axes of the wheelset, the middles of the heads are on lines parallel to the cones, at the distance of the
@@ -88,6 +89,7 @@ def test_cones_touch_round_heads_where_the_closed_form_says(conicity: float, hea
     assert si(found, "rolling_radius") == pytest.approx(R0 - conicity * (on_wheel - 0.75), rel=0.0, abs=metres)
 
 
+@pytest.mark.filterwarnings("ignore:the tread has a conicity of 0.2:wearlaw.UnusualWarning")
 @pytest.mark.parametrize(("conicity", "head"), [(0.025, 0.3), (0.05, 0.08), (0.2, 0.08)])
 def test_cones_have_the_conicity_of_the_closed_form(conicity: float, head: float) -> None:
     # From the middles of the heads above, Δr = -2 Y sin ρ and u = -sin ρ (Y cos ρ (1 + γ²)/γ - H), so that Δr/2u is
