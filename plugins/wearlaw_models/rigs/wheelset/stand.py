@@ -40,6 +40,9 @@ STEPS, DEPTH = 30, 3
 """Most rounds of pressure and creep forces, of which four or five are usual, and those before by which one is improved.
 """
 
+TOGETHER = 8
+"""Rounds after which rows that have been in one patch stay in one: patches that part and meet have other forces."""
+
 SCALE = 100.0
 """Change of Fy/N that counts as much as a change of the speed of rotation by all of it."""
 
@@ -167,6 +170,8 @@ class Stand:
         Roll there [rad].
     ratio, sine : ndarray, (rows,)
         Lateral creep force over the normal force of the patch of each row, and the patch's sin δ, in the track's axes.
+    linked : ndarray of bool, (rows,), or None
+        After some rounds, whether rows have been in one patch with those before them.
     rotation : ndarray
         Speed of rotation, Ω [rad/s].
     left : ndarray, (positions, 4)
@@ -191,6 +196,7 @@ class Stand:
     lateral: Array
     patches: Patches = field(init=False)
     of_row: tuple[NDArray[np.intp], NDArray[np.intp]] = field(init=False)
+    linked: NDArray[np.bool_] | None = field(init=False, default=None)
 
     @classmethod
     def laid(
@@ -316,12 +322,20 @@ class Stand:
         at = np.flatnonzero(touches)
         wheel, arc = rows.wheel[at], rows.place.rail_arc[at]
         gap = np.diff(arc, prepend=-np.inf) - 0.5 * (rows.width[at] + np.roll(rows.width[at], 1))
-        begins = (np.diff(wheel, prepend=-1) != 0) | (gap > 0.25 * rows.width[at])
+        first_row, apart = np.diff(wheel, prepend=-1) != 0, gap > 0.25 * rows.width[at]
+        if self.linked is not None:
+            apart &= np.diff(np.cumsum(~self.linked)[at], prepend=-1) > 0
+        begins = first_row | apart
         for crowded in np.flatnonzero(np.bincount(wheel[begins]) > PATCHES):  # join those that are nearest
             inner = np.flatnonzero(begins & (wheel == crowded))[1:]
             begins[inner[np.argsort(gap[inner])[: 1 - PATCHES]]] = False
         first, patch = np.flatnonzero(begins), np.cumsum(begins) - 1
         self.of_row = at, patch
+        if self.linked is not None:
+            step = np.zeros(rows.wheel.size + 1, dtype=np.intp)
+            step[at[:-1][~begins[1:]] + 1] += 1
+            step[at[1:][~begins[1:]] + 1] -= 1
+            self.linked |= np.cumsum(step[:-1]) > 0
         count, size = first.size, np.diff(np.append(np.flatnonzero(begins), at.size))
         of, point = wheel[first], wheel[first] // 2
         side = np.where(of % 2 == 1, 1.0, -1.0)
@@ -408,6 +422,8 @@ class Stand:
                 self.rotation = np.where(going, kept[2], self.rotation)
             if step:
                 self._carry(going)
+                if step == TOGETHER:
+                    self.linked = np.zeros(self.rows.wheel.size, dtype=np.bool_)
                 self.patches = self._found()
             some = self.patches.part(going[self.patches.point])
             problem = some.posed(task, self.elastic, self.rotation, patch)
