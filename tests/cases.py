@@ -28,9 +28,6 @@ Table = dict[str, Any]
 
 POINT = {"max_pressure": "1500 MPa", "creepage": "0.5 %", "friction_coefficient": 0.46}
 SWEEP = {**POINT, "creepage": {"from": "0.1 %", "to": "10 %", "points": 5, "spacing": "log"}}
-TESTS_HEAD = "label,creepage [%],normal_force [kN],wear_rate [ug/m/mm^2]"
-TESTS_CSV = f"{TESTS_HEAD}\na,1,7.4,30\nb,2,7.4,40\n"
-"""Two tests as a file holds them."""
 
 
 OWN_TESTS = """\

@@ -79,18 +79,6 @@ def test_the_pressure_is_crossed_at_the_root_of_hertz(name: str, problem: wl.Pro
     assert x[0] == pytest.approx([-root, root], abs=tolerance)
 
 
-@pytest.mark.parametrize("name", EXACT)
-@given(problem=line_problems(), share=st.floats(0.01, 0.99))
-def test_the_slip_speed_is_crossed_at_the_root_of_the_slip(name: str, problem: wl.Problem, share: float) -> None:
-    reduced = 3.0
-    saturation = saturation_creepage(problem)
-    full = one(with_creepage(problem, reduced * saturation))
-    speed = (reduced - 1.0 + 2.0 * share) * saturation * float(problem.rolling_speed)
-    x, there = find(name, full, {"slip_speed": (speed,)})
-    expected = float(problem.half_width) * (2.0 * share - 1.0)
-    assert x[there] == pytest.approx([expected], abs=32 * EPS * float(problem.half_width))  # rising: crossed once
-
-
 @pytest.mark.parametrize("name", ["exact", "fastsim-parabolic-line", "fastsim-elliptic-line"])
 @given(reduced=st.floats(0.05, 10.0), share=st.floats(0.02, 0.98))
 def test_at_every_crossing_the_variable_has_its_breakpoint(name: str, reduced: float, share: float) -> None:
@@ -126,20 +114,6 @@ def test_a_hump_between_two_samples_is_found(name: str, gap: float) -> None:
 def test_a_hump_that_stays_below_is_not_found(name: str, gap: float) -> None:
     _, there = find(name, suros(0.02, 2.1e9 * (1.0 - gap)), {"pressure": (2.1e9,)})
     assert not there.any()
-
-
-@pytest.mark.parametrize(("name", "half"), [("exact", 0.5), ("exact, searched", 0.5), ("fastsim-parabolic-line", 0.75)])
-@given(gap=log_uniform(1e-9, 1e-7), behind=log_uniform(1e-5, 3e-3))
-def test_a_hump_next_to_the_start_of_the_zone_is_found(name: str, half: float, gap: float, behind: float) -> None:
-    # the pressure peaks at x = 0, a little behind where slip begins, x = a (1-2d) = -2 behind·a
-    problem = suros(0.001, 2.1e9 * (1.0 + gap))
-    slipping = one(with_creepage(problem[0], half * saturation_creepage(problem[0]) * (1.0 + 2.0 * behind)))
-    a = float(problem.half_width[0])
-    root = a * math.sqrt(1.0 - (2.1e9 / float(problem.max_pressure[0])) ** 2)
-    start = float(slip_zone(MODELS[name], slipping)[0][0])
-    x, there = find(name, slipping, {"pressure": (2.1e9,)})
-    crossed = [v for v in (-root, root) if v > start]
-    assert x[there] == pytest.approx(crossed, abs=64 * EPS / math.sqrt(2.0 * gap) * a)
 
 
 class WithAHole(Searched):

@@ -285,17 +285,6 @@ def test_a_body_is_elastic_without_traction_or_friction_and_alike_in_both_direct
     assert first_yield(1.0, 0.3, 0.2, poisson_ratio=0.3) == first_yield(1.0, 0.3, poisson_ratio=0.3)
 
 
-def test_limits_broadcast_and_are_in_proportion_to_the_yield_stress() -> None:
-    traction, ratio = np.array([[0.0], [0.1], [0.4]]), np.array([0.0, 0.7, 3.0, 100.0])
-    found = first_yield(5e8, traction, 0.4, poisson_ratio=0.3, axis_ratio=ratio)
-    assert found.shape == (3, 4)
-    for row, t in enumerate(traction[:, 0]):
-        for column, aspect in enumerate(ratio):
-            alone = 5.0 * first_yield(1e8, t, 0.4, poisson_ratio=0.3, axis_ratio=aspect)
-            assert found[row, column] == pytest.approx(float(alone), rel=1e-14)
-    assert (found[:, 3] == first_yield(5e8, traction, 0.4, poisson_ratio=0.3, axis_ratio=32.0)[:, 0]).all()
-
-
 def test_a_criterion_that_is_not_known_is_refused() -> None:
     with pytest.raises(wl.InputError, match='criterion: must be "von_mises" or "tresca", got \'rankine\''):
         first_yield(1.0, 0.1, poisson_ratio=0.3, criterion="rankine")  # type: ignore[arg-type]

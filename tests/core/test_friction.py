@@ -96,21 +96,6 @@ def test_an_elliptic_contact_has_the_friction_of_its_creep_speed(name: str) -> N
     assert found.tangential_force.magnitude == pytest.approx(plain.tangential_force.magnitude, rel=1e-10)
 
 
-def test_with_polachs_model_the_traction_rises_to_a_maximum_and_falls() -> None:
-    solve = WHEEL_RAIL | wl.contact_model("polach", slip_reduction=0.4)
-    creepage = np.linspace(0.0, 0.3, 601)
-    conditions: dict[str, Any] = {"normal_force": Q(80, "kN"), "longitudinal_creepage": Q(creepage, "")}
-    found = solve(friction_coefficient=FRICTION, **conditions).traction_coefficient.magnitude
-    steps = np.diff(found)
-    top = int(found.argmax())
-    assert 0 < top < 600
-    assert (steps[:top] > 0.0).all()
-    assert (steps[top:] < 0.0).all()
-    assert 0.22 < found[-1] < found[top] < 0.55
-    # With constant friction it only rises.
-    assert (np.diff(solve(friction_coefficient=0.55, **conditions).traction_coefficient.magnitude) > 0.0).all()
-
-
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"static_coefficient": 0.0}, "static_coefficient: input should be greater than 0"),
     ({"limit_ratio": 1.01}, "limit_ratio: input should be less than or equal to 1"),

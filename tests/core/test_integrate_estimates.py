@@ -96,23 +96,6 @@ def test_the_error_estimate_of_a_law_that_declares_nothing_is_honest(
         assert (error <= 1e-6 * np.array(want)).all()
 
 
-def test_breakpoints_that_are_declared_bring_the_error_down() -> None:
-    class Declared(Kinked):
-        def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
-            return {"wear_index_density": (p["threshold"] * 1e6,)}
-
-    points = Points(seed=8, size=100)
-    blind, split = (
-        integrate_wear(LINE_MODELS["exact"], law(threshold=10.0), points.problem) for law in (Kinked, Declared)
-    )
-    worn = split.wear_rate > 0.0
-    assert np.median(split.wear_rate_error[worn] / split.wear_rate[worn]) < 1e-12
-    assert np.median(blind.wear_rate_error[worn] / blind.wear_rate[worn]) > 1e-6
-    assert (
-        np.abs(blind.wear_rate - split.wear_rate) <= 2.0 * blind.wear_rate_error + split.wear_rate_error
-    ).mean() > 0.95
-
-
 # --- Contact models that only solve ----------------------------------------------------------------------------
 
 

@@ -1,4 +1,4 @@
-"""What a contact model has from `LineContactModel`, and that its optional methods change nothing but the time."""
+"""What a contact model has from `LineContactModel`."""
 
 from __future__ import annotations
 
@@ -112,32 +112,3 @@ def test_the_contact_can_be_had_at_any_nodes(name: str, shape: tuple[int, ...]) 
     assert (contact.slip == sign * fields.slip).all()
     assert (contact.traction_bound == fields.traction_bound).all()
     assert (contact.tangential_force == model.tangential_force(problem)).all()
-
-
-# --- Closed forms against quadrature ---------------------------------------------------------------------------
-
-
-def without_closed_forms(model: wl.LineContactModel) -> wl.LineContactModel:
-    """Return a model with the same fields that knows neither crossings nor dissipation."""
-
-    cautious = {name: getattr(wl.LineContactModel, name) for name in ("crossings", "excess_dissipation")}
-    plain: wl.LineContactModel = type("Plain", (type(model),), cautious)(
-        **{field: getattr(model, field) for field in type(model).model_fields}
-    )
-    return plain
-
-
-@pytest.mark.parametrize("name", [name for name in LINE_MODELS if "printed" not in name])
-@pytest.mark.parametrize("speed", ["4 m/s", "40 m/s"])  # with borders of the slip in full and in partial slip
-def test_where_slip_or_pressure_crosses_a_value_is_where_a_search_finds_it(name: str, speed: str) -> None:
-    model = LINE_MODELS[name]
-    conditions: Any = {
-        "max_pressure": "2.5 GPa", "creepage": Q(np.geomspace(1e-5, 1.0, 300), ""), "friction_coefficient": 0.46,
-    }  # fmt: skip
-    rig = wl.TwinDisc.suros(rolling_speed=speed)
-    closed, searched = (
-        (rig | each | wl.wear_law("kth"))(**conditions).wear_rate.m_as("kg/m/m^2")
-        for each in (model, without_closed_forms(model))
-    )
-    # what all means are held to; next to a border that the slip just reaches, rounding of where is enlarged most
-    np.testing.assert_allclose(closed, searched, rtol=1e-9)

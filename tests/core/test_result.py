@@ -13,7 +13,6 @@ from tests.core.discs import (
     FORCE,
     FRICTION,
     HALF_WIDTH,
-    LAW,
     MAX_PRESSURE,
     PREDICT,
     RIG,
@@ -25,7 +24,6 @@ from tests.core.discs import (
     slip_at,
     usfd,
 )
-from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.errors import CompositionError
 
@@ -113,20 +111,6 @@ def test_every_value_has_the_shape_of_the_broadcast_conditions(creepage: Any, fr
     ]
     # Sums of the same terms may be ordered differently.
     np.testing.assert_allclose(np.ravel(result.wear_rate.magnitude), singles, rtol=1e-12)
-
-
-@pytest.mark.parametrize("shape", [(), (3,), (2, 3)])
-def test_the_contact_holds_si_arrays_whose_rate_averages_to_the_wear_rate(shape: tuple[int, ...]) -> None:
-    result = PREDICT(creepage=Q(np.full(shape, 0.01), ""), **CONDITIONS)
-    contact = result.contact
-    assert contact.pressure.shape[:-1] == shape
-    assert contact.tangential_force.shape == shape
-    np.testing.assert_allclose(
-        contact.mean(LAW.checked_rate(contact)), result.wear_rate.to("kg/m^3").magnitude, rtol=16 * EPS
-    )
-    np.testing.assert_allclose(contact.patch_area, 2 * HALF_WIDTH * WIDTH, rtol=1e-13)
-    # T is the integral of the tractions.
-    np.testing.assert_allclose(contact.sum_over_nodes(contact.traction * contact.area), carter(0.01), rtol=1e-10)
 
 
 def test_the_repr_of_one_point_shows_values_and_of_many_their_ranges() -> None:

@@ -234,38 +234,6 @@ def test_labels_of_axes_must_fit_the_batch(dims: Any) -> None:
         predict(**GIVEN)
 
 
-@pytest.mark.parametrize("hertzian", [True, False])
-def test_friction_may_differ_by_patch(hertzian: bool) -> None:
-    dry, greased = 0.3, 0.08
-
-    class Lubricated(Worn):
-        """The axle with a lubricated flange."""
-
-        name: ClassVar[str] = "lubricated"
-
-        def problem(self, **conditions: Any) -> wl.Problem:
-            found = super().problem(**conditions)
-            friction = np.broadcast_to(np.array([dry, greased]), found.batch_shape)
-            return found.replaced(friction_coefficient=friction)
-
-    rig = Lubricated(hertzian=hertzian)
-    predict: Any = rig | wl.contact_model("fastsim") | KTH
-    found = predict(**GIVEN)
-    np.testing.assert_array_equal(of(found, "friction_coefficient"), np.where(EXISTS, [dry, greased], np.nan))
-    for patch, friction in enumerate((dry, greased)):
-        alike: Any = Worn(hertzian=hertzian) | wl.contact_model("fastsim") | KTH
-        of_one = alike(**{**GIVEN, "friction_coefficient": friction})
-        for name in ("wear_rate", "longitudinal_force", "spin_moment", "mean_slip", "wear_index", "first_yield"):
-            np.testing.assert_allclose(
-                of(found, name)[..., patch], of(of_one, name)[..., patch], rtol=64 * EPS, err_msg=name
-            )
-    ratio = of(found, "traction_coefficient")
-    assert (ratio[EXISTS] <= np.broadcast_to([dry, greased], EXISTS.shape)[EXISTS] * (1.0 + 64 * EPS)).all()
-    staged: Any = rig | wl.contact_model("fastsim") | wl.stage("third_body", reduction=0.5) | KTH
-    halved = staged(**GIVEN).friction_coefficient.magnitude
-    np.testing.assert_array_equal(halved, of(found, "friction_coefficient"))  # a third body changes the slope alone
-
-
 @pytest.mark.parametrize("predict", [PREDICT, CUT])
 def test_a_prediction_prints_the_patches_that_exist(predict: Any) -> None:
     found = predict(**GIVEN)
@@ -281,34 +249,6 @@ def test_a_prediction_prints_the_patches_that_exist(predict: Any) -> None:
     missing = repr(flange.isel(point_0=0)).splitlines()
     assert missing[0] == "Prediction of 0 patches at 1 operating point"
     assert all(row.endswith(" no patch") for row in missing[1:])
-
-
-def test_creepages_and_the_contact_angle_of_each_patch() -> None:
-    angles, lateral = np.deg2rad([3.0, 70.0]), np.array([1e-3, 2e-3])
-
-    class Angled(Worn):
-        """The axle with angles and lateral creepages of its own."""
-
-        name: ClassVar[str] = "angled"
-
-        def problem(self, **conditions: Any) -> wl.Problem:
-            found = super().problem(**conditions)
-            shape = found.batch_shape
-            return found.replaced(
-                contact_angle=np.broadcast_to(angles, shape),
-                lateral_creepage=np.broadcast_to(lateral, shape),
-                spin=np.sin(np.broadcast_to(angles, shape)) / RADIUS,
-            )
-
-    for hertzian in (True, False):
-        predict: Any = Angled(hertzian=hertzian) | wl.contact_model("fastsim") | KTH
-        found = predict(**GIVEN)
-        np.testing.assert_array_equal(of(found, "lateral_creepage"), np.where(EXISTS, lateral, np.nan))
-        np.testing.assert_allclose(of(found, "contact_angle"), np.where(EXISTS, angles, np.nan), rtol=4 * EPS)
-        np.testing.assert_allclose(of(found, "spin"), np.where(EXISTS, np.sin(angles) / RADIUS, np.nan), rtol=4 * EPS)
-        assert (str(found.contact_angle.units), str(found.spin.units)) == ("degree", "1 / meter")
-    level = PREDICT(**GIVEN).contact_angle.magnitude
-    np.testing.assert_array_equal(level, np.where(EXISTS, 0.0, np.nan))
 
 
 @pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # 8000 kN on a patch

@@ -116,17 +116,6 @@ def test_each_body_loses_mass_by_its_own_density() -> None:
     assert found.wear_profile("rail").depth.values == pytest.approx(depth, rel=64 * EPS)
 
 
-def test_a_mass_is_a_greater_depth_in_the_lighter_body() -> None:
-    class Mass(Volume):
-        def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-            return 1e-15 * p["factor"] * contact.wear_index_density
-
-    with silent():
-        found = (rig(rail_material=IRON) | FASTSIM | Mass())(**CONDITIONS)
-    depth = found.wear_profile("wheel").depth.values * 2 * np.pi * 0.46
-    assert found.wear_profile("rail").depth.values == pytest.approx(depth * 7850 / 7100, rel=64 * EPS)
-
-
 def test_the_weaker_body_yields_first() -> None:
     with silent(), pytest.warns(wl.PlasticityWarning):
         (rig(rail_material=IRON) | FASTSIM)(**{**CONDITIONS, "normal_force": Q(60, "kN")})

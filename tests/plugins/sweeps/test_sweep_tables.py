@@ -104,9 +104,6 @@ def test_a_kept_column_may_have_gaps_and_any_unit(tmp_path: Path) -> None:
     assert ds.time.attrs["units"] == "since Monday"
 
 
-LINE_9 = "0.875,5000,-0.01,dry"
-
-
 def line_9(text: str) -> Callable[[list[str]], list[str]]:
     return lambda lines: [*lines[:8], text, *lines[9:]]
 
