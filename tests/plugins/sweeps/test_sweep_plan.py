@@ -43,14 +43,14 @@ def grid(**sizes: int) -> Points:
 def test_blocks_take_a_second_and_few_files(
     monkeypatch: pytest.MonkeyPatch, seconds: float, processes: int, sizes: dict[str, int], blocks: int, several: bool
 ) -> None:
-    monkeypatch.setattr(plan, "seconds_per_point", lambda *_: seconds)
+    monkeypatch.setattr(plan, "seconds_per_point", lambda *_: (seconds, 1.0))
     divided, worth = plan.planned(Job(predictor(), {"wear_rate": "ug/m/mm^2"}), grid(**sizes), processes, stored=True)
     assert (len(divided.blocks()), worth) == (blocks, several)
     assert math.prod(divided.block_shape) <= plan.LARGEST
 
 
 def test_many_numbers_of_cheap_points_are_not_worth_sending(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plan, "seconds_per_point", lambda *_: 4e-7)  # 4 s, of which two processes save 2
+    monkeypatch.setattr(plan, "seconds_per_point", lambda *_: (4e-7, 1.0))  # 4 s, of which two processes save 2
     points = grid(creepage=10_000_000)
     few, many = (Job(predictor(), dict.fromkeys(map(str, range(count)), "")) for count in (1, 20))
     # 10⁷ numbers take 0.15 s to send, and 20 times as many 3 s.
@@ -77,7 +77,16 @@ def test_the_time_of_a_point_is_measured() -> None:
     predict = wl.TwinDisc.suros() | wl.contact_model("global") | Slow(slope=Q(1.0, "mm"), pace=pace)
     given: dict[str, Any] = {"creepage": Q(np.linspace(0.1, 5.0, 60), "%"), "normal_force": Q(np.ones(50), "kN")}
     job = Job(predict, {"wear_rate": "ug/m/mm^2"})
-    assert plan.seconds_per_point(job, Points(*split({**given, "friction_coefficient": 0.3}))) >= pace
+    measured, busy = plan.seconds_per_point(job, Points(*split({**given, "friction_coefficient": 0.3})))
+    assert measured >= pace
+    assert 1.0 < busy <= plan.BUSIEST, "asleep, it takes no processor time"
+
+
+def test_processes_start_later_where_other_programs_take_the_processors(monkeypatch: pytest.MonkeyPatch) -> None:
+    job, points = Job(predictor(), {"wear_rate": "ug/m/mm^2"}), grid(creepage=10_000_000)
+    for busy, several in ((1.0, True), (2.0, False)):  # two processes save 2 s, and take 1.5 s or 3 s to start
+        monkeypatch.setattr(plan, "seconds_per_point", lambda *_, busy=busy: (4e-7, busy))
+        assert plan.planned(job, points, 2, stored=True)[1] == several
 
 
 def test_a_cheap_sweep_starts_no_processes(monkeypatch: pytest.MonkeyPatch) -> None:
