@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -39,8 +40,8 @@ PLACES = 601
 RAIL = "rail_"
 """Beginning of the names of the measures of a rail that wears with a wheel."""
 
-NOT_DRAWN = ("depth", "worn_area", "factor", "passages")
-"""Measures that are drawn over the distance only if they have a limit."""
+DRAWN = ("depth", "flange_thickness", "diameter", "vertical_wear", "side_wear")
+"""Lengths that are drawn over the distance if no measure has a limit."""
 
 
 def name_and_unit(column: str) -> tuple[str, str]:
@@ -83,6 +84,8 @@ class Life:
     cuts : pandas.DataFrame
         A row for each cut: the distance, also since the last cut, the measure whose limit asked for it, the depth of
         the cut at the taping line, the diameter lost to wear and cut together, and the diameter that is left [mm].
+    rail_profiles : tuple of tuple of Profile
+        The profiles of the rail that wears with its wheel, as in `worn_profiles`; empty for one body.
     """
 
     pipeline: wl.Pipeline[...]
@@ -93,6 +96,7 @@ class Life:
     notes: tuple[tuple[str, ...], ...]
     limits: Mapping[str, float] = field(default_factory=dict)
     cuts: pd.DataFrame = field(default_factory=pd.DataFrame)
+    rail_profiles: tuple[tuple[Profile, ...], ...] = ()
 
     @property
     def profile(self) -> Profile:
@@ -129,30 +133,38 @@ class Life:
         """Profiles over the distance: y, z and the depth along the normal of the first profile, at its places.
 
         The places are arc lengths of the first profile [mm]; y and z are those of the surface that the normal there
-        meets now. NaN beyond the end of a profile that is shorter than the other side's.
+        meets now. NaN beyond the end of a profile that is shorter than the others. A wheel and a rail that wear in one
+        life have an axis `body`.
         """
-        firsts = self.worn_profiles[0]
-        place = positions(firsts, PLACES)
-        data = np.full((3, len(self.worn_profiles), len(firsts), PLACES), np.nan)
-        for side, first in enumerate(firsts):
-            there = (place >= first.curve.s[0]) & (place <= first.curve.s[-1])
-            y, z, angle, _ = first.curve.at(place[there])
-            s = wl.Q(1e3 * place[there], "mm")
-            depth = np.array([first.depth_to(profiles[side], s).magnitude for profiles in self.worn_profiles])
-            inwards = depth if first.kind == "rail" else -depth
-            data[:, :, side, there] = [1e3 * y - inwards * np.sin(angle), 1e3 * z + inwards * np.cos(angle), depth]
+        profiles = self._profiles()
+        return profiles if self.rail_profiles else profiles.isel(body=0)
+
+    def _profiles(self) -> xarray.Dataset:
+        bodies = {self.body: self.worn_profiles} | ({"rail": self.rail_profiles} if self.rail_profiles else {})
+        sides = len(self.worn_profiles[0])
+        place = positions([first for worn in bodies.values() for first in worn[0]], PLACES)
+        data = np.full((3, len(self.table), len(bodies), sides, PLACES), np.nan)
+        for body, worn in enumerate(bodies.values()):
+            for side, first in enumerate(worn[0]):
+                there = (place >= first.curve.s[0]) & (place <= first.curve.s[-1])
+                y, z, angle, _ = first.curve.at(place[there])
+                s = wl.Q(1e3 * place[there], "mm")
+                depth = np.array([first.depth_to(profiles[side], s).magnitude for profiles in worn])
+                inwards = depth if first.kind == "rail" else -depth
+                surface = 1e3 * y - inwards * np.sin(angle), 1e3 * z + inwards * np.cos(angle), depth
+                data[:, :, body, side, there] = surface
         along, unit = name_and_unit(self.table.columns[0])
-        dims, names = (along, "side", "place"), {"y": "y, outwards", "z": "z, down", "depth": "depth worn"}
+        names = {"y": "y, outwards", "z": "z, down", "depth": "depth worn"}
         return xarray.Dataset(
             {
-                name: (dims, values, {"units": "mm", "long_name": text})
+                name: ((along, "body", "side", "place"), values, {"units": "mm", "long_name": text})
                 for (name, text), values in zip(names.items(), data, strict=True)
             },
             {
                 along: (along, self.table.iloc[:, 0].to_numpy(), {"units": unit}),
-                "side": ["mean"] if len(firsts) == 1 else ["left", "right"],
+                "side": ["mean"] if sides == 1 else ["left", "right"],
                 "place": ("place", 1e3 * place, {"units": "mm", "long_name": "position along the first profile"}),
-                "body": self.body,
+                "body": list(bodies),
             },
         )
 
@@ -162,54 +174,51 @@ class Life:
         (along, unit), distances = name_and_unit(column), self.table[column].to_numpy()
         last = len(distances) - 1
         chosen = np.unique(np.linspace(0, last, min(last + 1, MOST_CURVES)).round().astype(int))
-        worn = self.profiles.isel({along: chosen})
-        deepest = float(worn["depth"].max())
-        times = 10.0 ** np.floor(np.log10(SEEN / deepest)) if deepest > 0.0 else 1.0  # so that wear is seen
-        new = worn.isel({along: 0})
-        magnified = worn + (times - 1.0) * (worn - new)
+        every = self._profiles().isel({along: chosen})
         panels = []
-        for side in worn["side"].values:
-            title = self.body if side == "mean" else f"{side} {self.body}"
-            for shown, name, label, what in (
-                (magnified, "z", "z, down [mm]", f"wear × {times:g}"),
-                (worn, "depth", "depth worn [mm]", "wear along the normal"),
+        for body, side in itertools.product(every["body"].values, every["side"].values):
+            worn = every.sel(body=body, side=side)
+            new, deepest = worn.isel({along: 0}), float(worn["depth"].max())
+            times = 10.0 ** np.floor(np.log10(SEEN / deepest)) if deepest > 0.0 else 1.0  # so that wear is seen
+            magnified = worn + (times - 1.0) * (worn - new)
+            title = body if side == "mean" else f"{side} {body}"
+            for name, shown, label, what in (
+                ("z", magnified, "z, down [mm]", f"wear × {times:g}"),
+                ("depth", worn, "depth worn [mm]", "wear along the normal"),
             ):
-                across, down = shown["y"].sel(side=side).values, shown[name].sel(side=side).values
                 curves = tuple(
-                    wl.Curve(f"{distance:,.0f} {unit or along}", across[number], down[number], colour=number)
+                    wl.Curve(f"{distance:,.0f} {unit or along}", shown["y"][number].values, shown[name][number].values,
+                             colour=number)
                     for number, distance in enumerate(distances[chosen])
-                )
+                )  # fmt: skip
                 x, y = wl.PlotAxis("y, outwards [mm]"), wl.PlotAxis(label, inverted=True)
                 panels.append(wl.Panel(x, y, curves, f"{title}, {what}", equal=name == "z"))
-        panels += self._measures(column)
+        # The first of an odd number of panels is as wide as the page: a single profile, or the measures of several.
+        panels.insert(2 if len(panels) == 2 else 0, self._measures(column))
         caption = f"The {self.body} after {len(self.notes)} steps. It follows from the given line and wear law alone."
-        return wl.FigureData("life", f"Life of a {self.body}", tuple(panels), caption)
+        return wl.FigureData("life", f"Life of a {self.body}", tuple(panels), caption, legends=True)
 
-    def _measures(self, along: str) -> Iterator[wl.Panel]:
-        """Yield a panel of each measure over the distance, with its limit, and with a curve for each side."""
-        table, ends = self.table, SIDES[len(self.worn_profiles[0])]
-        heads = (str(column).replace("_left", "").replace("_right", "") for column in table.columns[1:])
-        for head in dict.fromkeys(heads):
-            (measure, unit), tail = name_and_unit(head), head.partition(" [")
-            of_sides = [f"{measure}{end}{''.join(tail[1:])}" for end in ends]
-            columns = [
-                column for column in (of_sides if of_sides[0] in table else [head]) if table[column].notna().any()
-            ]
-            body = "rail" if measure.startswith(RAIL) else self.body
-            curves = tuple(
-                wl.Curve(f"{side} {body}" if len(columns) > 1 else "", table[along].to_numpy(),
-                         table[column].to_numpy(), colour=number + MOST_CURVES)
-                for number, (side, column) in enumerate(zip(("left", "right"), columns, strict=False))
-            )  # fmt: skip
-            unit = readable(unit)
-            limits = sorted({self.limits[column] for column in columns if column in self.limits})
-            if not curves or (measure.removeprefix(RAIL) in NOT_DRAWN and not limits):
-                continue
-            lines = tuple(Limit(f"limit {limit:g} {unit}".rstrip(), limit) for limit in limits)
-            yield wl.Panel(wl.PlotAxis(along), wl.PlotAxis(f"{words(measure)} [{unit or '-'}]"), curves, limits=lines)
+    def _measures(self, along: str) -> wl.Panel:
+        """Return a panel of the measures over the distance: their way to their limits, or changes of lengths."""
+        table, distance, limits = self.table, self.table[along].to_numpy(), self.limits
+        columns = list(limits) or [
+            column for column in map(str, table)
+            if measure_of(name_and_unit(column)[0]).removeprefix(RAIL) in DRAWN and table[column].notna().any()
+        ]  # fmt: skip
+        curves = []
+        for number, column in enumerate(columns):
+            unit, start, label = readable(name_and_unit(column)[1]), table[column].iloc[0], words(column)
+            change = table[column].to_numpy() - start
+            if limits:
+                change *= 100.0 / (limits[column] - start)
+                label = f"{label}, {short(start)} to {short(limits[column])} {unit}".rstrip()
+            curves.append(wl.Curve(label, distance, change, colour=MOST_CURVES + number))
+        y = wl.PlotAxis("way to the limit [%]" if limits else "change [mm]")
+        lines = (Limit("limit", 100.0),) if limits else ()
+        return wl.Panel(wl.PlotAxis(along), y, tuple(curves), "measures", limits=lines)
 
     def plot(self) -> Figure:
-        """Draw profiles over the distance, the wear along their normals, and the measures, as a matplotlib figure."""
+        """Draw profiles over the distance, the depth along them, and the way of the measures to their limits."""
         return plot(self.figure())
 
     def __repr__(self) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw.errors import ResumeWarning, warn
+from wearlaw.errors import DataError, ResumeWarning, warn
 from wearlaw_apps.output.notes import caught_warnings
 from wearlaw_apps.sweeps.evaluation import Outputs
 from wearlaw_apps.sweeps.located import posed
@@ -35,6 +35,10 @@ HEADS = ("", "beside_")
 
 SIDE = "side"
 """Name of the axis of the left and the right wheel."""
+
+
+class NoResultError(DataError):
+    """A state of a line has no result on the profiles of a step."""
 
 
 class Wear(NamedTuple):
@@ -116,26 +120,30 @@ class Line:
             warn(text, ResumeWarning)
         return self._kept
 
-    def wear(self, step: int, predict: wl.Pipeline[...], at: Sequence[Array]) -> tuple[list[Wear], tuple[str, ...]]:
+    def wear(
+        self, step: int, predict: wl.Pipeline[...], at: Sequence[Array], failures: Sequence[str] = ()
+    ) -> tuple[list[Wear], tuple[str, ...]]:
         """Return the wear of both sides of each body at arc lengths [m] at the beginning of a step, and notes on it.
 
-        A note of a new kind is a warning, too.
+        A note of a new kind is a warning, too. `failures` are those of this step on other profiles.
 
         Raises
         ------
-        DataError
+        NoResultError
             If a state has no result, or its wheel climbs; the message names the row.
         OutputError
             If the states of this step are not those in the store.
         """
         points, table, remarks = self.points, {}, []
+        part = None if self._kept is None else self._kept[step]
+        if part is not None and len(before := part.record["failures"]) > len(failures):
+            raise NoResultError(before[len(failures)])
         if self._renewed is not None:
             with caught_warnings() as remarks:
                 points = self._renewed(predict.rig) if step else points
             points = dataclasses.replace(points, weight=self.points.weight)
             table = points.coordinates()
         states = {name: digest(column.values, column.unit) for name, column in table.items()}
-        part = None if self._kept is None else self._kept[step]
         if self._kept is not None and part is not None:
             check_same(self._kept.path, {f"step {step + 1}": part.record["states"]}, {f"step {step + 1}": states})
             wears = [Wear(*(part.arrays[f"{head}{name}"] for name in Wear._fields)) for head in HEADS[: len(at)]]
@@ -143,7 +151,10 @@ class Line:
         else:
             beside = self.job.beside and dataclasses.replace(self.job.beside, at=at[1])
             total = Sum(dataclasses.replace(self.job, pipeline=predict, at=at[0], beside=beside), points)
-            remarks += run(total, lambda _: None, self._workers, self._client)
+            try:
+                remarks += run(total, lambda _: None, self._workers, self._client)
+            except wl.InputError as error:
+                raise NoResultError(str(error)) from None
             notes = [[type(remark).__name__, str(remark)] for remark in remarks]
             arrays = total.arrays()
             wears = [Wear.of(arrays, head, job.units) for head, job in zip(HEADS, self.jobs, strict=False)]
@@ -151,7 +162,7 @@ class Line:
                 results = {f"line_{name}": column.values for name, column in table.items()}
                 for head, wear in zip(HEADS, wears, strict=False):
                     results |= {f"{head}{name}": values for name, values in wear._asdict().items()}
-                self._kept.add(step, results, {"notes": notes, "states": states})
+                self._kept.add(step, results, {"notes": notes, "states": states, "failures": failures})
         for kind, text in notes:
             if (words := NUMBER.sub("", text)) not in self._said:
                 self._said.add(words)

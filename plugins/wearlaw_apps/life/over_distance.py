@@ -196,7 +196,7 @@ def wear_out(
         rail = Steps(of_line, "rail", False, news["rail"], **settings) if beside else None
         steps = Steps(of_line, body, rolls, news[body], **settings, rail=rail, passages=1e-3 * passages)
         now = steps.begin(predict)
-        rows, profiles = [now.row], [now.profiles]
+        rows, worn = [now.row], [now.of_bodies]
         notes: list[tuple[str, ...]] = []
         cutting = turns(predict.rig, body, until or {}, turn or {})
         least = {} if least_diameter is None else {"diameter": least_diameter}
@@ -214,8 +214,9 @@ def wear_out(
 
         def life(ended: str = "") -> Life:
             ends = dict(end for name, end in limits.ends.items() if name != "over")
-            table, every = pd.DataFrame(rows), pd.DataFrame(cuts)
-            return Life(now.predict, body, ended, tuple(profiles), table, tuple(notes), ends, every)
+            table, every, (profiles, *rails) = pd.DataFrame(rows), pd.DataFrame(cuts), zip(*worn, strict=True)
+            of_rail = rails[0] if rails else ()
+            return Life(now.predict, body, ended, profiles, table, tuple(notes), ends, every, of_rail)
 
         try:
             while True:
@@ -230,11 +231,12 @@ def wear_out(
                 elif ended:
                     break
                 else:
-                    now = steps.step(now, limits)
+                    begin, now = steps.step(now, limits)
+                    rows[-1], worn[-1] = begin.row, begin.of_bodies
                     notes.append(now.notes)
                 bar(round(now.row[along]) - round(rows[-1][along]))
                 rows.append(now.row)
-                profiles.append(now.profiles)
+                worn.append(now.of_bodies)
         except (wl.WearlawError, KeyboardInterrupt) as error:
             if now.number:
                 error.life = life()  # type: ignore[union-attr]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -19,8 +20,11 @@ if TYPE_CHECKING:
 ACCURACY = 5e-11
 """Share of the predicted mass by which the removed one may differ, after the factor."""
 
+WIDEST = 8.5
+"""Reach of a kernel over its standard deviation: beyond, it is below the rounding of 1."""
+
 STEPS = 6
-"""Most steps of the secant method for the factor; two are usual."""
+"""Most steps of Newton's method for the factor; two are usual."""
 
 FLANGE = np.radians(30.0)
 """Angle of a profile beyond which it is the flange of a wheel, or the gauge side of a rail [rad]."""
@@ -77,23 +81,28 @@ def smoothed(depth: Array, at: Array, width: Array) -> Array:
     width : ndarray, (sides or 1, positions)
         Standard deviation of the kernel at each position [m]; zero for none.
     """
-    spread = depth.copy()
+    spread, step = depth.copy(), (at[-1] - at[0]) / (at.size - 1)
     for row, wear, sigma in zip(spread, depth, np.broadcast_to(width, depth.shape), strict=True):
         worn = np.flatnonzero((wear > 0.0) & (sigma > 0.0))
-        kernel = np.exp(-0.5 * ((at[:, None] - at[worn]) / np.maximum(sigma[worn], 1e-9)) ** 2)
+        reach = math.ceil(WIDEST * sigma[worn].max(initial=0.0) / step)
+        place = worn[:, None] + np.arange(-reach, reach + 1)
+        kernel = np.exp(-0.5 * (step * (place - worn[:, None]) / np.maximum(sigma[worn, None], 1e-9)) ** 2)
+        kernel[(place < 0) | (place >= at.size)] = 0.0
+        kernel *= (wear[worn] / kernel.sum(axis=1))[:, None]
         row[worn] = 0.0
-        row += kernel @ (wear[worn] / kernel.sum(axis=0))
+        row += np.bincount(np.clip(place, 0, at.size - 1).ravel(), kernel.ravel(), at.size)
     return spread
 
 
-def removed(profile: Profile, at: Array, depth: Array) -> Profile:
-    """Return the profile after removal of depths [m] along its normal, with points at even arc lengths.
+def between(profile: Profile, at: Array, depth: Array) -> Array:
+    """Return depths at the points of the curve of a profile, by a cubic spline, so that no kinks arise [m]."""
+    s = np.clip(profile.curve.s, at[0], at[-1])
+    return np.asarray(np.maximum(scipy.interpolate.CubicSpline(at, depth)(s), 0.0))
 
-    Depths between the positions `at` [m] follow a cubic spline, so that no kinks arise.
-    """
-    s = profile.curve.s
-    between = np.maximum(scipy.interpolate.CubicSpline(at, depth)(np.clip(s, at[0], at[-1])), 0.0)
-    return profile.worn(wl.Q(1e3 * s, "mm"), wl.Q(1e3 * between, "mm"))
+
+def removed(profile: Profile, depth: Array) -> Profile:
+    """Return the profile after removal of depths along its normal at the points of its curve [m]."""
+    return profile.worn(wl.Q(1e3 * profile.curve.s, "mm"), wl.Q(1e3 * depth, "mm"))
 
 
 def swept(old: Profile, new: Profile, radius: float = np.inf) -> float:
@@ -102,8 +111,13 @@ def swept(old: Profile, new: Profile, radius: float = np.inf) -> float:
     Both are taken as polygons through their points, closed at their ends. A wheel turns about an axis at a distance
     `radius` from z = 0 [m]; the volume is exact for frustums of cones.
     """
-    ends = [[1e-3 * value.magnitude for value in profile.points] for profile in (old, new)]
-    y, z = (np.concatenate([ends[0][axis], ends[1][axis][::-1], ends[0][axis][:1]]) for axis in (0, 1))
+    first, last = (np.array([1e-3 * value.magnitude for value in profile.points]) for profile in (old, new))
+    return enclosed(first, last, radius)
+
+
+def enclosed(old: Array, new: Array, radius: float) -> float:
+    """Return the volume or the area of `swept` between points, (2, points) [m]."""
+    y, z = np.concatenate([old, new[:, ::-1], old[:, :1]], axis=1)
     low, high = z[:-1], z[1:]
     section = 0.5 * (low + high)
     if np.isfinite(radius):
@@ -129,16 +143,18 @@ def conserving(profile: Profile, at: Array, depth: Array, volume: float, radius:
                 f" deepest place at the {name} point; give a wider profile, or less smoothing"
             )
 
-    def by(factor: float) -> tuple[Profile, float]:
-        new = removed(profile, at, factor * depth)
-        return new, swept(profile, new, radius)
-
-    new, lost = by(1.0)
-    before, factor = (1.0, lost), volume / lost
+    curve, deep = profile.curve, between(profile, at, depth)
+    points = np.stack([curve.y, curve.z])
+    normal = curve.sign * np.stack([-np.sin(curve.angle), np.cos(curve.angle)])
+    # The points alone tell the factor nearly, and the slope: what they enclose is of second order in it.
+    once, twice = (enclosed(points, points + times * deep * normal, radius) for times in (1.0, 2.0))
+    rate, bend = 2.0 * once - 0.5 * twice, 0.5 * twice - once
+    slope = math.sqrt(rate**2 + 4.0 * bend * volume)
+    factor = 2.0 * volume / (rate + slope)
     for _ in range(STEPS):
-        new, lost = by(factor)
-        if abs(lost - volume) <= ACCURACY * volume or lost == before[1]:
-            break
-        slope = (lost - before[1]) / (factor - before[0])
-        before, factor = (factor, lost), factor + (volume - lost) / slope
-    return new, factor
+        new = removed(profile, factor * deep)
+        lost = swept(profile, new, radius)
+        if abs(lost - volume) <= ACCURACY * volume:
+            return new, factor
+        factor += (volume - lost) / slope
+    return removed(profile, factor * deep), factor

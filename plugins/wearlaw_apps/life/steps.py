@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,7 +13,7 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw.units.registry import unit_in_si
 from wearlaw_apps.life.life import NEAR, RAIL, SIDES, measure_of, name_and_unit
-from wearlaw_apps.life.line import Line, Wear
+from wearlaw_apps.life.line import Line, NoResultError, Wear
 from wearlaw_apps.life.removal import conserving, positions, smoothed, swept, widths
 
 if TYPE_CHECKING:
@@ -38,6 +38,9 @@ LEAST = 1e-6
 
 AIM = 0.95
 """Share of `conicity_step` at which a step aims."""
+
+SHORTER = (0.8, 0.6, 0.4)
+"""Shares of a step at which it is taken again while a state of the line has no result on the profiles after it."""
 
 TRIES = 8
 """Most distances that a step tries to hold the conicity and the limits."""
@@ -137,6 +140,13 @@ class State(NamedTuple):
     """Notes on the last step."""
     rail: State | None = None
     """That of the rail that wears with the wheel."""
+    part: Callable[[float], State] | None = None
+    """Returns the state after a share of the last step; None at the start and after a cut."""
+
+    @property
+    def of_bodies(self) -> list[tuple[Profile, ...]]:
+        """The profiles of each body."""
+        return [self.profiles] if self.rail is None else [self.profiles, self.rail.profiles]
 
 
 @dataclass(frozen=True)
@@ -172,18 +182,11 @@ class Steps:
             begun = _with_rail(begun, rail)
         return begun if after is None else begun._replace(number=after.number)
 
-    def step(self, now: State, limits: Limits) -> State:
-        """Return the state after one more step."""
-        worn = [now.profiles] if now.rail is None else [now.profiles, now.rail.profiles]
-        at, *at_rail = every = [
-            positions(profiles, job.at.size) for profiles, job in zip(worn, self.line.jobs, strict=True)
-        ]
+    def step(self, now: State, limits: Limits) -> tuple[State, State]:
+        """Return the state at which one more step begins, and that after it; see `_begin`."""
+        begin, (at, *at_rail), (wear, *of_rail), notes = self._begin(now)
+        now = begin._replace(part=None)
         along, unit = self.along
-        try:
-            (wear, *of_rail), notes = self.line.wear(now.number, now.predict, every)
-        except wl.InputError as error:
-            done = f"{now.row[along]:.6g} {name_and_unit(along)[1] or along}"
-            raise type(error)(f"step {now.number + 1}, after {done}: {error}") from None
         wear, deepest = self._smoothed(wear, at)
         distance = min(self._distance(now, wear), (limits.ends["over"][1] - now.row[along]) / unit)
         rail: tuple[Array, Wear] | None = None
@@ -202,7 +205,35 @@ class Steps:
             else:
                 break
             after = self._after(now, at, wear, distance, rail)
-        return after._replace(notes=notes)
+
+        def part(share: float) -> State:
+            return self._after(now, at, wear, share * distance, rail)._replace(notes=notes)
+
+        return begin, after._replace(notes=notes, part=part)
+
+    def _begin(self, now: State) -> tuple[State, list[Array], list[Wear], tuple[str, ...]]:
+        """Return the state at which a step begins, positions along its profiles, the wear there, and notes on it.
+
+        If a state of the line has no result at `now`, as between two places where its loads balance, the step before
+        is taken again in part.
+        """
+        begin, failures = now, list[str]()
+        while True:
+            every = [positions(worn, job.at.size) for worn, job in zip(begin.of_bodies, self.line.jobs, strict=True)]
+            try:
+                wears, notes = self.line.wear(begin.number, begin.predict, every, failures)
+            except wl.InputError as error:
+                failures.append(str(error))
+                if isinstance(error, NoResultError) and now.part and len(failures) <= len(SHORTER):
+                    begin = now.part(SHORTER[len(failures) - 1])
+                    continue
+                along, _ = self.along
+                done = f"{now.row[along]:.6g} {name_and_unit(along)[1] or along}"
+                raise type(error)(f"step {now.number + 1}, after {done}: {failures[0]}") from None
+            if failures:
+                share = SHORTER[len(failures) - 1]
+                notes += (f"the step before was taken again, {share:g} times as long: {failures[0]}",)
+            return begin, every, wears, notes
 
     def _smoothed(self, wear: Wear, at: Array) -> tuple[Wear, float]:
         """Return the smoothed wear of this body, and its largest depth per metre or passage."""

@@ -183,6 +183,8 @@ class FigureData:
         Meaning of the bands, if there are any.
     conditions : str
         The study and the conditions that are the same in all panels, for a line below the title of a picture.
+    legends : bool
+        Whether each panel of a picture has a legend of its own, instead of one below all panels.
     """
 
     name: str
@@ -191,6 +193,7 @@ class FigureData:
     caption: str = ""
     bands: str = "published range of parameters"
     conditions: str = ""
+    legends: bool = False
 
 
 OUTSIDE = "outside the range of the law"

@@ -1,8 +1,8 @@
 """Figures drawn with matplotlib in the style of `wearlaw.mplstyle`, for print.
 
 Lines of laws are solid, and dashed outside the range of their law; markers tell them apart in prints without colours.
-Other lines that would differ only in colour get a line style each. The legend stands below the panels, where it covers
-no curve.
+Other lines that would differ only in colour get a line style each. The legend stands below the panels, or each below
+its panel, where it covers no curve.
 """
 
 from __future__ import annotations
@@ -19,10 +19,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+from matplotlib.transforms import ScaledTranslation
 
 from wearlaw_apps.output.curves import (
     OUTSIDE,
     STRIP,
+    FigureData,
     borders_of,
     head_of_legend,
     in_parts,
@@ -50,10 +52,12 @@ from wearlaw_apps.output.style import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
 
-    from wearlaw_apps.output.curves import Curve, FigureData, Limit, Map, Panel, Shade
+    from wearlaw_apps.output.curves import Curve, Limit, Map, Panel, Shade
 
 ROW_HEIGHT = 2.2
 """Height of a row of panels, in inches."""
@@ -63,6 +67,8 @@ TITLE, LINE = 0.17, 0.13
 """Height of a line of the title, and of the conditions below it, in inches."""
 TITLE_LETTERS, LETTERS, SAMPLE = 12, 20, 8
 """Letters of the title of a figure, and of smaller texts, that fit in an inch, and that the sample of a line takes."""
+BELOW = 0.36
+"""Distance of the legend of a panel below its axes, in inches."""
 TICKS = 3
 """Fewest labelled ticks on a logarithmic axis."""
 
@@ -77,7 +83,7 @@ def draw(figure: FigureData, managed: bool = False) -> Figure:
     cells = [*([0, 0] if count % 2 else []), *range(count % 2, count)]
     rows: Any = [cells[start : start + 2] for start in range(0, len(cells), 2)]
     widths = {cell: width / len(set(row)) for row in rows for cell in row}
-    heights = [max(panel_height(figure.panels[cell], widths[cell]) for cell in row) for row in rows]
+    heights: list[float] = [max(panel_height(figure.panels[cell], widths[cell]) for cell in row) for row in rows]
     title = textwrap.wrap(figure.title, round(TITLE_LETTERS * width))
     conditions, heading = (
         textwrap.wrap(text, round(LETTERS * width)) for text in (figure.conditions, head_of_legend(figure))
@@ -86,9 +92,12 @@ def draw(figure: FigureData, managed: bool = False) -> Figure:
         drawn = _managed() if managed else Figure(layout="constrained")
         axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
         entries = _fill(figure, list(axes.values()), [round(LETTERS * 0.9 * widths[number]) for number in axes])
-        widths_of = [len(name) + SAMPLE for name in entries] or [1]
-        room = round(LETTERS * width)
-        columns = len(widths_of) if sum(widths_of) <= room else max(1, room // max(widths_of))
+        look: Any = {"handlelength": 2.8, "columnspacing": 1.2}  # a whole period of every line style
+        if figure.legends:
+            lines = {cell: _own_legend(axes[cell], figure.panels[cell], widths[cell], look) for cell in axes}
+            heights = [tall + LINE * max(lines[cell] for cell in row) for tall, row in zip(heights, rows, strict=True)]
+            entries = {}
+        columns = _columns(entries, width)
         head = TITLE * len(title) + LINE * len(conditions) + 0.06
         height = head + sum(heights) + LINE * (len(heading) - (-len(entries) // columns)) + 0.1
         drawn.set_size_inches(width, height)
@@ -98,13 +107,28 @@ def draw(figure: FigureData, managed: bool = False) -> Figure:
         below = 1.0 - (0.04 + TITLE * len(title)) / height
         drawn.text(0.5, below, _literal("\n".join(conditions)), ha="center", va="top", fontsize="small", color="0.35")
         if entries or heading:
-            look: Any = {"handlelength": 2.8, "columnspacing": 1.2}  # a whole period of every line style
             below_heading = _literal("\n".join(heading)) or None
             drawn.legend(
                 list(entries.values()), list(entries), loc="outside lower center", ncols=columns, title=below_heading,
                 **look,
             )  # fmt: skip
     return drawn
+
+
+def _columns(entries: Mapping[str, Any], width: float) -> int:
+    """Return the columns of a legend that fit in a width, in inches."""
+    widths, room = [len(name) + SAMPLE for name in entries] or [1], round(LETTERS * width)
+    return len(widths) if sum(widths) <= room else max(1, room // max(widths))
+
+
+def _own_legend(axes: Axes, panel: Panel, width: float, look: dict[str, Any]) -> int:
+    """Draw the legend of a panel below it, and return how many lines it takes."""
+    entries = _entries(FigureData("", "", (panel,)), [axes])
+    columns = _columns(entries, width)
+    below = axes.transAxes + ScaledTranslation(0.0, -BELOW, axes.figure.dpi_scale_trans)
+    axes.legend(list(entries.values()), list(entries), loc="upper center", bbox_to_anchor=(0.5, 0.0),
+                bbox_transform=below, borderaxespad=0.0, ncols=columns, **look)  # fmt: skip
+    return -(-len(entries) // columns)
 
 
 def draw_into(axes: list[Axes], figure: FigureData) -> None:

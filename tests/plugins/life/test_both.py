@@ -48,8 +48,8 @@ def test_with_many_passages_it_is_the_life_of_a_rail() -> None:
 def test_each_step_wears_both_by_predictions_on_both_worn_profiles(monkeypatch: pytest.MonkeyPatch) -> None:
     steps: list[tuple[Any, list[wl.Array]]] = []
 
-    def recorded(self: Line, step: int, predict: wl.Pipeline[...], at: Any) -> Any:
-        wears, notes = wear(self, step, predict, at)
+    def recorded(self: Line, step: int, predict: wl.Pipeline[...], at: Any, failures: Any) -> Any:
+        wears, notes = wear(self, step, predict, at, failures)
         steps.append((predict, [of_body.mass for of_body in wears]))
         return wears, notes
 
@@ -73,6 +73,13 @@ def test_each_step_wears_both_by_predictions_on_both_worn_profiles(monkeypatch: 
     assert last(found, "rail_mass [kg]") == pytest.approx(7850.0 * swept(first, worn), rel=1e-9)
     deepest = [first.depth_to(predict.rig.rail, Q(1e3 * first.curve.s, "mm")).m_as("mm").max() for predict, _ in steps]
     assert deepest[1:] == pytest.approx(table["rail_depth [mm]"].iloc[1:-1].to_numpy(), rel=1e-12)
+    depth = found.profiles["depth"].isel(side=0)
+    for body, column in (("wheel", "depth [mm]"), ("rail", "rail_depth [mm]")):
+        shown = depth.sel(body=body).max("place").values  # at 601 places, 0.3 mm apart
+        assert shown == pytest.approx(table[column].to_numpy(), rel=1e-3, abs=1e-12)
+    measures, *of_bodies = found.figure().panels
+    assert [panel.title.split(",")[0] for panel in of_bodies] == ["wheel", "wheel", "rail", "rail"]
+    assert "rail depth" in [curve.label for curve in measures.curves]
 
 
 def test_limits_of_the_rail_end_the_life() -> None:

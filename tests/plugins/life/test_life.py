@@ -60,8 +60,7 @@ def short() -> Life:
 
 def test_cone_worn_evenly_is_a_cone() -> None:
     start = even(cone(0.05))
-    at = positions([start], 500)
-    worn = removed(start, at, np.full(at.size, 0.3e-3))
+    worn = removed(start, np.full(start.curve.s.size, 0.3e-3))
     angle = np.arctan(0.05)
     assert worn.curve.angle == pytest.approx(-angle, abs=1e-9)
     at_middle = np.interp(0.0, worn.curve.y, worn.curve.z)
@@ -70,9 +69,8 @@ def test_cone_worn_evenly_is_a_cone() -> None:
 
 def test_circle_worn_evenly_along_its_normal_is_a_circle() -> None:
     start = even(round_head(80e-3))
-    at = positions([start], 500)
     for step in range(1, 4):
-        start = removed(start, positions([start], 500), np.full(at.size, 0.2e-3))
+        start = removed(start, np.full(start.curve.s.size, 0.2e-3))
         radius = np.hypot(start.curve.y, start.curve.z - 80e-3)
         assert radius == pytest.approx(80e-3 - step * 0.2e-3, abs=1e-9)
 
@@ -80,7 +78,7 @@ def test_circle_worn_evenly_along_its_normal_is_a_circle() -> None:
 def test_volume_between_two_cones_is_that_of_frustums() -> None:
     """A cone worn by d along its normal: Pappus's theorem on the parallelogram between the two lines."""
     start, depth, slope = even(cone(0.05)), 0.1e-3, 0.05
-    worn = removed(start, positions([start], 100), np.full(100, depth))
+    worn = removed(start, np.full(start.curve.s.size, depth))
     length = np.ptp(start.curve.s)
     centroid = R0 - 0.5 * depth * np.cos(np.arctan(slope))
     assert swept(start, worn, R0) == pytest.approx(2.0 * np.pi * centroid * depth * length, rel=1e-9)
@@ -172,7 +170,7 @@ def test_each_side_wears_for_itself_and_alike_on_a_symmetric_line(short: Life) -
     assert len(table) == len(mean)
     assert table["mass_left [kg]"].to_numpy() == pytest.approx(mean["mass [kg]"].to_numpy(), rel=1e-6)
     assert found.profiles.sizes["side"] == 2
-    assert "wear × " in found.figure().panels[2].title
+    assert "right wheel, wear × " in found.figure().panels[3].title
 
 
 def test_a_line_of_right_hand_curves_wears_its_sides_differently() -> None:
@@ -235,21 +233,27 @@ def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
     z = np.interp(y[tread], 1e3 * curve.y[there], 1e3 * curve.z[there])
     assert worn["z"].values[tread] == pytest.approx(z, abs=3e-5)  # 0.025²/(2 R) mm between points, with R = 13 mm
     assert "1500 km" in repr(short)
-    drawn, normal, *measures = short.figure().panels
+    drawn, normal, measures = short.figure().panels
     assert normal.title == "wheel, wear along the normal"
     assert drawn.equal
     for line in drawn.curves:  # each runs across the whole profile
         assert (line.x.min(), line.x.max()) == pytest.approx((-70.0, 60.0), abs=0.1)
-    labels = ["mass [kg]", *(f"flange {name} [mm]" for name in ("height", "thickness", "gradient qR")), "hollow [mm]"]
-    assert [panel.y.label for panel in measures] == [*labels, "diameter [mm]", "equivalent conicity [-]"]
-    assert all([curve.label for curve in panel.curves] == [""] for panel in measures), "one profile for both sides"
-    assert len(short.plot().axes) == len(short.figure().panels)
+    assert measures.y.label == "change [mm]"
+    assert [curve.label for curve in measures.curves] == ["depth", "flange thickness", "diameter"]
+    assert measures.curves[2].y == pytest.approx(table["diameter [mm]"].to_numpy() - 920.0)
+    legends = [axes.get_legend() for axes in short.plot().axes]
+    distances = [f"{table['distance [km]'].iloc[place]:,.0f} km" for place in (0, 2, 3, 5)]
+    names = [[text.get_text() for text in legend.get_texts()] for legend in legends if legend]
+    assert names == [distances, distances, ["depth", "flange thickness", "diameter"]]
 
 
 def test_life_ends_at_a_limit() -> None:
     found = wl.wear_out(pipeline(), line(3), over="10000 km", until={"depth": "0.02 mm"}, **GIVEN)
-    (limited,) = (panel for panel in found.figure().panels if panel.limits)
-    assert (limited.y.label, limited.limits) == ("depth [mm]", (Limit("limit 0.02 mm", 0.02),))
+    *_, measures = found.figure().panels
+    assert (measures.y.label, measures.limits) == ("way to the limit [%]", (Limit("limit", 100.0),))
+    (depth,) = measures.curves
+    assert depth.label == "depth, 0 to 0.02 mm"
+    assert depth.y == pytest.approx(found.table["depth [mm]"].to_numpy() / 0.02 * 100.0)
     assert found.ended == "depth"
     assert last(found, "depth [mm]") == pytest.approx(0.02, rel=1e-5)
 
@@ -410,6 +414,36 @@ def test_a_step_warns_of_what_none_before_it_had(tmp_path: Path, monkeypatch: py
     assert len(first) == len(found.notes[0])
     assert third == f"step 3: {found.notes[2][-1]}"
     assert texts[0] == texts[1]
+
+
+def test_a_step_before_one_without_result_is_taken_again_in_part(
+    tmp_path: Path, short: Life, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Once in the fourth step, on the profiles of the third one."""
+
+    def failing(*given: Any) -> Any:
+        calls.append(given)
+        if len(calls) == 4:
+            raise wl.ConditionsError("row 1: no normal forces balance this state")
+        return run(*given)
+
+    calls: list[Any] = []
+    monkeypatch.setattr("wearlaw_apps.life.line.run", failing)  # private: as above
+    found = wl.wear_out(pipeline(), line(), over="1500 km", store=tmp_path / "life", **GIVEN)
+    before, after = (one.table["distance [km]"].to_numpy() for one in (short, found))
+    assert after[:3] == pytest.approx(before[:3], rel=1e-12)
+    assert after[3] - after[2] == pytest.approx(0.8 * (before[3] - before[2]), rel=1e-9)
+    assert "0.8 times as long: row 1: no normal forces" in found.notes[3][-1]
+    volume = swept(found.worn_profiles[0][0], found.profile, R0)
+    assert volume * 7850.0 == pytest.approx(last(found, "mass [kg]"), rel=1e-10)
+    with pytest.warns(ResumeWarning):
+        again = wl.wear_out(pipeline(), line(), over="1500 km", store=tmp_path / "life", resume=True, **GIVEN)
+    assert again.table.equals(found.table)
+    assert again.notes == found.notes
+
+    calls[:] = [()] * 3
+    with pytest.raises(DataError, match=r"step 1, after 0 km: row 1: no normal forces"):  # nothing to take again
+        wl.wear_out(pipeline(), line(), over="1500 km", **GIVEN)
 
 
 def test_finished_steps_stay_when_a_step_fails(monkeypatch: pytest.MonkeyPatch) -> None:

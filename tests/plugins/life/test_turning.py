@@ -14,7 +14,7 @@ from tests.plugins.life.test_life import GIVEN, last, line, pipeline
 from tests.plugins.wheelset.wheelsets import R0, cone
 from wearlaw.errors import OutputError, ResumeWarning
 from wearlaw_apps.life import Life
-from wearlaw_apps.life.removal import even, positions, removed, swept  # private: wear in closed form
+from wearlaw_apps.life.removal import between, even, positions, removed, swept  # private: wear in closed form
 from wearlaw_apps.life.turning import least_cut  # private: the depth of a cut alone
 
 FLANGES = pd.DataFrame({"lateral_displacement [mm]": [-6.2, 6.2], "share": 0.5})
@@ -35,8 +35,7 @@ def turned(store: Path) -> Life:
 
 def test_cut_of_a_cone_is_the_depth_over_the_cosine() -> None:
     start = even(cone(0.05))
-    at = positions([start], 500)
-    worn = removed(start, at, np.full(at.size, 0.3e-3))
+    worn = removed(start, np.full(start.curve.s.size, 0.3e-3))
     assert least_cut(start, worn) == pytest.approx(0.3e-3 * np.sqrt(1.0 + 0.05**2), rel=1e-6)
 
 
@@ -46,7 +45,7 @@ def test_cut_of_a_worn_flank_is_the_depth_over_the_cosine_of_its_angle() -> None
     at = positions([start], 4000)
     y = np.interp(at, start.curve.s, start.curve.y)
     depth = 0.2e-3 * np.exp(-0.5 * (np.maximum(np.abs(y + 39.1e-3) - 0.7e-3, 0.0) / 1e-3) ** 2)
-    cut = least_cut(start, removed(start, at, depth))
+    cut = least_cut(start, removed(start, between(start, at, depth)))
     assert cut == pytest.approx(0.2e-3 * np.sqrt(1.0 + 2.747477419**2), rel=1e-4)  # linear between points, R = 13 mm
 
 
@@ -104,8 +103,9 @@ def test_repr_and_figure_say_which_limit_governs(turned: Life) -> None:
     text = repr(turned)
     assert f"cuts: {len(turned.cuts)} at the limit of flange thickness" in text
     assert "to the limit of diameter" in text
-    limits = {panel.y.label: panel.limits for panel in turned.figure().panels if panel.limits}
-    assert set(limits) == {"flange thickness [mm]", "diameter [mm]"}
+    *_, measures = turned.figure().panels
+    labels = [curve.label for curve in measures.curves]
+    assert labels == ["flange thickness, 32.5 to 32.42 mm", "diameter, 920 to 918.6 mm"]
 
 
 def test_both_sides_are_turned_to_one_diameter() -> None:

@@ -28,8 +28,8 @@ from wearlaw_models.rigs.wheelset.loads import ROUGH, Loads
 from wearlaw_models.rigs.wheelset.search import Section, both_sides, searched
 from wearlaw_models.rigs.wheelset.stand import BALANCED
 
-STEP, FARTHEST = 0.1e-3, 60e-3
-"""Steps in which rigid wheels are looked at, and their end [m]: the play of flanges is at most 40 mm."""
+STEP, USUAL, FARTHEST = 0.1e-3, 15e-3, 60e-3
+"""Steps in which rigid wheels are looked at, and their end [m], usually and at most: the play is at most 40 mm."""
 
 BEYOND = 0.5e-3
 """Distance past the steepest point of a rigid flange that is searched too [m]: an elastic one takes the whole load some
@@ -86,7 +86,15 @@ class Play(NamedTuple):
 
 def play(section: Section, flange_angle: float) -> Play:
     """Return how rigid wheelsets stand between their rails; a wheel is on its flange beyond an angle [rad]."""
-    middle = round(FARTHEST / STEP)
+    for farthest in (USUAL, FARTHEST):
+        looked_at = _play(section, flange_angle, round(farthest / STEP))
+        if np.abs(looked_at.displacement[[0, -1]]).max() < farthest - 2.0 * BEYOND:
+            break
+    return looked_at
+
+
+def _play(section: Section, flange_angle: float, middle: int) -> Play:
+    """Return the play among a number of steps to each side."""
     displacement = np.asarray(STEP * np.arange(-middle, middle + 1), np.float64)
     none = np.zeros_like(displacement)
     roll, touching = searched(section, displacement, none)
@@ -96,8 +104,8 @@ def play(section: Section, flange_angle: float) -> Play:
 
     def last(stands: NDArray[np.bool_]) -> tuple[int, int]:
         """Return the first and the last place about the middle up to which both wheels stand so."""
-        both = np.append(stands.all(axis=-1), False)
-        return middle + 1 - int(np.argmin(both[middle::-1])), middle - 1 + int(np.argmin(both[middle:]))
+        both = np.pad(stands.all(axis=-1), 1)
+        return middle + 1 - int(np.argmin(both[middle + 1 :: -1])), middle - 1 + int(np.argmin(both[middle + 1 :]))
 
     begin, end = last(arc >= [pair.steepest for pair in section.sides])
     first, final = displacement[list(last(~np.isnan(arc)))]

@@ -318,7 +318,8 @@ class Wheelset(wl.Rig):
         """
         most = _scalar(wl.Unit("mm"), amplitude, "amplitude")
         middle, reach = 0.0, most + MARGIN
-        if abs(self._radius_difference(np.zeros(1), roll)[0]) > NOTHING:
+        alike = self.left_wheel is None and self.left_rail is None
+        if not alike and abs(self._radius_difference(np.zeros(1), roll)[0]) > NOTHING:
             every = np.linspace(-FARTHEST, FARTHEST, CONICITY_POINTS)
             every = every[self.on_rails(every)]
             y, difference = every, self._radius_difference(every, roll)
