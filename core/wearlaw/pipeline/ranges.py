@@ -192,10 +192,6 @@ its maximum, beyond 1.5 times it (Tabor, The Hardness of Metals, 1951). Yield is
 """
 
 
-MOST = {name: ratio.most for name, ratio in RATIOS.items()}
-"""The greatest usual values."""
-
-
 def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, float]:
     """Return the `RATIOS` of a problem that are unusual."""
     ratios: dict[str, float] = {}
@@ -205,22 +201,22 @@ def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, floa
             return ratios
     pressure, a = extremes(problem.max_pressure)[1], extremes(problem.a)[1]
     b = 0.0 if problem.geometry == "line" else extremes(problem.b)[1]
-    if (friction := extremes(problem.friction_coefficient)[1]) > MOST["friction"]:
+    if (friction := extremes(problem.friction_coefficient)[1]) > RATIOS["friction"].most:
         ratios["friction"] = friction
     measured = problem.traction_coefficient
-    if measured is not None and (traction := extremes(measured)[1]) > MOST["traction"]:
+    if measured is not None and (traction := extremes(measured)[1]) > RATIOS["traction"].most:
         ratios["traction"] = traction
     for body in problem.bodies.values():
-        if pressure > MOST["strain"] * body.youngs_modulus:
+        if pressure > RATIOS["strain"].most * body.youngs_modulus:
             ratios["strain"] = max(pressure / body.youngs_modulus, ratios.get("strain", 0.0))
         radius = body.rolling_radius
         relative = extremes(problem.a / radius)[1] if isinstance(radius, np.ndarray) else a / radius
-        if relative > MOST["length"]:
+        if relative > RATIOS["length"].most:
             ratios["length"] = max(relative, ratios.get("length", 0.0))
         if b > body.usual_width:
             ratios["width"] = b / body.usual_width
     for law in laws:
-        if has_hardness(type(law)) and pressure > MOST["hardness"] * (hardness := hardness_of(law, problem)):
+        if has_hardness(type(law)) and pressure > RATIOS["hardness"].most * (hardness := hardness_of(law, problem)):
             ratios["hardness"] = max(pressure / hardness, ratios.get("hardness", 0.0))
     return ratios
 

@@ -41,11 +41,10 @@ from wearlaw_apps.output.curves import BLACK, Curve, FigureData
 from wearlaw_apps.output.labels import label, labels, readable
 from wearlaw_apps.output.notes import Notes, caught_warnings
 from wearlaw_apps.output.parity import parity_panels
-from wearlaw_apps.output.plot import Log, plotted
+from wearlaw_apps.output.plot import Drawn
 from wearlaw_apps.sweeps.progress import Bar
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -119,7 +118,7 @@ class Compared:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Comparison:
+class Comparison(Drawn):
     """Predictors of one outcome on the same tests, made by `compare`.
 
     Attributes
@@ -202,22 +201,6 @@ class Comparison:
             panels=parity_panels(name, list(panels.items()), in_unit(np.ravel(values), self.unit), linear),
             caption=f"{len(self.tests)} tests{source}. {lines}",
         )
-
-    def plot(
-        self, *, ax: Axes | Sequence[Axes] | None = None, log: Log | None = None, title: str | None = None
-    ) -> Axes:
-        """Draw `figure_data`, and return the axes of its first panel; their `figure` is the whole.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes or sequence of these, optional
-            Axes to draw into, one for each panel. Default: those of a new figure of `matplotlib.pyplot`.
-        log : {"", "x", "y", "xy"}, optional
-            The logarithmic axes. Default: by what is drawn.
-        title : str, optional
-            The title.
-        """
-        return plotted(self.figure_data(), ax, log, title)
 
     def __repr__(self) -> str:
         frame = self._shown()

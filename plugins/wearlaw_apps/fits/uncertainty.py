@@ -35,11 +35,10 @@ from wearlaw_apps.fits.uncertain_inputs import (
 from wearlaw_apps.output.conditions import Known
 from wearlaw_apps.output.curves import Curve, FigureData, Panel, PlotAxis, Shade
 from wearlaw_apps.output.labels import label
-from wearlaw_apps.output.plot import Log, plotted
+from wearlaw_apps.output.plot import Drawn
 from wearlaw_apps.sweeps.evaluation import expect_pipeline
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
     from wearlaw.contact.conditions import FrictionLaw
@@ -187,7 +186,7 @@ class Sampler:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Uncertainty:
+class Uncertainty(Drawn):
     """The outcomes of laws with distributed conditions and parameters, made by `uncertainty`.
 
     Results have the shape of the conditions that are not distributed. ``u["rcf_damage"]`` has the samples of an outcome
@@ -327,22 +326,6 @@ class Uncertainty:
         panel = (_cumulative if math.prod(self.sampler.shape) == 1 else _along_axis)(self, outcome)
         samples, band = f"{self.samples} samples of {inputs}", f"{CONFIDENCE:.0%} of the samples"
         return FigureData("uncertainty", self.title, (panel,), f"{samples}.", band, samples)
-
-    def plot(
-        self, *, ax: Axes | Sequence[Axes] | None = None, log: Log | None = None, title: str | None = None
-    ) -> Axes:
-        """Draw `figure_data`, and return the axes of its first panel; their `figure` is the whole.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes or sequence of these, optional
-            Axes to draw into, one for each panel. Default: those of a new figure of `matplotlib.pyplot`.
-        log : {"", "x", "y", "xy"}, optional
-            The logarithmic axes. Default: by what is drawn.
-        title : str, optional
-            The title.
-        """
-        return plotted(self.figure_data(), ax, log, title)
 
     def _quantile(self, probability: float) -> Quantity:
         samples = self[self._only]

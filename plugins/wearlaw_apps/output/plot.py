@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
@@ -75,3 +76,27 @@ def _scaled(axis: PlotAxis, log: bool) -> PlotAxis:
     """Return an axis with a scale, without ends that it cannot show."""
     ends = None if log and axis.ends is not None and axis.ends[0] <= 0.0 else axis.ends
     return dataclasses.replace(axis, scale="log" if log else "linear", ends=ends)
+
+
+class Drawn(ABC):
+    """A result that is drawn as one figure."""
+
+    @abstractmethod
+    def figure_data(self) -> FigureData:
+        """Return what `plot` draws."""
+
+    def plot(
+        self, *, ax: Axes | Sequence[Axes] | None = None, log: Log | None = None, title: str | None = None
+    ) -> Axes:
+        """Draw `figure_data`, and return the axes of its first panel; their `figure` is the whole.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes or sequence of these, optional
+            Axes to draw into, one for each panel. Default: those of a new figure of `matplotlib.pyplot`.
+        log : {"", "x", "y", "xy"}, optional
+            The logarithmic axes. Default: by what is drawn.
+        title : str, optional
+            The title.
+        """
+        return plotted(self.figure_data(), ax, log, title)
