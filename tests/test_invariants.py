@@ -62,14 +62,6 @@ def test_the_bound_is_the_friction_coefficient_times_the_pressure(name: str, pro
         )
 
 
-@pytest.mark.parametrize("name", LINE_MODELS)
-@given(problem=line_problems())
-def test_the_bound_carries_friction_times_the_load(name: str, problem: wl.Problem) -> None:
-    contact = MODELS[name].solve(problem)
-    total = float(contact.sum_over_nodes(contact.traction_bound * contact.area))
-    assert total == pytest.approx(float(problem.friction_coefficient * problem.normal_force), rel=GRAZING)
-
-
 # --- Energy ----------------------------------------------------------------------------------------------------
 
 SMOOTH_DISSIPATION = ("exact", "fastsim-parabolic-line", "fastsim-parabolic-kalker", "global", "global-of-elliptic")
