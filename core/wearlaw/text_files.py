@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from codecs import getincrementaldecoder
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -91,8 +92,22 @@ def read_file(path: str | os.PathLike[str], most: int) -> bytes:
     return content
 
 
-def read_text(path: str | os.PathLike[str], most: int) -> str:
-    """Return the text of a file in UTF-8, or in UTF-16 with its mark, which `>` writes in Windows PowerShell 5.
+def encoding_of(content: bytes) -> str:
+    """Return the encoding of a text by how it begins: UTF-16 with its mark, UTF-8, or else Windows-1252.
+
+    PowerShell 5 writes UTF-16 by `>`, and Excel and older programs write Windows-1252.
+    """
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    try:
+        getincrementaldecoder("utf-8")().decode(content)  # which may end inside a character
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8-sig"
+
+
+def read_text(path: str | os.PathLike[str], most: int, *, of_windows: bool = False) -> str:
+    """Return the text of a file in UTF-8, or in UTF-16 with its mark; `of_windows` takes others for Windows-1252.
 
     Raises
     ------
@@ -100,8 +115,9 @@ def read_text(path: str | os.PathLike[str], most: int) -> str:
         As for `read_file`; also if it is not text.
     """
     content = read_file(path, most)
+    encoding = encoding_of(content)
     try:
-        return content.decode("utf-16" if content.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig")
+        return content.decode(encoding if of_windows or encoding == "utf-16" else "utf-8-sig")
     except UnicodeDecodeError:
         raise InputError("it is not text in UTF-8; save it in UTF-8") from None
 

@@ -28,7 +28,7 @@ Rows: TypeAlias = dict[int, dict[int, str]]
 def text_of(path: Path, label: str, sheet: str | None = None) -> bytes:
     """Return the cells of a sheet, with tabs between them and a line for each row.
 
-    Rows of a single cell above a table, such as its title, are comments. Columns without cells are left out.
+    Columns without cells are left out.
 
     Parameters
     ----------
@@ -135,9 +135,6 @@ def _in_use(rows: Rows) -> Rows:
 def _lines(rows: Rows) -> Iterator[str]:
     """Yield the lines of a sheet, all of one width, with empty lines where it has no rows."""
     places = sorted({place for cells in rows.values() for place in cells})
-    above = len(places) > 1
     for number in range(1, max(rows) + 1):
         cells = rows.get(number, {})
-        above &= len(cells) < 2
-        title = "# " if above and cells and not next(iter(cells.values())).startswith("#") else ""
-        yield title + ("".join(cells.values()) if title else "\t".join(cells.get(place, "") for place in places))
+        yield "\t".join(cells.get(place, "") for place in places)

@@ -27,7 +27,7 @@ from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.errors import PROBLEMS, DataError, UnitError, did_you_mean, shown
 from wearlaw.late import needed_for
-from wearlaw.text_files import NOT_A_SPREADSHEET, SPREADSHEETS
+from wearlaw.text_files import NOT_A_SPREADSHEET, SPREADSHEETS, encoding_of
 from wearlaw.units.quantities import Q, Quantity
 from wearlaw.units.registry import symbol
 from wearlaw_apps import sheets
@@ -49,7 +49,7 @@ MISSING = ("", "-", "NA", "N/A", "n/a", "na", "nan", "NaN", "NAN", "null", "NULL
 HEAD_LINES, SHOWN, LONGEST = 40, 4, 80
 """Lines at the top that show the form of a file, those that a message shows, and its most characters of each."""
 
-SEPARATORS = {" ": "spaces", "\t": "tabs", ",": "commas", ";": "semicolons"}
+SEPARATORS = {" ": "spaces", "\t": "tabs", ",": "commas", ";": "semicolons", "|": "bars"}
 
 LISTED = 20
 """Most columns that a message lists."""
@@ -252,7 +252,11 @@ class Table:
             places = self._rows_in_words({first + row for row, _, _ in wrong})
             problems = [
                 f"{places[first + row]}, column '{column.head}': "
-                + (f"{shown(text)} is not a number{self._hint(text)}" if text else "is missing")
+                + (
+                    f"{shown(text)} is not a number{self._hint(text) or '; leave cells without a value empty'}"
+                    if text
+                    else "is missing"
+                )
                 for row, column, text in wrong
             ]
             if first + wrong[0][0] == 0 and (begin := self.as_read()):  # wrong from the first row on
@@ -261,11 +265,17 @@ class Table:
         return arrays
 
     def _hint(self, text: str) -> str:
-        """Return how to read a number with the other decimal mark."""
+        """Return how to write what is nearly a number."""
         other = "," if self.decimal == "." else "."
-        if text.count(other) == 1 and text.lstrip("+-").replace(other, "").isdigit():
-            return f'; for decimals with "{other}", give decimal="{other}", on the command line --decimal {other}'
-        return ""
+        decimal = f'for decimals with "{other}", give decimal="{other}", on the command line --decimal {other}'
+        hints = {
+            rf"\d*\{other}\d*": decimal,
+            rf"\d{{1,3}}([ {other}]\d{{3}})+": "leave out what separates thousands",
+            r".*±.*": 'keep what follows "±" in a column of its own',
+            r"[\d.,]*\d ?[^\W\d].*|.*[%°]": "state the unit in the head, as in 'Fz [N]'",
+        }
+        bare = text.lstrip("+-")
+        return "".join(f"; {hint}" for pattern, hint in hints.items() if re.fullmatch(pattern, bare))
 
 
 def named_column(head: str, place: int) -> Column:
@@ -323,8 +333,8 @@ def read_table(
         The columns to use by the names that they get, as in {"force": "Fz [kN]", "creepage": "-slip"}. A minus changes
         the sign. State the unit in brackets if the table does not. Default: all, by their heads without units.
     sep : str, optional
-        What separates the cells of a CSV file; " " for any number of spaces. Default: the first of semicolon, tab and
-        comma that the header has, and spaces for numbers or heads without any of them.
+        What separates the cells of a CSV file; " " for any number of spaces. Default: the first of semicolon, tab, bar
+        and comma that the header has, and spaces for numbers or heads without any of them.
     decimal : {".", ","}
         The decimal mark of a CSV file.
     comment : str
@@ -426,14 +436,17 @@ class CsvTable(Table):
                 self._source, sep, self.on_disk = _joined(label, [*head, *file]).encode(), "\t", False
         with self._opened() as file:
             while header := file.readline():
-                if "".join(header.split()).strip(",;") and not header.lstrip('" ').startswith(comment):
+                while header.count('"') % 2 and (more := file.readline()):  # a line break in a head
+                    header, self._skip = header + more, self._skip + 1
+                text = "".join(header.split()).strip(",;")
+                if text and not header.lstrip('" ').startswith(comment) and not _is_title(header, head):
                     break
                 self._skip += 1
                 self.comments.append(header.strip('",; \t\r\n').lstrip(f"{comment} "))
             units = file.readline()
         if not header:
             raise DataError(f"{label} is empty")
-        marks = [mark for mark in ";\t," if mark in header]
+        marks = [mark for mark in ";\t|," if mark in header]
         spaced = len(header.split()) > 1 and any(_are_numbers(line.split(), header.split(), decimal) for line in head)
         self.sep = sep or next(iter(marks), " " if spaced or _is_number(header.split()[0], decimal) else ",")
         cells, below = map(self._split, (header, units))
@@ -451,7 +464,8 @@ class CsvTable(Table):
         self.heads = [named_column(str(place + 1) if bare else cell, place) for place, cell in enumerate(cells)]
 
     def _split(self, line: str) -> list[str]:
-        return self._cells(next(csv.reader([line], delimiter=self.sep, skipinitialspace=True), []))
+        cells = next(csv.reader([" ".join(line.splitlines())], delimiter=self.sep, skipinitialspace=True), [])
+        return self._cells(cells)
 
     def _cells(self, cells: Sequence[str]) -> list[str]:
         return " ".join(cells).split() if self.sep == " " else [cell.strip() for cell in cells]
@@ -461,9 +475,10 @@ class CsvTable(Table):
         """Give the file as text, behind the lines to skip."""
         try:
             with io.BytesIO(self._source) if isinstance(self._source, bytes) else self._source.open("rb") as raw:
-                if isinstance(raw, io.BufferedReader) and raw.peek(1).startswith(SPREADSHEETS):
+                begin = raw.peek(1) if isinstance(raw, io.BufferedReader) else b""
+                if begin.startswith(SPREADSHEETS):
                     raise DataError(f"{self.label} cannot be read: {NOT_A_SPREADSHEET}")
-                file = io.TextIOWrapper(raw, encoding="utf-8-sig", newline="")
+                file = io.TextIOWrapper(raw, encoding=encoding_of(begin), newline="")
                 for _ in range(0 if whole else self._skip):
                     file.readline()
                 yield file
@@ -564,6 +579,24 @@ def _pandas() -> Any:
         import pandas
 
     return pandas
+
+
+def _is_title(line: str, lines: Sequence[str]) -> bool:
+    """Return whether a line has half of the cells of the last one at most, and stands above a line with more words."""
+    rest = [row for row in lines[lines.index(line) + 1 :] if row.strip(_EMPTY)] if line in lines else []
+    mark = next((mark for mark in ";\t|," if rest and mark in rest[-1].strip(_EMPTY)), "")
+    if not mark:
+        return False
+
+    def width(row: str) -> int:
+        return sum(bool(cell.strip(_EMPTY)) for cell in row.split(mark))
+
+    most = width(rest[-1]) // 2
+    return width(line) <= most and any(width(row) > most and any(map(str.isalpha, row)) for row in rest)
+
+
+_EMPTY = "\"',; \t\r\n"
+"""Characters of a line without content."""
 
 
 def _are_units(cells: Sequence[str], decimal: str) -> bool:

@@ -186,6 +186,13 @@ def test_a_field_without_unit_takes_percent_and_refuses_a_dimension() -> None:
         wl.FallingFriction(static_coefficient="0.25", **given)
 
 
+@pytest.mark.parametrize(
+    ("unit", "same"), [("N/mm2", "MPa"), ("ug/m/mm2", "ug/m/mm^2"), ("m3", "m^3"), ("µm2", "um^2")]
+)
+def test_powers_of_lengths_need_no_sign(unit: str, same: str) -> None:
+    assert Q(3.0, unit).m_as(same) == pytest.approx(3.0, rel=4 * EPS)
+
+
 @pytest.mark.parametrize("scale", ["HB", "HBW", "HBW 10/3000", "HV", "HV30"])
 def test_a_hardness_is_the_load_over_the_surface_of_its_indentation(scale: str) -> None:
     """In kgf/mm², with standard gravity of 9.80665 m/s² (ISO 6506-1 and 6507-1 print 0.102 as its reciprocal)."""

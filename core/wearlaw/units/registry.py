@@ -71,7 +71,8 @@ def parse_unit(registry: pint.UnitRegistry[Any], unit: str) -> pint.Unit:
     if not _has_small_powers(str(unit)):
         raise UnitError(f"{shown(unit)} is not a unit that can be computed; powers are numbers, as in mm^2 or MPa^0.5")
     try:
-        parsed = registry.Unit(re.sub(r"\b([mkM]?)Nm\b", r"(\1N*m)", str(unit)))  # Nm is a count of yarn to pint
+        text = re.sub(r"\b([mkM]?)Nm\b", r"(\1N*m)", str(unit))  # Nm is a count of yarn to pint
+        parsed = registry.Unit(re.sub(r"\b([a-zµμ]?m)([23])\b", r"\1^\2", text))  # mm2
         in_root_units: Any = registry.get_root_units(parsed)[0]
         if not 0.0 < in_root_units < np.inf:  # nm^40
             raise ValueError

@@ -137,7 +137,11 @@ def observe(
         there = ~np.isnan(values)
         needed = FRICTION in free.names if index is None else index in free.freed_laws
         if needed and not there.any():
-            hint = NOT_WEAR.format(name) if tests.ways and law is not None and not law.outcome.wear else ""
+            unused = [column for column in tests.other_conditions if column not in pipeline.conditions]
+            hint = (
+                f"; {', '.join(unused)}: no conditions of this rig, so say what they are by columns" if unused else ""
+            )
+            hint = NOT_WEAR.format(name) if tests.ways and law is not None and not law.outcome.wear else hint
             raise FitError(f"tests: none of the {len(tests)} tests has a {name_of(name)}, which is fitted{hint}")
         if not (needed or (of_contact and there.any())):
             continue

@@ -59,6 +59,9 @@ OTHER_NAMES = {
 }
 """What labs call columns, for suggestions."""
 
+BY_UNIT = {"creepage": ("%",), "normal_force": ("kN", "N"), "mass_loss": ("mg", "g")}
+"""Columns that are suggested for heads in these units, whatever their language."""
+
 
 def read_tests(
     source: Source,
@@ -127,7 +130,7 @@ def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
         return text
     path = Path(path_or_name)
     try:
-        return read_text(path, LARGEST)
+        return read_text(path, LARGEST, of_windows=True)
     except FileNotFoundError:
         shipped = list(plugins["test set"].items())
         beside = sorted(file.name for file in path.parent.glob("*.csv")) if path.parent.is_dir() else []
@@ -177,9 +180,14 @@ def _checked(
             if column not in TEXTS:
                 columns[column] = table[column]
         except DataError as error:
-            wrong += error.problems
+            wrong += [problem for problem in error.problems if problem not in wrong]
         except UnitError as error:
-            wrong.append(f"column '{table.columns[column].head}': {error}")
+            spec, head = COLUMNS.get(column), table.columns[column].head
+            unit = (spec.unit if spec else "") or "-"
+            plain = head.partition("[")[0].strip()
+            wrong.append(
+                f"column '{head}': {error}; convert it, or state its unit by columns, as in '{plain} [{unit}]'"
+            )
     if wrong:
         raise DataError(f"{table.label} are wrong in:", wrong)
     if balance_resolution is not None and columns:
@@ -249,8 +257,15 @@ def _unknown(table: Table, names: Collection[str]) -> Iterator[str]:
                 likely.setdefault(name, column.head)
             meant = f"; did you mean '{name}'?" if name else ""
             yield f"column '{column.head}': unknown column{meant}"
+    if unknown and table.heads[1:] and all(re.fullmatch(r"[\d.,]+", column.name) for column in table.heads[1:]):
+        yield "the heads are numbers; turn the table, so that each test has a row"
+    for name, units in BY_UNIT.items() if unknown and not likely.keys() >= BY_UNIT.keys() else ():
+        fitting = [column for column in table.columns.values() if column.unit in units and column not in unknown]
+        if fitting and name in missing and fitting[0].name not in names:
+            likely.setdefault(name, fitting[0].head)
     if unknown:
         heads = ", ".join(f"{name} [{spec.unit}]" if spec.unit else name for name, spec in COLUMNS.items())
+        likely = likely or ({"creepage": "HEAD"} if "creepage" in missing else {})
         in_python = ", ".join(f'"{name}": "{column}"' for name, column in likely.items())
         options = " ".join(f'--columns {name}="{column}"' for name, column in likely.items())
         yield (

@@ -7,9 +7,9 @@ provide the conditions of contact problems.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, Self, TypedDict, Unpack
 
 import numpy as np
 import pint
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from wearlaw.models.contact_model import ContactModel
-    from wearlaw.pipeline.pipeline import Rig
 
 LOADS = ("normal_force", "normal_force_per_width", "max_pressure")
 """Columns that give the load."""
@@ -325,16 +324,21 @@ class WearTests:
         columns |= {
             name: condition for name, condition in self.other_conditions.items() if isinstance(condition, pint.Quantity)
         }
-        seen: dict[str, _Sizes] = {}
+        medians: dict[str, tuple[Unit, float, str]] = {}
         for name, values in columns.items():
             sizes = np.abs(values.magnitude[~np.isnan(values.magnitude)])
             unit = USUAL.get(name, units.get(name))
             if sizes.size and unit is not None:
-                seen[name] = _Sizes(name, unit, float(np.median(sizes)), float(sizes.max()), str(values.units))
+                medians[name] = unit, float(np.median(sizes)), str(values.units)
         remarks: dict[str, str] = {}
-        for name, of_column in seen.items():
-            if text := of_column.unusual(of_column):
-                remarks[f"column {name}"] = text + _swapped(of_column, seen.values(), "did you mean" in text)
+        for name, (unit, median, shown_in) in medians.items():
+            sizes = {"median": median}
+            if name in ("friction_coefficient", "traction_coefficient"):  # no test of dry friction passes their range
+                sizes["greatest value"] = float(np.nanmax(np.abs(columns[name].magnitude)))
+            for which, size in sizes.items():
+                if text := unit.unusual(name, Q(size, shown_in)):
+                    remarks[f"column {name}"] = f"its {which} {text}{_swapped(name, medians, text)}"
+                    break
         return remarks
 
     def digests(self, name: str, unit: str) -> tuple[str, ...]:
@@ -454,34 +458,16 @@ class WearTests:
         return from_si(self.columns.get(name, missing), COLUMNS[name].unit)
 
 
-class _Sizes(NamedTuple):
-    """The median and the greatest size in a column, in a unit, with what is usual for the column."""
-
-    name: str
-    usual: Unit
-    median: float
-    greatest: float
-    shown_in: str
-
-    def unusual(self, numbers: _Sizes) -> str:
-        """Return what is unusual about the numbers of a column in this one, or ""."""
-        sizes = {"median": numbers.median}
-        if self.name in ("friction_coefficient", "traction_coefficient"):  # no test of dry friction passes their range
-            sizes["greatest value"] = numbers.greatest
-        texts = {which: self.usual.unusual(self.name, Q(size, self.shown_in)) for which, size in sizes.items()}
-        return next((f"its {which} {text}" for which, text in texts.items() if text), "")
-
-
-def _swapped(column: _Sizes, others: Iterable[_Sizes], explained: bool) -> str:
+def _swapped(name: str, medians: Mapping[str, tuple[Unit, float, str]], text: str) -> str:
     """Return the question whether an unusual column is another one, if both are usual with each other's numbers.
 
-    If a unit explains the numbers, a swap is as likely only with a column of the same dimension.
+    Where the text says that a unit explains them, only a column of the same dimension is asked about.
     """
-    for other in others:
-        alike = other.usual.unit == column.usual.unit
-        usual = other is not column and not (column.unusual(other) or other.unusual(column))
-        if usual and (alike or not explained):
-            return f"{' Or' if explained else ';'} are the columns {column.name} and {other.name} swapped?"
+    (unit, median, shown_in), explained = medians[name], text.endswith("?")
+    for other, (its_unit, its_median, its) in medians.items():
+        unlike = unit.unusual(name, Q(its_median, shown_in)) or its_unit.unusual(other, Q(median, its))
+        if other != name and not unlike and (not explained or unit.unit == its_unit.unit):
+            return f"{' Or' if explained else ';'} are the columns {name} and {other} swapped?"
     return ""
 
 

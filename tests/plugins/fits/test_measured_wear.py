@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -353,4 +354,22 @@ def test_a_unit_that_explains_a_column_comes_before_a_swap() -> None:
     percent = WearTests.from_arrays(
         creepage=Q([1.0, 5.0, 10.0], "%"), normal_force="7 kN", friction_coefficient=45.0, wear_rate="20 ug/m/mm^2"
     )
-    assert percent.unusual(EXACT)["column friction_coefficient"].endswith("did you mean 45 %?")
+    assert "; did you mean 45 %?" in percent.unusual(EXACT)["column friction_coefficient"]
+
+
+@pytest.mark.parametrize(
+    ("heads", "says"),
+    [
+        (
+            "Versuch,Schlupf [%],Last [kN],Verlust [mg]",
+            'columns={"creepage": "Schlupf [%]", "normal_force": "Last [kN]", ',
+        ),
+        ("creepage [%],normal_force [kN],cycles [thousand],mass_loss [mg]", "convert it, or state its unit by columns"),
+        ("creepage [%],0.3,0.5,1.0", "the heads are numbers; turn the table, so that each test has a row"),
+        ("a [%],b [kN],c [-],d [mg]", "a, b, c, d: no conditions of this rig, so say what they are by columns"),
+    ],
+)
+def test_heads_that_are_not_known_say_what_to_do(tmp_path: Path, heads: str, says: str) -> None:
+    (tmp_path / "a.csv").write_text(f"{heads}\n1,7,30,200\n2,7,30,300\n")
+    with pytest.raises(wl.WearlawError, match=re.escape(says)):
+        wl.fit(EXACT | wl.wear_law("usfd", fitted_for="exact"), tmp_path / "a.csv", ["m_m"])

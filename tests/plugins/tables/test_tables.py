@@ -132,7 +132,7 @@ WRONG: dict[str, tuple[str, dict[str, Any], str]] = {
     "a unit that is unknown": ("\n".join(LINES), {"columns": {"f": "note [weights]"}}, "f: column 'note': 'weights'"),
     "no name": ("\n".join(LINES), {"columns": {"my force": "Fz"}}, "columns: 'my force'"),
     "no mapping": ("\n".join(LINES), {"columns": ["Fz"]}, r"columns: .*got \['Fz'\]"),
-    "titles above the heads": ("My run\nTime,Fz\n1,2\n", {"columns": {"f": "Fz"}}, "Time . Fz; 1 . 2; begin lines"),
+    "titles above the heads": ("Run\nTime Fz\n1 2\n", {"columns": {"f": "Fz"}}, "Time Fz; 1 2; begin lines"),
     "what is no text": ("a,b\n\0\0", {}, "is no text; export it as text"),
     "an empty file": ("\n# only a comment\n", {}, "is empty"),
     "a decimal mark": ("a\n1\n", {"decimal": "'"}, "decimal: "),
@@ -233,16 +233,47 @@ def test_blocks_that_do_not_fit_are_named(change: tuple[str, str], message: str)
         text(BLOCKS.replace(*change), columns=None)
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+def test_tables_of_windows_are_read_below_their_titles(tmp_path: Path, encoding: str) -> None:
+    """Excel and PowerShell write these encodings, titles above tables, groups of heads, and heads of two lines."""
+    lines = 'Fahrt 3\r\nStraße X;;\r\n\r\nBahn;;;Zeit\r\nGröße;F [°];t;"u\r\n[s]"\r\n1,5;2;3;4\r\n'
+    (tmp_path / "run.csv").write_bytes(lines.encode(encoding))
+    table = wl.read_table(tmp_path / "run.csv", decimal=",")
+    assert (table.numbers("Größe").tolist(), table["F"].m_as("deg").tolist()) == ([1.5], [2.0])
+    assert (table.comments[0], table.where(0), table["u"].m_as("s").tolist()) == ("Fahrt 3", "line 7", [4.0])
+
+
+def test_decimal_commas_between_blanks_are_no_cells_of_a_title() -> None:
+    table = text("creep load\n0,3 7,4\n0,5 7,4\n", columns=None, decimal=",")
+    assert table.numbers("load").tolist() == [7.4, 7.4]
+
+
+@pytest.mark.parametrize(
+    ("cell", "says"),
+    [
+        ("7,400", "for decimals .* --decimal ,; leave out what separates thousands"),
+        ("1,234,567", "is not a number; leave out what separates thousands"),
+        ("2.1 ± 0.1", 'keep what follows "±" in a column of its own'),
+        ("60 000", "leave out what separates thousands"),
+        ("7.4 kN", r"state the unit in the head, as in 'Fz \[N\]'"),
+        ("0.3%", "state the unit in the head"),
+        ("<0.5", "leave cells without a value empty"),
+    ],
+)
+def test_cells_without_a_number_say_what_to_do(cell: str, says: str) -> None:
+    with pytest.raises(DataError, match=says):
+        text(f"a;b\n{cell};1\n", columns=None)["a"]
+
+
 def test_what_is_no_table_is_refused(tmp_path: Path) -> None:
     dataset().to_netcdf(tmp_path / "run.nc")
-    (tmp_path / "old.csv").write_bytes("Größe\n1\n".encode("cp1252"))
     (tmp_path / "none.csv").write_bytes(b"")
     (tmp_path / "run.xlsx").write_bytes(b"PK\x03\x04\x14\x00\x06\x00")
     with pytest.raises(DataError, match=r"is no spreadsheet in \.xlsx \(.*\); save its sheet as CSV"):
         wl.read_table(tmp_path / "run.xlsx")
     with pytest.raises(DataError, match="cannot be read: it is a spreadsheet, not text; save its sheet as CSV"):
         wl.read_table((tmp_path / "run.xlsx").rename(tmp_path / "run.csv"))
-    for wrong in ("run.nc", "old.csv", "none.csv", "missing.csv", ""):
+    for wrong in ("run.nc", "none.csv", "missing.csv", ""):
         with pytest.raises(DataError, match=re.escape(str(tmp_path / wrong))):
             wl.read_table(tmp_path / wrong)
     with pytest.raises(DataError, match="table"):
