@@ -267,22 +267,6 @@ def test_a_turned_wheel_is_told_by_the_back_of_its_flange(angle: float, noise: f
     assert suggested == pytest.approx(-angle, abs=0.05 + 4.0 * np.degrees(noise * np.sqrt(12.0 / 20.0) / 6e-3))
 
 
-@pytest.mark.parametrize("conicity", [0.0, 0.05, 0.1])
-def test_a_tread_is_told_by_its_conicity_if_the_back_is_missing(conicity: float) -> None:
-    """Not so with a cone from 0 to 1 in 10, new or with a hollow of 3 mm."""
-    y, z = sampled(WHEEL)
-    root = int(np.argmax(y > -26e-3))
-    z[root:] = z[root] * np.exp(-(((y[root:] - y[root]) / 6e-3) ** 2)) - conicity * (y[root:] - y[root])
-    for place in (-10e-3, 0.0, 10e-3, 20e-3):
-        turned(y, z - 3e-3 * np.exp(-(((y - place) / 15e-3) ** 2)) * (y > -45e-3), 0.0)
-    for angle in (-8.0, 8.0):  # 0.14, beyond a cone of 0.1 by more than 1° and the bend of the root
-        with pytest.warns(wl.UnusualWarning, match="the tread has a conicity of .* turn it back") as caught:
-            turned(y, z, angle)
-        (text,) = (str(one.message) for one in caught if "on average" in str(one.message))
-        suggested = float(text.split('turn="')[1].split(" deg")[0])
-        assert suggested == pytest.approx(np.degrees(np.arctan(conicity - 0.05)) - angle, abs=1.0)  # the root is there
-
-
 def test_narrow_heads_are_rails_too() -> None:
     y = np.linspace(-60e-3, 60e-3, 481)
     nose = through(y, 40e-3 - 39e-3 * np.exp(-((y / 12e-3) ** 4)), "rail")

@@ -312,6 +312,33 @@ def test_profiles_of_gensys_have_y_towards_the_middle_of_the_track(tmp_path: Pat
     assert wl.read_profile(saved(tmp_path, "a.rail", text)).apparent_cant.m_as("deg") == pytest.approx(1.4, abs=0.01)
 
 
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("{0} {1} {2}", "its first column is constant or counts the points; name all columns above"),
+        ("0.0 {1} {2}", "its first column is constant or counts the points; name all columns above"),
+        ("{3},{4}", "line 1: .* has decimal commas; put semicolons between"),
+        ("{1} mm {2} mm", "line 1: expected two numbers, y and z, found '-37.*mm"),
+        ("L;{1};{2}", "it has no points: lines of two numbers"),
+    ],
+)
+def test_columns_that_are_no_points_say_what_to_do(tmp_path: Path, line: str, said: str) -> None:
+    points = [(-37.03, 35.01), *table(profile=RAIL).tolist()]
+    texts = [[f"{y:.3f}", f"{z:.3f}"] for y, z in points]
+    lines = [line.format(i, *text, *(cell.replace(".", ",") for cell in text)) for i, text in enumerate(texts, 1)]
+    with pytest.raises(DataError, match=said):
+        wl.read_profile(saved(tmp_path, "a.txt", "\n".join(lines)), kind="rail")
+
+
+def test_columns_may_have_bars_between_or_the_ending_of_simpack(tmp_path: Path) -> None:
+    points = table(profile=RAIL)
+    for name, mark, above in (("a.csv", "|", "y | z\n"), ("a.prr", " ", "! a head\n"), ("a.txt", " ", "n y z\n")):
+        lines = rows(np.column_stack([np.arange(len(points)), points]) if "n" in above else points, mark)
+        assert values(wl.read_profile(saved(tmp_path, name, above + lines), kind="rail")) == pytest.approx(
+            points, abs=1e-6
+        )
+
+
 # Repairs -------------------------------------------------------------------------------------------------------------
 
 

@@ -57,13 +57,7 @@ STRAIGHT, CROOKED = 6e-3, 0.03e-3
 [m]. An arc has a radius of at least 45 mm then, while those of flanges have up to 25 mm."""
 
 LEANING = np.radians(1.0)
-"""Lean beyond which a wheel is doubted [rad]: of the back of a flange, a turned plane across the axle, or of a tread
-from a cone in use."""
-
-TREAD, STEEPEST_CONE, HOLLOW = (-15e-3, 35e-3), 0.1, 80.0
-"""Where the conicity of a tread is measured [m], its greatest value in use [-], and by how much a hollow changes it
-over the height from the lowest to the highest point beside the straight line [1/m]: by 76 at most, for bells from 8 to
-20 mm."""
+"""Lean from which the back of a flange, a turned plane across the axle, is doubted [rad]."""
 
 ROUNDED = 0.1
 """Slope at the end of a profile up to which the top of a flange is there [rad]. On a top with a radius of 20 mm, which
@@ -125,18 +119,13 @@ def of_height(curve: Curve) -> Iterator[str]:
 
 
 def of_turn(curve: Curve) -> Iterator[str]:
-    """Yield whether a wheel is turned: the back of its flange is not upright, or its tread is no cone in use."""
-    turn = _lean_of_back(curve)
-    doubted, text = abs(turn) > LEANING, f"the back of the flange leans by {np.degrees(abs(turn)):.2g} deg"
-    if np.isnan(turn) and curve.y[0] < TREAD[0] < TREAD[1] < curve.y[-1]:
-        y = np.linspace(*TREAD, 101)
-        z = np.interp(y, curve.y, curve.z)
-        slope = float(np.polyfit(y, z, 1)[0])
-        slack = LEANING + HOLLOW * np.ptp(z - slope * y)
-        doubted, turn = not -slack < -slope < STEEPEST_CONE + slack, float(np.arctan(-slope - 0.5 * STEEPEST_CONE))
-        text = f"the tread has a conicity of {-slope:.2g} on average, and cones in use have 0 to {STEEPEST_CONE:g}"
-    if doubted:
-        yield f'{text}; if the wheel was measured turned, turn it back, in a file by turn="{np.degrees(turn):.2g} deg"'
+    """Yield whether the back of a wheel's flange is not upright."""
+    lean = np.degrees(_lean_of_back(curve))
+    if abs(lean) > np.degrees(LEANING):
+        yield (
+            f"the back of the flange leans by {abs(lean):.2g} deg; if the wheel was measured turned, turn it back, in a"
+            f' file by turn="{lean:.2g} deg"'
+        )
 
 
 def _lean_of_back(curve: Curve) -> float:

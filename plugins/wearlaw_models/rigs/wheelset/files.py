@@ -64,6 +64,10 @@ DIAMETER = "DiameterTaperline"
 """Key of a MiniProf file for the diameter at the taping line."""
 
 
+NO_POINTS = "it has no points: lines of two numbers, y and z, between semicolons, tabs, blanks or commas"
+"""The error for files without points."""
+
+
 class FileError(wl.InputError):
     """A file of a profile is wrong; the message has no name of the file yet."""
 
@@ -116,7 +120,7 @@ def points_of(
         for pattern, reason in REFUSED.items():
             if re.match(pattern, line):
                 raise FileError(f"line {number}: {wl.shown(line.strip()[:40])} {reason}")
-    first = next((line for line in lines if line.strip()), "")
+    first = next((line for line in lines if re.match(r"\s*[^\s!%#]", line)), "")
     if ending[1:] in readers:
         points = _by_reader(readers[ending[1:]], path)
     elif (ending in SIMPACK and not _is_point(first)) or any(re.match(r"\s*spline\.begin", line) for line in lines):
@@ -201,7 +205,7 @@ class _Table:
     def columns(self) -> tuple[Array, NDArray[np.intp]]:
         """Return the numbers, one row for each column, and the lines."""
         if not self.rows:
-            raise FileError("it has no points")
+            raise FileError(NO_POINTS)
         width = max(map(len, self.rows))
         rows = [row + [1.0] * (width - len(row)) for row in self.rows]
         return np.array(rows).T.copy(), np.array(self.lines)
@@ -330,7 +334,7 @@ def _miniprof(lines: Sequence[str], kind: Kind | None, units: str, part: int | N
             columns = [name.strip() for name in value.split(",")]
             if not {"X", "Y"} <= set(columns):
                 raise FileError(f"line {number}: ColumnDef must name the columns X and Y, got '{value[:40]}'")
-    if not low and any(re.search("MINI(WHEEL)?PROF", line) for line in lines[:READ]):
+    if not low and any(re.search("MINI(WHEEL)?PROF", line, re.IGNORECASE) for line in lines[:READ]):
         low = next((number for number, line in enumerate(lines) if number and not line.strip()), 0)
         if not low:
             raise FileError("its header, of an older MiniProf, must end with an empty line; put one before the points")
@@ -389,11 +393,13 @@ def _tabbed(lines: Sequence[str], sep: str | None, decimal: str) -> str:
     texts = [re.split("[!#%]", line)[0].strip() for line in lines]
     if sep is None:
         points = [text for text in texts if NUMBER.match(text)] or texts
-        sep = next((mark for mark in ";,".replace(decimal, "") if any(mark in text for text in points)), " ")
+        sep = next((mark for mark in ";|,".replace(decimal, "") if any(mark in text for text in points)), " ")
         for number, text in enumerate(texts, 1):
             cells = [cell for cell in re.split(r"[\s;]+", text) if DECIMAL_COMMA.fullmatch(cell)]
             if decimal == "." and len(cells) > 1:
                 raise FileError(f"line {number}: '{cells[0]}' has a decimal comma; give decimal=\",\"")
+            if sep == "," and re.match(r"[+-]?\d+,0\d", text):
+                raise FileError(f"line {number}: '{text[:20]}' has decimal commas; put semicolons between the numbers")
 
     def cells_of(text: str) -> list[str]:
         if sep == " ":
@@ -403,8 +409,8 @@ def _tabbed(lines: Sequence[str], sep: str | None, decimal: str) -> str:
     def are_numbers(cells: Sequence[str]) -> bool:
         return all(NUMBER.fullmatch(cell.replace(decimal, ".")) for cell in cells)
 
-    rows, width = [], 0
-    for cells in map(cells_of, texts):
+    rows, width, first = [], 0, []
+    for number, cells in enumerate(map(cells_of, texts), 1):
         if len(cells) == 1 and (cells[0].isalpha() if width > 1 else cells[0].isdigit()):  # "end"; a number of points
             cells = []
         elif not width and cells and not are_numbers(cells[:1]):  # a header or a title
@@ -412,9 +418,15 @@ def _tabbed(lines: Sequence[str], sep: str | None, decimal: str) -> str:
             cells = cells if any(names) else []
             width = len(cells)
         elif cells:
+            if not width and not are_numbers((*cells, "")[:2]):
+                raise FileError(f"line {number}: expected two numbers, y and z, found '{texts[number - 1][:40]}'")
             width = width or 2
+            first += [cells[0]] if len(cells) > width == 2 else []
             cells = cells[:width] if are_numbers(cells[:2]) else cells
         rows.append("\t".join(re.sub(r"(?<=[\d.])[dD](?=[+-]?\d)", "e", cell) for cell in cells))
+    count = len(first)
+    if count > 1 and first in (first[:1] * count, [*map(str, range(count))], [*map(str, range(1, count + 1))]):
+        raise FileError("its first column is constant or counts the points; name all columns above, as in 'n y z'")
     return "\n".join(rows)
 
 
@@ -434,10 +446,10 @@ def _columns(source: Path | io.StringIO, units: str, decimal: str, sheet: str | 
             for row in np.flatnonzero(np.isnan(values))[:1]:
                 raise FileError(f"{table.where(int(row), column.name)}: is missing")
     except wl.errors.DataError as error:
-        subject = str(error) if isinstance(source, Path) else "it has no points"
+        subject = str(error) if isinstance(source, Path) else NO_POINTS
         raise FileError("; ".join(error.problems[:3]) or subject) from None
     if not y.size:
-        raise FileError("it has no points")
+        raise FileError(NO_POINTS)
     return Points(y, z, None, table.lines, None)
 
 
