@@ -18,7 +18,8 @@ from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
 from wearlaw.contact.conditions import Coefficient, Condition, Creepage, FallingFriction, Friction
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
 from wearlaw.contact.material import Material, steel
-from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem, Strips
+from wearlaw.contact.parts import Body, CreepForces, Strips
+from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import (
     CalibrationWarning,

@@ -11,7 +11,8 @@ from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.contact import hertz, hertz_ellipse
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.parts import CreepForces
+from wearlaw.contact.problem import Problem
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel
 from wearlaw.numerics.integrate import integrate_laws
 from wearlaw.numerics.solving import check_finite, check_types

@@ -6,7 +6,8 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.parts import CreepForces
+from wearlaw.contact.problem import Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw_kit.bisection import Indices, each_once, find_jumps
 from wearlaw_kit.contact import POINTS_OF_STEPS, has_nodes, mixed_batch

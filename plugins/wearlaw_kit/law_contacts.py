@@ -16,7 +16,7 @@ import numpy as np
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import LAW_VARIABLES, Contact, variable_at_nodes
 from wearlaw.contact.material import steel
-from wearlaw.contact.problem import Body
+from wearlaw.contact.parts import Body
 from wearlaw.models.law import Law
 from wearlaw_kit.examples import failing, for_each, left_out, part
 from wearlaw_kit.reduced import drawn, random_lines, wide_ellipses, without_spin

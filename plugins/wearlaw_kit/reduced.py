@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike
 from wearlaw.arrays import Array
 from wearlaw.contact import kalker
 from wearlaw.contact.conditions import Condition
-from wearlaw.contact.problem import CreepForces, Problem, Strips
+from wearlaw.contact.parts import CreepForces, Strips
+from wearlaw.contact.problem import Problem
 from wearlaw.units.quantities import Unit
 from wearlaw.units.registry import unit_in_si
 

@@ -15,7 +15,8 @@ import pint
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.contact.material import Material
-from wearlaw.contact.problem import Geometry, Strips
+from wearlaw.contact.parts import Strips
+from wearlaw.contact.problem import Geometry
 from wearlaw.errors import ConditionsError, InputError, UnitError, WearlawError, described
 from wearlaw.pipeline.pipeline import Rig
 from wearlaw.units.quantities import Q, Quantity, parse, scalar_si

@@ -22,7 +22,8 @@ from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.material import steel
-from wearlaw.contact.problem import Body, CreepForces, Geometry, Problem
+from wearlaw.contact.parts import Body, CreepForces
+from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.contact.quadrature import join
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel, Stage
 from wearlaw.numerics.staged import staged

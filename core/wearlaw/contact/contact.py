@@ -18,7 +18,8 @@ import pint
 from wearlaw.arrays import Array, freeze
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.conditions import broadcast
-from wearlaw.contact.problem import Body, CreepForces, Problem
+from wearlaw.contact.parts import Body, CreepForces
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError
 from wearlaw.units.quantities import Q, QuantityLike, parse, real_array, with_units
 from wearlaw.units.registry import with_magnitude

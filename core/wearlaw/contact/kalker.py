@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.parts import CreepForces
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, shown
 
 # Kalker (1990), Table E.3. Columns: C11, C22, C23, C33, each at ν = 0, 1/4 and 1/2.

@@ -9,7 +9,8 @@ import numpy as np
 
 from wearlaw.arrays import Array, freeze
 from wearlaw.contact.contact import Contact, LineFields
-from wearlaw.contact.problem import PATCHES, CreepForces, Geometry, Problem
+from wearlaw.contact.parts import CreepForces
+from wearlaw.contact.problem import PATCHES, Geometry, Problem
 from wearlaw.contact.quadrature import Nodes, Zone, join
 from wearlaw.errors import CompositionError
 from wearlaw.models.model import Model, check_scale

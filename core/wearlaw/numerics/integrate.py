@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array, extremes, read_only, steadily, steady
 from wearlaw.contact.contact import NODE_VARIABLES, Contact
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.parts import CreepForces
+from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Zone, join, remainder
 from wearlaw.errors import CompositionError
 from wearlaw.models.contact_model import ContactModel, LineContactModel

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array, extremes, type_name
 from wearlaw.contact.contact import TOTALS, Contact
-from wearlaw.contact.problem import ARRAYS, Problem, Strips
+from wearlaw.contact.parts import Strips
+from wearlaw.contact.problem import ARRAYS, Problem
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import ModelError, shown
 from wearlaw.models.contact_model import QUADRATURE, ContactModel, LineContactModel

@@ -10,7 +10,8 @@ import numpy as np
 
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import CreepForces, Problem
+from wearlaw.contact.parts import CreepForces
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import ConditionsError
 
 

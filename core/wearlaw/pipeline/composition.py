@@ -9,7 +9,8 @@ import numpy as np
 
 from wearlaw import loader
 from wearlaw.contact.material import dundurs_beta
-from wearlaw.contact.problem import PATCHES, Body, Geometry, Problem
+from wearlaw.contact.parts import Body
+from wearlaw.contact.problem import PATCHES, Geometry, Problem
 from wearlaw.errors import (
     CalibrationWarning,
     CompositionError,

@@ -27,7 +27,8 @@ from wearlaw.contact.conditions import (
     together,
 )
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import Body, CreepForces, Problem
+from wearlaw.contact.parts import Body, CreepForces
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, ConditionsError, ModelError, UnitError, did_you_mean, shown
 from wearlaw.fields import RIG, ContactModelField, LawField, StageField
 from wearlaw.late import method

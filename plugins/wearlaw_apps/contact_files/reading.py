@@ -14,7 +14,8 @@ import numpy as np
 from wearlaw import loader
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import TOTALS, Contact
-from wearlaw.contact.problem import ARRAYS, Body, Problem, Strips
+from wearlaw.contact.parts import Body, Strips
+from wearlaw.contact.problem import ARRAYS, Problem
 from wearlaw.errors import DataError, InputError, ModelError, UnknownModelError, did_you_mean, shown
 from wearlaw.models.model import CONDITIONS, Blame, fault
 from wearlaw.models.reader import Reader, Solved, flat

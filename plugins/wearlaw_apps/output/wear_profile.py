@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array, steady
-from wearlaw.contact.problem import Body, Problem
+from wearlaw.contact.parts import Body
+from wearlaw.contact.problem import Problem
 from wearlaw.errors import CompositionError, InputError, shown
 from wearlaw.numerics.totals import blocks
 from wearlaw.pipeline.selection import axis_names
