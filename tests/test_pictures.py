@@ -57,7 +57,7 @@ def test_the_picture_of_the_readme_has_the_regimes_laws_and_tests_of_the_papers(
 
 def test_every_shipped_contact_model_and_law_can_be_chosen() -> None:
     shown = [name for _, name in (*choosing.MODELS, *choosing.LAWS) if name]
-    installed = wl.installed("contact model") | wl.installed("wear law") | wl.installed("law")
+    installed = {**wl.installed("contact model"), **wl.installed("wear law"), **wl.installed("law")}
     shipped = [name for name, cls in installed.items() if cls.__module__.startswith("wearlaw_models.")]
     assert sorted(shown) == sorted({*shipped})
     page = (ROOT / "docs" / "choosing.md").read_text(encoding="utf-8")
