@@ -5,7 +5,6 @@ The order is rig | contact model | stages, if any, | laws.
 
 from __future__ import annotations
 
-import dataclasses
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, cached_property
@@ -50,6 +49,7 @@ from wearlaw.pipeline.composition import (
     warn_of_parameters,
     warn_of_unlike_materials,
 )
+from wearlaw.pipeline.posed import axes, in_batch, masked, with_conditions, with_same
 from wearlaw.pipeline.prediction import Prediction, solved
 from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.units.quantities import parse, real_array, with_units
@@ -226,9 +226,9 @@ class Rig(Model):
         of_rig, arrays = _parted(self, conditions, declared) if declared else (conditions, {})
         try:
             with Blame(self):
-                problem = _in_batch(_posed(self, of_rig))
+                problem = in_batch(_posed(self, of_rig))
                 if declared:
-                    problem = _with_conditions(problem, arrays)
+                    problem = with_conditions(problem, arrays)
         except (ModelError, ConditionsError) as error:
             if declared or isinstance(error, ModelError):
                 self.check_names(conditions, models)
@@ -353,77 +353,6 @@ def _parted(
         wide = np.broadcast_to(numbers, broadcast({name: numbers, **arrays})[name].shape)
         return {**of_rig, name: wide if plain else with_magnitude(quantity, wide)}, arrays
     return of_rig, arrays
-
-
-def _with_conditions(problem: Problem, arrays: Mapping[str, Array]) -> Problem:
-    """Return a rig's problem with conditions of models in the shape of its batch; the rig's own values stay."""
-    batch, within = problem.batch_shape, (..., *[None] * len(problem.dims))
-    wide = {
-        name: array if array.shape == batch else np.broadcast_to(array[within], batch) for name, array in arrays.items()
-    }
-    return problem.replaced(conditions={**wide, **problem.conditions})
-
-
-def _with_same(part: Problem, problem: Problem, names: Iterable[str]) -> Problem:
-    """Return a problem that a rig makes to balance its loads, with conditions that all operating points share.
-
-    Raises
-    ------
-    ConditionsError
-        If a condition differs between the points, and the rig does not give it to the problem.
-    """
-    lacking = {name: problem.conditions[name] for name in names if name not in part.conditions}
-    for name, array in lacking.items():
-        if np.ptp(array) > 0.0:
-            raise ConditionsError(f"{name}: must be one value, since the rig balances its loads without it")
-        lacking[name] = np.full(part.batch_shape, array.flat[0] if array.ndim else array)
-    return part.replaced(conditions={**part.conditions, **lacking}) if lacking else part
-
-
-def _in_batch(problem: Problem) -> Problem:
-    """Return a rig's problem with places on profiles in the shape of its batch, and NaN for patches that do not exist.
-
-    Raises
-    ------
-    ValueError
-        If they do not fit the batch.
-    """
-    batch, dims = problem.batch_shape, problem.dims
-    if dims and batch[len(batch) - len(dims) :] != tuple(map(len, dims.values())):
-        raise ValueError(f"`dims` must label the last axes of the batch, of shape {batch}; got {problem.dims!r}")
-    placed = {}
-    for name, body in problem.bodies.items():
-        if body.profile_position is not None:
-            try:
-                position, direction = (
-                    np.broadcast_to(np.asarray(value, dtype=np.float64), batch)
-                    for value in (body.profile_position, body.profile_direction)
-                )
-            except ValueError:
-                raise ValueError(f"`profile_position` and `profile_direction` of {name} must fit {batch}") from None
-            if not (np.abs(direction) == 1.0).all():
-                raise ValueError(f"`profile_direction` of {name} must be 1 or -1")
-            placed[name] = dataclasses.replace(body, profile_position=position, profile_direction=direction)
-    if placed:
-        problem = problem.replaced(bodies={**problem.bodies, **placed})
-    return problem if problem.exists is None else _masked(problem)
-
-
-def _axes(problem: Problem) -> tuple[object, ...]:
-    return problem.geometry, problem.batch_shape, problem.dims
-
-
-def _masked(problem: Problem) -> Problem:
-    """Return the problem with NaN for patches that do not exist."""
-    exists = np.asarray(problem.exists)
-    if exists.dtype != np.bool_ or exists.shape != problem.batch_shape:
-        raise ValueError(f"`exists` must be an array of bool of the shape of the batch, {problem.batch_shape}")
-    of_strips = exists[..., None]
-    masked = problem.mapped(  # texts of a rig, such as why there is no patch, stay
-        lambda array: np.where(exists, array, np.nan) if array.dtype.kind == "f" else array,
-        lambda array: np.where(of_strips, array, np.nan),
-    )
-    return masked.replaced(exists=exists, unloaded=problem.unloaded)
 
 
 def _read_only(value: Any) -> Any:
@@ -579,13 +508,13 @@ class Pipeline(Configuration, Generic[P]):
             forces = Forces(self.staged_model)
             names = {name for model in self.models if not isinstance(model, Law) for name in model.own_conditions()}
             names &= problem.conditions.keys()
-            balanced = rig.balanced(problem, lambda part: forces(_with_same(part, problem, names) if names else part))
-            if not isinstance(balanced, Problem) or _axes(balanced) != _axes(problem):
+            balanced = rig.balanced(problem, lambda part: forces(with_same(part, problem, names) if names else part))
+            if not isinstance(balanced, Problem) or axes(balanced) != axes(problem):
                 raise ValueError("`balanced` must return a problem like the one given, as from `Problem.replaced`")
             if problem.conditions and not balanced.conditions:
                 balanced = balanced.replaced(conditions=problem.conditions)
             if balanced.exists is not None and balanced.exists is not problem.exists:
-                balanced = _masked(balanced)
+                balanced = masked(balanced)
         check_problem(rig, balanced)
         return balanced
 
