@@ -94,6 +94,29 @@ def test_a_life_of_contacts_removes_their_mass(of_wheelset: wl.Prediction, run: 
     assert 7850.0 * volume == pytest.approx(found.table["mass [kg]"].iloc[-1], rel=1e-9)
 
 
+def test_cone_under_uniform_slip_wears_by_archard_in_closed_form() -> None:
+    """Patches in full slip ξ every Δ = 0.25 mm: a wheel of radius r loses the depth k N ξ L/(H 2π r n Δ)."""
+    y = np.arange(-30.0, 30.1, 0.25)
+    cone = wl.Profile.from_points(y=Q(np.linspace(-60.0, 60.0, 61), "mm"),
+                                  z=Q(np.linspace(3.0, -3.0, 61), "mm"), kind="wheel")  # fmt: skip
+    rig = wl.ProfileContact(wheel=cone, rail=wl.Profile.uic60(), nominal_radius="460 mm", rail_cant="1:40",
+                            material=wl.steel(), rolling_speed="20 m/s")  # fmt: skip
+    law = wl.wear_law("archard", coefficient=1e-4, hardness="2.6 GPa")
+    states = pd.DataFrame({"contact_position [mm]": y})
+    given: dict[str, Any] = {"normal_force": "60 kN", "longitudinal_creepage": "3 %", "spin": "0 1/m",
+                             "semi_axis_a": "6 mm", "semi_axis_b": "5 mm", "friction_coefficient": 0.3}  # fmt: skip
+    found = wl.wear_out(rig | wl.contact_model("fastsim") | law, states, over="400 km", share="equal", **given)
+    across = found.profiles["depth"].isel(distance=-1)
+    at = across["place"].values
+    middle = np.abs(at) < 20.0
+    slope = np.arctan(0.05)
+    radius = 0.46 - 1e-3 * at[middle] * np.sin(slope)
+    width = y.size * 0.25e-3 / np.cos(slope)
+    expected = 1e-4 / 2.6e9 * 60e3 * 0.03 * 400e3 / (2.0 * np.pi * radius * width)
+    # The depth of a patch is a parabola, which sums every Δ to 1 ± Δ²/(4 b²) = 1 ± 6e-4. The radius changes by 1e-4.
+    assert 1e-3 * across.values[0, middle] == pytest.approx(expected, rel=1e-3)
+
+
 def test_patch_of_constant_curvatures_is_that_of_hertz() -> None:
     """A cone on a rail of one radius: the ellipse of `WheelRail`."""
     y = np.linspace(-40.0, 40.0, 400)

@@ -42,6 +42,21 @@ def test_a_function_takes_the_worn_rig_of_each_step() -> None:
     assert last(found, "mass [kg]") != pytest.approx(last(held, "mass [kg]"), rel=1e-4)
 
 
+def test_mirrored_states_wear_the_mirror_image() -> None:
+    """Rounding moves contact points by up to 2e-9 m (`wheelset/test_positions`)."""
+    states = line(3).assign(**{"yaw [mrad]": [1.0, 0.0, 2.0], "lateral_displacement [mm]": [-1.0, 1.0, 3.0]})
+    mirrored = states.assign(**{name: -states[name] for name in ("yaw [mrad]", "lateral_displacement [mm]")})
+    right, left = (wl.wear_out(pipeline(), each, over="300 km", sides="each", **GIVEN) for each in (states, mirrored))
+    assert last(right, "mass_right [kg]") > 1.1 * last(right, "mass_left [kg]")
+    for column in right.table:
+        side = str(column)
+        other = side.replace("_left", "_right") if "_left" in side else side.replace("_right", "_left")
+        assert left.table[other].to_numpy() == pytest.approx(right.table[column].to_numpy(), rel=1e-6, abs=1e-6)
+    ends = [[profile.points[1].magnitude for profile in life.worn_profiles[-1]] for life in (right, left)]
+    for here, there in zip(ends[0], reversed(ends[1]), strict=True):
+        assert here == pytest.approx(there, abs=1e-6)
+
+
 def test_a_stored_life_keeps_the_states_of_each_step_and_compares_them(tmp_path: Path) -> None:
     path = tmp_path / "life.zarr"
     first = wl.wear_out(pipeline(), narrowing, over="800 km", store=path, **GIVEN)
