@@ -20,7 +20,7 @@ from wearlaw_apps.sweeps.located import posed
 from wearlaw_apps.sweeps.points import Points
 from wearlaw_apps.sweeps.provenance import check_same, digest, provenance_of
 from wearlaw_apps.sweeps.sweep import check_importable, run
-from wearlaw_apps.sweeps.wear_profile import ProfileJob, Sum
+from wearlaw_apps.sweeps.wear_profile import REMEDY, ProfileJob, Sum
 
 if TYPE_CHECKING:
     from wearlaw_apps.sweeps.folder import Parts
@@ -154,6 +154,8 @@ class Line:
             try:
                 remarks += run(total, lambda _: None, self._workers, self._client)
             except wl.InputError as error:
+                if REMEDY not in str(error):  # other mistakes do not go with the profile
+                    raise
                 raise NoResultError(str(error)) from None
             notes = [[type(remark).__name__, str(remark)] for remark in remarks]
             arrays = total.arrays()

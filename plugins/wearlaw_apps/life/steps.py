@@ -11,6 +11,7 @@ import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
+from wearlaw.errors import DataError
 from wearlaw.units.registry import unit_in_si
 from wearlaw_apps.life.life import NEAR, RAIL, SIDES, measure_of, name_and_unit
 from wearlaw_apps.life.line import Line, NoResultError, Wear
@@ -229,7 +230,8 @@ class Steps:
                     continue
                 along, _ = self.along
                 done = f"{now.row[along]:.6g} {name_and_unit(along)[1] or along}"
-                raise type(error)(f"step {now.number + 1}, after {done}: {failures[0]}") from None
+                kind = DataError if isinstance(error, NoResultError) else type(error)
+                raise kind(f"step {now.number + 1}, after {done}: {failures[0]}") from None
             if failures:
                 share = SHORTER[len(failures) - 1]
                 notes += (f"the step before was taken again, {share:g} times as long: {failures[0]}",)

@@ -35,6 +35,9 @@ WEAR_PROFILE = "wear_profile"
 SHARE = "share"
 """Name that the column with the shares gets."""
 
+REMEDY = "correct the state, or leave it out and divide the shares by the sum of those that stay"
+"""What to do about a state that has no place in a sum over service."""
+
 UNITS = (
     {"depth": "um/km", "sliding_distance": "mm/m", "mass": "mg/km"},
     {"depth": "nm", "sliding_distance": "um", "mass": "mg/m"},
@@ -129,9 +132,7 @@ class ProfileJob(Job):
             wrong = "the wheel climbs its rail, beyond the steepest point of its flange, as no wheel does in service"
         else:
             return problem
-        raise ConditionsError(
-            f"{wrong}; correct the state, or leave it out and divide the shares by the sum of those that stay"
-        )
+        raise ConditionsError(f"{wrong}; {REMEDY}")
 
     def outputs(self, prediction: Prediction, part: Points) -> Outputs:
         """Return the depth and the sliding distance, (points, *sides, positions), or the sums of these and the mass."""

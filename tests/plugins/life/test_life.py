@@ -29,6 +29,7 @@ from wearlaw_apps.life.removal import (  # private: the parts of a step in close
 from wearlaw_apps.life.steps import Limits  # private: the limits alone
 from wearlaw_apps.output import Limit
 from wearlaw_apps.sweeps.sweep import run  # private: the warnings of a step
+from wearlaw_apps.sweeps.wear_profile import REMEDY  # private: a state without result
 
 GIVEN: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
 
@@ -424,7 +425,7 @@ def test_a_step_before_one_without_result_is_taken_again_in_part(
     def failing(*given: Any) -> Any:
         calls.append(given)
         if len(calls) == 4:
-            raise wl.ConditionsError("row 1: no normal forces balance this state")
+            raise wl.ConditionsError(f"row 1: no normal forces balance this state; {REMEDY}")
         return run(*given)
 
     calls: list[Any] = []
