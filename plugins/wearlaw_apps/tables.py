@@ -19,7 +19,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
@@ -29,8 +29,8 @@ from wearlaw.errors import PROBLEMS, DataError, UnitError, did_you_mean, shown
 from wearlaw.late import needed_for
 from wearlaw.text_files import NOT_A_SPREADSHEET, SPREADSHEETS, encoding_of
 from wearlaw.units.quantities import Q, Quantity
-from wearlaw.units.registry import symbol
 from wearlaw_apps import sheets
+from wearlaw_apps.heads import Column, agreed, is_title, known, named_column
 
 if TYPE_CHECKING:
     import pandas
@@ -53,38 +53,6 @@ SEPARATORS = {" ": "spaces", "\t": "tabs", ",": "commas", ";": "semicolons", "|"
 
 LISTED = 20
 """Most columns that a message lists."""
-
-
-_WORDS = r"[^\[\]\s]*+(?:\s++[^\[\]\s]++)*+"
-HEAD = re.compile(rf"(?P<name>{_WORDS})\s*+(?:\[\s*+(?P<unit>{_WORDS})\s*+\])?")
-"""The head of a column, as in "creepage [%]": a name and an optional unit; the time is linear in the length."""
-
-OTHER_HEAD = re.compile(r"(?P<name>.*\S)(?:\s*\((?P<unit>[^()]+)\)|(?:,|\s/|\s+in)\s+(?P<behind>\S+))")
-"""Other heads that state a unit, if it is known: "Load (N)", "Load, N", "F / N" and "Load in N"."""
-
-
-class Column(NamedTuple):
-    """A column in use.
-
-    Attributes
-    ----------
-    name : str
-        The name that it got.
-    head : str
-        Its head in the table.
-    place : int
-        Its index in the table.
-    unit : str or None
-        Its unit, "" for a ratio; None for plain numbers. An unknown unit is kept as it is written.
-    sign : float
-        The factor 1 or -1.
-    """
-
-    name: str
-    head: str
-    place: int
-    unit: str | None
-    sign: float = 1.0
 
 
 class Table:
@@ -227,7 +195,7 @@ class Table:
                 if len(matches) > 1:
                     raise DataError(f"{name}: the column '{rest}' is there {len(matches)} times; rename all but one")
                 if matches:
-                    return matches[0]._replace(name=name, unit=_agreed(name, wanted, matches[0]), sign=sign)
+                    return matches[0]._replace(name=name, unit=agreed(name, wanted, matches[0]), sign=sign)
         heads = [column.head for column in self.heads]
         near = did_you_mean(text.removeprefix("-"), [*heads, *(column.name for column in self.heads)]).rstrip(".")
         listed = ", ".join(f"'{column}'" for column in heads[:LISTED]) + (", ..." if len(heads) > LISTED else "")
@@ -276,39 +244,6 @@ class Table:
         }
         bare = text.lstrip("+-")
         return "".join(f"; {hint}" for pattern, hint in hints.items() if re.fullmatch(pattern, bare))
-
-
-def named_column(head: str, place: int) -> Column:
-    """Return the column of a head; an unknown unit is kept as it is written."""
-    match = HEAD.fullmatch(head)
-    name, unit = (match["name"], match["unit"]) if match else (head, None)
-    with suppress(UnitError):
-        unit = unit and _known(unit)
-    if unit is None and (match := OTHER_HEAD.fullmatch(head)):
-        with suppress(UnitError):
-            name, unit = match["name"], _known(match["unit"] or match["behind"])
-    return Column(name, head, place, unit)
-
-
-def _agreed(name: str, wanted: Column, column: Column) -> str | None:
-    """Return the unit that the user states for a column, or else that of the table, which must not be another one."""
-    if wanted.unit is None:
-        return column.unit
-    try:
-        unit = Q(1.0, wanted.unit)
-    except UnitError as error:
-        raise UnitError(f"{name}: column '{column.head}': {error}") from None
-    if column.unit is not None and wanted.unit != column.unit:
-        with suppress(UnitError):  # what the table states may be no unit
-            if Q(1.0, column.unit) != unit:
-                units = f"'{wanted.unit}' and '{column.unit}'"
-                raise DataError(f"{name}: column '{column.head}': has the units {units}; keep one of them")
-    return wanted.unit
-
-
-def _known(unit: str) -> str:
-    """Return a unit in the notation of pint, "" for "-" and "1"."""
-    return "" if unit.strip() in ("", "-", "1") else symbol(Q(1.0, unit).units, "~C")
 
 
 def read_table(
@@ -439,7 +374,7 @@ class CsvTable(Table):
                 while header.count('"') % 2 and (more := file.readline()):  # a line break in a head
                     header, self._skip = header + more, self._skip + 1
                 text = "".join(header.split()).strip(",;")
-                if text and not header.lstrip('" ').startswith(comment) and not _is_title(header, head):
+                if text and not header.lstrip('" ').startswith(comment) and not is_title(header, head):
                     break
                 self._skip += 1
                 self.comments.append(header.strip('",; \t\r\n').lstrip(f"{comment} "))
@@ -581,24 +516,6 @@ def _pandas() -> Any:
     return pandas
 
 
-def _is_title(line: str, lines: Sequence[str]) -> bool:
-    """Return whether a line has half of the cells of the last one at most, and stands above a line with more words."""
-    rest = [row for row in lines[lines.index(line) + 1 :] if row.strip(_EMPTY)] if line in lines else []
-    mark = next((mark for mark in ";\t|," if rest and mark in rest[-1].strip(_EMPTY)), "")
-    if not mark:
-        return False
-
-    def width(row: str) -> int:
-        return sum(bool(cell.strip(_EMPTY)) for cell in row.split(mark))
-
-    most = width(rest[-1]) // 2
-    return width(line) <= most and any(width(row) > most and any(map(str.isalpha, row)) for row in rest)
-
-
-_EMPTY = "\"',; \t\r\n"
-"""Characters of a line without content."""
-
-
 def _are_units(cells: Sequence[str], decimal: str) -> bool:
     """Return whether the cells below a header are units: no numbers, and units in more than half of those in use."""
     texts = [cell.strip("[]()") for cell in cells if cell]
@@ -607,7 +524,7 @@ def _are_units(cells: Sequence[str], decimal: str) -> bool:
     matched = 0
     for text in texts:
         with suppress(UnitError):
-            _known(text)
+            known(text)
             matched += 1
     return 2 * matched > len(texts)
 

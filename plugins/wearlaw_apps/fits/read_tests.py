@@ -18,8 +18,9 @@ from wearlaw.models.model import CONDITIONS
 from wearlaw.text_files import read_text
 from wearlaw.units.quantities import Q, QuantityLike, parse
 from wearlaw_apps.fits.wear_tests import BALANCE, COLUMNS, ROLLED, WAYS, Values, WearTests, is_way
+from wearlaw_apps.heads import Column
 from wearlaw_apps.output.datasets import names_in
-from wearlaw_apps.tables import Column, Table, is_spreadsheet, open_table
+from wearlaw_apps.tables import Table, is_spreadsheet, open_table
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -19,11 +19,12 @@ from wearlaw.errors import ConditionsError, DataError, InputError, UnitError, We
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import Q
 from wearlaw.units.variables import VARIABLES
+from wearlaw_apps.heads import Column, named_column
 from wearlaw_apps.sweeps.located import advice
 from wearlaw_apps.sweeps.points import OnDisk, Points, Varying, split
 from wearlaw_apps.sweeps.shares import EQUAL, with_shares
 from wearlaw_apps.sweeps.wear_profile import SHARE
-from wearlaw_apps.tables import LISTED, Column, Table, named_column, open_table
+from wearlaw_apps.tables import LISTED, Table, open_table
 
 Columns = Mapping[str, str]
 """The columns of a table by the names that they get, as in {"normal_force": "-Fz [N]"}."""

@@ -239,8 +239,8 @@ def test_tables_of_windows_are_read_below_their_titles(tmp_path: Path, encoding:
     lines = 'Fahrt 3\r\nStraße X;;\r\n\r\nBahn;;;Zeit\r\nGröße;F [°];t;"u\r\n[s]"\r\n1,5;2;3;4\r\n'
     (tmp_path / "run.csv").write_bytes(lines.encode(encoding))
     table = wl.read_table(tmp_path / "run.csv", decimal=",")
-    assert (table.numbers("Größe").tolist(), table["F"].m_as("deg").tolist()) == ([1.5], [2.0])
-    assert (table.comments[0], table.where(0), table["u"].m_as("s").tolist()) == ("Fahrt 3", "line 7", [4.0])
+    assert (table.numbers("Größe").tolist(), table.numbers("F").tolist()) == ([1.5], [2.0])
+    assert (table.comments[0], table.where(0), table.numbers("u").tolist()) == ("Fahrt 3", "line 7", [4.0])
 
 
 def test_decimal_commas_between_blanks_are_no_cells_of_a_title() -> None:
