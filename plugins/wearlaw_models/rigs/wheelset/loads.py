@@ -19,8 +19,8 @@ from wearlaw_models.rigs.wheelset.search import Section, Touching, both_sides
 from wearlaw_models.rigs.wheelset.stand import BALANCED, Creeping, Stand
 from wearlaw_models.rigs.wheelset.task import Elastic, Patch, Task
 
-AGAIN = 4
-"""How often rows of a position are laid again at most."""
+AGAIN, WHOLE = 8, 3
+"""How often rows of a position are laid again at most, and from which one on loads are balanced before the next."""
 
 FARTHEST, MOST_ROLL = 0.5e-3, 1e-3
 """Greatest changes of the height [m] and of the roll [rad] from one laying of rows to the next."""
@@ -101,7 +101,7 @@ class Loads:
         for number in range(AGAIN + 1):
             if forces is not None:
                 assert goal is not None
-                stand.balance(forces, self.patch, number == AGAIN, goal)
+                stand.balance(forces, self.patch, number >= WHOLE, goal)
             yield stand
             far = stand.shift > 1.0
             if number == AGAIN or not far.any():
