@@ -51,7 +51,7 @@ def worn_pair() -> wl.Wheelset:
 PAIRS = {False: wheelset(), True: worn_pair()}
 
 
-def posed(pair: wl.Wheelset, displacement: Any, yaw: Any, load: Any, friction: float = 1e-7, **more: Any) -> Any:
+def posed(pair: wl.Wheelset, displacement: Any, yaw: Any, load: Any, friction: float = 1e-12, **more: Any) -> Any:
     """Return the balanced problem of a wheelset in SI, by default without creep forces."""
     conditions = {
         "lateral_displacement": Q(displacement, "m"), "yaw": Q(yaw, "rad"), "vertical_load": Q(load, "N"),
