@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -230,7 +231,9 @@ class Fit:
             ],
             "unit": [symbol(value.units, "~P") for value in self.parameters.values()],
         }
-        return latex_table(pd.DataFrame(rows))
+        # Names of parameters such as tr_sc are symbols with an index.
+        with_index = r"$\\mathit{\1}_{\\mathrm{\2}}$ &"
+        return re.sub(r"^([A-Za-z]+)\\_([A-Za-z]+) &", with_index, latex_table(pd.DataFrame(rows)), flags=re.MULTILINE)
 
     def to_toml(self, path: str | os.PathLike[str]) -> None:
         """Write the fitted law and its provenance to a file that `read_law` reads.
