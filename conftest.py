@@ -150,7 +150,7 @@ def read_tables(example: Example) -> None:
     """Read tables of a case file below those of the shipped case."""
     from wearlaw_apps.studies.case import case_text, load_case  # private: a case without its files
 
-    Path("_tables.toml").write_text(f"{case_text('tassini2010')}\n{example.parsed}", encoding="utf-8")
+    Path("_tables.toml").write_text(f"{case_text('two_discs')}\n{example.parsed}", encoding="utf-8")
     load_case("_tables.toml")
 
 
