@@ -12,6 +12,7 @@ import wearlaw as wl
 from wearlaw_apps.life.over_distance import wear_out
 from wearlaw_apps.life.steps import CONICITY
 from wearlaw_apps.output.notes import caught_warnings
+from wearlaw_apps.output.styled import plain_number
 
 LINE = "line"
 """The sweep whose states make up the line."""
@@ -78,10 +79,9 @@ def _states(predict: wl.Pipeline[...], name: str, values: wl.Quantity, condition
     panels = []
     for side in depth["side"].values:
         curves = tuple(
-            wl.Curve(f"{values.magnitude[state]:.3g} {values.units:~P}", at.magnitude, depth.sel(side=side)[row].values,
-                     colour=row)
-            for row, state in enumerate(chosen)
-        )  # fmt: skip
+            wl.Curve(f"{plain_number(value)} {values.units:~P}", at.magnitude, depth.sel(side=side)[row].values, row)
+            for row, value in enumerate(values.magnitude[chosen])
+        )
         x, y = wl.PlotAxis("position along the profile [mm]"), wl.PlotAxis("depth [µm/km]")
         panels.append(wl.Panel(x, y, curves, f"{side} wheel"))
     title = f"Which {name.replace('_', ' ')} wears where"

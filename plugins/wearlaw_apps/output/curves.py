@@ -219,12 +219,15 @@ def head_of_legend(figure: FigureData) -> str:
 
 
 def shows_outside(figure: FigureData) -> bool:
-    """Return whether a figure shows any part of a line outside the range of its law."""
-    return any(
-        (out := in_parts(curve)[1]) is not None and (np.isfinite(out) & panel.x.shows(curve.x)).any()
-        for panel in figure.panels
-        for curve in panel.curves
-    )
+    """Return whether a figure shows any part of a line outside the range of its law, between two points in sight."""
+    for panel in figure.panels:
+        for curve in panel.curves:
+            outside = in_parts(curve)[1]
+            if outside is not None:
+                seen = np.isfinite(outside) & panel.x.shows(curve.x)
+                if (seen[1:] & seen[:-1]).any() or (seen.size == 1 and seen.all()):
+                    return True
+    return False
 
 
 def in_parts(curve: Curve) -> tuple[Array, Array | None]:

@@ -18,6 +18,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.textpath import TextPath
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from matplotlib.transforms import ScaledTranslation
 
@@ -65,8 +66,10 @@ AROUND = 0.6
 """Height and width that the labels of a panel take, in inches."""
 TITLE, LINE = 0.17, 0.13
 """Height of a line of the title, and of the conditions below it, in inches."""
-TITLE_LETTERS, LETTERS, SAMPLE = 12, 20, 8
-"""Letters of the title of a figure, and of smaller texts, that fit in an inch, and that the sample of a line takes."""
+TITLE_LETTERS, LETTERS = 12, 20
+"""Letters of the title of a figure, and of smaller texts, that fit in an inch."""
+SAMPLE, FRAME = 0.47, 0.1
+"""Widths of the sample of a line with its spaces, and of the margins of a legend, in inches."""
 BELOW = 0.36
 """Distance of the legend of a panel below its axes, in inches."""
 TICKS = 3
@@ -89,7 +92,9 @@ def draw(figure: FigureData, managed: bool = False) -> Figure:
         textwrap.wrap(text, round(LETTERS * width)) for text in (figure.conditions, head_of_legend(figure))
     )
     with mpl.rc_context(STYLE):
-        drawn = _managed() if managed else Figure(layout="constrained")
+        if managed:
+            from matplotlib import pyplot  # loads a backend
+        drawn = pyplot.figure(layout="constrained") if managed else Figure(layout="constrained")
         axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
         entries = _fill(figure, list(axes.values()), [round(LETTERS * 0.9 * widths[number]) for number in axes])
         look: Any = {"handlelength": 2.8, "columnspacing": 1.2}  # a whole period of every line style
@@ -117,8 +122,9 @@ def draw(figure: FigureData, managed: bool = False) -> Figure:
 
 def _columns(entries: Mapping[str, Any], width: float) -> int:
     """Return the columns of a legend that fit in a width, in inches."""
-    widths, room = [len(name) + SAMPLE for name in entries] or [1], round(LETTERS * width)
-    return len(widths) if sum(widths) <= room else max(1, room // max(widths))
+    size, room = STYLE["legend.fontsize"], width - FRAME
+    widths = [TextPath((0.0, 0.0), name, size=size).get_extents().width / 72.0 + SAMPLE for name in entries] or [room]
+    return len(widths) if sum(widths) <= room else max(1, int(room // max(widths)))
 
 
 def _own_legend(axes: Axes, panel: Panel, width: float, look: dict[str, Any]) -> int:
@@ -138,12 +144,6 @@ def draw_into(axes: list[Axes], figure: FigureData) -> None:
         if entries:
             framed = panel.map is not None
             drawn_axes.legend(list(entries.values()), list(entries), frameon=framed)
-
-
-def _managed() -> Figure:
-    from matplotlib import pyplot  # loads a backend
-
-    return pyplot.figure(layout="constrained")
 
 
 def panel_height(panel: Panel, width: float) -> float:

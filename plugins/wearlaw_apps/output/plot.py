@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from wearlaw.errors import InputError, shown
 from wearlaw_apps.output.curves import FigureData, PlotAxis
@@ -18,39 +18,17 @@ Log: TypeAlias = Literal["", "x", "y", "xy"]
 """The axes of a figure that are logarithmic."""
 
 
-def plot(figure: FigureData) -> Figure:
+def plot(figure: FigureData, managed: bool = False) -> Figure:
     """Draw a figure with `wearlaw_apps.output.drawing.draw`."""
-    drawn: Figure = _drawing().draw(figure)
-    return drawn
+    from wearlaw_apps.output.drawing import draw
 
-
-def _drawing() -> Any:
-    from wearlaw_apps.output import drawing
-
-    return drawing
+    return draw(figure, managed)
 
 
 def plotted(
     figure: FigureData, ax: Axes | Sequence[Axes] | None = None, log: Log | None = None, title: str | None = None
 ) -> Axes:
-    """Draw a figure that `matplotlib.pyplot` and notebooks show, or draw it into axes, and return its first axes.
-
-    Parameters
-    ----------
-    figure : FigureData
-        The figure.
-    ax : matplotlib.axes.Axes or sequence of these, optional
-        Axes to draw into, one for each panel, in the style in force. Default: those of a new figure.
-    log : {"", "x", "y", "xy"}, optional
-        The logarithmic axes. Default: as the figure has them.
-    title : str, optional
-        Its title. Default: that of the figure.
-
-    Raises
-    ------
-    InputError
-        If `log` is unknown, or there are not as many axes as panels.
-    """
+    """Draw a figure as `Drawn.plot` does."""
     if log not in (None, "", "x", "y", "xy"):
         raise InputError(f'log: must be "x", "y", "xy" or "", got {shown(log)}')
     if log is not None:
@@ -61,12 +39,13 @@ def plotted(
         figure = dataclasses.replace(figure, panels=tuple(panels))
     if ax is None:
         figure = figure if title is None else dataclasses.replace(figure, title=title)
-        first: Axes = _drawing().draw(figure, managed=True).axes[0]
-        return first
+        return plot(figure, managed=True).axes[0]
+    from wearlaw_apps.output.drawing import draw_into
+
     axes = [*ax] if isinstance(ax, Sequence) else list(getattr(ax, "flat", [ax]))
     if len(axes) != len(figure.panels):
         raise InputError(f"ax: the figure has {len(figure.panels)} panels; give axes for each, got {len(axes)}")
-    _drawing().draw_into(axes, figure)
+    draw_into(axes, figure)
     if title is not None:
         axes[0].set_title(title)
     return axes[0]
@@ -93,10 +72,16 @@ class Drawn(ABC):
         Parameters
         ----------
         ax : matplotlib.axes.Axes or sequence of these, optional
-            Axes to draw into, one for each panel. Default: those of a new figure of `matplotlib.pyplot`.
+            Axes to draw into, one for each panel, in the style in force. Default: those of a new figure of
+            `matplotlib.pyplot`, which it and notebooks show.
         log : {"", "x", "y", "xy"}, optional
             The logarithmic axes. Default: by what is drawn.
         title : str, optional
             The title.
+
+        Raises
+        ------
+        InputError
+            If `log` is unknown, or there are not as many axes as panels.
         """
         return plotted(self.figure_data(), ax, log, title)

@@ -85,7 +85,8 @@ def html_table(frame: pd.DataFrame, caption: str) -> str:
 
 
 def _head(head: str) -> str:
-    """Return the head of a column for readers: words without underscores, and its unit in the usual spelling."""
+    """Return the head of a column for readers: words without underscores, a minus, its unit in the usual spelling."""
+    head = re.sub(r"^-(?=\d)", "−", head)
     words = re.sub("(?<=[a-z]{3})_(?=[a-z]{3})", " ", head)  # symbols such as tr_sc keep theirs
     return re.sub(r"\[[^\]]*\]$", lambda unit: readable(unit[0]), words)
 

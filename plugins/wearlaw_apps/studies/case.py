@@ -18,14 +18,7 @@ from typing import Annotated, Any, TypeVar
 
 import tomli_w
 from packaging.specifiers import InvalidSpecifier, SpecifierSet
-from pydantic import (
-    AfterValidator,
-    Field,
-    TypeAdapter,
-    ValidationInfo,
-    field_validator,
-    model_validator,
-)
+from pydantic import AfterValidator, Field, TypeAdapter, ValidationInfo, field_validator, model_validator
 
 from wearlaw import loader
 from wearlaw.configuration import Configuration, known_as

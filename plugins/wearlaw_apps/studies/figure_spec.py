@@ -26,8 +26,8 @@ COMMON = ("pressure", "creepage")
 Scale = Literal["linear", "log"]
 
 
-def _variables(value: Any) -> Any:
-    return (value,) if isinstance(value, str) else value
+def _several(value: Any) -> Any:
+    return (value,) if isinstance(value, str | int) else value
 
 
 class _Schema:
@@ -44,17 +44,12 @@ class _Schema:
 
 _SHOWN = (WEAR, MASS, *OF_PROFILE, *ACROSS)
 
-Variables = Annotated[
-    tuple[str, ...],
-    BeforeValidator(_variables),
-    Field(min_length=1),
-    _Schema(*_SHOWN, several=True),
-]
+Variables = Annotated[tuple[str, ...], BeforeValidator(_several), Field(min_length=1), _Schema(*_SHOWN, several=True)]
 """One variable, or several with the same unit."""
 
 Labels = Annotated[
     tuple[str | int, ...],
-    BeforeValidator(lambda value: (value,) if isinstance(value, str | int) else value),
+    BeforeValidator(_several),
     Field(min_length=1),
     WithJsonSchema(
         {"anyOf": [_LABEL := {"type": ["string", "integer"]}, {"type": "array", "items": _LABEL, "minItems": 1}]}

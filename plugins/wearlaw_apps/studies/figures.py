@@ -56,7 +56,6 @@ from wearlaw_apps.studies.results import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wearlaw.arrays import Array
 
 MOST_MAPS = 6
 """Most panels of a map."""
@@ -443,7 +442,7 @@ def _curve(
         return _to_the_edges(curve) if "y" in data or series.variable in ALONG[0] else curve
     signed = bool(data.attrs.get("patch_axes")) or series.outside is not None
     at = data[x].values if data.attrs.get("patch_axes") else np.abs(data[x].values)
-    at = _converted(at, results.case.result_units[x], units[x])
+    at = Q(at, results.case.result_units[x]).m_as(units[x])
     values = data[series.variable].values if signed else np.abs(data[series.variable].values)
     bands = series.ends()
     return Curve(series.label(several), at, np.broadcast_to(values, at.shape), outside=series.outside, **bands)
@@ -492,12 +491,6 @@ def _regimes(results: Results, series: _Series, curve: Curve) -> Iterator[Limit]
                 yield Limit(f"{pair.law}: {symbol} = {border:.4g} {unit}".rstrip(), x, "x")
 
 
-def _converted(values: Array, unit: str, wanted: str) -> Array:
-    """Return values of a unit in the unit in which a figure shows them."""
-    converted: Array = values if unit == wanted else Q(values, unit).to(wanted).magnitude
-    return converted
-
-
 def _measured(results: Results, x: str, y: str, units: Mapping[str, str]) -> Curve:
     """Return the measured points, as magnitudes like all curves over a sweep."""
     measured = results.case.measured
@@ -505,7 +498,7 @@ def _measured(results: Results, x: str, y: str, units: Mapping[str, str]) -> Cur
     assert measured is not None
     tests = measured.on(results.case.rig)
     values = measured_points(tests, results.case.rig)
-    along_x, up = _converted(abs(values[x]), UNITS[x], units[x]), abs(values[y])
+    along_x, up = Q(abs(values[x]), UNITS[x]).m_as(units[x]), abs(values[y])
     there = np.isfinite(along_x) & np.isfinite(up)
     curve = Curve(measured.label, along_x[there], up[there], BLACK, points=True)
     uncertainty = tests.wear_rate_uncertainty if y == "wear_rate" else None
@@ -540,7 +533,7 @@ def _maps(
     scale: Scale = "log" if not (outcome and outcome.sign == "any") and fit_for_log(*values) else "linear"
     axes, places = [], []
     for path, name in (("x", x), ("y", y)):
-        at = _converted(plane[name].values, results.case.result_units[name], units[name])
+        at = Q(plane[name].values, results.case.result_units[name]).m_as(units[name])
         spacing = getattr(spec, f"{path}_scale") or results.case.sweeps[spec.sweep or ""].spacing(name)
         axes.append(PlotAxis(label(name, units=units), spacing if (at > 0.0).all() else "linear",
                              _ends(path, name, units, spec)))  # fmt: skip

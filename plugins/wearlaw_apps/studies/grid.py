@@ -14,14 +14,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.contact.conditions import together
-from wearlaw.errors import (
-    CompositionError,
-    Fault,
-    InputError,
-    UnitError,
-    WearlawError,
-    shown,
-)
+from wearlaw.errors import CompositionError, Fault, InputError, UnitError, WearlawError, shown
 from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Rig, unknown_condition
 from wearlaw.units.quantities import Q, parse

@@ -208,11 +208,7 @@ def provenance(case: Case) -> dict[str, Any]:
 def used(case: Case) -> dict[str, dict[str, str]]:
     """Return the models and other named items of a case, by kind and name, with distribution and version."""
     plugins = loader.discovered()
-    named: dict[type, Shelf] = {
-        WearLaw: plugins["parameter set"],
-        Material: plugins["material"],
-        Case: plugins["case"],
-    }
+    named: dict[type, Shelf] = {WearLaw: plugins["parameter set"], Material: plugins["material"], Case: plugins["case"]}
     origins: dict[str, dict[str, str]] = {kind: {} for kind in plugins.shelves}
     for part in parts(case):
         if isinstance(part, Model):
@@ -295,15 +291,11 @@ def _sweep(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes, e
         {v: (points.dims, np.full(points.shape, level), {"units": units[v]})
          for v, level in fixed.items() if v not in dataset}
     )  # fmt: skip
-    return dataset.assign_coords(
-        {"pair_contact_model": ("pair", [pair.contact_model for pair in usable])}
-        | {"pair_wear_law": ("pair", [pair.law if pair.outcome.name == WEAR else "" for pair in usable])}
-        | (
-            {"pair_law": ("pair", [pair.law if pair.outcome.name != WEAR else "" for pair in usable])}
-            if case.laws
-            else {}
-        )
-    )
+    named = {"pair_contact_model": [pair.contact_model for pair in usable],
+             "pair_wear_law": [pair.law if pair.outcome.name == WEAR else "" for pair in usable]}  # fmt: skip
+    if case.laws:
+        named["pair_law"] = [pair.law if pair.outcome.name != WEAR else "" for pair in usable]
+    return dataset.assign_coords({name: ("pair", labels) for name, labels in named.items()})
 
 
 def _side_by_side(of_pairs: Mapping[str, xarray.Dataset], contacts: Mapping[str, xarray.Dataset]) -> xarray.Dataset:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -13,16 +13,12 @@ from wearlaw.models.law import Law
 from wearlaw.models.model import Model
 from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig
-from wearlaw_apps.fits.distributions import (
-    Distribution,
-    PublishedRange,
-    lognormal,
-    normal,
-    published_range,
-    uniform,
-)
+from wearlaw_apps.fits.distributions import Distribution, PublishedRange, lognormal, normal, published_range, uniform
 from wearlaw_apps.fits.uncertain_inputs import parameter
 from wearlaw_apps.studies.grid import Conditions, Value, wrong_conditions
+
+MAKERS: dict[str, Callable[..., Distribution]] = {"uniform": uniform, "normal": normal, "lognormal": lognormal}
+"""What makes each distribution."""
 
 
 class Spread(Configuration):
@@ -45,12 +41,8 @@ class Spread(Configuration):
 
     def distribution(self) -> Distribution:
         """Return the distribution."""
-        if self.uniform is not None:
-            return uniform(*self.uniform)
-        if self.normal is not None:
-            return normal(*self.normal)
-        assert self.lognormal is not None
-        return lognormal(*self.lognormal)
+        ((make, values),) = ((MAKERS[name], values) for name, values in self if values is not None)
+        return make(*values)
 
 
 def _uncertain(value: Any) -> Any:

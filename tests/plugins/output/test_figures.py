@@ -319,6 +319,21 @@ def test_panels_stand_in_rows_of_two_in_both_with_one_legend_below(count: int) -
     assert all(below <= box.y0 for axes in drawn.axes if (box := axes.get_tightbbox()) is not None)
 
 
+@pytest.mark.parametrize("labels", [("usfd on global", "kth on global", "beyond shakedown"), ("W" * 20, "W"), "abc"])
+def test_a_legend_fits_between_the_edges_of_a_column(labels: tuple[str, ...]) -> None:
+    drawn = both(panel(*(curve(label, colour=number) for number, label in enumerate(labels))))[0]
+    box = drawn.legends[0].get_window_extent()
+    assert 0.0 <= box.x0 < box.x1 <= drawn.bbox.x1
+
+
+def test_the_legend_explains_dashes_only_where_a_dashed_line_is_in_sight() -> None:
+    x, outside = np.array([1.0, 2.0, 3.0, 4.0]), np.array([False, False, False, True])
+    for end, explained in ((3.0, False), (4.0, True)):
+        line = curve(x=x, y=x, outside=outside)
+        drawn, shown = both(panel(line, x=PlotAxis("load [N]", ends=(1.0, end))))
+        assert (OUTSIDE in names(drawn)) == explained == (OUTSIDE in [trace["name"] for trace in shown["data"]])
+
+
 @pytest.mark.parametrize("text", [r"a $\nonsense$ b", "5 $ and 6 $", "_under^score", "100 % {x}"])
 def test_texts_are_shown_as_they_are_written(text: str) -> None:
     drawn, shown = both(panel(curve(text), x=PlotAxis(text), y=PlotAxis(text), title=text))
