@@ -19,7 +19,7 @@ DEFERRED = {
     ("wearlaw.kernels", "numba"): "is optional, and takes a second to load",
     (
         "wearlaw_apps.output.plot",
-        "wearlaw_apps.output",
+        "wearlaw_apps.output.drawing",
     ): "matplotlib takes longer to load than all else; few plot",
     ("wearlaw.numerics.crossings", "scipy.optimize"): "takes as long to load as the rest of wearlaw",
     ("wearlaw_apps.output.drawing", "matplotlib"): "pyplot loads a backend, which commands do without",
@@ -123,7 +123,7 @@ def deferred(source: str) -> Iterator[str]:
 
 
 def test_imports_inside_functions_are_few_and_each_has_its_reason() -> None:
-    found = [(name, one) for name, path in modules().items() for one in deferred(path.read_text(encoding="utf-8"))]
+    found = {(name, one) for name, path in modules().items() for one in deferred(path.read_text(encoding="utf-8"))}
     assert sorted(found) == sorted(DEFERRED)
 
 
