@@ -94,7 +94,10 @@ def draw(figure: FigureData, managed: bool = False) -> Figure:
     with mpl.rc_context(STYLE):
         if managed:
             from matplotlib import pyplot  # loads a backend
-        drawn = pyplot.figure(layout="constrained") if managed else Figure(layout="constrained")
+
+            drawn = pyplot.figure(layout="constrained")
+        else:
+            drawn = Figure(layout="constrained")
         axes: dict[int, Axes] = drawn.subplot_mosaic(rows, height_ratios=heights)
         entries = _fill(figure, list(axes.values()), [round(LETTERS * 0.9 * widths[number]) for number in axes])
         look: Any = {"handlelength": 2.8, "columnspacing": 1.2}  # a whole period of every line style
