@@ -182,17 +182,33 @@ def test_a_force_that_no_flange_bears_is_warned_of_with_the_greatest_one(sign: f
     assert np.isfinite(si(found, "guiding_force")[0]).all()
 
 
-def test_a_worn_flange_takes_its_load_without_a_jump() -> None:
-    # Of the two balances on it, one has twice the lateral force: a third of the steps changed it by 80 kN.
+@pytest.fixture(scope="module")
+def worn() -> wl.Wheelset:
+    """A wheelset with a worn flange."""
     new = wl.Profile.s1002()
     arc = np.arange(new.curve.s[0], new.curve.s[-1], 0.2e-3)
     depth = 0.48 * np.exp(-(((new.curve.at(arc)[0] + 37e-3) / 5e-3) ** 2))
-    pair = wheelset(wheel=new.worn(Q(1e3 * arc, "mm"), Q(depth, "mm")), rolling_speed="20 m/s")
-    at = (pair | wl.contact_model("fastsim"))(
-        lateral_displacement=Q(np.arange(6.78, 6.805, 0.0025), "mm"), vertical_load="80 kN", friction_coefficient=0.3,
+    return wheelset(wheel=new.worn(Q(1e3 * arc, "mm"), Q(depth, "mm")), rolling_speed="20 m/s")
+
+
+def sum_of_forces(pipeline: wl.Pipeline[...], displacement: Any) -> Any:
+    """Return ∑ Y at lateral displacements [mm] in a curve [kN]."""
+    at = pipeline(
+        lateral_displacement=Q(displacement, "mm"), vertical_load="80 kN", friction_coefficient=0.3,
         curve_radius="400 m",
     )  # fmt: skip
-    assert (np.abs(np.diff(1e-3 * si(at, "guiding_force").sum(axis=-1))) < 8.0).all()
+    return 1e-3 * si(at, "guiding_force").sum(axis=-1)
+
+
+def test_a_worn_flange_takes_its_load_without_a_jump(worn: wl.Wheelset) -> None:
+    # Of the two balances on it, one has twice the lateral force: a third of the steps changed it by 80 kN.
+    sums = sum_of_forces(worn | wl.contact_model("fastsim"), np.arange(6.78, 6.805, 0.0025))
+    assert (np.abs(np.diff(sums)) < 8.0).all()
+
+
+def test_a_wheel_that_slides_along_its_flank_has_a_result(worn: wl.Wheelset) -> None:
+    # Near the greatest force, rows that were laid again before the loads had a balance went to and fro.
+    assert np.isfinite(sum_of_forces(worn | wl.contact_model("strip_theory"), np.arange(6.84, 6.945, 0.01))).all()
 
 
 # -------------------------------------------------------------------------------------------------------- their places

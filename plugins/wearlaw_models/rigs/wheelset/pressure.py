@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_models.rigs.wheelset.rows import Rows
+from wearlaw_models.rigs.wheelset.rows import TINY, Rows
 
 NEAR = 2.5
 """Distance of two elements, over the longer side of one, beyond which two terms of a series give the displacement, with
@@ -109,10 +109,10 @@ class Pressed:
         """Return elements for rows, of which those touch that overlap much."""
         size, columns = np.diff(rows.start), rows.columns
         both = rows.half[rows.wheel]
-        of_row = np.where(both, rows.own, 2 * rows.own)
+        of_row = np.where(both, rows.halves, 2 * rows.halves)
         row = np.repeat(np.arange(rows.wheel.size), of_row)
         column = np.arange(row.size) - np.repeat(np.cumsum(of_row) - of_row, of_row)
-        column += np.where(both, 0, columns[rows.wheel] // 2 - rows.own)[row]
+        column += np.where(both, 0, columns[rows.wheel] // 2 - rows.halves)[row]
         wheel = rows.wheel[row]
         x = rows.dx[wheel] * (column + np.where(rows.half, 0.5, 0.5 - 0.5 * columns)[wheel])
         shape = rows.overlap[row] - rows.curvature[row] * x * x
@@ -137,10 +137,10 @@ class Pressed:
             self.influence = np.empty(self.table[-1])
             rows = self.rows
             arrays = rows.y, rows.z, rows.place.rail_arc, rows.place.angle, rows.width, rows.place.x
-            given = (
+            arguments = (
                 rows.start, *arrays, rows.dx, rows.columns, rows.half, self.modulus, self.table, self.influence,
             )  # fmt: skip
-            (influence_loop if self.loops else influences)(*given)
+            (influence_loop if self.loops else influences)(*arguments)
         return self.influence
 
     @property
@@ -180,15 +180,12 @@ class Pressed:
         rows = self.rows
         area = (np.where(rows.half, 2.0, 1.0) * rows.dx)[rows.wheel] * rows.width
         deepest = rows.deepest.reshape(-1, 2).max(axis=-1)
-        given = (
+        arguments = (
             points, load, self.weights, self.rates, rows.start, rows.width, area, deepest, rows.columns, rows.half,
             self.first, self.table, self._influence(), self.row, self.column, self.shape, self.on, self.response,
             self.now, self.forces, self.moved, self.fresh,
         )  # fmt: skip
-        (carry_loop if self.loops else carry)(*given)
-
-
-TINY = 1e-300
+        (carry_loop if self.loops else carry)(*arguments)
 
 
 def influences(
@@ -217,15 +214,15 @@ def influences(
         wide = np.broadcast_to(width[some][:, None], x.shape)
         square = x * x + apart * apart
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = beyond(length, wide, square, x * x)
+            mean = beyond(length, wide, square, x * x)
         along = np.abs(arc[some, None] - arc[some])[..., None]
         widest = np.maximum(np.maximum(width[some, None], width[some])[..., None], length)
         close = x * x + along**2 < (NEAR * widest) ** 2
         x, apart, wide = x[close], np.broadcast_to(along, x.shape)[close], wide[close]
         high, low = apart + 0.5 * wide, apart - 0.5 * wide
-        found[close] = (edge(x + 0.5 * length, high, low) - edge(x - 0.5 * length, high, low)) / wide
-        found = 0.5 * (found + found.transpose(1, 0, 2)[..., :: 1 if half[wheel] else -1])
-        influence[table[wheel] : table[wheel + 1]] = (found * turn / (np.pi * modulus)).ravel()
+        mean[close] = (edge(x + 0.5 * length, high, low) - edge(x - 0.5 * length, high, low)) / wide
+        mean = 0.5 * (mean + mean.transpose(1, 0, 2)[..., :: 1 if half[wheel] else -1])
+        influence[table[wheel] : table[wheel + 1]] = (mean * turn / (np.pi * modulus)).ravel()
 
 
 def beyond(length: Any, width: Any, square: Any, square_x: Any) -> Any:
@@ -277,9 +274,9 @@ def influence_loop(
                     table[wheel] + (i * size + j) * span + count - 1,
                     table[wheel] + (j * size + i) * span + count - 1,
                 )
-                one, other = width[i0 + i], width[i0 + j]
-                even = one == other
-                repeated = both and even and j > 0 and one == width[i0 + i - 1] and other == width[i0 + j - 1]
+                width_i, width_j = width[i0 + i], width[i0 + j]
+                even = width_i == width_j
+                repeated = both and even and j > 0 and width_i == width[i0 + i - 1] and width_j == width[i0 + j - 1]
                 repeated = repeated and abs(t - abs(arc[i0 + i - 1] - arc[i0 + j - 1])) < EVEN
                 turns = 1.0
                 if repeated:  # but for the turn
@@ -287,26 +284,26 @@ def influence_loop(
                     repeated = last_turn > 0.0
                     turns = turn / last_turn if repeated else 1.0
                 before = before_other = 0.0
-                known = False
+                edged = False
                 for number in range(begin, last):
                     x = number * length + shift
                     square = x * x + square_y
-                    if x * x + t * t >= (NEAR * max(length, one, other)) ** 2:
-                        known = False
-                        value = beyond(length, other, square, x * x)
+                    if x * x + t * t >= (NEAR * max(length, width_i, width_j)) ** 2:
+                        edged = False
+                        value = beyond(length, width_j, square, x * x)
                         if not even:
-                            value = 0.5 * (value + beyond(length, one, square, x * x))
+                            value = 0.5 * (value + beyond(length, width_i, square, x * x))
                         value *= turn
                     elif repeated:
                         value = influence[to + number - (size + 1) * span] * turns
                     else:
-                        if not known:
-                            before = edge(x - 0.5 * length, t + 0.5 * other, t - 0.5 * other)
-                            before_other = edge(x - 0.5 * length, t + 0.5 * one, t - 0.5 * one)
-                        after = edge(x + 0.5 * length, t + 0.5 * other, t - 0.5 * other)
-                        after_other = after if even else edge(x + 0.5 * length, t + 0.5 * one, t - 0.5 * one)
-                        value = 0.5 * turn * ((after - before) / other + (after_other - before_other) / one)
-                        before, before_other, known = after, after_other, True
+                        if not edged:
+                            before = edge(x - 0.5 * length, t + 0.5 * width_j, t - 0.5 * width_j)
+                            before_other = edge(x - 0.5 * length, t + 0.5 * width_i, t - 0.5 * width_i)
+                        after = edge(x + 0.5 * length, t + 0.5 * width_j, t - 0.5 * width_j)
+                        after_other = after if even else edge(x + 0.5 * length, t + 0.5 * width_i, t - 0.5 * width_i)
+                        value = 0.5 * turn * ((after - before) / width_j + (after_other - before_other) / width_i)
+                        before, before_other, edged = after, after_other, True
                     influence[to + number] = value
                     influence[back + (number if both else -number)] = value
                     if both and 0 < number < count:

@@ -125,7 +125,7 @@ class Rows:
         Elements of the longest row, or over half of it where `half`.
     half : ndarray of bool, (wheels,)
         Whether crests lie so close to one line that both halves of a row have the same pressure.
-    own : ndarray of int
+    halves : ndarray of int
         Elements over half of each row.
     deepest : ndarray, (wheels,)
         Greatest overlap [m].
@@ -146,7 +146,7 @@ class Rows:
     dx: Array
     columns: NDArray[np.intp]
     half: NDArray[np.bool_]
-    own: NDArray[np.intp]
+    halves: NDArray[np.intp]
     deepest: Array
 
 
@@ -305,8 +305,8 @@ def rows(section: Section, places: Samples, position: Position, height: Array, a
     np.minimum.at(short, wheel, np.where(half_length[region] > 0.5 * longest[wheel], half_length[region], np.inf))
     dx = short / COLUMNS
     reach = np.sqrt((sunk + SPARE * deepest[wheel]) / curvature)
-    own = np.clip(np.floor(reach / dx[wheel] + 0.5), 1, LONGEST).astype(np.intp)
-    columns = np.maximum.reduceat(own, first[:-1])
+    halves = np.clip(np.floor(reach / dx[wheel] + 0.5), 1, LONGEST).astype(np.intp)
+    columns = np.maximum.reduceat(halves, first[:-1])
     touches = sunk > 0.0
     crest = np.where(touches, at.x, np.nan)
     low, high = np.full(height.size, np.inf), np.full(height.size, -np.inf)
@@ -315,7 +315,7 @@ def rows(section: Section, places: Samples, position: Position, height: Array, a
     half = high - low < STRAIGHT * short
     return Rows(
         first, wheel, place, y, z, width, arc, overlap, curvature, np.cos(turned) / facing, -np.sin(turned) / facing,
-        lean, dx, np.where(half, columns, 2 * columns), half, own, deepest,
+        lean, dx, np.where(half, columns, 2 * columns), half, halves, deepest,
     )  # fmt: skip
 
 

@@ -28,7 +28,7 @@ from wearlaw import Array
 from wearlaw_models.rigs.wheelset.motion import Creepages, Place, creepages, roll_rate
 from wearlaw_models.rigs.wheelset.patches import Patches
 from wearlaw_models.rigs.wheelset.pressure import Pressed
-from wearlaw_models.rigs.wheelset.rows import SPARE, Near, Rows, Samples, near, rows
+from wearlaw_models.rigs.wheelset.rows import SPARE, TINY, Near, Rows, Samples, near, rows
 from wearlaw_models.rigs.wheelset.search import Position, Section, both_sides
 from wearlaw_models.rigs.wheelset.search_loops import LEAST_LEVER, PATCHES
 from wearlaw_models.rigs.wheelset.task import Elastic, Patch, Task
@@ -72,9 +72,6 @@ POWER = 0.3
 
 FULL = 0.999
 """Greatest share of full slip that the rates of creep forces count with, so that they never vanish."""
-
-TINY = 1e-300
-"""Keeps divisors from zero."""
 
 
 def _held(
