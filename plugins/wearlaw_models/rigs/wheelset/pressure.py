@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_models.rigs.wheelset.rows import TINY, Rows
+from wearlaw_models.rigs.wheelset.rows import Rows
 
 NEAR = 2.5
 """Distance of two elements, over the longer side of one, beyond which two terms of a series give the displacement, with
@@ -46,6 +46,9 @@ from which they join at the first solutions. On an area that grows, fewer leave 
 
 LONGEST = 1.0
 """Most by which a step changes the overlap anywhere, over the greatest overlap."""
+
+TINY = 1e-300
+"""Keeps divisors from zero."""
 
 INTS, VECTOR, ROWS = "int64[::1]", "float64[::1]", "float64[:, ::1]"
 

@@ -11,7 +11,8 @@ v·n' / (n·n'), n' being the normal of the wheel. It is linear in the height of
 displacement, all of which the balance seeks.
 
 The width of rows follows in small steps that in which the undeformed bodies overlap, and rows lie at its multiples, so
-that each patch has some twenty rows, wherever it lies and whatever else is computed with it.
+that each patch has some twenty rows, wherever it lies and whatever else is computed with it. Where the overlap bends
+much, as at an edge that wear leaves, rows are split.
 """
 
 from __future__ import annotations
@@ -48,6 +49,9 @@ SECANTS, FARTHEST = 12, 2e-3
 CLOSE = 1e-7
 """Distance of that point from the normal [m]."""
 
+BESIDE = 4
+"""Samples on both sides of a place where the overlap bends much, up to which rows are split."""
+
 MARGIN = 8
 """Samples beside the overlap whose rows may touch as well, once the loads balance."""
 
@@ -58,16 +62,14 @@ SPARE = 0.3
 """Overlap that rows and elements may gain while loads are balanced, over the greatest one."""
 
 FINE = 0.08
-"""Share of the greatest overlap by which the overlap of a row may depart from the mean of its neighbours'."""
+"""Share of the greatest overlap by which the overlap of a row may depart from the mean of its neighbours'; rows are
+split until it does not."""
 
 LEAST = 1e-6
 """Overlap for which rows are laid where wheels are apart [m]."""
 
 APART = -1.0
 """Overlap where a row does not face the wheel [m]."""
-
-TINY = 1e-300
-"""Keeps divisors from zero."""
 
 FACING = 0.5
 """Least cosine of the angle between the normals of wheel and rail."""
@@ -331,20 +333,28 @@ def _chosen(overlap: Array, arc: Array) -> tuple[NDArray[np.intp], Array, Array,
     edges = np.flatnonzero(np.diff(held.ravel(), prepend=False))  # first sample of a part, and the one behind its last
     wheel, begin = np.divmod(edges[::2], held.shape[1])
     size = edges[1::2] - edges[::2]
-    width = SAMPLE * np.add.reduceat(np.pad(over, aside).ravel(), edges, dtype=np.intp)[::2]
-    # Rows are narrower where the overlap bends more.
+    asked = SAMPLE / ROWS * np.add.reduceat(np.pad(over, aside).ravel(), edges, dtype=np.intp)[::2]
+    width = WIDEST * STEP ** -np.ceil(np.log(WIDEST / np.clip(asked, NARROWEST, WIDEST)) / np.log(STEP))
+    low = arc[0] + SAMPLE * (begin - MARGIN - 1.5)
+    first = np.ceil(low / width)
+    part, number = _counted((np.floor((low + SAMPLE * size) / width) - first).astype(np.intp))
+    wheel, width, middle = wheel[part], width[part], width[part] * (first[part] + number + 0.5)
+    # Rows are split where the overlap bends much.
     with np.errstate(invalid="ignore"):  # beside the rail
         bend = np.abs(overlap[:, 2:] - 2.0 * overlap[:, 1:-1] + overlap[:, :-2])
         deepest = overlap.max(axis=-1, keepdims=True)
-        bend = np.where(overlap[:, 1:-1] > 0.25 * deepest, bend, 0.0) * (WIDEST / SAMPLE) ** 2 / (FINE * deepest)
-    bend = np.pad(bend, ((0, 0), (MARGIN + 2, MARGIN + 2))).ravel()
-    most = np.maximum.reduceat(bend, edges)[::2]
-    asked = np.minimum(width / ROWS, WIDEST / np.sqrt(np.maximum(most, TINY)))
-    steps = np.ceil(np.log(WIDEST / np.clip(asked, NARROWEST, WIDEST)) / np.log(STEP))
-    asked = WIDEST * STEP**-steps
-    low = arc[0] + SAMPLE * (begin - MARGIN - 1.5)
-    first = np.ceil(low / asked)
-    count = (np.floor((low + SAMPLE * size) / asked) - first).astype(np.intp)
-    part = np.repeat(np.arange(count.size), count)
-    number = np.arange(part.size) - np.repeat(np.cumsum(count) - count, count)
-    return wheel[part], asked[part] * (first[part] + number + 0.5), asked[part], part
+        bend = np.where(overlap[:, 1:-1] > 0.25 * deepest, bend, 0.0) / (FINE * deepest * SAMPLE**2)
+    bend = np.pad(bend, ((0, 0), (1 + BESIDE, 1 + BESIDE)))
+    bend = np.maximum.reduce([np.roll(bend, shift, axis=1) for shift in range(-BESIDE, BESIDE + 1)])
+    nearest = np.clip(np.round((middle - arc[0]) / SAMPLE).astype(np.intp), 0, arc.size - 1)
+    pieces = np.ceil(width * np.sqrt(bend[wheel, nearest + BESIDE])).clip(1.0, width / NARROWEST).astype(np.intp)
+    row, number = _counted(pieces)
+    width = width[row] / pieces[row]
+    middle = middle[row] + width * (number + 0.5 - 0.5 * pieces[row])
+    return wheel[row], middle, width, part[row]
+
+
+def _counted(count: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the index of each item of groups with these counts, and its number in its group."""
+    group = np.repeat(np.arange(count.size), count)
+    return group, np.arange(group.size) - np.repeat(np.cumsum(count) - count, count)

@@ -27,8 +27,8 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.motion import Creepages, Place, creepages, roll_rate
 from wearlaw_models.rigs.wheelset.patches import Patches
-from wearlaw_models.rigs.wheelset.pressure import Pressed
-from wearlaw_models.rigs.wheelset.rows import SPARE, TINY, Near, Rows, Samples, near, rows
+from wearlaw_models.rigs.wheelset.pressure import TINY, Pressed
+from wearlaw_models.rigs.wheelset.rows import SPARE, Near, Rows, Samples, near, rows
 from wearlaw_models.rigs.wheelset.search import Position, Section, both_sides
 from wearlaw_models.rigs.wheelset.search_loops import LEAST_LEVER, PATCHES
 from wearlaw_models.rigs.wheelset.task import Elastic, Patch, Task
