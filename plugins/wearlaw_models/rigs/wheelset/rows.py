@@ -347,7 +347,8 @@ def _chosen(overlap: Array, arc: Array) -> tuple[NDArray[np.intp], Array, Array,
     bend = np.pad(bend, ((0, 0), (1 + BESIDE, 1 + BESIDE)))
     bend = np.maximum.reduce([np.roll(bend, shift, axis=1) for shift in range(-BESIDE, BESIDE + 1)])
     nearest = np.clip(np.round((middle - arc[0]) / SAMPLE).astype(np.intp), 0, arc.size - 1)
-    pieces = np.ceil(width * np.sqrt(bend[wheel, nearest + BESIDE])).clip(1.0, width / NARROWEST).astype(np.intp)
+    pieces = np.minimum(np.ceil(width * np.sqrt(bend[wheel, nearest + BESIDE])), width / NARROWEST)
+    pieces = np.maximum(pieces.astype(np.intp), 1)
     row, number = _counted(pieces)
     width = width[row] / pieces[row]
     middle = middle[row] + width * (number + 0.5 - 0.5 * pieces[row])
