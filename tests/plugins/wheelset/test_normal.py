@@ -181,6 +181,18 @@ def test_deeper_wheels_press_harder(displacement: float, yaw: float, load: float
     assert (np.diff(height) > 0.0).all()
 
 
+def test_rows_are_split_beside_a_groove_alone() -> None:
+    # As narrow everywhere, they would be 147.
+    new = wl.Profile.s1002()
+    arc = np.arange(new.curve.s[0], new.curve.s[-1], 0.05e-3)
+    depth = 0.01 * np.exp(-((new.curve.at(arc)[0] / 0.3e-3) ** 2))
+    grooved = wheelset(wheel=new.worn(Q(1e3 * arc, "mm"), Q(depth, "mm")))
+    rows = posed(grooved, 0.0, 0.0, 80e3).loads.stands[0].rows
+    width = rows.width[rows.wheel == 0]
+    assert width.min() < 0.2e-3 < 0.5e-3 < width.max()
+    assert width.size < 75
+
+
 def mirrored(array: Array) -> Array:
     """Return an array of a problem with its sides swapped."""
     return np.asarray(array)[..., ::-1, :]
