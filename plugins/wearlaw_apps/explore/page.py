@@ -205,7 +205,7 @@ class Page:
             notes.add(f"rig: {error}")
             laws = []
         predictions = self.subject.predict(model, laws, conditions, notes)
-        errors = " ".join(text for text in notes.texts if text not in notes.kinds)
+        errors = " ".join(text for text in notes.texts if text.kind is None)
         for name, control in {**self.sliders, **self.fields}.items():
             control.stylesheets = [WRONG] if re.search(rf"(?<!\w){re.escape(name)}\b", errors) else []
         curve = self._curve(predictions, conditions) if perf_counter() - started < SLOW else []

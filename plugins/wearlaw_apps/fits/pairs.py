@@ -60,7 +60,7 @@ def compose(
                     every = (*contact_models.values(), *stages, *laws.values())
                     pairs.append(Pair(contact_label, law_label, pipeline.among(every)))
             except CompositionError as error:
-                notes.add(f"{law_label} on {contact_label} is left out: {error}")
+                notes.add(f"{law_label} on {contact_label} is left out: {error}", CompositionError)
     if not pairs:
         kind = "wear laws" if all(law.kind == "wear law" for law in laws.values()) else "laws"
         raise InputError(f"no contact model can be used with any of the {kind}:\n" + "\n".join(notes.texts))

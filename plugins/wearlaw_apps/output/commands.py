@@ -24,7 +24,7 @@ from wearlaw.models.law import Law
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.text_files import read_toml
 from wearlaw.units.registry import symbol
-from wearlaw_apps.output.notes import grouped
+from wearlaw_apps.output.notes import by_kind
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -178,9 +178,9 @@ def answer(
     folder: Path, names: Iterable[str], notes: Iterable[str], shown: Callable[[], None], record: Mapping[str, Any]
 ) -> None:
     """Print notes, results as `shown` prints them, and files; or as `--quiet` and `--json` ask, the record as JSON."""
-    asked, names = click.get_current_context().meta, list(names)
+    asked, names, notes = click.get_current_context().meta, list(names), by_kind(notes)
     if asked.get("json"):
-        whole = {**record, "notes": list(notes), "files": [str(folder / name) for name in names]}
+        whole = {**record, "notes": notes, "files": [str(folder / name) for name in names]}
         click.echo(json.dumps(_plain(whole), indent=2, ensure_ascii=False, allow_nan=False))
         return
     if not asked.get("quiet"):
@@ -210,10 +210,10 @@ def _plain(value: Any) -> Any:
 
 
 def print_notes(notes: Iterable[str]) -> None:
-    """Print notes on standard error, one a kind, as far as a line goes and without sources, or whole by `--verbose`."""
+    """Print notes on standard error, as far as a line goes and without sources, or whole by `--verbose`."""
     whole, cut = click.get_current_context().meta.get("verbose", False), False
     width = max(shutil.get_terminal_size((LINE, 24)).columns, LINE)
-    for note in grouped(notes):
+    for note in notes:
         text = f"note: {note}"
         if not whole and (len(text) > width or "\n" in text):
             text, cut = textwrap.shorten(_SOURCE.sub("", text), width, placeholder=" …"), True

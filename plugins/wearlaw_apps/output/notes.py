@@ -8,9 +8,19 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from threading import RLock, get_ident
-from typing import TextIO
+from typing import Self, TextIO
 
-from wearlaw.errors import FitWarning, RangeWarning, UnusualWarning, WearlawWarning, warn, with_problems
+from wearlaw.errors import (
+    CalibrationWarning,
+    CompositionError,
+    FitWarning,
+    PlasticityWarning,
+    RangeWarning,
+    UnusualWarning,
+    WearlawWarning,
+    warn,
+    with_problems,
+)
 from wearlaw.units.usual import OneWarning, apart
 
 _CATCHING = RLock()
@@ -19,6 +29,15 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 NAMED = 3
 """Most subjects that a note names."""
+
+HEADS: dict[type[Exception], str] = {
+    CalibrationWarning: "parameters fitted for something else",
+    PlasticityWarning: "beyond the elastic limit",
+    RangeWarning: "outside the range of a model",
+    UnusualWarning: "unusual values",
+    CompositionError: "left out",
+}
+"""What several notes of a kind have in common; notes of other kinds stand alone."""
 
 
 @contextmanager
@@ -52,27 +71,40 @@ def caught_warnings(*kinds: type[Warning]) -> Iterator[list[Warning]]:
         yield caught
 
 
+class Note(str):
+    """A remark for the reader of results.
+
+    Attributes
+    ----------
+    kind : type of exception or None
+        The class of the warning or error that it was; None if it states what was done.
+    """
+
+    kind: type[Exception] | None
+
+    def __new__(cls, text: str, kind: type[Exception] | None = None) -> Self:
+        """Return a text as a note."""
+        note = super().__new__(cls, text)
+        note.kind = kind
+        return note
+
+
 @dataclass
 class Notes:
     """Collects notes for the reader of the results, each once.
 
     Attributes
     ----------
-    texts : list of str
+    texts : list of Note
         The notes.
-    kinds : dict of str to type
-        The class of the warning that a note is, by the note; others state what was done.
     """
 
-    texts: list[str] = field(default_factory=list)
-    kinds: dict[str, type[Warning]] = field(default_factory=dict)
+    texts: list[Note] = field(default_factory=list)
 
-    def add(self, text: str, kind: type[Warning] | None = None) -> None:
+    def add(self, text: str, kind: type[Exception] | None = None) -> None:
         """Add a note unless it is there already."""
         if text not in self.texts:
-            self.texts.append(text)
-            if kind is not None:
-                self.kinds[text] = kind
+            self.texts.append(text if isinstance(text, Note) else Note(text, kind))
 
     @contextmanager
     def of(self, subject: str) -> Iterator[None]:
@@ -86,9 +118,24 @@ class Notes:
 
     def warn(self) -> None:
         """Raise the notes that are warnings, one warning a kind."""
-        for kind in dict.fromkeys(self.kinds.values()):
-            (first, *others) = grouped(text for text, of in self.kinds.items() if of is kind)
-            warn(with_problems(first, others), kind)
+        for kind in dict.fromkeys(note.kind for note in self.texts):
+            if kind is not None and issubclass(kind, Warning):
+                first, *others = grouped(note for note in self.texts if note.kind is kind)
+                warn(with_problems(first, others), kind)
+
+
+def by_kind(notes: Iterable[str]) -> list[Note]:
+    """Return notes with one in place of those of a kind in `HEADS`, which says how many they are and has one a line."""
+    kinds: dict[object, list[str]] = {}
+    for note in notes:
+        kind = getattr(note, "kind", None)
+        kinds.setdefault(kind if kind in HEADS else note, []).append(note)
+    summaries = []
+    for texts in kinds.values():
+        kind, every = getattr(texts[0], "kind", None), grouped(texts)
+        head = [f"{HEADS[kind]} ({len(every)}):"] if kind in HEADS and len(every) > 1 else []
+        summaries.append(Note("\n  ".join([*head, *every]), kind))
+    return summaries
 
 
 def warn_by_kind(caught: Iterable[Warning]) -> None:

@@ -17,7 +17,7 @@ from wearlaw_apps.output.commands import answer, folder_for, print_table
 from wearlaw_apps.output.curves import FigureFormat
 from wearlaw_apps.output.files import write_files, writes_results
 from wearlaw_apps.output.folder import results_folder
-from wearlaw_apps.output.notes import Notes, grouped
+from wearlaw_apps.output.notes import Notes
 from wearlaw_apps.show import completed
 from wearlaw_apps.studies.case import load_case, written
 from wearlaw_apps.studies.report.tables import NamedTable, summaries
@@ -80,7 +80,7 @@ def run(
     _discard(partial)
     tables = summaries(study)
     record = {"title": loaded.title, "tables": {table.name: _by_column(table.frame) for table in tables}}
-    answer(folder, names, grouped([*study.notes, *notes.texts]), lambda: _print(tables), record)
+    answer(folder, names, [*study.notes, *notes.texts], lambda: _print(tables), record)
 
 
 def _print(tables: Sequence[NamedTable]) -> None:
@@ -166,4 +166,4 @@ def uncertainty(
         if len(result.indices):
             print_table(result.indices.set_index(["point", "pair"]).round(3))
 
-    answer(folder, names, grouped([*result.notes, *notes.texts]), shown, tables)
+    answer(folder, names, [*result.notes, *notes.texts], shown, tables)

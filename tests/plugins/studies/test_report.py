@@ -19,7 +19,7 @@ import pytest
 import wearlaw as wl
 from tests import cases
 from tests.plugins.studies.report_data import EVIL, ODD, ONE, THREE, page_of, small_study
-from wearlaw_apps.output.notes import grouped  # private: notes as the page has them
+from wearlaw_apps.output.notes import by_kind  # private: notes as the page has them
 from wearlaw_apps.studies.report.interactive import plotly_figure  # private: the numbers that the page holds
 from wearlaw_apps.studies.report.tables import headline, main_table  # private: what the page begins with
 
@@ -209,7 +209,7 @@ def test_parameters_notes_case_and_origins_are_given(study: wl.Study, page: Page
     assert "usfd m_c 61.9 µg/m/N Slope of the catastrophic regime, m_c [µg/m/N]." in page.text
     assert "rig track_width 10 mm" in page.text
     assert study.notes
-    for note in grouped(study.notes):
+    for note in by_kind(study.notes):
         assert " ".join(note.split()) in page.text
     assert page.within("pre") == ['title = "<i>"']
     assert f"Computed with wearlaw {wl.__version__}." in page.text

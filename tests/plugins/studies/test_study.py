@@ -16,7 +16,7 @@ from tests import cases
 from tests.cases import InstallModel, case
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_apps.output.notes import grouped  # private: what commands print of notes
+from wearlaw_apps.output.notes import Note, by_kind, grouped  # private: what commands print of notes
 from wearlaw_apps.studies import Case
 
 LOADS = ["1000 MPa", "1500 MPa"]
@@ -205,6 +205,23 @@ def test_printed_notes_name_all_subjects_of_a_remark_once() -> None:
     assert grouped([*alike, "c: p = 3 GPa is beyond it"]) == [
         "b: p = 1500 MPa is beyond 750 MPa (2 more with other numbers, a)",
         "c: p = 3 GPa is beyond it",
+    ]
+
+
+def test_printed_notes_of_a_kind_are_one_with_their_number() -> None:
+    notes = [
+        Note("a: too low; 1 of 3", wl.RangeWarning),
+        Note("b: unlike steel", wl.CalibrationWarning),
+        Note("results.csv is left out"),
+        Note("c: too low; 2 of 3", wl.RangeWarning),
+        Note("d: too fast", wl.RangeWarning),
+        Note("results.nc is left out"),
+    ]
+    assert by_kind(notes) == [
+        "outside the range of a model (2):\n  too low; a: 1 of 3; c: 2 of 3\n  d: too fast",
+        "b: unlike steel",
+        "results.csv is left out",
+        "results.nc is left out",
     ]
 
 

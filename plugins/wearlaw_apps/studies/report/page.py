@@ -17,7 +17,7 @@ from plotly.offline import get_plotlyjs
 
 from wearlaw.version import __version__
 from wearlaw_apps.output.curves import FigureData
-from wearlaw_apps.output.notes import grouped
+from wearlaw_apps.output.notes import by_kind
 from wearlaw_apps.output.style import DARK, PALETTE
 from wearlaw_apps.output.styled import html_table
 from wearlaw_apps.studies.report.interactive import plotly_figure
@@ -38,7 +38,7 @@ def report(study: Study, case_text: str) -> str:
     lines.insert(1 if main not in study.figures else 0, headline(study))
     return _template().render(
         study=study,
-        notes=grouped(study.notes),
+        notes=by_kind(study.notes),
         case_text=_shortened(case_text),
         claims=claims,
         counted=counted,
