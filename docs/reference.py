@@ -53,7 +53,12 @@ TITLES = {
 }
 """Pages in their order, each of the names that come from one package."""
 
-TOGETHER = {"fields": "loader", "text_files": "configuration", "kernels": "arrays"}
+TOGETHER = {
+    "wearlaw_models.contact_models": "contact",
+    "fields": "loader",
+    "text_files": "configuration",
+    "kernels": "arrays",
+}
 """Modules whose names stand on the page of another."""
 
 

@@ -14,7 +14,7 @@ from wearlaw import errors
 from wearlaw import late as _late
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
-from wearlaw.contact import elastic_limit, hertz, hertz_ellipse, kalker
+from wearlaw.contact import elastic_limit, hertz, hertz_ellipse
 from wearlaw.contact.conditions import Coefficient, Condition, Creepage, FallingFriction, Friction
 from wearlaw.contact.contact import Contact, LawVariable, LineFields
 from wearlaw.contact.material import Material, steel
@@ -69,7 +69,7 @@ __all__ = [
     "Speed", "Stage", "Strips", "Unit", "UnitError", "UnusualWarning", "Variable", "WearLaw", "WearLawField",
     "WearlawError", "WearlawWarning", "__version__", "accelerate", "accelerated", "beside", "coefficient",
     "compiled_loop", "contact_model", "elastic_limit", "errors", "hertz", "hertz_ellipse", "hookimpl", "installed",
-    "kalker", "law", "material", "parse", "patch_mean", "read_file", "read_law", "rig", "scalar_si", "shown", "stage",
+    "law", "material", "parse", "patch_mean", "read_file", "read_law", "rig", "scalar_si", "shown", "stage",
     "steel", "use", "wear_law",
 ]  # fmt: skip
 __all__ += _late.__all__

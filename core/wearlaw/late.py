@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from wearlaw_apps.sweeps.sweep import sweep
     from wearlaw_apps.sweeps.wear_profiles import wear_profiles
     from wearlaw_apps.tables import read_table
+    from wearlaw_models.contact_models import kalker
     from wearlaw_models.laws.archard.coefficients import wear_coefficient
     from wearlaw_models.rigs.twin_disc import Disc, TwinDisc
     from wearlaw_models.rigs.wheel_rail import WheelRail
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 __all__ = [
     "CheckedClaim", "Curve", "Disc", "FigureData", "Panel", "PlotAxis", "Profile", "ProfileContact", "Section",
     "Study", "TwinDisc", "WheelRail", "Wheelset", "compare", "creepage_for", "explore", "fit", "free_motion",
-    "load_case", "lognormal", "normal", "published_range", "read_contact", "read_profile", "read_subsurface",
+    "kalker", "load_case", "lognormal", "normal", "published_range", "read_contact", "read_profile", "read_subsurface",
     "read_table", "read_tests", "run", "sweep", "to_dataframe", "uncertain_life", "uncertainty", "uniform",
     "wear_coefficient", "wear_out", "wear_profiles", "write_profile",
 ]  # fmt: skip
@@ -68,6 +69,7 @@ PUBLIC = {
     "wearlaw_apps.sweeps.sweep": ("sweep",),
     "wearlaw_apps.sweeps.wear_profiles": ("wear_profiles",),
     "wearlaw_apps.tables": ("read_table",),
+    "wearlaw_models.contact_models": ("kalker",),
     "wearlaw_models.laws.archard.coefficients": ("wear_coefficient",),
     "wearlaw_models.rigs.twin_disc": ("Disc", "TwinDisc"),
     "wearlaw_models.rigs.wheel_rail": ("WheelRail",),
@@ -136,9 +138,9 @@ def needed_for(use: str, extra: str | None) -> Iterator[None]:
 
 
 def load(module: str, name: str, use: str) -> Any:
-    """Return a name from a module, such as that of a command, which may need an extra."""
+    """Return a name from a module or a module from a package, such as that of a command; it may need an extra."""
     with needed_for(use, extra_of(module)):
-        return getattr(import_module(module), name)
+        return getattr(__import__(module, fromlist=[name]), name)
 
 
 def method(name: str, use: str) -> Any:

@@ -14,8 +14,8 @@ from contextvars import ContextVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from wearlaw import kalker
 from wearlaw.arrays import Array
-from wearlaw.contact import kalker
 from wearlaw.contact.conditions import Condition
 from wearlaw.contact.parts import CreepForces, Strips
 from wearlaw.contact.problem import Problem

@@ -1,1 +1,1 @@
-"""The contact: the problem, its solution, the theories of Hertz and Kalker, materials and friction."""
+"""The contact: the problem, its solution, the theory of Hertz, materials and friction."""

@@ -31,7 +31,7 @@ ROUNDING = 32 * EPS
 @functools.cache
 def table() -> dict[float, list[list[float]]]:
     """The published table: for each a/b the coefficients, each at three Poisson's ratios."""
-    lines = (Path(__file__).parents[1] / "data" / "kalker_creepage_coefficients.csv").read_text("utf-8").splitlines()
+    lines = (Path(__file__).parents[2] / "data" / "kalker_creepage_coefficients.csv").read_text("utf-8").splitlines()
     rows = csv.DictReader(line for line in lines if not line.startswith("#"))
     return {
         float(row["ratio"]) if row["ratio_type"] == "a/b" else 1.0 / float(row["ratio"]): [

@@ -18,10 +18,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from wearlaw.arrays import Array
-from wearlaw.contact.parts import CreepForces
-from wearlaw.contact.problem import Problem
-from wearlaw.errors import InputError, shown
+from wearlaw import Array, CreepForces, InputError, Problem, shown
 
 # Kalker (1990), Table E.3. Columns: C11, C22, C23, C33, each at ν = 0, 1/4 and 1/2.
 # Rows: a/b = 0.1, 0.2 ... 1.0, then b/a = 0.9, 0.8 ... 0.1.
