@@ -27,9 +27,6 @@ if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler, ValidationInfo
     from pydantic_core import CoreSchema, ErrorDetails
 
-VALUES = (bool, int, float, str, pint.Quantity)
-"""Types of what people set a field to without saying what it is."""
-
 LINE = 100
 """Most characters on a line of a record or a pipeline that is shown."""
 
@@ -56,7 +53,6 @@ class Configuration(BaseModel):
         validate_default=True,
         defer_build=True,
         ser_json_inf_nan="strings",
-        ignored_types=VALUES,  # left to `_check_annotated`, which says what to write
     )
 
     @classmethod
@@ -81,10 +77,6 @@ class Configuration(BaseModel):
         return plain_number(value) if field is not None and _is_number(field.annotation) else value
 
     if not TYPE_CHECKING:  # checkers keep the signature that pydantic derives from the fields
-
-        def __init_subclass__(cls, **options: Any) -> None:
-            _check_annotated(cls)  # before pydantic takes fields out of the class
-            super().__init_subclass__(**options)
 
         @classmethod
         def __pydantic_init_subclass__(cls, **options: Any) -> None:
@@ -171,20 +163,6 @@ class Configuration(BaseModel):
                 text = text.rstrip() + "\n    "
             text += f"{field}, "
         return text.removesuffix(", ") + ")"
-
-
-def _check_annotated(cls: type[Configuration]) -> None:
-    """Raise a `ModelError` if a class sets a public name without its type, which pydantic needs for a field."""
-    annotated = inspect.get_annotations(cls)
-    for name, value in vars(cls).items():
-        public = not name.startswith("_") and name not in annotated and name not in cls.__class_vars__
-        if public and isinstance(value, VALUES):
-            text = text_of(value) if isinstance(value, str | pint.Quantity) else f"{value} mm"
-            raise ModelError(
-                f"{cls.__name__}.{name}: has no type. For a field with a unit, write {name}: Annotated[wl.Quantity,"
-                f' wl.Unit("mm")] = "{text}"; for a plain number {name}: float; for what all objects of the class share'
-                f" {name}: ClassVar[...]"
-            )
 
 
 def _unknown_type(cls: type[BaseModel], error: PydanticSchemaGenerationError) -> str:

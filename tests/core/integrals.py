@@ -46,7 +46,7 @@ class Wear(NamedTuple):
 def integrate_wear(model: wl.ContactModel, law: wl.Law, problem: wl.Problem) -> Wear:
     """Return the wear, including the totals that are computed on demand."""
     totals = integrate.integrate_laws(model, (law,), problem)
-    forces = integrate_forces(model, problem) if totals.longitudinal is None else totals.forces
+    forces = totals.forces or integrate_forces(model, problem)
     error = integrate.outcome_error(model, law, problem, totals, 0)
     return Wear(totals.values[0], error, forces.longitudinal)
 

@@ -141,10 +141,10 @@ def test_a_wrong_label_is_named_with_those_there_are(chosen: Any, said: str) -> 
     ("chosen", "said"),
     [
         ({"point_1": 0}, r"isel: no axis 'point_1'.* Axes \(with sizes\): point_0 \(3\), side \(2\), patch \(2\)"),
-        ({"point_0": 3}, "isel: axis 'point_0' has 3 entries, 0 to 2; there is no entry 3"),
-        ({"point_0": [0, -4]}, "isel: axis 'point_0' has 3 entries, 0 to 2; there is no entry -4"),
-        ({"side": "left"}, "isel: side must be an integer, a list of integers or a slice, got 'left'"),
-        ({"side": [0.5]}, "isel: side must be an integer"),
+        ({"point_0": 3}, "isel: axis 'point_0' has 3 entries, 0 to 2; give an integer, .* or a slice, got 3"),
+        ({"point_0": [0, -4]}, r"isel: axis 'point_0' has 3 entries, 0 to 2; .* got \[0, -4\]"),
+        ({"side": "left"}, "isel: axis 'side' has 2 entries, 0 to 1; .* got 'left'"),
+        ({"side": [0.5]}, r"isel: axis 'side' has .* got \[0.5\]"),
     ],
 )  # fmt: skip
 def test_a_wrong_position_is_named_with_those_there_are(chosen: Any, said: str) -> None:

@@ -174,7 +174,7 @@ class CreepForces:
     @classmethod
     def of_line(cls, force: Array) -> Self:
         """Return the forces of a line, which has a longitudinal force alone [N]."""
-        none = np.broadcast_to(0.0, force.shape)
+        none = np.broadcast_to(0.0, np.shape(force))
         return cls(longitudinal=force, lateral=none, spin_moment=none)
 
     @property

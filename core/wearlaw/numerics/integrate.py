@@ -25,13 +25,13 @@ from wearlaw.contact.contact import NODE_VARIABLES, Contact
 from wearlaw.contact.parts import CreepForces
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Zone, join, remainder
-from wearlaw.errors import CompositionError
+from wearlaw.errors import CompositionError, shown
 from wearlaw.models.contact_model import ContactModel, LineContactModel
 from wearlaw.models.law import Law, Numbers
-from wearlaw.models.model import Blame
+from wearlaw.models.model import Blame, fault
 from wearlaw.models.reader import Solved
 from wearlaw.numerics.crossings import crossings
-from wearlaw.numerics.solving import Solver, check_results, check_type
+from wearlaw.numerics.solving import Solver, check_type
 from wearlaw.numerics.splits import split_rates
 from wearlaw.numerics.staged import Staged
 from wearlaw.numerics.totals import Across, OfBlock, OnBlock, ResultT, SlipTotals, Totals, by_block, each
@@ -106,23 +106,22 @@ class Forces:
     def __call__(self, problem: Problem) -> CreepForces:
         """Return the forces and the moment, or raise a `ModelError` if they are not finite."""
         model, problem = prepared(self.model, problem)
-        if problem.geometry != "line":
 
-            def of_ellipse(part: Problem, _: slice) -> Totals:
-                return Totals.of_forces(model.creep_forces(part))
+        def of_block(part: Problem, _: slice) -> CreepForces:
+            if part.geometry == "line":
+                return CreepForces.of_line(model.tangential_force(part))
+            forces = model.creep_forces(part)
+            if not isinstance(forces, CreepForces):
+                raise fault(model, f"returned {shown(forces)} from `creep_forces`, not wearlaw.CreepForces")
+            return forces
 
+        if problem.geometry == "line":
+            block = BLOCK if isinstance(model, LineContactModel) else NODE_BLOCK
+        else:
             if problem.size > FEW and not self._block:
                 self._block = _block(model, problem)
-            return Solver(model).by_block(problem, self._block or FEW, of_ellipse).forces
-        if isinstance(model, LineContactModel):  # closed form, without nodes that would fill the memory
-            there = problem.existing()
-            with Blame(model):
-                force = model.tangential_force(there)
-            check_results(model, there, force, "tangential_force")
-            return CreepForces.of_line(force if there is problem else problem.unflatten(force))
-        return _by_block(
-            Solver(model), problem, lambda part, _: Totals(longitudinal=model.tangential_force(part))
-        ).forces
+            block = self._block or FEW
+        return Solver(model).by_block(problem, block, of_block)
 
 
 @steady
@@ -175,7 +174,7 @@ def integrate_laws(
     """
     model, problem = prepared(model, problem)
     if not laws:
-        forces = Totals.of_forces(integrate_forces(model, problem))
+        forces = Totals(forces=integrate_forces(model, problem))
         if on_block is not None:
             on_block(problem, forces)
         return forces
@@ -204,9 +203,10 @@ def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: On
             wear = seen.over_strip(split_rates(solver, law, seen, part, of_nodes))
             values.append((wear * seen.strip_width).sum(axis=-1) / area)
             kept.append(Across.of(seen, wear) if keeps else None)
-        return Totals.of_forces(contact.forces)._replace(
+        return Totals(
             values=tuple(values),
             errors=(None,) * len(laws),
+            forces=contact.forces,
             patch_area=area,
             sliding=_sliding(solver, [law for law, _ in laws], contact),
             slip=None if part.size == problem.size else SlipTotals.of(contact),
@@ -247,7 +247,7 @@ def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlo
         return Totals(
             values=tuple([mean.value for mean in means]),
             errors=tuple([mean.error for mean in means]),
-            longitudinal=means[-1].force,
+            forces=CreepForces.of_line(means[-1].force),
             patch_area=None if contact is None or isinstance(model, LineContactModel) else contact.patch_area,
             sliding=sliding,
         )
@@ -256,8 +256,8 @@ def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlo
 
 
 def _without_force(totals: Totals) -> Totals:
-    """Return the totals without the force, which a model with fields knows in closed form."""
-    return totals._replace(longitudinal=None)
+    """Return the totals without the forces, which a model with fields knows in closed form."""
+    return totals._replace(forces=None)
 
 
 def _ramps(law: Law, p: Numbers) -> Ramps | None:

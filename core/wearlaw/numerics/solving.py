@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array, extremes, type_name
 from wearlaw.contact.contact import TOTALS, Contact
-from wearlaw.contact.parts import Strips
+from wearlaw.contact.parts import CreepForces, Strips
 from wearlaw.contact.problem import ARRAYS, Problem
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import ModelError, shown
@@ -209,12 +209,13 @@ def check_results(model: ContactModel, problem: Problem, result: Any, name: str 
     """Raise a `ModelError` unless each array among results holds finite float64 for each operating point."""
     if type(result) is Across:  # made of checked rates
         return
-    if isinstance(result, tuple):
-        one_point, names = problem.batch_shape == (), getattr(result, "_fields", (name,) * len(result))
-        for place, part in enumerate(result):
+    fields = CreepForces.__slots__ if isinstance(result, CreepForces) else getattr(result, "_fields", ())
+    if fields or isinstance(result, tuple):
+        one_point = problem.batch_shape == ()
+        for field, part in [(field, getattr(result, field)) for field in fields] or [(name, part) for part in result]:
             if part is None or (one_point and type(part) is np.float64 and math.isfinite(part)):
                 continue
-            check_results(model, problem, part, names[place])
+            check_results(model, problem, part, field)
         return
     check_type(model, name, result, problem.batch_shape)
     if not math.isfinite(_product(result, result)) and not np.isfinite(result).all():

@@ -82,15 +82,12 @@ class Totals(NamedTuple):
         The outcome of each law: the area mean of its rate over the patch, or its value of the patch.
     errors : tuple of ndarray or None
         Estimate of the numerical error of each outcome; None if `outcome_error` computes the estimate.
-    longitudinal, lateral, spin_moment : ndarray or None
-        The forces [N] and the moment [N m]. All are None if the contact model knows them without nodes; a line has none
-        of the last two.
+    forces : CreepForces or None
+        The forces and the moment; None if the contact model knows them without nodes.
     patch_area : ndarray or None
         Area of the patch, the sum of its nodes' areas [m²]; None if it equals the area of the problem.
     sliding : ndarray or None
         For laws in p·s: μ∫p·s dA over Tγ = ξFx + ηFy + φMz [-], which is 1 under Coulomb's law, q = μp in slip.
-    dissipated : ndarray or None
-        The power of the forces, as in `CreepForces`.
     slip : SlipTotals or None
         The slip, if a patch that is not a line has several blocks; their contacts are not kept.
     across : tuple of Across or None
@@ -103,58 +100,29 @@ class Totals(NamedTuple):
 
     values: tuple[Array, ...] = ()
     errors: tuple[Array | None, ...] = ()
-    longitudinal: Array | None = None
-    lateral: Array | None = None
-    spin_moment: Array | None = None
+    forces: CreepForces | None = None
     patch_area: Array | None = None
     sliding: Array | None = None
-    dissipated: Array | None = None
     slip: SlipTotals | None = None
     across: tuple[Across | None, ...] = ()
     contact: Contact | None = None
 
     @classmethod
-    def of_forces(cls, forces: CreepForces) -> Totals:
-        """Return the totals of forces alone."""
-        return cls(
-            longitudinal=forces.longitudinal,
-            lateral=forces.lateral,
-            spin_moment=forces.spin_moment,
-            dissipated=forces.power,
-        )
-
-    @classmethod
     def missing(cls, problem: Problem, laws: Sequence[object]) -> Totals:
         """Return the totals of a problem none of whose patches exists."""
         none = problem.unflatten(np.empty(0))
-        every = (none,) * len(laws)
-        return cls(
-            every, every, none, none, none, none, slip=SlipTotals(none, none, none, none), across=(None,) * len(laws)
-        )
+        every, forces = (none,) * len(laws), CreepForces(longitudinal=none, lateral=none, spin_moment=none)
+        slip, across = SlipTotals(none, none, none, none), (None,) * len(laws)
+        return cls(every, every, forces, patch_area=none, slip=slip, across=across)
 
-    @property
-    def forces(self) -> CreepForces:
-        """The forces and the moment; a line has no lateral force and no moment."""
-        assert self.longitudinal is not None
-        if self.lateral is None or self.spin_moment is None:
-            return CreepForces.of_line(self.longitudinal)
-        return CreepForces(
-            longitudinal=self.longitudinal,
-            lateral=self.lateral,
-            spin_moment=self.spin_moment,
-            power=self.dissipated,
-        )
-
-    def tangential_force(self) -> Array:
+    def tangential_force(self, problem: Problem) -> Array:
         """Return the magnitude of the tangential force [N]."""
-        assert self.longitudinal is not None
-        force: Array = np.abs(self.longitudinal) if self.lateral is None else np.hypot(self.longitudinal, self.lateral)
-        return force
+        assert self.forces is not None
+        return np.abs(self.forces.longitudinal) if problem.geometry == "line" else self.forces.tangential
 
     def power(self, problem: Problem) -> Array:
         """Return the energy dissipated per metre rolled, Tγ [N]."""
-        if self.lateral is None and self.longitudinal is not None:
-            return problem.longitudinal_creepage * self.longitudinal
+        assert self.forces is not None
         return problem.power(self.forces)
 
     def mean(self, problem: Problem, variable: str) -> Array:
@@ -171,7 +139,7 @@ class Totals(NamedTuple):
             case "pressure":
                 return problem.normal_force / area
             case "traction":
-                return self.tangential_force() / area
+                return self.tangential_force(problem) / area
             case "wear_index_density":
                 return self.power(problem) / area
         assert variable == "frictional_power_density"  # `Law.check_variables` knows these
@@ -179,7 +147,7 @@ class Totals(NamedTuple):
 
 
 ResultT = TypeVar("ResultT")
-"""An array with an entry for each operating point, or a named tuple of such arrays, tuples and None."""
+"""An array with an entry for each operating point, forces, or a named tuple of such arrays, tuples and None."""
 
 OfBlock: TypeAlias = Callable[[Problem, slice], ResultT]
 """A function of a block of operating points and of the block's slice in the whole problem."""
@@ -205,6 +173,9 @@ def each(function: Callable[..., Any], first: Any, *others: Any) -> Any:
     """Return results with a function applied to each array; of several like ones, to the arrays in one place."""
     if first is None:
         return None
+    if isinstance(first, CreepForces):
+        names, every = CreepForces.__slots__, (first, *others)
+        return CreepForces(**{name: each(function, *(getattr(some, name) for some in every)) for name in names})
     if not isinstance(first, tuple):
         return function(first, *others)
     parts = [each(function, *some) for some in zip(first, *others, strict=True)]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 import pint
 
-from wearlaw.arrays import Array, same, steady
+from wearlaw.arrays import Array, steady
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
@@ -203,16 +203,6 @@ class Prediction:
     def __contains__(self, name: object) -> bool:
         """Return whether there is a variable of this name."""
         return isinstance(name, str) and name in (*outcome_units(self.laws), *default_variables(self))
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether another prediction is one of the same contacts with the same models."""
-        if not isinstance(other, Prediction):
-            return NotImplemented
-        mine, theirs = self._solution, other._solution
-        return same((mine.problem, mine.model, mine.laws), (theirs.problem, theirs.model, theirs.laws))
-
-    def __hash__(self) -> int:
-        return hash((self.problem.geometry, self.problem.batch_shape))
 
     def _si(self, values: Array, unit: str) -> Quantity:
         """Return SI values of the patches as a quantity, zero for patches that bear no load."""
@@ -429,7 +419,7 @@ class Prediction:
         problem, solution = self.problem, self._solution
         if not self.laws:
             solution.law()  # raises
-        totals = Totals.of_forces(solution.forces)._replace(patch_area=solution.patch_area)
+        totals = Totals(forces=solution.forces, patch_area=solution.patch_area)
         outside = np.zeros(problem.batch_shape, dtype=np.bool_)
         for law in self.laws:
             outside |= outside_range(problem, totals, law) | bool(other_materials(problem.bodies, law))

@@ -78,7 +78,7 @@ class RangeWatch:
                 self._see_values(index, name, totals.mean(part, name), ends)
         if totals.sliding is not None:
             self._see_values(None, SLIDING, totals.sliding, SLIDING_RANGE)
-        self.overload = overload_of(part, totals.tangential_force(), self.overload)
+        self.overload = overload_of(part, totals.tangential_force(part), self.overload)
         if ratios := unusual_ratios(part, self.laws):
             self.see_ratios(ratios)
         if self.on_block is not None:
@@ -201,23 +201,17 @@ def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, floa
             return ratios
     pressure, a = extremes(problem.max_pressure)[1], extremes(problem.a)[1]
     b = 0.0 if problem.geometry == "line" else extremes(problem.b)[1]
-    if (friction := extremes(problem.friction_coefficient)[1]) > RATIOS["friction"].most:
-        ratios["friction"] = friction
-    measured = problem.traction_coefficient
-    if measured is not None and (traction := extremes(measured)[1]) > RATIOS["traction"].most:
-        ratios["traction"] = traction
+    every = [("friction", extremes(problem.friction_coefficient)[1])]
+    if problem.traction_coefficient is not None:
+        every.append(("traction", extremes(problem.traction_coefficient)[1]))
     for body in problem.bodies.values():
-        if pressure > RATIOS["strain"].most * body.youngs_modulus:
-            ratios["strain"] = max(pressure / body.youngs_modulus, ratios.get("strain", 0.0))
         radius = body.rolling_radius
         relative = extremes(problem.a / radius)[1] if isinstance(radius, np.ndarray) else a / radius
-        if relative > RATIOS["length"].most:
-            ratios["length"] = max(relative, ratios.get("length", 0.0))
-        if b > body.usual_width:
-            ratios["width"] = b / body.usual_width
-    for law in laws:
-        if has_hardness(type(law)) and pressure > RATIOS["hardness"].most * (hardness := hardness_of(law, problem)):
-            ratios["hardness"] = max(pressure / hardness, ratios.get("hardness", 0.0))
+        every += [("strain", pressure / body.youngs_modulus), ("length", relative), ("width", b / body.usual_width)]
+    every += [("hardness", pressure / hardness_of(law, problem)) for law in laws if has_hardness(type(law))]
+    for name, ratio in every:
+        if ratio > RATIOS[name].most:
+            ratios[name] = max(ratio, ratios.get(name, ratio))
     return ratios
 
 

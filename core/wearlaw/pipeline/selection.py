@@ -107,15 +107,13 @@ def _position(name: str, position: Any, size: int) -> Position:
     """Return a position along an axis, without negative numbers; a mask has the entries where it is true."""
     if isinstance(position, slice):
         return position
-    numbers = np.asarray(position)
-    if numbers.dtype == np.bool_ and numbers.shape == (size,):
-        numbers = np.flatnonzero(numbers)
-    if numbers.ndim > 1 or (numbers.size and numbers.dtype.kind not in "iu"):
-        raise InputError(f"isel: {name} must be an integer, a list of integers or a slice, got {shown(position)}")
-    wrong = numbers[(numbers < -size) | (numbers >= size)]
-    if wrong.size:
+    try:
+        entries = np.arange(size)[list(position) if isinstance(position, tuple) else position]
+    except IndexError:
+        entries = None
+    if entries is None or entries.ndim > 1:
         raise InputError(
-            f"isel: axis {shown(name)} has {size} entries, 0 to {size - 1}; there is no entry {wrong.flat[0]}"
+            f"isel: axis {shown(name)} has {size} entries, 0 to {size - 1}; give an integer, a list of integers or a"
+            f" slice, got {shown(position)}"
         )
-    entries: list[int] = (numbers % size).reshape(-1).tolist()
-    return entries if numbers.ndim else entries[0]
+    return entries.tolist()  # type: ignore[no-any-return]

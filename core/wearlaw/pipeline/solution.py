@@ -61,9 +61,7 @@ class Solution:
     @cached_property
     def forces(self) -> CreepForces:
         """The forces and the moment."""
-        if self.totals.longitudinal is None:
-            return integrate.integrate_forces(self.model, self.problem)
-        return self.totals.forces
+        return self.totals.forces or integrate.integrate_forces(self.model, self.problem)
 
     @property
     def force(self) -> Array:

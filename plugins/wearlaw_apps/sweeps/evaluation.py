@@ -12,6 +12,7 @@ import numpy as np
 from wearlaw import kernels
 from wearlaw.arrays import Array, steady
 from wearlaw.contact.elastic_limit import Overload
+from wearlaw.contact.parts import CreepForces
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, RangeWarning, shown
 from wearlaw.models.contact_model import ContactModel
@@ -207,7 +208,8 @@ def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Pr
     zeros, ones = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
     every = (zeros,) * len(laws)
     slip = SlipTotals(mean_slip=zeros, slip_area=zeros, patch_area=ones, cell_wear_index=zeros)
-    totals = Totals(every, every, zeros, zeros, zeros, patch_area=ones, slip=slip, across=(None,) * len(laws))
+    forces = CreepForces(longitudinal=zeros, lateral=zeros, spin_moment=zeros)
+    totals = Totals(every, every, forces, patch_area=ones, slip=slip, across=(None,) * len(laws))
     return Prediction(Solution(problem, model, laws, totals))
 
 
