@@ -22,6 +22,7 @@ import wearlaw as wl
 from wearlaw import loader  # private: the commands that plugins provide
 from wearlaw.cli import main  # private: the program in this process
 from wearlaw.late import extra_of  # private: the extra of a command
+from wearlaw_kit import checks
 
 TESTS = "creepage [%],normal_force [kN],friction_coefficient,wear_rate [ug/m/mm^2]\n1,7.4,0.46,30\n2,7.4,0.46,50\n"
 
@@ -36,7 +37,9 @@ def predict() -> Any:
 
 
 def of_none() -> None:
-    predict()(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.4)
+    predict()(max_pressure="1500 MPa", creepage=wl.Q([1, 2], "%"), friction_coefficient=0.4)
+    for check in checks(wl.wear_law("kth")):
+        check()
     wearlaw("plugins")
     wearlaw("show", "usfd")
 

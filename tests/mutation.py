@@ -63,7 +63,7 @@ TESTS = {
     "wearlaw.pipeline.pipeline": "core/test_composition.py core/test_pipeline.py plugins/fits/test_uncertainty.py"
     " plugins/fits/test_uncertainty_refusals.py plugins/sweeps/test_inverse.py"
     " plugins/wheel_rail/test_wheel_rail.py plugins/wheel_rail/test_result.py core/test_models.py",
-    "wearlaw.contact.contact": "core/test_contact_from_arrays.py core/test_elliptic_contact.py core/test_records.py"
+    "wearlaw.contact.contact": "core/test_contact_from_arrays.py core/test_elliptic_contact.py"
     " plugins/fastsim/test_given_strips.py core/test_several_patches.py core/test_outcomes.py"
     " plugins/studies/test_materials.py core/test_scale.py core/test_blame.py",
     "wearlaw_models.laws.archard.coefficients": "plugins/archard/test_wear_coefficients.py",

@@ -33,7 +33,7 @@ CAPTION = re.compile(r":caption: (\S+)\n")
 ELSEWHERE = {
     r"\{literalinclude\} gallery/\w+\.py": "tests/test_gallery.py runs it",
     r"\{literalinclude\} examples/wear_map\.py": "tests/plugins/sweeps/test_sweep_store.py runs it",
-    r"\{literalinclude\} \.\./CITATION\.cff": "tests/test_release.py reads it",
+    r"\{literalinclude\} \.\./CITATION\.cff": "tests/test_contributing.py reads it",
     r"\{include\} \.\./CHANGELOG\.md": "no code",
     r"\{(csv-table|toctree|eval-rst|command-line)\}.*": "no code: the build of the documentation makes something of it",
 }

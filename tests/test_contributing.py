@@ -1,4 +1,4 @@
-"""CONTRIBUTING.md: each of its commands is one that the project runs itself, and each file that it names is there."""
+"""CONTRIBUTING.md: its sessions, links and picture of the house are those of the project; one version everywhere."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import tomllib
 from collections.abc import Iterator
 
 from tests.environments import ROOT
+from tests.release import inconsistencies
 
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 
@@ -71,3 +72,7 @@ def house() -> str:
 
 def test_the_picture_of_the_house_is_that_of_the_code() -> None:
     assert f"```text\n{house()}\n```" in TEXT
+
+
+def test_the_files_of_wearlaw_agree_on_its_version() -> None:
+    assert list(inconsistencies(ROOT)) == []

@@ -53,26 +53,6 @@ HEAVY = [
 ]
 
 
-@pytest.mark.parametrize(
-    "code",
-    [
-        "predict = wl.TwinDisc.suros() | wl.contact_model('global') | wl.wear_law('usfd')\n"
-        "print(predict(normal_force='2.7 kN', creepage=wl.Q([1.0, 2.0], '%'), friction_coefficient=0.4).wear_rate)",
-        "from wearlaw_kit import checks; print(sum(check() is None for check in checks(wl.wear_law('kth'))))",
-        "from wearlaw.cli import main; main(['plugins'])",
-        "from wearlaw.cli import main; main(['show', 'usfd'])",
-    ],
-    ids=["arrays", "kit", "plugins", "show"],
-)
-def test_the_core_and_the_kit_need_no_extra(code: str) -> None:
-    extras = PYPROJECT["project"]["optional-dependencies"]
-    assert [line.split(">=")[0] for line in extras["check"]] == ["hypothesis", "pytest"]
-    without = [*HEAVY, "hypothesis", "pytest", "numba"]
-    code = f"import sys; sys.modules.update(dict.fromkeys({without}))\nimport wearlaw as wl\n{code}"
-    done = subprocess.run([sys.executable, "-W", "ignore", "-c", code], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-
-
 def test_help_of_a_command_needs_no_extra_and_names_it() -> None:
     code = (
         f"import sys; sys.modules.update(dict.fromkeys({HEAVY}))\nfrom wearlaw.cli import main; main(['fit', '--help'])"

@@ -20,8 +20,7 @@ from hypothesis import given
 
 import wearlaw as wl
 from tests.line import uniform_cells
-from tests.strategies import EPS, FULL_SLIP, LINE_MODELS, MODELS, log_uniform, saturation_creepage, with_creepage
-from wearlaw import Q
+from tests.strategies import EPS, FULL_SLIP, MODELS, log_uniform, saturation_creepage, with_creepage
 from wearlaw_kit import line_problems
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # they hold at any values
@@ -90,39 +89,6 @@ def test_slip_dissipates_the_energy_that_the_creepage_feeds_in(
     assert contact.wear_index == pytest.approx(contact.tangential_force * problem.creepage, rel=EPS)
 
 
-CONVERGENCE_ORDER = {"exact": 1.5, "fastsim-parabolic-line": 1.0, "fastsim-elliptic-line": 1.0}
-"""Order in the cell length of Σ q·s over uniform cells: q·s has a square root at the ends of the exact slip zone,
-and a step where FASTSIM begins to slip."""
-
-
-@pytest.mark.validates(
-    "integration",
-    "Sums over uniform cells, as in the literature, converge to it slowly",
-    source="ξT, what the creepage feeds in",
-    held_to="orders {exact:g} (exact) and {fastsim:g} (FASTSIM) ± {off:g}",
-    exact=CONVERGENCE_ORDER["exact"],
-    fastsim=CONVERGENCE_ORDER["fastsim-parabolic-line"],
-    off=0.1,
-)
-@pytest.mark.parametrize("name", CONVERGENCE_ORDER)
-def test_the_dissipation_in_uniform_cells_converges_in_its_order(
-    name: str, exact: float, fastsim: float, off: float
-) -> None:
-    rig = wl.TwinDisc.suros()
-    # Where the zone begins within a cell is as good as random, so the error is averaged over many zones.
-    creepages = np.linspace(0.1, 1.2, 331) * 0.0123
-    problem = rig.problem(normal_force="7.4143 kN", creepage=Q(creepages, ""), friction_coefficient=0.46)
-    counts = 50 * 2 ** np.arange(6)
-    errors = []
-    for cells in counts:
-        contact = LINE_MODELS[name].at(problem, uniform_cells(problem.half_width, int(cells)))
-        dissipated = contact.sum_over_nodes(contact.wear_index_density * contact.area)
-        errors.append(np.abs(dissipated / contact.wear_index - 1.0).mean())
-    slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-    assert slope == pytest.approx(exact if name == "exact" else fastsim, abs=off)
-    assert errors[-1] < 2e-3
-
-
 # --- Full slip -------------------------------------------------------------------------------------------------
 
 
@@ -178,29 +144,6 @@ def test_the_mean_slip_is_the_creepage_in_full_slip(
 
 
 # --- Total traction --------------------------------------------------------------------------------------------
-
-
-@pytest.mark.validates(
-    "line-contact",
-    "From three times saturation on, `exact` and elliptic `fastsim` have the same traction where both slip",
-    source="T of the elliptic bound falls short of μP by less than (4/3π)/κ³, by its series",
-    held_to="{roundings} ε, relative",
-    roundings=16,
-)
-@given(problem=line_problems(), reduced=log_uniform(3.0, 1e3))
-def test_exact_and_elliptic_fastsim_approach_the_same_traction(
-    problem: wl.Problem, reduced: float, roundings: int
-) -> None:
-    at = with_creepage(problem, reduced * saturation_creepage(problem))
-    nodes = uniform_cells(problem.half_width, 500)
-    exact, fastsim = (LINE_MODELS[name].at(at, nodes) for name in ("exact", "fastsim-elliptic-line"))
-    slipping = fastsim.slip != 0.0
-    assert fastsim.traction[slipping] == pytest.approx(exact.traction[slipping], rel=roundings * EPS)
-    # 1 - (2/π)(atan κ + κ/(1+κ²)) < (4/3π)/κ³, and κ = (π/2) ξ/ξ_sat
-    kappa = 0.5 * math.pi * reduced
-    missing = 1.0 - float(fastsim.tangential_force / exact.tangential_force)
-    assert missing + 4 * EPS >= 0.0
-    assert missing <= 4.0 / (3.0 * math.pi) / kappa**3 + 4 * EPS
 
 
 # --- Wear ------------------------------------------------------------------------------------------------------

@@ -1,7 +1,8 @@
-"""The pictures of the documentation, and the sentences about them."""
+"""The pictures of the documentation, the sentences about them, and the table of the laws."""
 
 from __future__ import annotations
 
+import csv
 import re
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from matplotlib.quiver import Quiver
 
 import wearlaw as wl
-from docs import choosing, pictures, regimes
+from docs import choosing, laws_compared, pictures, regimes
 from docs.conventions import conventions
 from tests.environments import ROOT
 
@@ -62,3 +63,10 @@ def test_every_shipped_contact_model_and_law_can_be_chosen() -> None:
     assert sorted(shown) == sorted({*shipped})
     page = (ROOT / "docs" / "choosing.md").read_text(encoding="utf-8")
     assert [name for name in shown if f"`{name}`" not in page] == []
+
+
+def test_the_table_of_the_laws_is_what_is_computed() -> None:
+    committed = laws_compared.TABLE.read_text(encoding="utf-8")
+    assert committed == laws_compared.table(), "renew it with: python -m docs.laws_compared"
+    rows = list(csv.DictReader(committed.splitlines()))
+    assert next(row for row in rows if row["law and set"] == "usfd, global")["wheel on rail, 5 N/mm²"] == "(5.3)"

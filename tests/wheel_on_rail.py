@@ -1,4 +1,4 @@
-"""The gap between an S1002 wheel and a canted 60E1 rail, surface against surface, as a reference.
+"""The gap between an S1002 wheel and a canted UIC 60 rail, surface against surface, as a reference.
 
 The wheel is a surface of revolution, moved, rolled and yawed in space; no contact is searched for. Lengths are in mm.
 The track's axes are x forwards, y to the right, z down, and the wheel is the right one. Formulas of the profiles: UIC
@@ -45,19 +45,6 @@ class Gap(NamedTuple):
     t: Array
     height: Array
 
-    @property
-    def across(self) -> Array:
-        """The least gap at each t."""
-        least: Array = self.height.min(axis=0)
-        return least
-
-    @property
-    def curvature(self) -> float:
-        """A of the gap along the rail where the surfaces are closest."""
-        along = self.height[:, self.across.argmin()]
-        near = np.abs(self.x - self.x[along.argmin()]) < 2.0
-        return float(np.polyfit(self.x[near], along[near], 2)[0])
-
 
 def wheel(s: Array) -> Array:
     """Return the depth of the wheel's profile below the taping line, from the flange to the field side."""
@@ -70,15 +57,15 @@ def wheel(s: Array) -> Array:
     )
 
 
-UIC_60 = 25.98802
-"""Where the arcs of 80 and 13 mm of UIC 60 meet, from the middle of its head, which is 72 mm wide; 26 if rounded."""
+BORDER = 25.98802
+"""Where the arcs of 80 and 13 mm of UIC 60 meet, from the middle of its head, which is 72 mm wide."""
 
 
-def rail(border: float = 26.0) -> tuple[Array, Array]:
-    """Return points of the right rail, y and z, from the gauge side outwards; arcs of 80 and 13 mm meet at a border."""
+def rail() -> tuple[Array, Array]:
+    """Return points of the right rail, y and z, from the gauge side outwards."""
     y, z, begin, centre = [], [], 0.0, (0.0, 300.0)
     for radius, end, smaller in ((300.0, np.arcsin(10.5 / 300.0), 80.0), (80.0, None, 13.0), (13.0, 1.5, 13.0)):
-        end = np.arcsin((border - centre[0]) / radius) if end is None else end
+        end = np.arcsin((BORDER - centre[0]) / radius) if end is None else end
         angle = np.linspace(begin, end, 10000)
         y.append(centre[0] + radius * np.sin(angle))
         z.append(centre[1] - radius * np.cos(angle))
@@ -100,13 +87,12 @@ def gap(
     *,
     angle: float,
     at: float,
-    half_width: float = 8.0,
-    half_length: float = 8.0,
-    step: float = 0.1,
-    border: float = 26.0,
+    half_width: float,
+    half_length: float,
+    step: float,
 ) -> Gap:
     """Return the gap of a wheelset at y and z, in a plane at an angle to the track around the rail's point at y."""
-    y_rail, z_rail = rail(border)
+    y_rail, z_rail = rail()
     origin = np.array([at, np.interp(at, y_rail, z_rail)])
     turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
     t_rail, n_rail = turn @ (np.stack([y_rail, z_rail]) - origin[:, None])

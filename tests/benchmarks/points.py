@@ -23,12 +23,6 @@ FRICTIONS = (0.2, 0.6)
 DEFAULT_FORCE, DEFAULT_FRICTION = 7414.3, 0.46
 """Those of Tassini et al., Wear 268 (2010) 660-667: 1500 MPa on the standard rig."""
 
-WORKLOAD = (
-    f"creepage log-uniform {CREEPAGES[0]:g} to {CREEPAGES[1]:g}, normal force log-uniform {FORCES[0] / 1e3:g} to "
-    f"{FORCES[1] / 1e3:g} kN, friction uniform {FRICTIONS[0]:g} to {FRICTIONS[1]:g}; exact contact, USFD law"
-)
-
-
 Predict = Callable[..., wl.Prediction]
 
 
@@ -76,11 +70,6 @@ def workload(count: int) -> Points:
     rng = np.random.default_rng(20100301)
     creepage, force = (np.exp(rng.uniform(np.log(low), np.log(high), count)) for low, high in (CREEPAGES, FORCES))
     return Points(force, creepage, rng.uniform(*FRICTIONS, count))
-
-
-def creepage_sweep(count: int) -> Points:
-    """Return points of equal load and friction with log-uniform creepage."""
-    return Points(np.full(count, DEFAULT_FORCE), workload(count).creepage, np.full(count, DEFAULT_FRICTION))
 
 
 def pipeline() -> Predict:

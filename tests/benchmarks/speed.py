@@ -13,7 +13,6 @@ from pathlib import Path
 
 from tests.benchmarks import limits, report
 from tests.benchmarks.contest import compare, curve
-from tests.benchmarks.points import WORKLOAD
 from tests.benchmarks.report import Gate
 from tests.benchmarks.timing import modes
 from wearlaw import RangeWarning
@@ -31,7 +30,7 @@ def main(arguments: list[str]) -> int:
     options = parser.parse_args(arguments)
     # The workload goes beyond the wear-index densities of the tests that the law was fitted to.
     warnings.simplefilter("ignore", RangeWarning)
-    print(f"{report.machine()}\n{WORKLOAD}")
+    print(report.machine())
     rows, gates = compare(options.rounds)
     rows += curve()
     report.print_rows(rows)
@@ -46,7 +45,7 @@ def main(arguments: list[str]) -> int:
 def budgets(name: str, on: bool, rounds: int) -> list[Gate]:
     """Return the gates of one way to run wearlaw."""
     peak = limits.peak_memory(on)  # first, since a process that starts another passes on its own peak
-    share, _, _ = limits.rim(on, rounds).ratio("conditions", "sweep")
+    share = limits.rim(on, rounds).ratio("conditions", "sweep")
     return [
         Gate(f"one prediction, {name}, fastest round [µs]", 1e6 * limits.scalar_seconds(on), 60.0),
         Gate(f"unit checking of {limits.SWEEP:.0e} points, {name} [%]", 100.0 * share, 1.0),

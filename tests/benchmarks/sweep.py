@@ -1,71 +1,20 @@
-"""Print the gain of a sweep on two processes, and the time of the worked example: `python -m tests.benchmarks.sweep`.
+"""Print time, memory and size of the worked example of a sweep: `python -m tests.benchmarks.sweep`.
 
-The gain is the time of a sweep in one process over that on two that are warm, on a machine that is otherwise idle.
-`--strict` fails if it is too small, `--write` renews the picture.
+`--write` renews the picture.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
 import resource
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
-import warnings
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-import wearlaw as wl
-from wearlaw import Q
-
-POINTS = (250, 500, 400)
-"""5·10⁷ operating points: at a fifth of a microsecond each ten seconds of work."""
-GAIN = 1.6
-ROUNDS = 3
 DOCS = Path(__file__).parents[2] / "docs"
-
-
-def main(arguments: list[str]) -> int:
-    """Run the benchmark; return 1 if the gain is too small and `--strict` is given."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--strict", action="store_true", help="fail if the gain is too small")
-    parser.add_argument("--write", action="store_true", help="renew the picture of the documentation")
-    options = parser.parse_args(arguments)
-    warnings.simplefilter("ignore", wl.WearlawWarning)
-    print(f"{os.cpu_count()} processors")
-    example(options.write)  # first, since a process that starts another passes on its peak memory
-    gain = speed_up()
-    return int(options.strict and gain < GAIN)
-
-
-def speed_up() -> float:
-    """Print and return how many times as fast two warm processes are, the best of some rounds each."""
-    predict = wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("usfd", fitted_for="exact")
-    loads, creepages, frictions = POINTS
-    given: dict[str, Any] = {
-        "normal_force": Q(np.linspace(1.0, 9.0, loads), "kN"),
-        "creepage": Q(np.geomspace(0.1, 13.0, creepages), "%"),
-        "friction_coefficient": np.linspace(0.1, 0.6, frictions),
-    }
-    small = {**given, "friction_coefficient": given["friction_coefficient"][:10]}
-    best = {}
-    for workers in (1, 2):
-        wl.sweep(predict, **small, workers=workers)  # starts processes, loads kernels
-        times = []
-        for _ in range(ROUNDS):
-            start = time.perf_counter()
-            wl.sweep(predict, **given, workers=workers)
-            times.append(time.perf_counter() - start)
-            print(f"{np.prod(POINTS):.0e} points on {workers}: {times[-1]:.2f} s")
-        best[workers] = min(times)
-    gain = best[1] / best[2]
-    print(f"two processes are {gain:.2f} times as fast as one, {'met' if gain >= GAIN else 'MISSED'}: {GAIN}")
-    return gain
 
 
 def example(write: bool) -> None:
@@ -85,4 +34,6 @@ def example(write: bool) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--write", action="store_true", help="renew the picture of the documentation")
+    example(parser.parse_args().write)

@@ -24,10 +24,9 @@ class Times:
     def median(self, name: str) -> float:
         return float(np.median(self.seconds[name]))
 
-    def ratio(self, name: str, base: str) -> tuple[float, float, float]:
-        """Return the median and the quartiles of the per-round ratios of two rivals."""
-        low, middle, high = np.quantile(self.seconds[name] / self.seconds[base], [0.25, 0.5, 0.75])
-        return float(middle), float(low), float(high)
+    def ratio(self, name: str, base: str) -> float:
+        """Return the median of the per-round ratios of two rivals."""
+        return float(np.median(self.seconds[name] / self.seconds[base]))
 
 
 def side_by_side(rivals: Mapping[str, Callable[[], object]], rounds: int) -> Times:

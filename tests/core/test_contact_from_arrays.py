@@ -185,3 +185,29 @@ def test_negative_wear_is_refused() -> None:
 def test_only_a_contact_comes_before_a_law() -> None:
     with pytest.raises(CompositionError, match="a wear law takes a contact, not 3"):
         3 | wl.wear_law("kth")  # type: ignore[operator]
+
+
+def test_the_patch_mean_keeps_the_totals_in_one_node() -> None:
+    traction, area = np.array([[1.0, 5.0, -7.0], [0.0, 0.0, 0.0]]), np.array([[1.0, 2.0, 3.0], [4.0, 4.0, 4.0]])
+    contact = wl.Contact(
+        pressure=np.full((2, 3), 10.0),
+        traction=traction,
+        slip=np.array([[0.0, 0.1, -0.2], [0.0, 0.0, 0.0]]),
+        traction_bound=np.full((2, 3), 8.0),
+        area=area,
+        x=np.zeros((2, 3)),
+        rolling_speed=np.array([2.0, 3.0]),
+        normal_force=10.0 * area.sum(-1),
+        tangential_force=(traction * area).sum(-1),
+        wear_index=np.array([1.3, 0.0]),
+        density=np.array([7850.0, 7850.0]),
+    )
+    mean = contact.patch_mean()
+    for name in ("tangential_force", "wear_index", "normal_force", "patch_area", "rolling_speed", "density"):
+        np.testing.assert_array_equal(getattr(mean, name), getattr(contact, name))
+    assert mean.pressure.shape == (2, 1)
+    # (1·1 + 2·5 - 3·7)/6 = -10/6, and the slip that dissipates 1.3 N with -10 N.
+    np.testing.assert_allclose(mean.traction[:, 0], [-10.0 / 6.0, 0.0], rtol=1e-15)
+    np.testing.assert_allclose(mean.slip[:, 0], [-0.13, 0.0], rtol=1e-15)
+    np.testing.assert_allclose(mean.pressure[:, 0], [10.0, 10.0], rtol=1e-15)
+    np.testing.assert_allclose(mean.traction_bound[:, 0], [8.0, 8.0], rtol=1e-15)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -189,40 +189,3 @@ def test_a_line_contact_is_solved_once_whatever_is_read_of_it(creepage: wl.Quant
     afresh = (RIG | wl.contact_model("exact"))(max_pressure="1500 MPa", creepage=creepage, friction_coefficient=0.46)
     for name, value in zip(("mean_slip", "stick_ratio", "cell_wear_index"), read[1:], strict=True):
         assert value.magnitude == pytest.approx(getattr(afresh, name).magnitude, rel=1e-12), name
-
-
-@pytest.mark.validates(
-    "reproducibility",
-    "In arrays or one point at a time: the same prediction",
-    source="one way of computing it against the other",
-    held_to="{ramps} ε of the terms (USFD), {nodes} ε (KTH)",
-    ramps=32.0,
-    nodes=64.0,
-)
-@pytest.mark.parametrize("law", ["usfd", "kth"])
-@pytest.mark.parametrize("model", ["exact", "fastsim-parabolic-line", "fastsim-elliptic-line"])
-def test_a_point_alone_has_the_prediction_that_it_has_in_an_array(
-    model: str, law: str, ramps: float, nodes: float
-) -> None:
-    predict = wl.TwinDisc.suros() | LINE_MODELS[model] | wl.wear_law(law)
-    points, random = 30, np.random.default_rng(61)
-    creepage = 10.0 ** random.uniform(-6.0, 0.0, points) * random.choice([-1.0, 1.0], points)
-    creepage[::10] = 0.0
-    given: dict[str, Any] = {
-        "max_pressure": Q(random.uniform(0.5, 3.0, points), "GPa"),
-        "creepage": Q(creepage, ""),
-        "friction_coefficient": random.uniform(0.1, 0.8, points),
-    }
-    found = predict(**given)
-    rate = found.wear_rate.m_as("kg/m/m^2")
-    alone = [
-        predict(**{name: values[point] for name, values in given.items()}).wear_rate.m_as("kg/m/m^2")
-        for point in range(points)
-    ]
-    # USFD is a sum of ramps, each rounded as the whole dissipation is; 24 roundings, see the tests of the closed forms.
-    slopes = sum(abs(slope) for _, slope in predict.wear_law.ramps(predict.wear_law.numbers) or ())
-    allowed = ramps * EPS * slopes * found.wear_index_density.m_as("N/m^2")
-    if law == "kth":  # the sum of some hundred nodes, in which a vector sine may differ by a rounding from a single one
-        allowed = nodes * EPS * rate
-    assert np.count_nonzero(rate) == 0.9 * points
-    assert (np.abs(alone - rate) <= allowed).all()

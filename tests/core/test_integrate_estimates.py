@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 from collections.abc import Callable
 from typing import Any, ClassVar
@@ -11,10 +12,12 @@ import pytest
 
 import wearlaw as wl
 from tests import reference
-from tests.core.integrals import MEANS, REFERENCE, Points, integrate_wear
+from tests.core.integrals import MEANS, REFERENCE, RIG, Points, integrate_wear
 from tests.line import uniform_cells
 from tests.strategies import EPS, LINE_MODELS
-from wearlaw import Array
+from wearlaw import Array, Q
+from wearlaw.errors import ModelError
+from wearlaw.numerics.crossings import crossings  # private: not the means that they split
 from wearlaw.numerics.integrate import integrate_forces  # private: integrals at the size of blocks
 from wearlaw.numerics.staged import staged  # private: a stage around a model without a pipeline
 
@@ -157,3 +160,22 @@ def test_patch_means_have_no_integration_error() -> None:
     for model in (wl.contact_model("global"), *means):
         wear = integrate_wear(model, wl.wear_law("usfd"), points.problem)
         assert (wear.wear_rate_error <= 2.0 * EPS * wear.wear_rate).all()
+
+
+class WithAHole(type(LINE_MODELS["exact"])):  # type: ignore[misc]
+    """Carter's theory without closed forms of crossings, whose pressure is unknown close to 1 GPa, between samples."""
+
+    def crossings(self, problem: wl.Problem, variable: str, value: Array) -> None:
+        return None
+
+    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
+        fields = super().fields(problem, nodes)
+        pressure = np.where(np.abs(fields.pressure - 1e9) < 1e6, np.nan, fields.pressure)
+        return dataclasses.replace(fields, pressure=pressure)
+
+
+def test_a_model_whose_fields_are_not_finite_next_to_a_crossing_is_refused_by_name() -> None:
+    model = WithAHole()
+    problem = RIG.problem(max_pressure="1.5 GPa", creepage=Q([10.0], "%"), friction_coefficient=0.46)
+    with pytest.raises(ModelError, match="contact model 'exact': its pressure crosses a breakpoint, but the "):
+        crossings(model, problem, model.zones(problem)[1], {"pressure": (1e9,)})

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
-from typing import Annotated, Any, ClassVar, Literal, TypedDict
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 import pytest
@@ -114,19 +113,6 @@ def test_wear_across_an_ellipse_is_that_of_the_law_of_the_body() -> None:
     alone = predicted(silently(RAILS, fastsim, Volume(factor=2.0)), **ON_RAILS)
     assert np.array_equal(both.wear_profile("rail").depth, alone.wear_profile("rail").depth)
     assert (both.wear_profile("wheel").depth < alone.wear_profile("wheel").depth).any()
-
-
-def test_a_law_of_the_other_body_that_it_was_fitted_to_is_warned_of() -> None:
-    law = wl.wear_law("usfd")
-    assert law.calibration is not None
-    assert law.calibration.bodies, "the set is fitted to one body"
-    first, second = RIG.bodies
-    with pytest.warns(wl.CalibrationWarning, match=f"are used for the wear of '{second}'"):
-        _ = RIG | GLOBAL | law.model_copy(update={"body": second})
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        _ = RIG | GLOBAL | law.model_copy(update={"body": first})
-    assert not any("used for the wear of" in str(one.message) for one in caught)
 
 
 class OfItsBody(wl.WearLaw):
@@ -362,39 +348,3 @@ def test_cells_are_split_where_the_bodies_stick_if_the_value_is_not_zero_there()
         values = np.array([one["pressed_share"].magnitude for one in found])
         errors.append(np.sqrt(np.mean((values - (1.0 - shares**2)) ** 2)))
     assert errors[0] / errors[1] > 8.0
-
-
-# --- Memory: the distance rolled -------------------------------------------------------------------------------
-
-
-class Distance(TypedDict):
-    """The distance rolled, which rigs have as a condition of their own."""
-
-    rolled_distance: Annotated[wl.QuantityLike, wl.Unit("m", positive=False, negative=False)]
-
-
-class RunningIn(wl.WearLaw):
-    """Wear that falls from an initial to a final rate with the distance rolled."""
-
-    name: ClassVar[str] = "running_in"
-    source: ClassVar[str] = "test"
-    conditions: ClassVar = Distance
-    distance: wl.Length = Q(2.0, "km")
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
-        share = np.exp(-contact.per_node(contact.conditions["rolled_distance"]) / p["distance"])
-        return 1e-9 * (1.0 + 3.0 * share) * contact.wear_index_density
-
-
-@pytest.mark.parametrize(("rig", "conditions"), [(RIG, CONDITIONS), (RAILS, ON_RAILS)], ids=["line", "ellipse"])
-def test_a_law_reads_the_distance_rolled(rig: Any, conditions: dict[str, Any]) -> None:
-    predict = silently(rig, FASTSIM, RunningIn())
-    new, run_in = predicted(predict, **conditions, rolled_distance=Q([0.0, 1e3], "km")).wear_rate
-    assert (new / run_in).m_as("") == pytest.approx(4.0, rel=64 * EPS)
-    swept = wl.sweep(predict, **conditions, rolled_distance=Q([0.0, 1.0, 2.0], "km"))
-    rates = swept.wear_rate.values.ravel()
-    assert rates / rates[0] == pytest.approx((1.0 + 3.0 * np.exp([0.0, -0.5, -1.0])) / 4.0, rel=64 * EPS)
-    with pytest.raises(wl.ConditionsError, match="rolled_distance: is missing; wear law 'running_in' needs it"):
-        predicted(predict, **conditions)
-    with pytest.raises(wl.UnitError, match=r"rolled_distance: .*must not be negative"):
-        predicted(predict, **conditions, rolled_distance=Q([1.0, -1.0], "km"))

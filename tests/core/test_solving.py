@@ -122,19 +122,6 @@ def test_the_mass_on_a_rail_is_that_of_all_parts_of_a_patch(use_patch_mean: bool
     assert 0.0 <= found.stick_ratio.magnitude.min() <= found.stick_ratio.magnitude.max() <= 1.0
 
 
-def test_the_mass_on_a_disc_is_that_of_the_nodes() -> None:
-    larger = replace(area=lambda area: 2.0 * area, pressure=lambda p: 0.5 * p, traction=lambda q: 0.5 * q)
-    found = (RIG | ChangedCells(change=larger) | PerEnergy())(**ON_DISCS)
-    contact = larger(Cells().solve(RIG.problem(**ON_DISCS)))
-    expected = (PerEnergy().checked_rate(contact) * contact.area).sum(axis=-1)
-    assert found.mass_lost("1 m", "disc_1").m_as("kg") == pytest.approx(expected, rel=64 * EPS)
-    assert found.patch_area.m_as("m^2") == pytest.approx(contact.patch_area, rel=8 * EPS)
-    assert found.wear_index_density.m_as("N/m^2") == pytest.approx(contact.wear_index / contact.patch_area, rel=8 * EPS)
-    assert (RIG | ChangedCells(change=larger))(**ON_DISCS).patch_area.m_as("m^2") == pytest.approx(
-        contact.patch_area, rel=8 * EPS
-    )
-
-
 # --- What a contact model returns ------------------------------------------------------------------------------------
 
 BROKEN: dict[str, tuple[Change, str]] = {

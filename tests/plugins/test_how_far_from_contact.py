@@ -99,7 +99,6 @@ def in_space(case: Case, row: float) -> tuple[Any, Rows]:
     gap = wheel_on_rail.gap(
         case.displacement, contact.z, contact.roll, 1e-3 * case.yaw,
         angle=contact.delta, at=contact.y, half_width=half_width, half_length=half_length, step=0.1,
-        border=wheel_on_rail.UIC_60,
     )  # fmt: skip
     every = round(row / 0.1)
     height = 1e-3 * np.ascontiguousarray(gap.height[::4, ::every])

@@ -18,39 +18,12 @@ OUTSIDE = ROOT / "docs" / "examples" / "wearlaw-outside"
 
 BROKEN = {
     "import_fails": ("import a_module_that_is_not_there", "ModuleNotFoundError: No module named 'a_module_that_is_"),
-    "misspelt": (
-        "import wearlaw\n\n@wearlaw.hookimpl\ndef wearlaw_wear_law():\n    return []",
-        "PluginValidationError: unknown hook 'wearlaw_wear_law'",
-    ),
-    "raises": (
-        "import wearlaw\n\n@wearlaw.hookimpl\ndef wearlaw_models():\n    raise KeyError('lost')",
-        "KeyError: 'lost'",
-    ),
     "too_new": (
         "wearlaw_interface = 99",
         "TypeError: it is built for version 99 of the plugin interface, but this wearlaw has version ",
     ),
-    "too_old": (
-        "wearlaw_interface = 1",
-        "TypeError: it is built for version 1 of the plugin interface, but this wearlaw has version ",
-    ),
 }
 """Plugins that cannot be loaded, each with its cause."""
-
-USURPER = """
-    import wearlaw as wl
-
-    class Usurper(wl.WearLaw):
-        name = "usfd"
-        source = "a test"
-
-        def rate(self, contact, p):
-            return 0.0 * contact.pressure
-
-    @wl.hookimpl
-    def wearlaw_models():
-        return [Usurper]
-"""
 
 CASE = """
     title = "One of each kind from outside, beside those of wearlaw"
@@ -100,8 +73,7 @@ def environment(tmp_path_factory: pytest.TempPathFactory) -> Environment:
 def troubles(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     """Return the variables of an environment with broken distributions beside those that work."""
     folder = tmp_path_factory.mktemp("troubles")
-    sources = {name: module for name, (module, _) in BROKEN.items()} | {"usurper": USURPER}
-    for name, module in sources.items():
+    for name, (module, _) in BROKEN.items():
         write_distribution(folder, name, module, "9.9")
     return {"PYTHONPATH": str(folder)}
 
@@ -233,12 +205,3 @@ def test_beside_broken_distributions_the_others_go_on_working(
     environment: Environment, troubles: dict[str, str]
 ) -> None:
     assert_predicted(environment.run("-c", PREDICT, variables=troubles))
-
-
-def test_a_name_that_wearlaw_ships_means_the_shipped_law(environment: Environment, troubles: dict[str, str]) -> None:
-    shown = environment.wearlaw("show", "usfd", variables=troubles)
-    assert shown.returncode == 0
-    assert "usfd: a wear law of wearlaw" in shown.stdout
-    assert "wear law 'usfd' is that of wearlaw; the other, of usurper 9.9 (plugin 'usurper'), is 'usurper:usfd'" in (
-        shown.stderr
-    )
