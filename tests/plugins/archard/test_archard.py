@@ -90,14 +90,6 @@ def test_on_an_ellipse_it_is_the_energy_over_friction_and_hardness(within: float
     assert found.wear_rate.m_as("kg/m/m^2") == pytest.approx(expected, rel=within)
 
 
-def test_it_is_kth_within_one_field_of_the_map() -> None:
-    for name in ("exact", "global"):
-        kth = discs() | wl.contact_model(name) | wl.wear_law("kth", coefficient="low")
-        ours = discs() | wl.contact_model(name) | archard(1e-4, hardness="2.625 GPa")
-        at: Any = {"creepage": Q([0.1, 1.0, 10.0], "%"), **ON_DISCS}
-        assert ours(**at).wear_rate.m == pytest.approx(kth(**at).wear_rate.m, rel=1e-12)
-
-
 def test_each_body_wears_by_the_hardness_of_its_own_material() -> None:
     both = (
         rail(material=SOFT, rail_material=HARD)

@@ -5,34 +5,21 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import wearlaw as wl
-from tests.plugins.fits.fits import made_up
 from tests.plugins.laws import around, contact_of
 from tests.roots import brentq
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_models.laws.energy import Energy
 
 MILD, SEVERE = 5e-9, 15e-9
 """Coefficients in kg/J, made up."""
 
 TWO = {"mass_per_energy": "5 ug/J", "severe_mass_per_energy": "15 ug/J"}
-UNITS = {"energy_limit": "N/mm^2", "power_limit": "W/mm^2"}
 IN_SI = {"energy_limit": "N/m^2", "power_limit": "W/m^2"}
 FRICTION = 0.4
 ON_DISCS: dict[str, Any] = {"max_pressure": Q(1200, "MPa"), "friction_coefficient": FRICTION}
-ON_RAIL: dict[str, Any] = {
-    "normal_force": Q(20, "kN"),
-    "longitudinal_creepage": Q([0.05, 0.3, 2.0], "%"),
-    "lateral_creepage": Q(0.1, "%"),
-    "spin": Q(0.2, "1/m"),
-    "friction_coefficient": 0.3,
-}
 
 
 def energy(mass_per_energy: Any = "5 ug/J", **fields: Any) -> Any:
@@ -49,21 +36,6 @@ def rail() -> Any:
     )
 
 
-@pytest.mark.parametrize("limit", ["power_limit", "energy_limit"])
-@given(traction=st.floats(0.0, 2e9), slip=st.floats(0.0, 1.0), border=st.floats(1e3, 1e9))
-def test_the_rate_at_a_point_is_a_coefficient_times_the_energy(
-    limit: str, traction: float, slip: float, border: float
-) -> None:
-    law = energy(**TWO, **{limit: Q(border, IN_SI[limit])})
-    contact = contact_of(traction=traction, slip=slip)
-    found = float(law.checked_rate(contact.replaced(rolling_speed=np.array(4.0)))[0])
-    at_node = traction * slip * (4.0 if limit == "power_limit" else 1.0)
-    allowed = [
-        (MILD if at_node < side else SEVERE) * traction * slip for side in (border * (1 - EPS), border * (1 + EPS))
-    ]
-    assert any(found == pytest.approx(expected, rel=8 * EPS, abs=1e-290) for expected in allowed)
-
-
 @pytest.mark.validates(
     "wear-laws",
     "`energy` without a limit: its coefficient times Tγ/A, in every contact model on a line",
@@ -76,13 +48,6 @@ def test_without_a_limit_it_is_the_energy_of_the_patch(name: str, within: float)
     found = (discs() | wl.contact_model(name) | energy())(creepage=Q([0.01, 0.3, 1.0, 10.0], "%"), **ON_DISCS)
     expected = MILD * (found.wear_index / found.patch_area).m_as("N/m^2")
     assert found.wear_rate.m_as("kg/m/m^2") == pytest.approx(expected, rel=within)
-
-
-def test_without_a_limit_it_is_the_energy_of_the_cells_of_an_ellipse() -> None:
-    found = (rail() | wl.contact_model("fastsim") | energy())(**ON_RAIL)
-    expected = MILD * (found.cell_wear_index / found.patch_area).m_as("N/m^2")
-    # the sum over a thousand cells, with its rounding, against the same in another order
-    assert found.wear_rate.m_as("kg/m/m^2") == pytest.approx(expected, rel=1e-12)
 
 
 def carter_mean(percent: float, limit: float, problem: wl.Problem) -> float:
@@ -138,24 +103,6 @@ def test_the_jump_is_integrated_to_rounding(percent: float, limit: float, within
         assert found.wear_rate_error.m <= within * found.wear_rate.m
 
 
-def test_severe_wear_by_power_begins_at_a_lower_creepage_on_faster_discs() -> None:
-    creepage = Q(np.linspace(0.2, 8.0, 400), "%")
-
-    def begins(**limit: str) -> list[float]:
-        law = energy(**TWO, **limit)
-        rates = [
-            (discs(rolling_speed=speed) | wl.contact_model("global") | law)(creepage=creepage, **ON_DISCS)
-            for speed in ("1 m/s", "2 m/s")
-        ]
-        of_energy = [(one.wear_rate / (one.wear_index / one.patch_area)).m_as("kg/J") for one in rates]
-        return [float(creepage.m[np.argmax(one > 1e-8)]) for one in of_energy]
-
-    slow, fast = begins(power_limit="15 W/mm^2")
-    assert slow / fast == pytest.approx(2.0, abs=0.05)  # to two steps of the creepage
-    slow, fast = begins(energy_limit="15 N/mm^2")
-    assert slow == fast
-
-
 @pytest.mark.validates(
     "wear-laws",
     "`energy` that jumps within an ellipse in full slip: the mean in closed form, on 10 to 160 strips",
@@ -185,27 +132,6 @@ def test_the_jump_within_an_ellipse_is_known_to_the_stated_error(
         rate, error = found.wear_rate.m_as("kg/m/m^2"), found.wear_rate_error.m_as("kg/m/m^2")
         assert abs(rate - expected) <= times * error
         assert error <= most * rate
-
-
-def test_each_body_has_a_law_of_its_own() -> None:
-    both = rail() | wl.contact_model("fastsim") | energy(body="wheel") | energy("10 ug/J", body="rail")
-    found = both(**ON_RAIL)
-    assert found.wear_rate_of("rail").m == pytest.approx(2.0 * found.wear_rate_of("wheel").m, rel=8 * EPS)
-
-
-@pytest.mark.parametrize("limit", ["energy_limit", "power_limit"])
-@pytest.mark.parametrize("contact_model", ["global", "exact"])
-def test_both_coefficients_and_the_limit_are_found_by_a_fit(contact_model: str, limit: str) -> None:
-    predict = discs() | wl.contact_model(contact_model) | energy(**TWO, **{limit: Q(10, UNITS[limit])})
-    start = energy("8 ug/J", severe_mass_per_energy="9 ug/J", **{limit: Q(10, UNITS[limit])})
-    fit = wl.fit(
-        predict.with_law(start), made_up(predict), free=["mass_per_energy", "severe_mass_per_energy"], bootstrap=0
-    )
-    found = [fit.parameters[name].m_as("ug/J") for name in ("mass_per_energy", "severe_mass_per_energy")]
-    assert found == pytest.approx([5.0, 15.0], rel=1e-7)  # as for usfd: far below the tolerance of the fit, 1e-8
-    assert isinstance(fit.law, Energy)
-    assert fit.law.calibration is not None
-    assert getattr(fit.law, limit) == Q(10, UNITS[limit])
 
 
 def test_the_limit_belongs_to_severe_wear_and_is_the_only_jump() -> None:

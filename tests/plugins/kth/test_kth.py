@@ -52,32 +52,6 @@ def test_the_rate_is_archards_law_with_the_k_of_the_map(
     assert rate == pytest.approx(expected, rel=roundings * EPS, abs=1e-290)  # the least floats have fewer digits
 
 
-def test_the_density_is_that_of_the_contact_and_the_hardness_a_field() -> None:
-    rate = float(kth().checked_rate(contact_of())[0])
-    assert float(kth().checked_rate(contact_of(density=15700.0))[0]) == pytest.approx(2.0 * rate, rel=4 * EPS)
-    assert float(kth(hardness="5.25 GPa").checked_rate(contact_of())[0]) == pytest.approx(0.5 * rate, rel=4 * EPS)
-
-
-def test_the_sign_of_the_slip_does_not_matter() -> None:
-    slips = np.array([0.05, 0.3, 0.9])
-    assert (kth().checked_rate(contact_of(slip=-slips)) == kth().checked_rate(contact_of(slip=slips))).all()
-
-
-@pytest.mark.parametrize(("variable", "borders"), [("pressure", (2.1e9,)), ("slip_speed", (0.2, 0.7))])
-def test_every_declared_border_is_a_jump(variable: str, borders: tuple[float, ...]) -> None:
-    law = kth()
-    breakpoints = law.breakpoints(law.numbers)
-    assert breakpoints is not None
-    assert set(breakpoints) == {"pressure", "slip_speed"}
-    assert breakpoints[variable] == pytest.approx(borders, rel=2 * EPS)
-    assert law.jumps(law.numbers) == breakpoints
-    for border in breakpoints[variable]:
-        # the contact rolls at 1 m/s, so slip and slip speed are one
-        given_values: Any = {"pressure" if variable == "pressure" else "slip": around(border)}
-        below, at = law.checked_rate(contact_of(**given_values))
-        assert abs(at / below - 1.0) > 0.5
-
-
 def test_the_band_is_the_published_range_of_this_instance() -> None:
     law = kth("high", hardness="3 GPa")
     band = law.band()

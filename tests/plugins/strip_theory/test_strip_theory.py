@@ -22,7 +22,6 @@ from wearlaw_models.contact_models.strip_theory.interaction import (
 )
 
 MODEL, FASTSIM = wl.contact_model("strip_theory"), wl.contact_model("fastsim")
-INPUTS = ("ratio", "xi", "eta", "phi")
 PAGE = (ROOT / "docs" / "theory-elliptic.md").read_text(encoding="utf-8").replace("\n", " ")
 AXIS_RATIOS = (0.1, 0.3, 1.0, 3.0, 10.0)
 

@@ -45,10 +45,6 @@ def test_the_parameters_are_those_of_table_4(fitted_for: str, roundings: int) ->
     assert got == pytest.approx(TABLE_4[fitted_for], rel=roundings * EPS)
 
 
-def test_the_global_set_is_the_default() -> None:
-    assert wl.wear_law("usfd") == wl.wear_law("usfd", fitted_for="global")
-
-
 @pytest.mark.validates(
     "wear-laws",
     "The rate of USFD in its three regimes",
@@ -91,34 +87,6 @@ def test_the_rate_is_continuous_at_both_borders(fitted_for: str, roundings: int)
             float(law.checked_rate(contact_of(traction=border * f, slip=1.0))[0]) for f in (0.99, 1.0, 1.01)
         )
         assert abs((right - middle) - (middle - left)) > 0.005 * q_s * 1e-3
-
-
-def test_the_mild_regime_ends_at_ten_and_a_bit() -> None:
-    assert rate(wl.wear_law("usfd"), 10.0) == pytest.approx(53.0, rel=8 * EPS)
-    assert rate(wl.wear_law("usfd"), 11.0) == pytest.approx(55.0, rel=8 * EPS)
-    assert rate(wl.wear_law("usfd"), 78.26) == pytest.approx(55.0 + 61.9, rel=1e-12)
-
-
-def test_the_sign_of_slip_and_traction_together_does_not_matter() -> None:
-    law = wl.wear_law("usfd")
-    assert law.checked_rate(contact_of(traction=-3e8, slip=-0.1)) == law.checked_rate(
-        contact_of(traction=3e8, slip=0.1)
-    )
-
-
-@every_set
-@given(st.lists(st.floats(0.0, 300.0), min_size=2, max_size=30))
-def test_the_rate_never_falls_with_the_wear_index_density(fitted_for: str, values: list[float]) -> None:
-    law = wl.wear_law("usfd", fitted_for=fitted_for)
-    assert law.monotone_in == ("wear_index_density",)
-    rates = law.checked_rate(contact_of(traction=np.sort(values) * 1e6, slip=1.0))
-    assert (np.diff(rates) >= 0.0).all()
-
-
-def test_parameters_of_your_own_take_the_place_of_published_ones() -> None:
-    law: Any = wl.wear_law("usfd", m_m="6 ug/m/N", tr_sc=Q(8e7, "Pa"))
-    assert rate(law, 5.0) == pytest.approx(30.0, rel=8 * EPS)
-    assert rate(law, 81.0) == pytest.approx(55.0 + 61.9, rel=1e-12)
 
 
 def test_the_severe_regime_may_have_no_width() -> None:

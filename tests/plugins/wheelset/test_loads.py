@@ -17,7 +17,6 @@ from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy
 
 FASTSIM = wl.contact_model("fastsim")
 PAIR = wheelset(rolling_speed="20 m/s")
-SIDE = np.array([-1.0, 1.0])[:, None]
 
 
 def predicted(pair: wl.Wheelset, **conditions: Any) -> wl.Prediction:

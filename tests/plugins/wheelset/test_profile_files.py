@@ -342,13 +342,6 @@ def test_columns_may_have_bars_between_or_the_ending_of_simpack(tmp_path: Path) 
 # Repairs -------------------------------------------------------------------------------------------------------------
 
 
-def mangled(points: Array, **changes: Any) -> Array:
-    result = points.copy()
-    for place, value in changes.items():
-        result[int(place[1:])] = value
-    return result
-
-
 @pytest.mark.parametrize(
     ("change", "said"),
     [

@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 import wearlaw as wl
 from tests.plugins.ellipses import EPS
 from wearlaw import Array, Q
-from wearlaw_apps.fits import WearTests
 from wearlaw_models.laws.wlrm import WLRM
 
 POINTS: dict[str, Any] = {"threshold": Q(20, "N"), "peak": Q(65, "N"), "balance": Q(175, "N"), "peak_damage": 1e-5}
@@ -77,18 +75,6 @@ def test_the_lines_are_those_of_a_public_program() -> None:
     assert (np.abs(damage(law("zero"), contact(index)) - lines) <= printed).all()
 
 
-def test_the_damage_is_of_a_passage_and_not_of_an_area() -> None:
-    together = RIG | wl.contact_model("fastsim") | law()
-    found = together(**WHEEL, longitudinal_creepage=Q([0.1, 0.2, 0.6], "%"))
-    index = found.wear_index.m_as("N")
-    assert found["rcf_damage"].magnitude == pytest.approx(
-        np.interp(index, [20.0, 65.0, 175.0], [0.0, 1e-5, 0.0]) - 1e-5 * np.maximum(index - 175.0, 0.0) / 110.0,
-        rel=16 * EPS,
-        abs=16 * EPS * 1e-5,
-    )
-    assert found["rcf_damage"].dimensionless
-
-
 @pytest.mark.parametrize("traction", ["driving", "braking"])
 def test_only_the_named_traction_damages_and_wear_removes_under_either(
     traction: Literal["driving", "braking"],
@@ -131,46 +117,6 @@ def test_disc_1_drives_where_it_is_the_faster_one() -> None:
         assert (found > 0.0).tolist() == counts
 
 
-def test_a_wheel_and_its_rail_have_laws_of_their_own() -> None:
-    pair = (
-        RIG
-        | wl.contact_model("fastsim")
-        | law(body="wheel", traction="braking")
-        | law(body="rail", traction="driving", peak_damage=2e-5)
-    )
-    found = pair(**WHEEL, longitudinal_creepage=Q([-0.2, 0.2], "%"))
-    alone = law()
-    one = (RIG | wl.contact_model("fastsim") | alone)(**WHEEL, longitudinal_creepage=Q(0.2, "%"))["rcf_damage"]
-    assert one.magnitude > 0.0
-    assert found.outcome("rcf_damage", "wheel").magnitude == pytest.approx([0.0, one.magnitude], rel=16 * EPS)
-    assert found.outcome("rcf_damage", "rail").magnitude == pytest.approx([2.0 * one.magnitude, 0.0], rel=16 * EPS)
-
-
-def test_each_of_its_numbers_can_be_uncertain() -> None:
-    predict = RIG | wl.contact_model("fastsim") | law()
-    conditions: dict[str, Any] = {**WHEEL, "longitudinal_creepage": Q(0.2, "%")}
-    spread = {"threshold": wl.uniform("10 N", "30 N"), "peak_damage": wl.uniform(0.5e-5, 1.5e-5)}
-    found = wl.uncertainty(predict, **conditions, law=spread, samples=64)["rcf_damage"].magnitude
-    index = predict(**conditions).wear_index.m_as("N")
-    assert 30.0 < index < 65.0
-    share = stats.qmc.Sobol(2, rng=np.random.default_rng(0)).random(64).T
-    threshold = 10.0 + 20.0 * share[0]
-    due = (0.5 + share[1]) * 1e-5 * (index - threshold) / (65.0 - threshold)
-    # The threshold is rounded by 2 EPS of 30 N, and the difference that is taken of it is at least 6 N.
-    assert found == pytest.approx(due, rel=64 * EPS)
-
-
-def test_its_points_can_be_fitted() -> None:
-    given: dict[str, Any] = {**DISCS, "creepage": Q([1.0, 1.5, 2.0, 3.0, 4.0], "%")}
-    contacts = SUROS | wl.contact_model("exact")
-    measured = (contacts | law(threshold=Q(15, "N"), peak_damage=2e-5))(**given)["rcf_damage"]
-    tests = WearTests.from_arrays(**given, outcomes={"rcf_damage": measured})
-    fit = wl.fit(contacts | law(), tests, free=["threshold", "peak_damage"], bootstrap=0)
-    # The search stops at a relative step of 1e-8.
-    assert fit.parameters["threshold"].m_as("N") == pytest.approx(15.0, rel=1e-6)
-    assert fit.parameters["peak_damage"].magnitude == pytest.approx(2e-5, rel=1e-6)
-
-
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
@@ -194,17 +140,6 @@ def test_no_value_is_assumed() -> None:
         wl.law("wlrm")
     for name in (*POINTS, "beyond"):
         assert f"{name}: is missing" in str(error.value)
-
-
-def test_spin_alone_damages_only_where_it_is_included() -> None:
-    wheels: dict[str, Any] = {"longitudinal_creepage": "0 %", "spin": Q([1.0, 2.0], "1/m")}
-    points: dict[str, Any] = {"threshold": Q(0.1, "N"), "peak": Q(65, "N")}
-    included, left_out = (
-        (RIG | wl.contact_model("fastsim") | law(spin=spin, **points))(**WHEEL, **wheels)
-        for spin in ("included", "left_out")
-    )
-    assert (included["rcf_damage"].magnitude > 0.0).all()
-    assert (left_out["rcf_damage"].magnitude == 0.0).all()
 
 
 def test_without_spin_the_damage_is_that_of_the_creepages() -> None:
