@@ -55,6 +55,8 @@ TITLES = {
 
 TOGETHER = {
     "wearlaw_models.contact_models": "contact",
+    "wearlaw_models.friction": "contact",
+    "wearlaw_models.materials": "contact",
     "fields": "loader",
     "text_files": "configuration",
     "kernels": "arrays",

@@ -15,10 +15,10 @@ from wearlaw import late as _late
 from wearlaw.arrays import Array
 from wearlaw.configuration import Configuration
 from wearlaw.contact import elastic_limit, hertz, hertz_ellipse
-from wearlaw.contact.conditions import Coefficient, Condition, Creepage, FallingFriction, Friction
-from wearlaw.contact.contact import Contact, LawVariable, LineFields
-from wearlaw.contact.material import Material, steel
-from wearlaw.contact.parts import Body, CreepForces, Strips
+from wearlaw.contact.conditions import Coefficient, Condition, Creepage, Friction
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.material import Material
+from wearlaw.contact.parts import Body, CreepForces, LineFields, Strips
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.contact.quadrature import Nodes
 from wearlaw.errors import (
@@ -39,7 +39,7 @@ from wearlaw.hookspecs import Command, ResourceKind, hookimpl
 from wearlaw.kernels import accelerate, accelerated, compiled_loop
 from wearlaw.loader import contact_model, installed, law, material, patch_mean, rig, stage, use, wear_law
 from wearlaw.models.contact_model import ContactModel, CreepForceModel, Forces, LineContactModel, Solve, Stage
-from wearlaw.models.law import BreakpointMap, Calibration, Law, Numbers, Outcome, WearLaw
+from wearlaw.models.law import BreakpointMap, Calibration, Law, LawVariable, Numbers, Outcome, WearLaw
 from wearlaw.models.model import Claim, Exempt
 from wearlaw.models.reader import Reader
 from wearlaw.pipeline.pipeline import Pipeline, Rig
@@ -62,7 +62,7 @@ from wearlaw.version import __version__
 __all__ = [
     "Array", "Body", "BreakpointMap", "Calibration", "CalibrationWarning", "Claim", "Coefficient", "Command",
     "Condition", "ConditionsError", "Configuration", "ConfigurationError", "Contact", "ContactModel",
-    "ContactModelField", "CreepForceModel", "CreepForces", "Creepage", "Exempt", "FallingFriction", "Forces",
+    "ContactModelField", "CreepForceModel", "CreepForces", "Creepage", "Exempt", "Forces",
     "Friction", "Geometry", "InputError", "Law", "LawVariable", "Length", "LineContactModel", "LineFields",
     "Material", "MaterialField", "Nodes", "Numbers", "Outcome", "Pipeline", "PlasticityWarning",
     "Prediction", "Problem", "Q", "Quantity", "QuantityLike", "RangeWarning", "Reader", "ResourceKind", "Rig", "Solve",
@@ -70,7 +70,7 @@ __all__ = [
     "WearlawError", "WearlawWarning", "__version__", "accelerate", "accelerated", "beside", "coefficient",
     "compiled_loop", "contact_model", "elastic_limit", "errors", "hertz", "hertz_ellipse", "hookimpl", "installed",
     "law", "material", "parse", "patch_mean", "read_file", "read_law", "rig", "scalar_si", "shown", "stage",
-    "steel", "use", "wear_law",
+    "use", "wear_law",
 ]  # fmt: skip
 __all__ += _late.__all__
 

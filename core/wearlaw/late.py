@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from wearlaw_apps.sweeps.wear_profiles import wear_profiles
     from wearlaw_apps.tables import read_table
     from wearlaw_models.contact_models import kalker
+    from wearlaw_models.friction import FallingFriction
     from wearlaw_models.laws.archard.coefficients import wear_coefficient
+    from wearlaw_models.materials import steel
     from wearlaw_models.rigs.twin_disc import Disc, TwinDisc
     from wearlaw_models.rigs.wheel_rail import WheelRail
     from wearlaw_models.rigs.wheelset.contacts import ProfileContact
@@ -42,10 +44,10 @@ if TYPE_CHECKING:
     from wearlaw_models.rigs.wheelset.rig import Wheelset
 
 __all__ = [
-    "CheckedClaim", "Curve", "Disc", "FigureData", "Panel", "PlotAxis", "Profile", "ProfileContact", "Section",
-    "Study", "TwinDisc", "WheelRail", "Wheelset", "compare", "creepage_for", "explore", "fit", "free_motion",
+    "CheckedClaim", "Curve", "Disc", "FallingFriction", "FigureData", "Panel", "PlotAxis", "Profile", "ProfileContact",
+    "Section", "Study", "TwinDisc", "WheelRail", "Wheelset", "compare", "creepage_for", "explore", "fit", "free_motion",
     "kalker", "load_case", "lognormal", "normal", "published_range", "read_contact", "read_profile", "read_subsurface",
-    "read_table", "read_tests", "run", "sweep", "to_dataframe", "uncertain_life", "uncertainty", "uniform",
+    "read_table", "read_tests", "run", "steel", "sweep", "to_dataframe", "uncertain_life", "uncertainty", "uniform",
     "wear_coefficient", "wear_out", "wear_profiles", "write_profile",
 ]  # fmt: skip
 
@@ -70,7 +72,9 @@ PUBLIC = {
     "wearlaw_apps.sweeps.wear_profiles": ("wear_profiles",),
     "wearlaw_apps.tables": ("read_table",),
     "wearlaw_models.contact_models": ("kalker",),
+    "wearlaw_models.friction": ("FallingFriction",),
     "wearlaw_models.laws.archard.coefficients": ("wear_coefficient",),
+    "wearlaw_models.materials": ("steel",),
     "wearlaw_models.rigs.twin_disc": ("Disc", "TwinDisc"),
     "wearlaw_models.rigs.wheel_rail": ("WheelRail",),
     "wearlaw_models.rigs.wheelset.contacts": ("ProfileContact",),

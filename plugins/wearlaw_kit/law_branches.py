@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.contact.contact import PATCH_VARIABLES, Contact
-from wearlaw.models.law import BreakpointMap, Law
+from wearlaw.contact.contact import Contact
+from wearlaw.models.law import PATCH_VARIABLES, BreakpointMap, Law
 from wearlaw_kit.bisection import Indices, find_jumps, find_kinks, lost_digits
 from wearlaw_kit.examples import SAME, assert_close
 from wearlaw_kit.law_contacts import (

@@ -13,11 +13,11 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from wearlaw import steel
 from wearlaw.arrays import Array
-from wearlaw.contact.contact import LAW_VARIABLES, Contact, variable_at_nodes
-from wearlaw.contact.material import steel
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.parts import Body
-from wearlaw.models.law import Law
+from wearlaw.models.law import LAW_VARIABLES, Law, variable_at_nodes
 from wearlaw_kit.examples import failing, for_each, left_out, part
 from wearlaw_kit.reduced import drawn, random_lines, wide_ellipses, without_spin
 from wearlaw_kit.rules import rule

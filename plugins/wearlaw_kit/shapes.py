@@ -18,10 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw import loader
+from wearlaw import loader, steel
 from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.material import steel
 from wearlaw.contact.parts import Body, CreepForces
 from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.contact.quadrature import join

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from functools import cache
 from types import SimpleNamespace
 from typing import (
-    TYPE_CHECKING,
     Annotated,
     Any,
     NotRequired,
@@ -24,12 +23,11 @@ from typing import get_type_hints as hints_of
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field
 
 from wearlaw.arrays import Array, extremes, read_only
-from wearlaw.configuration import Configuration, item_docstrings
+from wearlaw.configuration import item_docstrings
 from wearlaw.errors import CompositionError, ConditionsError, ModelError, UnitError, WearlawError, described
-from wearlaw.units.quantities import Quantity, QuantityLike, Unit, coefficient, scalar_si
+from wearlaw.units.quantities import Quantity, QuantityLike, Unit, coefficient
 from wearlaw.units.registry import unit_in_si
 from wearlaw.units.variables import alike, meaning_of
 
@@ -225,35 +223,3 @@ def broadcast(arrays: Arrays) -> Arrays:
         name: read_only(array) if array.shape == shape else np.broadcast_to(array, shape)
         for name, array in arrays.items()
     }
-
-
-class FallingFriction(Configuration):
-    """Friction that falls with the creep speed: μ = μ0 [(1 - A) exp(-B w) + A]. Use it instead of a coefficient.
-
-    w is the magnitude of the rigid slip velocity at the centre of the patch, V √(ξ² + η²), without spin. It is one
-    number for the whole patch, so any contact model can take the resulting friction. Friction that differs from point
-    to point, with the local slip, is another theory.
-
-    Notes
-    -----
-    O. Polach, Wear 258 (2005) 992-1000, eq. (9).
-    """
-
-    static_coefficient: Annotated[float, Field(gt=0.0, strict=True), Unit("", usual=(0.0, 2.0))]
-    """Friction coefficient at rest, μ0 [-]."""
-    limit_ratio: Annotated[float, Field(gt=0.0, le=1.0, strict=True)]
-    """Friction coefficient at infinite creep speed over μ0, A [-]."""
-    decay: Annotated[Quantity, Unit("s/m")]
-    """Coefficient of the exponential fall, B [s/m]."""
-
-    if TYPE_CHECKING:
-
-        def __init__(
-            self, *, static_coefficient: float | QuantityLike, limit_ratio: float | QuantityLike, decay: QuantityLike
-        ) -> None: ...
-
-    def coefficient(self, creep_speed: Array) -> Array:
-        """Return μ [-] at creep speeds w ≥ 0 [m/s], of their shape."""
-        falling = (1.0 - self.limit_ratio) * np.exp(-scalar_si(self.decay, "s/m") * creep_speed)
-        coefficient: Array = self.static_coefficient * (falling + self.limit_ratio)
-        return coefficient

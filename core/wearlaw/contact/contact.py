@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, Self, TypeAlias, get_args
+from typing import Any, Self
 
 import numpy as np
 import pint
@@ -18,49 +18,18 @@ import pint
 from wearlaw.arrays import Array, freeze
 from wearlaw.contact import hertz_ellipse
 from wearlaw.contact.conditions import broadcast
-from wearlaw.contact.parts import Body, CreepForces
+from wearlaw.contact.parts import Body, CreepForces, LineFields
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError
 from wearlaw.units.quantities import Q, QuantityLike, parse, real_array, with_units
 from wearlaw.units.registry import with_magnitude
 from wearlaw.units.variables import expected
 
-NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density")
-"""The variables of a `Contact` with a value at each node."""
-
-PATCH_VARIABLES = (*NODE_VARIABLES, "wear_index")
-"""The variables of a `Contact` with a mean over the patch."""
-
-LawVariable: TypeAlias = Literal[
-    "pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density", "wear_index",
-    "traction_bound", "x",
-]  # fmt: skip
-"""A variable of a `Contact` in which a law can branch, jump or be monotone."""
-
-LAW_VARIABLES: tuple[str, ...] = get_args(LawVariable)
-
-
-def variable_at_nodes(contact: Contact, name: str) -> Array:
-    """Return a variable of a contact by its name, of the shape of the nodes; a total is the same at all nodes."""
-    value: Array = getattr(contact, name)
-    return np.broadcast_to(contact.per_node(value), contact.pressure.shape)
-
-
 ONE_SIGN = 1e-9
 """Share of traction of the other sign that counts as rounding; it changes the mean slip by no more."""
 
 SLIDING = 1e-9
 """Share of the rolling speed that counts as rounding in the slip of a body that slides without turning."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class LineFields:
-    """Pressure, traction, slip and traction bound at points of a line contact, as in `Contact`."""
-
-    pressure: Array
-    traction: Array
-    slip: Array
-    traction_bound: Array
 
 
 _DERIVED: Any = None
@@ -244,8 +213,13 @@ class Contact:
             The model's own normal pressure [Pa]; by default Hertz's, or the given one of the strips.
         """
         across = y[..., None, :]
+        if pressure is None and problem.strips is not None:
+            pressure = problem.strips.pressure(x)
+        elif pressure is None:
+            a, b, p0 = (array[..., None, None] for array in (problem.a, problem.b, problem.max_pressure))
+            pressure = hertz_ellipse.pressure(x, across, a, b, p0)
         return cls(
-            pressure=_given_pressure(problem, x, across) if pressure is None else pressure,
+            pressure=pressure,
             traction=_magnitude(*traction),
             slip=_magnitude(*slip),
             traction_bound=traction_bound,
@@ -551,7 +525,8 @@ class Contact:
 
     def mapped(self, function: Callable[[Array], Array], problem: Problem | None = None) -> Self:
         """Return the contact with a function applied to each of its arrays and, if none is given, of its problem."""
-        arrays = {name: function(getattr(self, name)) for name in self.__slots__ if name not in OTHERS}
+        names = [name for name in self.__slots__ if name not in ("problem", "conditions")]
+        arrays = {name: function(getattr(self, name)) for name in names}
         conditions = {
             name: with_magnitude(value, function(value.magnitude))
             if isinstance(value, pint.Quantity)
@@ -600,9 +575,6 @@ class Contact:
         return Contact(**arrays, problem=self.problem, conditions=self.conditions)
 
 
-OTHERS = ("problem", "conditions")
-"""The fields of a `Contact` that are no arrays."""
-
 TOTALS = (
     "rolling_speed", "normal_force", "tangential_force", "wear_index", "density", "force_x", "force_y", "moment_z",
 )  # fmt: skip
@@ -613,18 +585,6 @@ def _magnitude(x: Array, y: Array) -> Array:
     """Return √(x² + y²), five times as fast as `np.hypot`, which guards against overflow that cannot happen here."""
     magnitude: Array = np.sqrt(x * x + y * y)
     return magnitude
-
-
-def _given_pressure(problem: Problem, x: Array, y: Array) -> Array:
-    """Return Hertz's pressure on an ellipse, or the given one of strips [Pa]."""
-    if problem.strips is None:
-        a, b, p0 = (array[..., None, None] for array in (problem.a, problem.b, problem.max_pressure))
-        return hertz_ellipse.pressure(x, y, a, b, p0)
-    strips = problem.strips
-    p0 = strips.max_pressure[..., None, :]
-    share = (x - strips.x[..., None, :]) / np.where(strips.half_length > 0.0, strips.half_length, 1.0)[..., None, :]
-    pressure: Array = p0 * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
-    return pressure
 
 
 def _totals(problem: Problem, forces: CreepForces) -> dict[str, Any]:

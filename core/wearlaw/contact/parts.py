@@ -136,6 +136,13 @@ class Strips:
         """Normal force on each strip, π/4 of its area times its maximum pressure [N]."""
         return 0.25 * np.pi * self.area * self.max_pressure
 
+    def pressure(self, x: Array) -> Array:
+        """Return the pressure at positions x along the strips, (batch, nodes, strips) [Pa]."""
+        half_length = np.where(self.half_length > 0.0, self.half_length, 1.0)  # of strips that fill up a batch
+        share = (x - self.x[..., None, :]) / half_length[..., None, :]
+        pressure: Array = self.max_pressure[..., None, :] * np.sqrt(np.maximum((1.0 - share) * (1.0 + share), 0.0))
+        return pressure
+
     def mapped(self, function: Callable[[Array], Array], of_strips: Callable[[Array], Array] | None = None) -> Self:
         """Return the strips with a function of the batch applied to each of their arrays.
 
@@ -147,6 +154,16 @@ class Strips:
             return type(self)(**{name: of_strips(array) for name, array in arrays.items()})
         by_strip = {name: [function(strip) for strip in np.moveaxis(array, -1, 0)] for name, array in arrays.items()}
         return type(self)(**{name: np.stack(strips, axis=-1) for name, strips in by_strip.items()})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LineFields:
+    """Pressure, traction, slip and traction bound at points of a line contact, as in `Contact`."""
+
+    pressure: Array
+    traction: Array
+    slip: Array
+    traction_bound: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast,
 import numpy as np
 
 from wearlaw.arrays import Array, freeze
-from wearlaw.contact.contact import Contact, LineFields
-from wearlaw.contact.parts import CreepForces
+from wearlaw.contact.contact import Contact
+from wearlaw.contact.parts import CreepForces, LineFields
 from wearlaw.contact.problem import PATCHES, Geometry, Problem
 from wearlaw.contact.quadrature import Nodes, Zone, join
 from wearlaw.errors import CompositionError

@@ -5,7 +5,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast, get_args
 
 import numpy as np
 import pint
@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 
 from wearlaw.arrays import Array, extremes, type_name
 from wearlaw.configuration import Configuration
-from wearlaw.contact.contact import LAW_VARIABLES, PATCH_VARIABLES, Contact, LawVariable, variable_at_nodes
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.material import Material
 from wearlaw.contact.problem import Geometry
 from wearlaw.errors import CalibrationWarning, CompositionError, InputError, did_you_mean, shown, warn
@@ -22,6 +22,20 @@ from wearlaw.models.model import Blame, Model, check_scale, fault
 from wearlaw.parameters import numbers_in_si
 from wearlaw.units.quantities import WEAR_RATE, Quantity, Unit, from_si
 from wearlaw.units.variables import UNITS, VARIABLES, Variable, declare
+
+NODE_VARIABLES = ("pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density")
+"""The variables of a `Contact` with a value at each node."""
+
+PATCH_VARIABLES = (*NODE_VARIABLES, "wear_index")
+"""The variables of a `Contact` with a mean over the patch."""
+
+LawVariable: TypeAlias = Literal[
+    "pressure", "traction", "slip", "slip_speed", "wear_index_density", "frictional_power_density", "wear_index",
+    "traction_bound", "x",
+]  # fmt: skip
+"""A variable of a `Contact` in which a law can branch, jump or be monotone."""
+
+LAW_VARIABLES: tuple[str, ...] = get_args(LawVariable)
 
 Numbers: TypeAlias = Mapping[str, float | Array]
 """A law's numbers in SI, by the names of its fields; a number of a record within a law as "coefficient.low_speed".
@@ -461,6 +475,12 @@ class WearLaw(Law):
         def explicit(self) -> "WearLaw": ...  # noqa: D102
 
         def band(self) -> "tuple[WearLaw, WearLaw, WearLaw] | None": ...  # noqa: D102
+
+
+def variable_at_nodes(contact: Contact, name: str) -> Array:
+    """Return a variable of a contact by its name, of the shape of the nodes; a total is the same at all nodes."""
+    value: Array = getattr(contact, name)
+    return np.broadcast_to(contact.per_node(value), contact.pressure.shape)
 
 
 def named_outcomes(laws: Sequence[Law]) -> dict[str, int]:

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
-from wearlaw.contact.contact import NODE_VARIABLES, Contact
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Nodes, Zone
 from wearlaw.errors import ModelError
 from wearlaw.models.contact_model import FieldVariable, LineContactModel
+from wearlaw.models.law import NODE_VARIABLES
 from wearlaw.models.model import with_origin
 
 SAMPLES = 32

@@ -21,13 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wearlaw.arrays import Array, extremes, read_only, steadily, steady
-from wearlaw.contact.contact import NODE_VARIABLES, Contact
+from wearlaw.contact.contact import Contact
 from wearlaw.contact.parts import CreepForces
 from wearlaw.contact.problem import Problem
 from wearlaw.contact.quadrature import Zone, join, remainder
 from wearlaw.errors import CompositionError, shown
 from wearlaw.models.contact_model import ContactModel, LineContactModel
-from wearlaw.models.law import Law, Numbers
+from wearlaw.models.law import NODE_VARIABLES, Law, Numbers
 from wearlaw.models.model import Blame, fault
 from wearlaw.models.reader import Solved
 from wearlaw.numerics.crossings import crossings

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.contact.contact import NODE_VARIABLES, TOTALS, Contact
+from wearlaw.contact.contact import TOTALS, Contact
 from wearlaw.contact.problem import Problem
-from wearlaw.models.law import Law, Numbers
+from wearlaw.models.law import NODE_VARIABLES, Law, Numbers
 from wearlaw.models.model import Blame
 from wearlaw.numerics.solving import VECTORS, Solver
 

@@ -50,8 +50,9 @@ from wearlaw.pipeline.composition import (
     warn_of_unlike_materials,
 )
 from wearlaw.pipeline.posed import axes, in_batch, masked, with_conditions, with_same
-from wearlaw.pipeline.prediction import Prediction, solved
+from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch
+from wearlaw.pipeline.solution import Solution
 from wearlaw.units.quantities import parse, real_array, with_units
 from wearlaw.units.registry import with_magnitude
 from wearlaw.units.usual import OneWarning
@@ -564,7 +565,7 @@ class Pipeline(Configuration, Generic[P]):
         if problem.dims:
             watch.counted = "patches"
         model, problem = prepared(self.staged_model, problem)
-        return solved(model, self.laws, problem, watch, conditions)
+        return Prediction(Solution.of(model, self.laws, problem, watch, conditions))
 
 
 def _several(*parts: Any, **more: Any) -> Any:

@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
-from typing import TYPE_CHECKING, Any, overload
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 import pint
 
 from wearlaw.arrays import Array, steady
 from wearlaw.contact.contact import Contact
-from wearlaw.contact.problem import Geometry, Problem
 from wearlaw.errors import CompositionError, InputError, did_you_mean, shown
 from wearlaw.late import method
 from wearlaw.models.contact_model import ContactModel, Scale
 from wearlaw.models.law import Law, named_outcomes
 from wearlaw.models.reader import Solved, flat
-from wearlaw.numerics import integrate
 from wearlaw.numerics.staged import without_stages
-from wearlaw.numerics.totals import Totals
-from wearlaw.pipeline.composition import check_laws, check_scale, other_materials, warn_of_parameters
-from wearlaw.pipeline.ranges import RangeWatch, outside_range
+from wearlaw.pipeline.composition import check_laws, check_scale, warn_of_parameters
+from wearlaw.pipeline.ranges import RangeWatch
 from wearlaw.pipeline.selection import Index, Label, Selection
 from wearlaw.pipeline.solution import Solution
-from wearlaw.pipeline.variables import ERROR, default_variables, outcome_units
+from wearlaw.pipeline.variables import ERROR, SHOWN, default_variables, outcome_units
 from wearlaw.units.quantities import WEAR_RATE, Quantity, QuantityLike, Unit, from_si
 from wearlaw.units.registry import quantity
 
@@ -33,16 +29,6 @@ if TYPE_CHECKING:
     import pandas
     import xarray
     from matplotlib.axes import Axes
-
-
-FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
-
-SHOWN: Mapping[Geometry, tuple[str, ...]] = {
-    "line": ("tangential_force", "wear_index", "half_width", "max_pressure", "stick_ratio", "mean_slip"),
-    "ellipse": (*FORCES, "semi_axis_a", "semi_axis_b", "max_pressure"),
-    "strips": (*FORCES, "patch_area", "max_pressure"),
-}
-"""Variables that a prediction prints besides its wear rate."""
 
 
 class Prediction:
@@ -116,7 +102,7 @@ class Prediction:
         for law in laws:
             warn_of_parameters(problem.geometry, problem.bodies, model, model.scale, law)
         watch = RangeWatch(*laws)
-        prediction = solved(model, laws, problem, watch)
+        prediction = cls(Solution.of(model, laws, problem, watch))
         watch.warn()
         return prediction
 
@@ -416,15 +402,7 @@ class Prediction:
     @property
     def outside_range(self) -> Quantity:
         """1 where a point lies outside the range or the materials that a law was fitted to, otherwise 0 [-]."""
-        problem, solution = self.problem, self._solution
-        if not self.laws:
-            solution.law()  # raises
-        totals = Totals(forces=solution.forces, patch_area=solution.patch_area)
-        outside = np.zeros(problem.batch_shape, dtype=np.bool_)
-        for law in self.laws:
-            outside |= outside_range(problem, totals, law) | bool(other_materials(problem.bodies, law))
-        marks = outside.astype(np.float64)
-        return self._si(marks if problem.exists is None else np.where(problem.exists, marks, np.nan), "")
+        return self._si(self._solution.outside_range, "")
 
     @property
     def patch_area(self) -> Quantity:
@@ -601,30 +579,6 @@ class Prediction:
         if own_axes or problem.exists is not None:
             points = f"{problem.size} {'patch' if problem.size == 1 else 'patches'} at {points}"
         return f"{type(self).__name__} of {points}"
-
-
-def solved(
-    model: ContactModel,
-    laws: tuple[Law, ...],
-    problem: Problem,
-    watch: RangeWatch,
-    conditions: Mapping[str, Any] | None = None,
-) -> Prediction:
-    """Return the prediction of laws in the contacts of a model, without warnings; `watch` sees the operating points.
-
-    `conditions` are those of the pipeline.
-    """
-    if problem.exists is not None and not problem.size:
-        totals = Totals.missing(problem, laws)
-    else:
-        totals = integrate.integrate_laws(model, laws, problem, watch.see)
-    solution = Solution(problem, model, laws, totals, conditions)
-    for index, law in enumerate(laws):
-        if law.outcome.of == "patch":
-            law.check_not_negative(totals.values[index])
-        else:
-            law.check_not_negative(totals.values[index], partial(solution.error, index))
-    return Prediction(solution)
 
 
 def _brief(quantity: Quantity) -> str:

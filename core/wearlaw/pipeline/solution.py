@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -18,8 +18,8 @@ from wearlaw.models.law import WEAR, Law
 from wearlaw.models.reader import Solved
 from wearlaw.numerics import integrate
 from wearlaw.numerics.totals import Across, SlipTotals, Totals, each
-from wearlaw.pipeline.composition import law_among, warn_of_body
-from wearlaw.pipeline.ranges import elastic_limits
+from wearlaw.pipeline.composition import law_among, other_materials, warn_of_body
+from wearlaw.pipeline.ranges import RangeWatch, elastic_limits, outside_range
 from wearlaw.pipeline.selection import Selection
 from wearlaw.units.quantities import scalar_si
 
@@ -47,6 +47,28 @@ class Solution:
         self.totals = totals
         self.conditions = conditions
         self.whole = whole
+
+    @classmethod
+    def of(
+        cls,
+        model: ContactModel,
+        laws: tuple[Law, ...],
+        problem: Problem,
+        watch: RangeWatch,
+        conditions: Mapping[str, Any] | None = None,
+    ) -> Solution:
+        """Solve the contacts of a problem, without warnings; `watch` sees the operating points."""
+        if problem.exists is not None and not problem.size:
+            totals = Totals.missing(problem, laws)
+        else:
+            totals = integrate.integrate_laws(model, laws, problem, watch.see)
+        solution = cls(problem, model, laws, totals, conditions)
+        for index, law in enumerate(laws):
+            if law.outcome.of == "patch":
+                law.check_not_negative(totals.values[index])
+            else:
+                law.check_not_negative(totals.values[index], partial(solution.error, index))
+        return solution
 
     def part(self, chosen: Selection) -> Solution:
         """Return the solution at some entries along the axes; nothing is solved again."""
@@ -77,6 +99,17 @@ class Solution:
     def elastic_limits(self) -> tuple[Array, Array]:
         """Maximum pressure at first yield and at the shakedown limit [Pa]."""
         return elastic_limits(self.problem, np.abs(self.force))
+
+    @property
+    def outside_range(self) -> Array:
+        """1 where a point lies outside the range or the materials of a law, otherwise 0; NaN for missing patches."""
+        problem, totals = self.problem, Totals(forces=self.forces, patch_area=self.patch_area)
+        if not self.laws:
+            self.law()  # raises
+        outside = np.zeros(problem.batch_shape)
+        for law in self.laws:
+            outside[outside_range(problem, totals, law) | bool(other_materials(problem.bodies, law))] = 1.0
+        return outside if problem.exists is None else np.where(problem.exists, outside, np.nan)
 
     @cached_property
     def slip(self) -> SlipTotals:

@@ -28,6 +28,15 @@ OF_POINT = (
 )  # fmt: skip
 """Variables that depend on the operating point alone; no prediction has all of them."""
 
+_FORCES = ("longitudinal_force", "lateral_force", "spin_moment", "wear_index")
+
+SHOWN: Mapping[Geometry, tuple[str, ...]] = {
+    "line": ("tangential_force", "wear_index", "half_width", "max_pressure", "stick_ratio", "mean_slip"),
+    "ellipse": (*_FORCES, "semi_axis_a", "semi_axis_b", "max_pressure"),
+    "strips": (*_FORCES, "patch_area", "max_pressure"),
+}
+"""Variables that a prediction prints besides its outcomes."""
+
 OF_PATCH = ("lateral_creepage", "spin", "contact_angle")
 """Variables of one of several patches, which differ in them; with one patch they repeat the conditions."""
 

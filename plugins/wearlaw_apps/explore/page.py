@@ -22,7 +22,7 @@ import wearlaw as wl
 from wearlaw import loader
 from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
-from wearlaw.pipeline.prediction import SHOWN
+from wearlaw.pipeline.variables import SHOWN
 from wearlaw.text_files import reason_of
 from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_apps.explore.subject import Subject, code_of, numbered
