@@ -59,12 +59,16 @@ def documented() -> Iterator[Documented]:
     for rig in (wl.TwinDisc, wl.WheelRail, wl.Wheelset, wl.ProfileContact):
         for name, condition in rig.conditions().items():
             yield read(name, "conditions", condition.meaning)
+    for where, holder, name in of_configurations():
+        yield read(name, where, field_docstrings(type(holder))[name])
+
+
+def of_configurations() -> Iterator[tuple[str, wl.Configuration, str]]:
+    """Yield the numbers of records and models: where they are told, the record that holds them, and their names."""
     for record in (wl.TwinDisc.suros(), wheel_rail(), wheelset(), falling_friction()):
-        for holder, name in fields(record):
-            yield read(name, type(holder).__name__, field_docstrings(type(holder))[name])
+        yield from ((type(holder).__name__, holder, name) for holder, name in fields(record))
     for model in (*shipped_models(), *shipped_laws(), *shipped_stages()):
-        for holder, name in fields(model):
-            yield read(name, model.name, field_docstrings(type(holder))[name])
+        yield from ((model.name, holder, name) for holder, name in fields(model))
 
 
 def wheel_rail() -> wl.WheelRail:

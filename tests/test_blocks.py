@@ -31,7 +31,7 @@ from wearlaw.cli import main  # private: the program, in this process
 FENCE = re.compile(r"^( *)(`{3,}|~{3,}|:{3,})([^\n`]*)\n(.*?)^\1\2 *$", re.MULTILINE | re.DOTALL)
 CAPTION = re.compile(r":caption: (\S+)\n")
 ELSEWHERE = {
-    r"\{literalinclude\} gallery/\w+\.py": "tests/test_gallery.py runs it",
+    r"\{literalinclude\} gallery/\w+\.py": "tests/test_docs.py runs it",
     r"\{literalinclude\} examples/wear_map\.py": "tests/plugins/sweeps/test_sweep_store.py runs it",
     r"\{literalinclude\} \.\./CITATION\.cff": "tests/test_contributing.py reads it",
     r"\{include\} \.\./CHANGELOG\.md": "no code",

@@ -104,45 +104,16 @@ def test_all_quantities_of_results_are_in_the_table_with_a_unit_of_their_dimensi
         assert one_of(units[place]).is_compatible_with(value), place
 
 
-def test_all_numbers_of_rig_and_models_are_in_the_table_with_a_unit_of_their_dimension(
-    documented: list[Documented],
-) -> None:
-    rig = wl.TwinDisc.suros()
-    holders: dict[str, wl.Configuration] = {"TwinDisc": rig, "Disc": rig.disc_1, "Material": rig.disc_1.material}
-    holders |= {"WheelRail": nomenclature.wheel_rail(), "FallingFriction": nomenclature.falling_friction()}
-    holders |= {name: wl.wear_law(name) for name in ("brr", "kth", "usfd")}
-    holders |= {name: wl.contact_model(name) for name in ("exact", "fastsim", "global", "polach")}
-    holders |= {law.name: law for law in nomenclature.shipped_laws()}
-    holders |= {stage.name: stage for stage in nomenclature.shipped_stages()}
-    values = {
-        (where, name): value
-        for where, holder in holders.items()
-        for name, value in holder
-        if isinstance(value, wl.Quantity)
-    }
-    values[("Material", "poisson_ratio")] = wl.Q(1.0, "")
-    values |= {("FallingFriction", field): wl.Q(1.0, "") for field in ("static_coefficient", "limit_ratio")}
-    values |= {("thermal", name): value for name, value in holders["thermal"].body_1}  # type: ignore[attr-defined]
-    values |= {("thermal", "hot_ratio"): wl.Q(1.0, "")}
-    values |= {("third_body", field): wl.Q(1.0, "") for field in ("reduction", "limit_reduction", "reduction_decay")}
-    values |= {("wlrm", "peak_damage"): wl.Q(1.0, "")}
-    values |= {("polach", field): wl.Q(1.0, "") for field in ("adhesion_reduction", "slip_reduction")}
-    values[("archard", "coefficient")] = wl.Q(1.0, "")
-    values |= {
-        (law, name): wl.parse(text)
-        for law, laws in nomenclature.WITHOUT_DEFAULTS.items()
-        for fields in laws
-        for name, text in fields.items()
-        if isinstance(text, str)
-    }
-    of_kth = "high_pressure", "low_speed", "mid_speed", "high_speed", "threshold_over_hardness"
-    values |= {("kth", field): wl.Q(1.0, "") for field in of_kth}
-    known = {*holders, *nomenclature.WITHOUT_DEFAULTS}
-    units = {(one.where, one.name): one.unit for one in documented if one.where in known}
-    of_known_unit = {place: value for place, value in values.items() if place[1] not in nomenclature.OF_ANY_UNIT}
-    assert units.keys() == of_known_unit.keys()
-    for place, value in of_known_unit.items():
-        assert one_of(units[place]).is_compatible_with(value), place
+def test_all_numbers_of_rigs_and_models_have_a_unit_of_their_dimension(documented: list[Documented]) -> None:
+    units = {(one.where, one.name): one.unit for one in documented}
+    found = [*nomenclature.of_configurations()]
+    assert {("Disc", "diameter"), ("kth", "mid_speed"), ("thermal", "hot_ratio")} <= {(w, name) for w, _, name in found}
+    for where, holder, name in found:
+        value = getattr(holder, name)
+        due = value if isinstance(value, wl.Quantity) else wl.Q(1.0, "")
+        assert name in nomenclature.OF_ANY_UNIT or one_of(units[where, name]).is_compatible_with(due), (where, name)
+        inside = {each for each, one in holder if isinstance(one, wl.Quantity)}
+        assert inside <= {each for _, other, each in found if other is holder}
 
 
 def test_the_table_of_variables_has_the_documented_dimensions_and_symbols(documented: list[Documented]) -> None:

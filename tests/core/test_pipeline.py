@@ -72,15 +72,6 @@ def test_warnings_about_a_problem_of_the_rig_are_at_the_users_line_too() -> None
         assert f"wear law 'usfd' has a known range of mean {variable} from" in str(warning.message)
 
 
-@pytest.mark.parametrize("law", [FITTED["global"], KTH, BRR], ids=lambda law: law.name)
-@pytest.mark.parametrize("creepage", [0.0, 1e-4, 0.01, -0.01, 0.05, 0.2])
-def test_the_patch_means_of_the_exact_model_wear_as_the_global_model(law: wl.WearLaw, creepage: float) -> None:
-    conditions: Any = {**CONDITIONS, "creepage": Q(creepage, "")}
-    on_means, on_global = (RIG | EXACT | wl.patch_mean() | law)(**conditions), (RIG | GLOBAL | law)(**conditions)
-    # A dozen roundings.
-    assert on_means.wear_rate.magnitude == pytest.approx(on_global.wear_rate.magnitude, rel=32 * np.finfo(float).eps)
-
-
 def test_a_measured_traction_is_used_by_the_global_model_only() -> None:
     measured: Any = {**CONDITIONS, "traction_coefficient": 0.45}
     result = (RIG | GLOBAL)(**measured)
