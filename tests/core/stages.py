@@ -11,6 +11,8 @@ from wearlaw import Q
 RIG = wl.TwinDisc.suros()
 CONDITIONS: Any = {"normal_force": Q(7.4143, "kN"), "creepage": Q(1, "%"), "friction_coefficient": 0.46}
 RAILS = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
+TOUGH = wl.steel(shear_yield_stress=None)
+"""Steel of which no stress is too much, so that nothing warns of it."""
 ON_RAILS: Any = {"normal_force": "80 kN", "friction_coefficient": 0.3, "longitudinal_creepage": "0.2 %"}
 EXACT, FASTSIM, GLOBAL = (wl.contact_model(name) for name in ("exact", "fastsim", "global"))
 ELLIPTIC = wl.contact_model("fastsim", bound="elliptic")

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
+from tests.core.stages import RAILS
 from tests.strategies import EPS
 from wearlaw import Array, Q
 
@@ -19,13 +20,6 @@ from wearlaw import Array, Q
 DRY: dict[str, Any] = {"static_coefficient": 0.55, "limit_ratio": 0.4, "decay": "0.6 s/m"}
 FRICTION = wl.FallingFriction(**DRY)
 
-WHEEL_RAIL = wl.WheelRail(
-    wheel_radius=Q(460, "mm"),
-    rail_head_radius=Q(300, "mm"),
-    wheel_profile_radius=Q(np.inf, "mm"),
-    material=wl.steel(),
-    rolling_speed=Q(30, "m/s"),
-)
 ELLIPTIC = [name for name, model in wl.installed("contact model").items() if "ellipse" in model.geometries()]
 LINE = [name for name, model in wl.installed("contact model").items() if "line" in model.geometries()]
 
@@ -80,7 +74,7 @@ def test_discs_have_the_friction_of_the_difference_of_their_surface_speeds() -> 
 
 @pytest.mark.parametrize("name", ELLIPTIC)
 def test_an_elliptic_contact_has_the_friction_of_its_creep_speed(name: str) -> None:
-    solve = WHEEL_RAIL | wl.contact_model(name, **({"cells": 8} if name == "half_space" else {}))
+    solve = RAILS | wl.contact_model(name, **({"cells": 8} if name == "half_space" else {}))
     along, across = np.array([0.0, 0.001, 0.01, 0.1]), np.array([0.0, -0.002, 0.003, 0.0])
     conditions: dict[str, Any] = {
         "normal_force": Q(80, "kN"),

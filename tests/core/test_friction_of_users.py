@@ -18,14 +18,6 @@ pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
 
 PREDICT = usfd("exact")
 CONDITIONS: Mapping[str, Any] = {"normal_force": "7 kN", "creepage": "1 %", "friction_coefficient": 0.4}
-WHEEL: Mapping[str, Any] = {
-    "wheel_radius": "460 mm",
-    "rail_head_radius": "300 mm",
-    "material": wl.steel(),
-    "rolling_speed": "30 m/s",
-}
-
-
 THREE = predicted(PREDICT, **{**CONDITIONS, "creepage": Q([1.0, 2.0, 3.0], "%")})
 
 

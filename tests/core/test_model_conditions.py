@@ -12,16 +12,15 @@ import pytest
 
 import wearlaw as wl
 import wearlaw_kit
+from tests.core.stages import RAILS, TOUGH
 from tests.strategies import EPS
 from wearlaw import Array, Q
 from wearlaw.errors import CompositionError, ModelError
 
-RIG = wl.TwinDisc.suros(material=wl.steel(shear_yield_stress=None))
+RIG = wl.TwinDisc.suros(material=TOUGH)
 EXACT = wl.contact_model("exact")
 TEST: dict[str, Any] = {"max_pressure": "1500 MPa", "creepage": "1 %", "friction_coefficient": 0.46}
-RAILS = wl.WheelRail(
-    wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(shear_yield_stress=None), rolling_speed="30 m/s"
-)
+ON_RAILS = RAILS.model_copy(update={"material": TOUGH})
 
 
 class Humidity(TypedDict):
@@ -158,10 +157,10 @@ def test_a_condition_that_may_be_left_out() -> None:
 
 def test_a_stage_alters_the_problem_by_its_condition() -> None:
     """At RH = 50 % the friction is 3/4 of what is given, for the law behind the stage as well."""
-    predict: wl.Pipeline[...] = RAILS | wl.contact_model("fastsim") | Wet() | Humid()
+    predict: wl.Pipeline[...] = ON_RAILS | wl.contact_model("fastsim") | Wet() | Humid()
     on_rails: dict[str, Any] = {"normal_force": "80 kN", "longitudinal_creepage": Q([0.1, 0.5], "%")}
     wet = predict(**on_rails, friction_coefficient=0.4, relative_humidity="50 %")
-    other: wl.Pipeline[...] = RAILS | wl.contact_model("fastsim") | Humid()
+    other: wl.Pipeline[...] = ON_RAILS | wl.contact_model("fastsim") | Humid()
     by_hand = other(**on_rails, friction_coefficient=0.3, relative_humidity="50 %")
     assert wet.wear_rate.magnitude == pytest.approx(by_hand.wear_rate.magnitude, rel=64 * EPS)
     assert wet.longitudinal_force.magnitude == pytest.approx(by_hand.longitudinal_force.magnitude, rel=64 * EPS)

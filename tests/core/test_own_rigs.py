@@ -5,16 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, ClassVar
 
-import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
 import wearlaw as wl
+from tests.core.stages import RAILS
 from wearlaw import Q
 from wearlaw.errors import ModelError
 
 SUROS = wl.TwinDisc.suros()
-EPS = np.finfo(np.float64).eps
 MODEL = wl.contact_model("exact")
 KTH = wl.wear_law("kth")
 
@@ -56,11 +55,8 @@ class OnRail(wl.Rig):
 
     def problem(self, *, mass: wl.QuantityLike, longitudinal_creepage: wl.QuantityLike) -> wl.Problem:
         """Return the problem of a weight."""
-        wheel = wl.WheelRail(
-            wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s"
-        )
         load = Q(wl.Unit("kg").si(mass, "mass") * 9.81, "N")
-        return wheel.problem(normal_force=load, longitudinal_creepage=longitudinal_creepage, friction_coefficient=0.3)
+        return RAILS.problem(normal_force=load, longitudinal_creepage=longitudinal_creepage, friction_coefficient=0.3)
 
 
 def test_parameters_fitted_for_another_shape_of_patch_give_a_warning_once_the_shape_is_known() -> None:

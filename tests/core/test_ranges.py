@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.core.stages import RAILS, TOUGH
 from wearlaw import Array, Q
 
-RIG = wl.TwinDisc.suros(rolling_speed="2 m/s", material=wl.steel(shear_yield_stress=None))
+RIG = wl.TwinDisc.suros(rolling_speed="2 m/s", material=TOUGH)
 EXACT = wl.contact_model("exact")
+ON_RAILS = RAILS.model_copy(update={"material": TOUGH})
 
 
 class Stated(wl.WearLaw):
@@ -37,11 +39,6 @@ class Stated(wl.WearLaw):
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         w = contact.wear_index_density
         return 1e-9 * (w + np.maximum(w - 1e6, 0.0))
-
-
-def problem(creepage: Any, **changes: Any) -> wl.Problem:
-    conditions: Any = {"max_pressure": "1500 MPa", "friction_coefficient": 0.46, **changes}
-    return RIG.problem(creepage=Q(creepage, ""), **conditions)
 
 
 def messages(law: wl.WearLaw, creepage: Any, pressure: Any = "1500 MPa") -> list[str]:
@@ -99,14 +96,6 @@ def test_every_variable_is_watched_by_its_patch_mean(name: str, sign: float) -> 
         (message,) = messages(law, creepage, pressure)
         assert f"range of mean {name.replace('_', ' ')} from" in message
         assert f"; {outside} of 4 operating points {'lies' if outside == 1 else 'lie'} outside" in message
-
-
-ON_RAILS = wl.WheelRail(
-    wheel_radius="460 mm",
-    rail_head_radius="300 mm",
-    material=wl.steel(shear_yield_stress=None),
-    rolling_speed="30 m/s",
-)
 
 
 @pytest.mark.parametrize("name", NAMES)

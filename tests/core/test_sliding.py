@@ -12,17 +12,13 @@ import pytest
 from scipy.integrate import quad
 
 import wearlaw as wl
+from tests.core.stages import RAILS, TOUGH
 from wearlaw import Q
 from wearlaw.pipeline.ranges import SLIDING, RangeWatch  # private: names of marks
 from wearlaw_apps.sweeps import points  # private: small blocks
 
-DISCS = wl.TwinDisc.suros(material=wl.steel(shear_yield_stress=None))
-WHEEL = wl.WheelRail(
-    wheel_radius="460 mm",
-    rail_head_radius="300 mm",
-    material=wl.steel(shear_yield_stress=None),
-    rolling_speed="20 m/s",
-)
+DISCS = wl.TwinDisc.suros(material=TOUGH)
+WHEEL = RAILS.model_copy(update={"material": TOUGH, "rolling_speed": "20 m/s"})
 ON_DISCS: dict[str, Any] = {"max_pressure": "1200 MPa", "friction_coefficient": 0.4}
 ON_RAIL: dict[str, Any] = {"normal_force": "80 kN", "friction_coefficient": 0.3}
 ARCHARD = wl.wear_law("archard", coefficient=1e-4, hardness="2.6 GPa")
