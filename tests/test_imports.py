@@ -1,4 +1,4 @@
-"""Imports, read from the source: between the files of core and plugins, and by tests of what is private.
+"""Imports, read from the source: in files of core and plugins, and of what is private in tests; see `lint-imports` too.
 
 Those inside functions and for types count.
 """
@@ -9,8 +9,6 @@ import ast
 import re
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
-
-import pytest
 
 import wearlaw as wl
 from tests.environments import ROOT
@@ -77,39 +75,11 @@ def imported(source: str, known: Mapping[str, object]) -> Iterator[str]:
                 yield from (name for name in [inner if inner in known else str(node.module)] if name in known)
 
 
-def circles(graph: Mapping[str, set[str]]) -> list[set[str]]:
-    """Return the sets of modules of which each reaches each."""
-
-    def reach(start: str) -> set[str]:
-        seen: set[str] = set()
-        left = [start]
-        while left:
-            new = graph[left.pop()] - seen
-            seen |= new
-            left += new
-        return seen
-
-    reached = {name: reach(name) for name in graph}
-    found: list[set[str]] = []
-    for name in sorted(graph):
-        circle = {other for other in reached[name] if name in reached[other]}
-        if circle and circle not in found:
-            found.append(circle)
-    return found
-
-
-@pytest.fixture(scope="module")
-def graph() -> dict[str, set[str]]:
+def test_no_file_imports_a_package_that_it_lies_in() -> None:
     known = modules()
-    graph = {name: set(imported(path.read_text(encoding="utf-8"), known)) for name, path in known.items()}
-    late = graph["wearlaw.late"]
-    graph["wearlaw.late"] = {name for name in late if not name.startswith("wearlaw_")}  # loaded at their first use
-    return graph
-
-
-def test_no_files_import_each_other_in_a_circle(graph: dict[str, set[str]]) -> None:
-    assert {"wearlaw", "wearlaw_apps.studies.case", "wearlaw_models.laws.kth", "_wearlaw_hypothesis"} <= graph.keys()
-    assert [sorted(circle) for circle in circles(graph)] == []
+    assert {"wearlaw", "wearlaw_apps.studies.case", "wearlaw_models.laws.kth", "_wearlaw_hypothesis"} <= known.keys()
+    found = {(name, one) for name, path in known.items() for one in imported(path.read_text(encoding="utf-8"), known)}
+    assert [(name, one) for name, one in found if name.startswith(f"{one}.")] == []
 
 
 def deferred(source: str) -> Iterator[str]:

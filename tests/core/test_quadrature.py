@@ -29,6 +29,12 @@ def test_points_are_given_by_x_or_counted_from_the_other_edge() -> None:
     assert nodes.reversed().x == pytest.approx([1.0, -0.25])
 
 
+def test_the_middle_stands_for_the_zone() -> None:
+    node = zone().middle()
+    assert node.x == pytest.approx([0.4], rel=2 * EPS)
+    assert node.length == 1.4
+
+
 @pytest.mark.validates(
     "limits",
     ("Integrals of Hertz's pressure over a slip zone that ends just short of the leading edge lose digits"),
