@@ -20,10 +20,8 @@ CURVE_CELLS = (10, 30, 300, 1000, 3000)
 CURVE_ROUNDS = 5
 
 NUMPY_CELLS = "cells, NumPy"
-NUMPY_TUNED = "cells, NumPy tuned by hand"
 C_CELLS = "cells, C"
 C_CLOSED = "closed form, C"
-C_CLOSED_FAST = "closed form, C, fast maths"
 
 
 def compare(rounds: int) -> tuple[list[Row], list[Gate]]:
@@ -53,7 +51,7 @@ def curve() -> list[Row]:
     """Return rows of the algorithms of cells for other numbers of cells."""
     points = workload(CURVE_POINTS)
     exact = reference(points)
-    chunk = _best_chunk(rivals.numpy_cells, points)
+    chunk = _best_chunk(points)
     works: dict[tuple[str, int], Callable[[], Array]] = {
         (NUMPY_CELLS, count): partial(rivals.numpy_cells, points, count, chunk) for count in CURVE_CELLS
     }
@@ -72,21 +70,18 @@ def _rivals(points: Points) -> dict[str, Callable[[], object]]:
     works: dict[str, Callable[[], object]] = {
         _wearlaw(name): in_mode(on, lambda: predict(**conditions).wear_rate) for name, on in modes().items()
     }
-    for name, cells in ((NUMPY_CELLS, rivals.numpy_cells), (NUMPY_TUNED, rivals.numpy_cells_in_buffers)):
-        works[name] = partial(cells, points, chunk=_best_chunk(cells, points))
+    works[NUMPY_CELLS] = partial(rivals.numpy_cells, points, chunk=_best_chunk(points))
     if rivals.has_compiler():
-        fast, plain = Compiled(rivals.FAST), Compiled(rivals.PLAIN_LIBRARY)
-        works[C_CELLS] = partial(fast.cells, points)
-        works[C_CLOSED] = partial(plain.closed_form, points)
-        works[C_CLOSED_FAST] = partial(fast.closed_form, points)
+        works[C_CELLS] = partial(Compiled(rivals.FAST).cells, points)
+        works[C_CLOSED] = partial(Compiled(rivals.PLAIN_LIBRARY).closed_form, points)
     else:
         print("no C compiler: the rivals in C are left out")
     return works
 
 
-def _best_chunk(cells: Callable[..., Array], points: Points) -> int:
-    """Return the chunk with which an algorithm is fastest here."""
-    works = {str(chunk): partial(cells, points, chunk=chunk) for chunk in CHUNKS}
+def _best_chunk(points: Points) -> int:
+    """Return the chunk with which the cells in NumPy are fastest here."""
+    works = {str(chunk): partial(rivals.numpy_cells, points, chunk=chunk) for chunk in CHUNKS}
     times = side_by_side(works, rounds=3)
     return int(min(works, key=times.median))
 

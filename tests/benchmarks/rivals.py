@@ -57,35 +57,6 @@ def _cells(points: Points, count: int) -> Array:
     return mean
 
 
-def numpy_cells_in_buffers(points: Points, count: int = CELLS, chunk: int = 6_400) -> Array:
-    """Return the same as `numpy_cells`, tuned by hand: every step into a buffer, none twice."""
-    p, x = PARAMETERS, centres(count)
-    root = np.sqrt(1.0 - x * x)
-    load = points.force / p.width
-    a = np.sqrt(4.0 * load * p.radius / (math.pi * p.modulus))
-    saturation = points.friction * a / p.radius
-    scale = (points.friction * 2.0 * load / (math.pi * a) * saturation)[:, None]
-    d = (points.creepage / saturation)[:, None]
-    stick_squared = np.maximum(1.0 - d, 0.0) ** 2
-    rows = max(chunk // count, 1)
-    rate, w_all, over_all = np.empty(points.count), np.empty((rows, count)), np.empty((rows, count))
-    for first in range(0, points.count, rows):
-        part = slice(first, first + rows)
-        w, over = w_all[: d[part].size], over_all[: d[part].size]
-        np.add(x, d[part], out=w)
-        np.multiply(w, w, out=w)
-        np.subtract(w, stick_squared[part], out=w)
-        np.maximum(w, 0.0, out=w)
-        np.sqrt(w, out=w)
-        np.multiply(w, root, out=w)
-        np.multiply(w, scale[part], out=w)
-        np.subtract(w, p.tr_sc, out=over)
-        np.maximum(over, 0.0, out=over)
-        np.minimum(w, p.q_s / p.m_m, out=w)
-        rate[part] = (p.m_m * w.sum(-1) + p.m_c * over.sum(-1)) / count
-    return rate
-
-
 def centres(count: int) -> Array:
     """Return x/a at the centres of uniform cells over the patch."""
     return (2.0 * np.arange(count) + 1.0) / count - 1.0
