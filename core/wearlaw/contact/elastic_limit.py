@@ -210,7 +210,7 @@ def overload(
     if max_pressure.size == 1:
         point = [array.item() for array in points]  # functions of NumPy take ten times as long
         for k, nu in bodies:
-            worst = _worse(worst, _overload_at(k, nu, *point))
+            worst = max(filter(None, (worst, _overload_at(k, nu, *point))), default=None)
         return worst
     flat = [array.reshape(-1) for array in points]
     highest, traction, friction = (float(array.max()) for array in flat[:3])
@@ -222,7 +222,8 @@ def overload(
             flows = worst is not None and worst.beyond_shakedown
             least = worst.ratio if worst is not None and flows == beyond else 1.0
             if not flows or beyond:  # beyond shakedown there is no need to check first yield
-                worst = _worse(worst, _furthest(measure, k, nu, friction, least, *flat))
+                further = _furthest(measure, k, nu, friction, least, *flat)
+                worst = max(filter(None, (worst, further)), default=None)
     return worst
 
 
@@ -236,13 +237,6 @@ def _overload_at(k: float, nu: float, max_pressure: float, *point: float) -> Ove
         if load > 1.0:  # beyond shakedown there is no need to check first yield
             return Overload(beyond, float(load), max_pressure, traction)
     return None
-
-
-def _worse(first: Overload | None, second: Overload | None) -> Overload | None:
-    """Return the greater of two overloads."""
-    if first is None or second is None:
-        return second or first
-    return max(first, second)
 
 
 def _most_stressed(poisson_ratio: float, friction_coefficient: _Value) -> _Value:

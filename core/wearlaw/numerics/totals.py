@@ -109,8 +109,8 @@ class Totals(NamedTuple):
 
     @classmethod
     def missing(cls, problem: Problem, laws: Sequence[object]) -> Totals:
-        """Return the totals of a problem none of whose patches exists."""
-        none = problem.unflatten(np.empty(0))
+        """Return the totals of a problem that is not solved, such as one none of whose patches exists."""
+        none = np.full(problem.batch_shape, np.nan)
         every, forces = (none,) * len(laws), CreepForces(longitudinal=none, lateral=none, spin_moment=none)
         slip, across = SlipTotals(none, none, none, none), (None,) * len(laws)
         return cls(every, every, forces, patch_area=none, slip=slip, across=across)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -116,45 +116,51 @@ def check_geometry(rig: Model, model: ContactModel, geometry: Geometry | None) -
 
 
 def warn_of_parameters(
-    geometry: Geometry | None,
-    bodies: Mapping[str, Body],
+    law: Law,
     model: ContactModel,
     scale: Scale,
-    law: Law,
+    geometry: Geometry | None,
+    bodies: Mapping[str, Body],
+    told: Container[str] = (),
 ) -> None:
-    """Warn if the law's parameters were fitted for another contact, materials or body.
+    """Warn if the law's parameters were fitted for another contact, materials or body, of what is not `told` yet.
 
     The geometry is None, and `bodies` is empty, if they are not known.
     """
-    warn_of_calibration(geometry, model, scale, law)
-    warn_of_materials(bodies, law)
-    if law.body is not None and bodies:
-        warn_of_body(bodies, law, law.body)
+    for text in remarks_on_parameters(law, model, scale, geometry, bodies):
+        if text not in told:
+            warn(text, CalibrationWarning)
 
 
-def warn_of_calibration(geometry: Geometry | None, model: ContactModel, scale: Scale, law: Law) -> None:
-    """Warn if the law's parameters were fitted for another contact."""
+def remarks_on_parameters(
+    law: Law, model: ContactModel, scale: Scale, geometry: Geometry | None, bodies: Mapping[str, Body]
+) -> Iterator[str]:
+    """Yield the warnings of `warn_of_parameters`."""
     calibration = law.calibration
     if calibration is None:
         return
-    fitted = calibration.geometry
+    fitted, parameters = calibration.geometry, f"the parameters of {law.kind} '{law.name}' were fitted"
     if geometry is None:  # until there is a problem: see `Pipeline.warn_of_problem`
         geometry = "line" if fitted == "any" else fitted
-    if calibration.covers(model, scale, geometry):
-        return
     if fitted != "any" and fitted != geometry:
-        warn(
-            f"the parameters of {law.kind} '{law.name}' were fitted for {PATCHES[fitted]}, but are used"
-            f" with {PATCHES[geometry]}. {PEAKS} Check them against data",
-            CalibrationWarning,
+        yield (
+            f"{parameters} for {PATCHES[fitted]}, but are used with {PATCHES[geometry]}. {PEAKS} Check them against"
+            " data"
         )
-        return
-    used = "its patch means" if scale == "patch" else "its cells"
-    warn(
-        f"the parameters of {law.kind} '{law.name}' were fitted for {calibration}, but are used with"
-        f" {model!r} and {used}; check them against data, or choose parameters fitted for that contact",
-        CalibrationWarning,
-    )
+    elif not calibration.covers(model, scale, geometry):
+        used = "its patch means" if scale == "patch" else "its cells"
+        yield (
+            f"{parameters} for {calibration}, but are used with {model!r} and {used}; check them against data, or"
+            " choose parameters fitted for that contact"
+        )
+    if others := other_materials(bodies, law):
+        yield (
+            f"{parameters} for {calibration.materials}, but {' and '.join(others)}"
+            f" {'is' if len(others) == 1 else 'are'} of another material: Young's modulus or density differs by more"
+            " than 10 %. Check them against data"
+        )
+    if law.body is not None and bodies and (text := remark_on_body(bodies, law, law.body)):
+        yield text
 
 
 def other_materials(bodies: Mapping[str, Body], law: Law) -> list[str]:
@@ -166,33 +172,15 @@ def other_materials(bodies: Mapping[str, Body], law: Law) -> list[str]:
     return [name for (name, body), fitted in pairs if not body.material.resembles(fitted)]
 
 
-def fitted_to_other_body(bodies: Mapping[str, Body], law: Law, body: str) -> bool:
-    """Return whether the law was fitted to the wear of another body than this one."""
+def remark_on_body(bodies: Mapping[str, Body], law: Law, body: str) -> str:
+    """Return the warning for the wear of a body if the law was fitted to that of another one, otherwise ""."""
     calibration = law.calibration
-    return calibration is not None and bool(calibration.bodies) and body != next(iter(bodies))
-
-
-def warn_of_materials(bodies: Mapping[str, Body], law: Law) -> None:
-    """Warn if the law's parameters were fitted for other materials."""
-    calibration, others = law.calibration, other_materials(bodies, law)
-    if calibration is not None and others:
-        warn(
-            f"the parameters of {law.kind} '{law.name}' were fitted for {calibration.materials}, but"
-            f" {' and '.join(others)} {'is' if len(others) == 1 else 'are'} of another material: Young's modulus or"
-            " density differs by more than 10 %. Check them against data",
-            CalibrationWarning,
-        )
-
-
-def warn_of_body(bodies: Mapping[str, Body], law: Law, body: str) -> None:
-    """Warn if the law's parameters were fitted to the wear of the other body."""
-    calibration = law.calibration
-    if calibration is not None and fitted_to_other_body(bodies, law, body):
-        warn(
-            f"the parameters of {law.kind} '{law.name}' were fitted to the wear of the first body, with"
-            f" {calibration.materials}, but are used for the wear of {shown(body)}; check them against data",
-            CalibrationWarning,
-        )
+    if calibration is None or not calibration.bodies or body == next(iter(bodies)):
+        return ""
+    return (
+        f"the parameters of {law.kind} '{law.name}' were fitted to the wear of the first body, with"
+        f" {calibration.materials}, but are used for the wear of {shown(body)}; check them against data"
+    )
 
 
 def warn_of_unlike_materials(model: ContactModel, problem: Problem) -> None:

@@ -43,9 +43,8 @@ from wearlaw.pipeline.composition import (
     check_scale,
     check_traction,
     law_among,
+    remarks_on_parameters,
     several_patches,
-    warn_of_calibration,
-    warn_of_materials,
     warn_of_parameters,
     warn_of_unlike_materials,
 )
@@ -474,7 +473,7 @@ class Pipeline(Configuration, Generic[P]):
         if not isinstance(part, Law):
             raise CompositionError(f"a {before} is followed by {after}, not by {shown(part)}; {ORDER}")
         pipeline = self.with_law(*self.laws, part)
-        warn_of_parameters(self.rig.patch_geometry, self.rig.bodies, self.contact_model, self.scale, part)
+        warn_of_parameters(part, self.contact_model, self.scale, self.rig.patch_geometry, self.rig.bodies)
         return pipeline
 
     def __call__(self, /, *positional: P.args, **conditions: P.kwargs) -> Prediction:
@@ -548,15 +547,10 @@ class Pipeline(Configuration, Generic[P]):
 
         If the rig declares its geometry or its bodies, composing the pipeline gave the warning.
         """
-        rig, declared = self.rig, self.rig.patch_geometry is not None
-        if declared and rig.bodies:
-            return
-        for law in self.laws:
-            calibration = law.calibration
-            if not declared and calibration is not None and calibration.geometry not in ("any", problem.geometry):
-                warn_of_calibration(problem.geometry, self.contact_model, self.scale, law)
-            if not rig.bodies:
-                warn_of_materials(problem.bodies, law)
+        geometry, bodies = self.rig.patch_geometry, self.rig.bodies
+        for law in self.laws if geometry is None or not bodies else ():
+            told = [*remarks_on_parameters(law, self.contact_model, self.scale, geometry, bodies)]
+            warn_of_parameters(law, self.contact_model, self.scale, problem.geometry, problem.bodies, told)
 
     def watched(self, problem: Problem, watch: RangeWatch, conditions: Mapping[str, Any] | None = None) -> Prediction:
         """Return the result of `predict` without its warnings; `watch` sees the operating points."""

@@ -100,7 +100,7 @@ class Prediction:
             law.check_variables()
         check_laws(laws, problem.bodies)
         for law in laws:
-            warn_of_parameters(problem.geometry, problem.bodies, model, model.scale, law)
+            warn_of_parameters(law, model, model.scale, problem.geometry, problem.bodies)
         watch = RangeWatch(*laws)
         prediction = cls(Solution.of(model, laws, problem, watch))
         watch.warn()

@@ -12,13 +12,13 @@ from wearlaw.arrays import Array
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.parts import CreepForces
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import InputError
+from wearlaw.errors import CalibrationWarning, InputError, warn
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import WEAR, Law
 from wearlaw.models.reader import Solved
 from wearlaw.numerics import integrate
 from wearlaw.numerics.totals import Across, SlipTotals, Totals, each
-from wearlaw.pipeline.composition import law_among, other_materials, warn_of_body
+from wearlaw.pipeline.composition import law_among, other_materials, remark_on_body
 from wearlaw.pipeline.ranges import RangeWatch, elastic_limits, outside_range
 from wearlaw.pipeline.selection import Selection
 from wearlaw.units.quantities import scalar_si
@@ -215,8 +215,8 @@ class Solution:
         """Return whether the results of a law hold for a body; warn if the law was fitted to the other one."""
         problem, law = self.problem, self.laws[index]
         worn = problem.worn_on(body)  # raises unless it is one of the bodies
-        if law.body is None:
-            warn_of_body(problem.bodies, law, body)
+        if law.body is None and (text := remark_on_body(problem.bodies, law, body)):
+            warn(text, CalibrationWarning)
         return worn is problem or law.body is not None or problem.size == 0
 
     def _law_of(self, index: int, body: str) -> Law:

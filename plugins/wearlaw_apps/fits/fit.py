@@ -587,4 +587,4 @@ def _warn_of_kept(task: _Task) -> None:
             continue
         law, problem = predict.laws[observed.law], observed.problem
         if any((observed.law, name) not in free for name in law.numbers):
-            warn_of_parameters(problem.geometry, problem.bodies, predict.contact_model, predict.scale, law)
+            warn_of_parameters(law, predict.contact_model, predict.scale, problem.geometry, problem.bodies)

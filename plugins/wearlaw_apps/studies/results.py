@@ -12,7 +12,7 @@ import xarray
 from wearlaw.errors import InputError, did_you_mean, shown
 from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.model import Blame
-from wearlaw.pipeline.composition import fitted_to_other_body
+from wearlaw.pipeline.composition import remark_on_body
 from wearlaw.pipeline.variables import MASS
 from wearlaw.units.quantities import from_si
 from wearlaw.units.variables import UNITS, VARIABLES
@@ -80,7 +80,7 @@ class Results:
 
     def is_for_other_body(self, label: str, body: str) -> bool:
         """Return whether the parameters of a pair's wear law were fitted to another body than this one."""
-        return fitted_to_other_body(self.case.rig.bodies, self.pair(label).pipeline.wear_law, body)
+        return bool(remark_on_body(self.case.rig.bodies, self.pair(label).pipeline.wear_law, body))
 
 
 def _found(kind: str, name: str, every: Mapping[str, T]) -> T:

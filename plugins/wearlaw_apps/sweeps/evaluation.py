@@ -12,13 +12,12 @@ import numpy as np
 from wearlaw import kernels
 from wearlaw.arrays import Array, steady
 from wearlaw.contact.elastic_limit import Overload
-from wearlaw.contact.parts import CreepForces
 from wearlaw.contact.problem import Problem
 from wearlaw.errors import InputError, RangeWarning, shown
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import Law
 from wearlaw.models.model import fault
-from wearlaw.numerics.totals import SlipTotals, Totals
+from wearlaw.numerics.totals import Totals
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.pipeline.prediction import Prediction
 from wearlaw.pipeline.ranges import RangeWatch, Seen
@@ -204,13 +203,8 @@ def range_warnings(job: Job, blocks: Iterable[BlockRecord]) -> list[Warning]:
 
 
 def unsolved(problem: Problem, model: ContactModel, laws: tuple[Law, ...]) -> Prediction:
-    """Return a prediction of zeros, with all names and units of the solved one, at no cost."""
-    zeros, ones = np.zeros(problem.batch_shape), np.ones(problem.batch_shape)
-    every = (zeros,) * len(laws)
-    slip = SlipTotals(mean_slip=zeros, slip_area=zeros, patch_area=ones, cell_wear_index=zeros)
-    forces = CreepForces(longitudinal=zeros, lateral=zeros, spin_moment=zeros)
-    totals = Totals(every, every, forces, patch_area=ones, slip=slip, across=(None,) * len(laws))
-    return Prediction(Solution(problem, model, laws, totals))
+    """Return a prediction of NaN, with all names and units of the solved one, at no cost."""
+    return Prediction(Solution(problem, model, laws, Totals.missing(problem, laws)))
 
 
 def expect_pipeline(predict: object) -> None:
