@@ -136,10 +136,6 @@ def fit(
     rig: Path | None,
     friction: float | None,
     columns: tuple[str, ...],
-    sheet: str | None,
-    balance_resolution: str | None,
-    sep: str | None,
-    decimal: str,
     bootstrap: int,
     output: Path | None,
     overwrite: bool,
@@ -167,7 +163,7 @@ def fit(
             law_fields["label"] = label or f"{name} fitted to {Path(tests).stem}"
         if both := [name for name in names if name in law_fields]:
             raise click.UsageError(f"--fixed: {shown(both[0])} is to be fitted; take it out of --fixed or of --free")
-        measured = _tests(tests, columns, sheet=sheet, sep=sep, decimal=decimal, balance_resolution=balance_resolution)
+        measured = _tests(tests, columns, settings)
         if FRICTION not in names:
             _note_friction(measured, friction, notes)
         with notes.of("fit"), Bar(bootstrap) as bar:
@@ -192,9 +188,10 @@ def fit(
     answer(folder, files, notes.texts, lambda: click.echo(repr(fitted)), record)
 
 
-def _tests(tests: str, columns: tuple[str, ...], **options: Any) -> WearTests:
-    """Return the tests of a file."""
-    return read_tests(tests, columns=fields("--columns", columns, "NAME=HEAD") if columns else None, **options)
+def _tests(tests: str, columns: tuple[str, ...], options: dict[str, Any]) -> WearTests:
+    """Return the tests of a file, and take from `options` those that say how it is read."""
+    how = {name: options.pop(name) for name in ("sheet", "sep", "decimal", "balance_resolution")}
+    return read_tests(tests, columns=fields("--columns", columns, "NAME=HEAD") if columns else None, **how)
 
 
 def _bounds(settings: tuple[str, ...]) -> dict[str, tuple[str | float, str | float]]:
@@ -255,19 +252,14 @@ def compare(
     free: tuple[str, ...],
     cross_validate: str | None,
     bounds: tuple[str, ...],
-    scatter: str,
     rig: Path | None,
     friction: float | None,
-    body: str | None,
     columns: tuple[str, ...],
-    sheet: str | None,
-    balance_resolution: str | None,
-    sep: str | None,
-    decimal: str,
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
     latex: bool,
+    **settings: Any,
 ) -> None:
     """Rank contact models and wear laws by how well they predict tests.
 
@@ -291,7 +283,7 @@ def compare(
         raise click.UsageError("--cross-validate: say which parameters are free, as in --free usfd=q_s,m_c")
     notes = Notes()
     with results_folder(folder, overwrite, COMPARISON) as fresh:
-        measured = _tests(tests, columns, sheet=sheet, sep=sep, decimal=decimal, balance_resolution=balance_resolution)
+        measured = _tests(tests, columns, settings)
         _note_friction(measured, friction, notes)
         chosen = {text: law_of(text) for text in listed("--laws", laws)}
         named = {law.label or text: law for text, law in chosen.items()}
@@ -305,13 +297,11 @@ def compare(
         freed, ends = _freed(free, named), _bounds(bounds)
         for field in ends.keys() - {field for fields_of_law in freed.values() for field in fields_of_law}:
             raise click.UsageError(f"--bounds: {shown(field)} is not free; add it to --free, as in --free LAW={field}")
-        settings: Any = {"friction_coefficient": friction, "scatter": scatter, "body": body}
+        settings["friction_coefficient"] = friction
         for law, names in freed.items():
             settings["bounds"] = {field: ends[field] for field in names if field in ends}
             predictors += _fits([pair for pair in pairs if pair.law == law], names, measured, notes, settings)
-        comparison = compare_named(predictors, measured, friction, cross_validate=parts, body=body, progress=True)
-        for note in comparison.notes:
-            notes.add(note)
+        comparison = compare_named(predictors, measured, friction, notes, None, parts, settings["body"], progress=True)
         with notes.of("figure"):
             files = _write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
     shown_ranking = {"ranking": comparison.table()}

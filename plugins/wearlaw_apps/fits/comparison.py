@@ -11,17 +11,7 @@ import numpy as np
 import pandas as pd
 
 from wearlaw.arrays import Array, steady
-from wearlaw.errors import (
-    CalibrationWarning,
-    FitError,
-    FitWarning,
-    InputError,
-    PlasticityWarning,
-    RangeWarning,
-    UnusualWarning,
-    did_you_mean,
-    shown,
-)
+from wearlaw.errors import FitError, FitWarning, InputError, UnusualWarning, did_you_mean, shown
 from wearlaw.models.law import WEAR, Law, named_outcomes
 from wearlaw.models.model import Model
 from wearlaw.pipeline.pipeline import Pipeline
@@ -203,11 +193,8 @@ class Comparison(Drawn):
         )
 
     def __repr__(self) -> str:
-        frame = self._shown()
-        cells = [list(frame.columns), *frame.to_numpy().tolist()]
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        lines = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in cells]
-        return "\n  ".join([self._head(), *map(str.rstrip, lines)])
+        frame = self._shown().set_index("predictor").rename_axis(index=None, columns="predictor")
+        return "\n  ".join([self._head(), *map(str.rstrip, frame.to_string().splitlines())])
 
     def _repr_html_(self) -> str:
         return f"<div><b>{escape(self._head())}</b>{self._shown().to_html(index=False, border=0)}</div>"
@@ -310,7 +297,7 @@ def compare(
         names = [Names(name, name, of_models.contact) for name, of_models in zip(predictors, names, strict=True)]
     notes = Notes()
     named = list(zip(names, every, strict=True))
-    comparison = compare_named(named, tests, friction_coefficient, outcome, cross_validate, body, notes=notes)
+    comparison = compare_named(named, tests, friction_coefficient, notes, outcome, cross_validate, body)
     notes.warn()
     return comparison
 
@@ -320,48 +307,25 @@ def compare_named(
     named: Sequence[tuple[Names, Predictor]],
     tests: WearTests,
     friction_coefficient: ArrayLike | None,
+    notes: Notes,
     outcome: str | None = None,
     cross_validate: Folds | None = None,
     body: str | None = None,
     progress: bool = False,
-    notes: Notes | None = None,
 ) -> Comparison:
-    """Compare predictors that have names already, without a warning; see `compare`.
+    """Compare predictors that have names already, and add to `notes` without a warning; see `compare`.
 
-    With `progress`, show that of cross-validation. The notes are also added to `notes`.
+    With `progress`, show that of cross-validation.
     """
     taken = [names.label for names, _ in named]
     twice = [name for name in taken if taken.count(name) > 1]
     if twice:
         raise InputError(f"two predictors are called {shown(twice[0])}; give a mapping from names of your own to them")
-    predictors = [predictor for _, predictor in named]
-    outcome = _outcome(predictors, tests, outcome)
-    unit = _law(predictors[0], outcome).outcome.unit
-    tests = tests.measuring([name for predictor in predictors for name in named_outcomes(_pipeline(predictor).laws)])
-    notes = Notes() if notes is None else notes
-    tests, named = _converted(named, tests, outcome, friction_coefficient, body, notes)
-    predictors = [predictor for _, predictor in named]
-    measured, name = tests.measured(outcome, unit), name_of(outcome)
-    there = ~np.isnan(measured)
-    if not there.any():
-        raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
-    if not there.all():
-        notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out", FitWarning)
-    for predictor in predictors:
-        for column, text in tests.unusual(_pipeline(predictor)).items():
-            notes.add(f"{column}: {text}", UnusualWarning)
-    task = _Task(tests[there], outcome, unit, measured[there], friction_coefficient, notes)
-    compared = [task.compared(*pair) for pair in named]
-    how = ""
+    task, named = _task(named, tests, friction_coefficient, notes, outcome, body)
+    compared, how = [task.compared(*pair) for pair in named], ""
     if cross_validate is not None:
-        parts, how = task.folds(predictors, cross_validate)
-        with Bar(len(parts) * sum(isinstance(predictor, Fit) for predictor in predictors), progress) as bar:
-            bar.stage("cross-validating")
-            compared = [
-                task.unseen(old, predictor, parts, bar) if isinstance(predictor, Fit) else old
-                for old, predictor in zip(compared, predictors, strict=True)
-            ]
-    if len({predictor.scatter for predictor in predictors if isinstance(predictor, Fit)}) > 1:
+        compared, how = task.cross_validated(named, compared, cross_validate, progress)
+    if len({predictor.scatter for _, predictor in named if isinstance(predictor, Fit)}) > 1:
         notes.add("AIC is left blank, since the fits take the tests to scatter in different ways", FitWarning)
         compared = [replace(result, fitted=None, aic=None, aicc=None) for result in compared]
     seen = [
@@ -374,7 +338,33 @@ def compare_named(
             FitWarning,
         )
     ranked = sorted(compared, key=lambda result: result.agreement.rank)
-    return Comparison(task.tests, tuple(ranked), tuple(notes.texts), outcome, unit, how)
+    return Comparison(task.tests, tuple(ranked), tuple(notes.texts), task.outcome, task.unit, how)
+
+
+def _task(
+    named: Sequence[tuple[Names, Predictor]],
+    tests: WearTests,
+    friction: Any,
+    notes: Notes,
+    outcome: str | None,
+    body: str | None,
+) -> tuple[_Task, list[tuple[Names, Predictor]]]:
+    """Return the tests with the outcome for a comparison, and the predictors, of the weighed body if they differ."""
+    predictors = [predictor for _, predictor in named]
+    outcome = _outcome(predictors, tests, outcome)
+    unit, name = _law(predictors[0], outcome).outcome.unit, name_of(outcome)
+    tests = tests.measuring([name for predictor in predictors for name in named_outcomes(_pipeline(predictor).laws)])
+    tests, named = _converted(named, tests, outcome, friction, body, notes)
+    measured = tests.measured(outcome, unit)
+    there = ~np.isnan(measured)
+    if not there.any():
+        raise InputError(f"none of the {len(tests)} tests has a {name}, which a comparison needs")
+    if not there.all():
+        notes.add(f"{(~there).sum()} of {len(tests)} tests have no {name} and are left out", FitWarning)
+    for _, predictor in named:
+        for column, text in tests.unusual(_pipeline(predictor)).items():
+            notes.add(f"{column}: {text}", UnusualWarning)
+    return _Task(tests[there], outcome, unit, measured[there], friction, notes), named
 
 
 def _converted(
@@ -502,7 +492,25 @@ class _Task:
         result = Compared(names, _pipeline(predictor), predicted, errors, seen)
         return self._with_aic(result, predictor) if isinstance(predictor, Fit) else result
 
-    def unseen(self, old: Compared, fit: Fit, parts: Sequence[NDArray[np.intp]], bar: Bar) -> Compared:
+    def cross_validated(
+        self, named: Sequence[tuple[Names, Predictor]], compared: Sequence[Compared], how: Folds, progress: bool
+    ) -> tuple[list[Compared], str]:
+        """Return predictors with those that are fits ranked by tests that they have not seen, and the way in words."""
+        fits = {names.label: predictor for names, predictor in named if isinstance(predictor, Fit)}
+        if not fits:
+            raise InputError(
+                "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
+                ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
+            )
+        parts, words = self._folds(named[0][1], how)
+        with Bar(len(parts) * len(fits), progress) as bar:
+            bar.stage("cross-validating")
+            return [
+                self._unseen(old, fits[old.names.label], parts, bar) if old.names.label in fits else old
+                for old in compared
+            ], words
+
+    def _unseen(self, old: Compared, fit: Fit, parts: Sequence[NDArray[np.intp]], bar: Bar) -> Compared:
         """Return a fit with its predictions of each test by fits to the tests of other folds."""
         name, predicted = old.names.label, np.empty(len(self.tests))
         for held in parts:
@@ -510,7 +518,7 @@ class _Task:
             friction = self.friction if np.ndim(self.friction) == 0 else coefficient(self.friction, FRICTION)[held]
             try:
                 # The fit to all tests has warned already; test after test at the edge of the range would repeat it.
-                with caught_warnings(FitWarning, RangeWarning, PlasticityWarning, CalibrationWarning, UnusualWarning):
+                with caught_warnings():
                     again = refit(tests=self.tests[~there], bootstrap=0, **fit.settings)
                     predicted[held] = self._predicted(name, again, self.tests[held], friction, Notes())
             except FitError as error:
@@ -521,7 +529,7 @@ class _Task:
             bar(1)
         return replace(old, predicted=predicted, agreement=agreement(predicted, self.measured), in_sample=0)
 
-    def folds(self, predictors: Sequence[Predictor], how: Folds) -> tuple[list[NDArray[np.intp]], str]:
+    def _folds(self, predictor: Predictor, how: Folds) -> tuple[list[NDArray[np.intp]], str]:
         """Return the indices of the tests in each fold, and the way in words.
 
         Tests that repeat each other are in one fold, since a fit that has seen one of them has seen the others.
@@ -530,12 +538,7 @@ class _Task:
         -----
         M. Stone, J. R. Stat. Soc. B 36 (1974) 111-147.
         """
-        if not any(isinstance(predictor, Fit) for predictor in predictors):
-            raise InputError(
-                "cross_validate: fits free parameters anew, but no predictor is a Fit; make one with its free"
-                ' parameters, as in wl.fit(pipeline, tests, free=["q_s"])'
-            )
-        conditions = self._conditions(predictors[0], self.tests, self.friction)
+        conditions = self._conditions(predictor, self.tests, self.friction)
         conditions.pop(TRACTION, None)  # measured tractions of repeated tests scatter
         points = repeats(conditions, len(self.tests))
         count = int(points.max()) + 1
