@@ -60,7 +60,9 @@ def text_of(path: Path, label: str, sheet: str | None = None) -> bytes:
         raise DataError(f"{label} has no sheet {shown(sheet)}{did_you_mean(sheet, tables)} There are: {names}")
     used = {name: rows for name, rows in tables.items() if rows and sheet in (None, name)}
     if len(used) != 1:
-        names = f", {' and '.join(map(shown, used))}; name one by sheet=, or" if used else ";"
+        names = (
+            f", {' and '.join(map(shown, used))}; name one by sheet=, on the command line --sheet, or" if used else ";"
+        )
         raise DataError(f"{label} has {len(used)} sheets with cells{names} save the one to read as CSV")
     (rows,) = used.values()
     return "\n".join(_lines(rows)).encode()

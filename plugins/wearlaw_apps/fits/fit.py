@@ -562,8 +562,8 @@ def _at_bounds(task: _Task, best: Solutions) -> Iterator[str]:
     if ended.any():
         names = ", ".join(name for name, at in zip(task.free.names, ended, strict=True) if at)
         yield (
-            f"the best fit lies at a bound of {names}, whose interval then means nothing; give wider bounds, or free"
-            " fewer parameters"
+            f"the best fit lies at a bound of {names}, whose interval then means nothing; check the units of the tests,"
+            " give wider bounds, or free fewer parameters"
         )
 
 

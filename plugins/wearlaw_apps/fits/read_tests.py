@@ -44,6 +44,7 @@ Columns: TypeAlias = "Mapping[str, str] | None"
 OTHER_NAMES = {
     "slip": "creepage",
     "slip ratio": "creepage",
+    "slippage": "creepage",
     "load": "normal_force",
     "force": "normal_force",
     "pressure": "max_pressure",
@@ -56,6 +57,8 @@ OTHER_NAMES = {
     "revs": "revolutions",
     "time": "duration",
     "test": "label",
+    "run": "label",
+    "specimen": "label",
     "test no.": "label",
 }
 """What labs call columns, for suggestions."""
@@ -247,10 +250,10 @@ def _unknown(table: Table, names: Collection[str]) -> Iterator[str]:
             continue
         of_body = column.name.startswith("wear_rate_")  # the wear rate of one body
         alike = [name for name in near if not (of_body and name == "wear_rate")]
-        close = get_close_matches(column.name, alike, n=1) or get_close_matches(column.name, nearer, n=1, cutoff=0.8)
         words = column.name.casefold().replace("_", " ").rstrip(" %")
-        other = OTHER_NAMES.get(words, "")
-        name = next(iter(close), other if other in missing else "")
+        other = "mass_loss" if words == "wear" and column.unit in BY_UNIT["mass_loss"] else OTHER_NAMES.get(words)
+        close = get_close_matches(column.name, alike, n=1) or get_close_matches(column.name, nearer, n=1, cutoff=0.8)
+        name = next((name for name in (other, *close) if name in missing), "")
         if column.unit is None or name:
             unknown.append(column)
             name = name or next(iter(get_close_matches(words.replace(" ", "_"), missing, n=1)), "")

@@ -210,11 +210,12 @@ DECADES = 30.0
 
 
 def head_of_legend(figure: FigureData) -> str:
-    """Return the title of the legend of a figure, which explains bands and hollow markers; "" without them."""
+    """Return the title of the legend of a figure, which explains bands, and hollow markers beside others."""
     curves = [curve for panel in figure.panels for curve in panel.curves]
     ranges = dict.fromkeys("error bars" if curve.hollow else "bands" for curve in curves
                            if curve.low is not None and (curve.hollow or not curve.points))  # fmt: skip
-    hollow = ["hollow markers: predictions"] if any(curve.hollow for curve in curves) else []
+    markers = {curve.hollow for curve in curves if curve.points}
+    hollow = ["hollow markers: predictions"] if len(markers) > 1 else []
     return "; ".join([*(f"{kind}: {figure.bands}" for kind in ranges), *hollow])
 
 

@@ -111,7 +111,7 @@ class Notes:
         """Turn wearlaw's warnings inside the context into notes about a subject."""
         with caught_warnings() as caught, OneWarning():
             yield
-        for warning in caught:
+        for warning in sorted(caught, key=lambda warning: not isinstance(warning, UnusualWarning)):  # the causes first
             several = isinstance(warning, UnusualWarning | FitWarning | RangeWarning)
             for text in str(warning).splitlines() if several else [str(warning)]:
                 self.add(f"{subject}: {text.strip()}", type(warning))

@@ -51,4 +51,4 @@ def _guides(ends: tuple[float, float]) -> list[Curve]:
     """Return the lines of equality and of a factor of two either way."""
     x = np.array(ends)
     lines = (("predicted = measured", 1.0, 0), ("factor of two", 0.5, 2), ("factor of two", 2.0, 2))
-    return [Curve(name, x, factor * x, colour=BLACK, dash=dash) for name, factor, dash in lines]
+    return [Curve(name, x, factor * x, colour=BLACK, dash=dash, computed=False) for name, factor, dash in lines]

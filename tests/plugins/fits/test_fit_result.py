@@ -16,6 +16,7 @@ from tests.plugins.fits.fits import ALL, CREEPAGE, EXACT, FRICTION, PRESSURE, RI
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_apps.fits import Fit, WearTests
+from wearlaw_apps.output.curves import head_of_legend  # private: what the legend explains
 
 
 @pytest.fixture(scope="module")
@@ -135,10 +136,12 @@ def test_tests_at_several_loads_are_drawn_against_the_fit() -> None:
     fit = wl.fit(predict, tests, free=["m_m"], bootstrap=0)
     (panel,) = fit.figure_data().panels
     *guides, shown = panel.curves
+    assert not any(curve.computed for curve in guides)  # their ends are no tests
     assert [(curve.points, float(curve.y[0] / curve.x[0])) for curve in guides] == [
         (False, 1.0), (False, 0.5), (False, 2.0)
     ]  # fmt: skip
     assert (shown.points, shown.hollow) == (True, True)
+    assert not head_of_legend(fit.figure_data())
     np.testing.assert_array_equal(shown.x, fit.residuals["predicted"])
     np.testing.assert_array_equal(shown.y, fit.residuals["measured"])
     assert [(axis.label, axis.scale) for axis in (panel.x, panel.y)] == [

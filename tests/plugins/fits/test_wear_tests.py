@@ -280,6 +280,8 @@ FAULTY = [
             ("creepage [%]", "crepage [%]", "did you mean 'creepage'"),
             ("creepage [%]", "slide_creepage [%]", "slide_creepage"),
             ("label,", "max_pressur [MPa],", "did you mean 'max_pressure'"),
+            ("label", "friction", "did you mean 'friction_coefficient'"),
+            ("label", "Wear [mg]", "did you mean 'mass_loss'"),
             ("label", "mass [kgg]", "kgg"),
             ("label", "mass [kg]", "line 2, column 'mass"),
             ("[kN]", "[weights]", "normal_force"),

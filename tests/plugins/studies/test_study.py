@@ -16,7 +16,7 @@ from tests import cases
 from tests.cases import InstallModel, case
 from tests.strategies import EPS
 from wearlaw import Q
-from wearlaw_apps.output.notes import Note, by_kind, grouped  # private: what commands print of notes
+from wearlaw_apps.output.notes import Note, Notes, by_kind, grouped  # private: what commands print of notes
 from wearlaw_apps.studies import Case
 
 LOADS = ["1000 MPa", "1500 MPa"]
@@ -206,6 +206,14 @@ def test_printed_notes_name_all_subjects_of_a_remark_once() -> None:
         "b: p = 1500 MPa is beyond 750 MPa (2 more with other numbers, a)",
         "c: p = 3 GPa is beyond it",
     ]
+
+
+def test_an_unusual_value_is_noted_before_its_consequences() -> None:
+    notes = Notes()
+    with notes.of("fit"):
+        warnings.warn("at a bound", wl.errors.FitWarning, stacklevel=1)
+        warnings.warn("load: in N?", wl.UnusualWarning, stacklevel=1)
+    assert notes.texts == ["fit: load: in N?", "fit: at a bound"]
 
 
 def test_printed_notes_of_a_kind_are_one_with_their_number() -> None:
