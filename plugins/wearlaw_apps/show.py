@@ -283,7 +283,7 @@ def _value(model: type[Configuration], default: Configuration | None, name: str)
 
 
 def _shown(value: Any) -> str:
-    return text_of(value) if isinstance(value, pint.Quantity) else repr(value)
+    return text_of(value) if isinstance(value, pint.Quantity) else " ".join(repr(value).split())
 
 
 def _choices(schema: Mapping[str, Any]) -> list[str]:

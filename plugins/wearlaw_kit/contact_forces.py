@@ -207,13 +207,14 @@ def full_slip_is_reached(model: ContactModel, shape: Shape) -> None:
     problem = at_reduced(shape.draw(POINTS)[:, None], FAR * linear[0], FAR * linear[1], 0.0)
     contact, slip, error = model.solve(problem), translation(problem), error_of_force(model, problem)
     limit, bound = friction_limit(problem), contact.traction_bound
-    assert_close(contact.tangential_force, limit, "the force in full slip", error)
+    there = f"at {FAR:g} times the creepage {'μa/R' if shape is LINE else 'of linear theory for μN'}"
+    assert_close(contact.tangential_force, limit, f"the force {there}", error)
     # At a node on the very edge the bound is rounding of that in the centre.
     edge = SAME * contact.per_node(bound.max(axis=tuple(range(2, bound.ndim))))
-    assert_close(contact.traction, bound, "the traction in full slip", error_of_traction(model, problem), edge)
+    assert_close(contact.traction, bound, f"the traction {there}", error_of_traction(model, problem), edge)
     sticks = contact.stick_ratio > max(SUM, leeway())
-    assert not sticks.any(), f"{contact.stick_ratio.max():.3g} of the patch sticks in full slip"
-    assert_close(contact.mean_slip, slip, "the mean slip in full slip", error_of_sums(model, problem))
+    assert not sticks.any(), f"{contact.stick_ratio.max():.3g} of the patch sticks {there}"
+    assert_close(contact.mean_slip, slip, f"the mean slip {there}", error_of_sums(model, problem))
     creepage = np.array([problem.longitudinal_creepage, problem.lateral_creepage]) / slip
     force = np.array([contact.force_x, contact.force_y]) / limit
     assert ((creepage * force).sum(axis=0) > 0).all(), "the force in full slip has the sense against the creepage"

@@ -198,8 +198,7 @@ def conformance(
     model, case
         As for `checks`.
     expected_failures : mapping of str to str, optional
-        Checks that are known to fail, each with the reason. The test fails once one of them passes. A check that this
-        version of wearlaw lacks is skipped, so that different versions can share the mapping.
+        Checks that are known to fail, each with the reason. The test fails once one of them passes.
 
     Raises
     ------
@@ -215,7 +214,7 @@ def conformance(
     expected = dict(expected_failures or {})
     subject = tried(model, case)
     model_checks = list(checks(subject))
-    lacking = validate_expected("expected_failures", subject, model_checks, expected)
+    validate_expected("expected_failures", subject, model_checks, expected)
 
     def parameter(check: Check) -> object:
         marks = [pytest.mark.xfail(strict=True, reason=expected[check.name])] if check.name in expected else []
@@ -226,31 +225,22 @@ def conformance(
         for claim, reason in subject.exemptions.items()
         if as_exempt(reason).whole
     ]
-    no_check = pytest.mark.skip(reason="this version of wearlaw has no such check")
-    skipped += [pytest.param(None, id=name, marks=no_check) for name in lacking]
     return pytest.mark.parametrize("check", [*map(parameter, model_checks), *skipped])
 
 
 def validate_expected(
     subject: str, model: Model | TriedSection, model_checks: Iterable[Check], expected: Mapping[str, str]
-) -> list[str]:
-    """Return the expected failures that no check of this version has, and raise an `InputError` for wrong ones.
-
-    Wrong is one of another model, one whose name is near that of a check of the model, or one without a reason.
+) -> None:
+    """Raise an `InputError` for expected failures that are no checks of the model, or have no reason.
 
     Parameters
     ----------
     subject : str
         What the user wrote, to begin the message.
     """
-    names, every = [check.name for check in model_checks], {kit_rule.name for kit_rule in RULES}
-    lacking = []
+    names = [check.name for check in model_checks]
     for name, reason in expected.items():
         if name not in names:
-            hint = did_you_mean(name, names)
-            if name in every or hint != ".":
-                raise InputError(f"{subject}: no check of '{model.name}' is called '{name}'{hint}")
-            lacking.append(name)
+            raise InputError(f"{subject}: no check of '{model.name}' is called '{name}'{did_you_mean(name, names)}")
         if not reason.strip():
             raise InputError(f"{subject}: the expected failure of '{name}' has no reason")
-    return lacking

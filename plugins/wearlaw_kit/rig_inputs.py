@@ -22,6 +22,7 @@ from wearlaw_kit.rig import (
     in_unit_of,
     of_other_materials,
     other_material,
+    posed,
     problem_of,
     times,
     values_of,
@@ -52,16 +53,8 @@ SIZES = {"a": (1e-7, 0.1), "b": (1e-7, 0.5), "max_pressure": (1e5, 5e10), "rolli
 """The least and the largest numbers [SI] that the problem of a test has: tenths of those in any test, and tenfold."""
 
 
-def _bodies(rig: Rig) -> list[Any]:
-    """Return the bodies of the problem, or of the rig if there is no problem."""
-    try:
-        return [*problem_of(rig).bodies.values()]
-    except WearlawError:
-        return [*rig.bodies.values()]
-
-
 def _has_two_bodies(rig: Rig) -> bool:
-    return len(_bodies(rig)) == 2
+    return len((posed(rig) or rig).bodies) == 2
 
 
 def other_fields(record: Any, factor: float) -> Iterator[tuple[str, Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,6 +17,7 @@ from wearlaw.units.registry import unit_in_si
 from wearlaw_apps.life.life import NEAR, RAIL, SIDES, measure_of, name_and_unit
 from wearlaw_apps.life.line import Line, NoResultError, Wear
 from wearlaw_apps.life.removal import conserving, positions, smoothed, swept, widths
+from wearlaw_apps.output.notes import caught_warnings
 
 if TYPE_CHECKING:
     from wearlaw_models.rigs.wheelset import Profile
@@ -308,7 +310,8 @@ class Steps:
             depth = new.depth_to(profile, wl.Q(1e3 * new.curve.s, "mm")).magnitude.max()
             row[f"depth{side} [mm]"] = float(depth) if done else 0.0
             row[f"worn_area{side} [mm^2]"] = 1e6 * swept(new, profile) if done else 0.0
-            measures = profile.measures(getattr(rig, "flange_back_position", "-70 mm"), new=new)
+            with nullcontext() if not done else caught_warnings(wl.UnusualWarning):  # each step would repeat them
+                measures = profile.measures(getattr(rig, "flange_back_position", "-70 mm"), new=new)
             row |= {f"{name}{side} [mm]": value.m_as("mm") for name, value in measures.items()}
             radius, curve = float(np.asarray(rig.bodies[self.body].rolling_radius)), profile.curve
             if math.isfinite(radius) and curve.y[0] <= 0.0 <= curve.y[-1]:
@@ -330,7 +333,9 @@ def _with_rail(wheel: State, rail: State) -> State:
 def with_profiles(predict: wl.Pipeline[...], body: str, profiles: tuple[Profile, ...]) -> wl.Pipeline[...]:
     """Return a pipeline with profiles of a body: one for both sides, or those of the left and the right side."""
     fields = {body: profiles[-1]} | ({f"left_{body}": profiles[0]} if len(profiles) == 2 else {})
-    return predict.model_copy(update={"rig": predict.rig.model_copy(update=fields)})
+    with caught_warnings(wl.UnusualWarning):  # those of the rig that was given
+        rig = predict.rig.model_copy(update=fields)
+    return predict.model_copy(update={"rig": rig})
 
 
 @np.errstate(over="ignore")  # where hardly any wear is left, the exponential is zero

@@ -85,12 +85,6 @@ def test_all_models_of_a_distribution_are_checked(install_model: InstallModel) -
     assert "\nFAILED rate_is_never_negative" in result.stdout
 
 
-def test_an_expected_failure_that_this_version_lacks_is_a_note(install_model: InstallModel) -> None:
-    lines, exit_code = checked(install_model, Own, "--expect-failure", "heat_flows_downhill=of a later version")
-    assert lines[0] == "note: this version of wearlaw has no check 'heat_flows_downhill'"
-    assert exit_code == 0
-
-
 @pytest.mark.parametrize(
     ("law", "check", "reason"),
     [

@@ -76,6 +76,15 @@ def test_circle_worn_evenly_along_its_normal_is_a_circle() -> None:
         assert radius == pytest.approx(80e-3 - step * 0.2e-3, abs=1e-9)
 
 
+def test_what_is_unusual_about_a_wheel_is_said_once_a_life() -> None:
+    with pytest.warns(wl.UnusualWarning, match="flange_back_position is -60 mm"):
+        predict = pipeline(flange_back_position="-60 mm")
+    with warnings.catch_warnings(record=True, action="always") as given:
+        life = wl.wear_out(predict, line(3), over="300 km", depth_step="5e-5 mm", **GIVEN)
+    assert len(life.table) > 3
+    assert [str(one.message)[:20] for one in given if one.category is wl.UnusualWarning] == ["flange_back_position"]
+
+
 def test_volume_between_two_cones_is_that_of_frustums() -> None:
     """A cone worn by d along its normal: Pappus's theorem on the parallelogram between the two lines."""
     start, depth, slope = even(cone(0.05)), 0.1e-3, 0.05

@@ -13,6 +13,7 @@ from wearlaw import Array
 from wearlaw_models.contact_models.fastsim import march, strips
 from wearlaw_models.contact_models.fastsim.line import elliptic_excess, parabolic_excess
 from wearlaw_models.contact_models.fastsim.march import Ellipses
+from wearlaw_models.strips import widths_at
 
 ON_ELLIPSE = ("march", "strips", "slip", "interpolation")
 """Settings that have no effect on a line."""
@@ -134,7 +135,9 @@ class Fastsim(wl.LineContactModel):
         if self.march == "uniform" or problem.geometry == "strips":
             return None
         ellipses = self._ellipses(problem)
-        return self._scaled(strips.solve(problem, ellipses, strips.layout_at(ellipses, shares), self.strips))
+        return self._scaled(
+            strips.solve(problem, ellipses, strips.layout_on(ellipses, shares, widths_at(shares)), self.strips)
+        )
 
     def _ellipses(self, problem: wl.Problem) -> Ellipses:
         return Ellipses.of(problem.flatten(), self.bound == "elliptic", self.interpolation)

@@ -6,25 +6,13 @@ Strips are rows of one array: along, across and turning, the growth of the tract
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-
-BELOW = 1.0 - 8.0 * float(np.finfo(np.float64).eps)
-"""Factor that keeps the magnitude of a traction below its bound despite rounding."""
-
-TINY = 1e-300
-"""Keeps divisors from zero."""
-
-Number = TypeVar("Number", float, Array)
-
-
-def root(value: Number) -> Number:
-    """Return the square root of a float or of an array."""
-    return np.sqrt(value)  # type: ignore[no-any-return]
+from wearlaw_models.strips import BELOW, TINY, Number, direction, root, turn
 
 
 def place(elliptic: bool, tangent: Number) -> tuple[Number, Number, Number]:
@@ -83,13 +71,6 @@ def lagging(
     return -kappa, across - 2.0 * turning * (to_u - 1.0 - lag * (to_u - u))
 
 
-def turn(along: Number, across: Number, decay: Number) -> tuple[Number, Number, Number]:
-    """Return the factors of a step on a vector at half the angle: of x along x, of y across, and of the other one."""
-    over = (0.5 - 0.5 * decay) / root(along * along + across * across + TINY)
-    stays, turns = 0.5 + 0.5 * decay, over * along
-    return stays + turns, stays - turns, over * across
-
-
 def slipping(
     elliptic: bool,
     along: Number,
@@ -101,8 +82,8 @@ def slipping(
     half_y: Number,
 ) -> tuple[Number, Number, Number]:
     """Return the direction of the traction, from a vector at half its angle, and the excess."""
-    over, x = BELOW / (half_x * half_x + half_y * half_y + TINY), u - 1.0
-    q_x, q_y = (half_x - half_y) * (half_x + half_y) * over, 2.0 * half_x * half_y * over
+    q_x, q_y = direction(half_x, half_y)
+    x = u - 1.0
     growing = along * q_x + (across - 2.0 * turning * x) * q_y
     return q_x, q_y, growing + (x / sine if elliptic else 2.0 * x)
 

@@ -15,20 +15,10 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.contact_models.fastsim.march import Ellipses
 from wearlaw_models.contact_models.fastsim.zones import NODES, Nodes, Strips, stick_and_slip, sums
+from wearlaw_models.strips import contact_of, even_strips, forces_of, unflattened
 
 STICK_NODES_PER_STRIP, SLIP_NODES_PER_STRIP = 0.4, 1.0
 """Nodes along a strip over the number of strips: these make errors along and across strips about equal."""
-
-
-def even_strips(count: int) -> tuple[Array, Array]:
-    """Return y/b of strips even in the angle of y = b cos β, and the widths over b that they represent.
-
-    This is Gauss's quadrature with Chebyshev polynomials of the second kind: exact for the area, and of high order for
-    forces, since they are smooth and periodic in the angle. Source: M. Abramowitz and I. A. Stegun, Handbook of
-    Mathematical Functions (1964), 25.4.40.
-    """
-    angle = np.pi / (count + 1) * np.arange(count, 0, -1)
-    return np.cos(angle), np.pi / (count + 1) * np.sin(angle)
 
 
 class Layout(NamedTuple):
@@ -92,39 +82,20 @@ def layout_of(problem: wl.Problem, ellipses: Ellipses, count: int) -> Layout:
     return layout_on(ellipses, *even_strips(count))
 
 
-def layout_at(ellipses: Ellipses, shares: Array) -> Layout:
-    """Return strips of ellipses at y = `shares` × b, each of which represents what is nearest to it."""
-    between = 0.5 * (shares[1:] + shares[:-1])
-    return layout_on(ellipses, shares, np.diff(np.concatenate([[-1.0], between, [1.0]])))
-
-
 def solve(problem: wl.Problem, ellipses: Ellipses, layout: Layout, count: int) -> wl.Contact:
     """Return the contact on strips, with as many nodes on each as among `count` strips."""
     nodes = strips(ellipses, layout, *nodes_along(count))
     _clear(ellipses, nodes.traction_x, nodes.traction_y, nodes.slip_x, nodes.slip_y)
     totals = forces(layout, nodes)
     np.add(nodes.x, layout.x, out=nodes.x)
-    x, length, bound, q_x, q_y, s_x, s_y = (array.transpose(2, 0, 1) for array in nodes[:-1])
-    contact = wl.Contact.from_strips(
-        problem.flatten(),
-        totals,
-        x=x,
-        y=layout.y.T,  # in the memory order of the nodes, strip by strip
-        length=length,
-        strip_width=layout.width.T,
-        traction=(q_x, q_y),
-        slip=(s_x, s_y),
-        traction_bound=bound,
-    )
-    return contact.unflattened(problem)
+    return contact_of(problem, layout, totals, nodes[:-1])
 
 
 def creep_forces(problem: wl.Problem, ellipses: Ellipses, count: int) -> wl.CreepForces:
     """Return the forces of `solve`."""
     flat_forces = forces_alone(ellipses, layout_of(problem, ellipses, count), *nodes_along(count))
-    totals = {name: getattr(flat_forces, name) for name in ("longitudinal", "lateral", "spin_moment")}
-    _clear(ellipses, *totals.values())
-    return wl.CreepForces(**{name: problem.unflatten(total) for name, total in totals.items()})
+    _clear(ellipses, flat_forces.longitudinal, flat_forces.lateral, flat_forces.spin_moment)
+    return unflattened(problem, flat_forces)
 
 
 def _clear(ellipses: Ellipses, *fields: Array) -> None:
@@ -150,21 +121,14 @@ def forces_alone(ellipses: Ellipses, layout: Layout, stick_nodes: int, slip_node
     if not scaled.compiled:
         return forces(layout, stick_and_slip(scaled, stick_nodes, slip_nodes))
     along, across, turning = sums(scaled, slip_nodes) * (layout.half_length * layout.greatest)
-    return _of_strips(layout, along, across, layout.half_length * turning)
+    return forces_of(layout, along, across, layout.half_length * turning)
 
 
 def forces(layout: Layout, nodes: Nodes) -> wl.CreepForces:
     """Return the forces and the moment that strips transmit."""
     length, x, q_x, q_y = nodes.length, nodes.x, nodes.traction_x, nodes.traction_y
     along, across = np.einsum("kjp,kjp->jp", length, q_x), np.einsum("kjp,kjp->jp", length, q_y)
-    return _of_strips(layout, along, across, np.einsum("kjp,kjp,kjp->jp", length, x, q_y))
-
-
-def _of_strips(layout: Layout, along: Array, across: Array, turning: Array) -> wl.CreepForces:
-    """Return the forces and the moment from ∫ q_x, ∫ q_y and ∫ x q_y dx along strips."""
-    parts = along, across, turning + layout.y * along + layout.x * across
-    longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in parts)
-    return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment)
+    return forces_of(layout, along, across, np.einsum("kjp,kjp,kjp->jp", length, x, q_y))
 
 
 def _strips(ellipses: Ellipses, layout: Layout, nodes: int) -> Strips:

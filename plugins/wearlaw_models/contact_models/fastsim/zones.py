@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from wearlaw import Array
 from wearlaw_models.contact_models.fastsim import loops as loops
+from wearlaw_models.strips import half_angle, turn
 
 LEAST_ANGLE = 1e-90
 """Slip zone of a strip without creepage [rad]; the powers of it in the formulas do not underflow to zero."""
@@ -277,14 +278,14 @@ def _slip(strips: Strips, start: Point, end: Array, nodes: Array, part: slice) -
         march = _compiled_march(strips, start, end, share)
         loops.slip_loop(strips.elliptic, _flat(strips.rows), *march, weight, part.start, _flat(nodes, 2))
         return
-    span, half = start.angle - end, _half_angle(start)
+    span, half = start.angle - end, half_angle(start.x, start.y)
     tangent, left = _steps(strips, span, end, share)
     along, across, turning, half_length, greatest, to_slip_x, to_slip_y = strips.rows
     u, sine, bound = loops.place(strips.elliptic, tangent)
     steps = u[:-1], bound[:-1], u[1:], bound[1:], left[:-1] - left[1:]
     kappa, lagged = loops.lagging(along, across, turning, *steps)
     decay = np.exp(kappa, out=kappa)
-    more, less, other = loops.turn(along, lagged, decay)
+    more, less, other = turn(along, lagged, decay)
     keeps = np.stack([more, less], axis=1)
     halves = np.empty((len(share), *half.shape))
     for k in range(len(share)):
@@ -317,20 +318,12 @@ def _compiled_march(strips: Strips, start: Point, end: Array, share: Array) -> t
     tangent, left = (_flat(array) for array in _steps(strips, span, end, share))
     kappa, lagged = np.empty((2, len(share), span.size))
     loops.lag_loop(strips.elliptic, _flat(strips.rows), tangent, left, kappa, lagged)
-    return _flat(np.stack([*_half_angle(start), span])), tangent, np.exp(kappa, out=kappa), lagged
+    return _flat(np.stack([*half_angle(start.x, start.y), span])), tangent, np.exp(kappa, out=kappa), lagged
 
 
 def _flat(array: Array, axes: int = 1) -> Array:
     """Return an array that keeps its first axes and has one axis for all strips."""
     return array.reshape(*array.shape[:axes], -1)
-
-
-def _half_angle(start: Point) -> Array:
-    """Return a vector at half the angle of the traction, or along x if there is no traction."""
-    long = np.sqrt(start.x * start.x + start.y * start.y) + np.abs(start.x)
-    short = start.y / (long + loops.TINY)
-    ahead = start.x >= 0.0
-    return np.stack([np.where(ahead, 1.0, short), np.where(ahead, short, 1.0)])
 
 
 def _split(strips: Strips, start: Point, count: int) -> Array:

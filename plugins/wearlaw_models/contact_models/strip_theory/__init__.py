@@ -12,6 +12,7 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.contact_models.strip_theory import fields
 from wearlaw_models.contact_models.strip_theory.interaction import exchanged, full_slips
+from wearlaw_models.strips import contact_of, even_strips, forces_of, unflattened, widths_at
 
 STICK_NODES, SLIP_NODES = (0.5, 4), (1.2, 8)
 """Nodes along a strip over the number of strips, and the fewest: in stick, and from the first slip on."""
@@ -88,29 +89,21 @@ class StripTheory(wl.ContactModel):
         """Return the contact on strips at y = `shares` × b, with as many nodes on each as among its own."""
         if problem.geometry == "strips":
             return None
-        between = 0.5 * (shares[1:] + shares[:-1])
-        widths = np.diff(np.concatenate([[-1.0], between, [1.0]]))
-        return self._contact(problem, _across(problem.flatten(), shares, widths))
+        return self._contact(problem, _across(problem.flatten(), shares, widths_at(shares)))
 
     def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
         """Return the forces of an ellipse or of strips, without the fields that only wear needs."""
         layout = self._layout(problem)
         strips, greatest = self._strips(problem.flatten(), layout)
         forces = _forces(layout, greatest, strips, fields.sums(strips, *self._nodes_along))
-        totals = {name: getattr(forces, name) for name in wl.CreepForces.__slots__}
-        return wl.CreepForces(**{name: problem.unflatten(total) for name, total in totals.items() if total is not None})
+        return unflattened(problem, forces)
 
     def _layout(self, problem: wl.Problem) -> wl.Strips:
-        """Return the strips of the patches, as arrays of shape (strips, points).
-
-        Those of an ellipse are nodes of Gauss's quadrature with Chebyshev polynomials of the second kind.
-        """
+        """Return the strips of the patches, as arrays of shape (strips, points)."""
         flat, strips = problem.flatten(), problem.flatten().strips
         if strips is not None:
             return strips.mapped(_by_strip, _by_strip)
-        step = np.pi / (self.strips + 1)
-        angle = step * np.arange(self.strips, 0, -1)
-        return _across(flat, np.cos(angle), step * np.sin(angle))
+        return _across(flat, *even_strips(self.strips))
 
     @property
     def _nodes_along(self) -> tuple[int, int]:
@@ -148,22 +141,8 @@ class StripTheory(wl.ContactModel):
         for tractions in (nodes.bound, nodes.q_x, nodes.q_y):
             np.multiply(greatest, tractions, out=tractions)
         slip_x, slip_y = _slips(flat, layout, nodes, flat.power(forces))
-        x, length, bound, q_x, q_y, s_x, s_y = (
-            array.transpose(2, 0, 1)
-            for array in (nodes.x, nodes.length, nodes.bound, nodes.q_x, nodes.q_y, slip_x, slip_y)
-        )
-        contact = wl.Contact.from_strips(
-            flat,
-            forces,
-            x=x,
-            y=layout.y.T,  # in the memory order of the nodes, strip by strip
-            length=length,
-            strip_width=layout.width.T,
-            traction=(q_x, q_y),
-            slip=(s_x, s_y),
-            traction_bound=bound,
-        )
-        return contact.unflattened(problem)
+        fields_of_nodes = nodes.x, nodes.length, nodes.bound, nodes.q_x, nodes.q_y, slip_x, slip_y
+        return contact_of(problem, layout, forces, fields_of_nodes)
 
 
 def _across(flat: wl.Problem, shares: Array, widths: Array) -> wl.Strips:
@@ -182,13 +161,10 @@ def _by_strip(array: Array) -> Array:
 def _forces(layout: wl.Strips, greatest: Array, strips: fields.Strips, sums: Array) -> wl.CreepForces:
     """Return the forces, the moment and the power of strips with creepages, from the `fields.sums`."""
     along, across, turning = layout.half_length * greatest * sums
-    parts = along, across, layout.half_length * turning + layout.y * along + layout.x * across
-    longitudinal, lateral, moment = ((layout.width * part).sum(axis=0) for part in parts)
     power = None
     if layout.has_creepages:
-        of_strips = strips.along * along + strips.across * across - strips.turning * turning
-        power = (layout.width * of_strips).sum(axis=0)
-    return wl.CreepForces(longitudinal=longitudinal, lateral=lateral, spin_moment=-moment, power=power)
+        power = strips.along * along + strips.across * across - strips.turning * turning
+    return forces_of(layout, along, across, layout.half_length * turning, power)
 
 
 def _slips(flat: wl.Problem, layout: wl.Strips, nodes: fields.Nodes, power: Array) -> tuple[Array, Array]:

@@ -30,6 +30,7 @@ import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.contact_models.strip_theory import loops as loops
 from wearlaw_models.contact_models.strip_theory.loops import TINY
+from wearlaw_models.strips import half_angle, turn
 
 NODES = 4
 """Nodes that take about as long as one operating point in the count of `accelerated`."""
@@ -185,7 +186,7 @@ def _slip(rows: Array, table: Array, nodes: Array, stick_nodes: int) -> None:
     cosine, sine, length, arc, step, way = table.T[..., None]
     behind = v * (1.0 + cosine)
     angle = 2.0 * np.arcsin(np.sqrt(0.5 * behind))
-    half = _half_angle(n_x, n_y)
+    half = half_angle(n_x, n_y)
     k, p = loops.shape(k_x, k_y, turning, n_x, n_y)
     x = 1.0 - behind
     w_y = across - turning * x
@@ -193,7 +194,7 @@ def _slip(rows: Array, table: Array, nodes: Array, stick_nodes: int) -> None:
     kappa = rate.copy()
     kappa[1:] += rate[:-1]
     kappa *= 0.5 * step
-    more, less, other = loops.turn(along, w_y + turning * (loops.lag(kappa) * v * way), np.exp(-kappa))
+    more, less, other = turn(along, w_y + turning * (loops.lag(kappa) * v * way), np.exp(-kappa))
     keeps = np.stack([more, less], axis=1)
     halves = np.empty_like(keeps)
     for at in range(len(table)):
@@ -209,13 +210,7 @@ def _steps(rows: Array, table: Array) -> tuple[Array, Array, Array]:
     angle = np.multiply(2.0, np.arcsin(np.sqrt(angle, out=angle), out=angle), out=angle)
     decay, lagging = np.empty(angle.shape), np.empty(angle.shape)
     loops.lag_loop(rows, table, angle, decay, lagging)
-    return _half_angle(rows[6], rows[7]), np.exp(decay, out=decay), lagging
-
-
-def _half_angle(x: Array, y: Array) -> Array:
-    """Return a vector at half the angle of a direction, or along x if there is none."""
-    long, ahead = 1.0 + np.abs(x), x >= 0.0
-    return np.stack([np.where(ahead, long, y), np.where(ahead, y, long)])
+    return half_angle(rows[6], rows[7]), np.exp(decay, out=decay), lagging
 
 
 def _again(rows: Array, table: Array, compiled: bool) -> Array:

@@ -6,15 +6,13 @@ the fields of `_strips.Nodes`, in the order there. Tables hold what nodes at the
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, TypeAlias
 
 import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-
-BELOW = 1.0 - 8.0 * float(np.finfo(np.float64).eps)
-"""Factor that keeps the magnitude of a traction below its bound despite rounding."""
+from wearlaw_models.strips import BELOW, Number, direction, root, turn
 
 TINY = 1e-100
 """Keeps divisors from zero."""
@@ -22,15 +20,8 @@ TINY = 1e-100
 KNOTS = 2048
 """Steps of the tables of `between`, between which they are linear."""
 
-Number = TypeVar("Number", float, Array)
-
 Pair: TypeAlias = tuple[Any, Any]
 Totals: TypeAlias = tuple[Any, Any, Any, Any]
-
-
-def root(value: Number) -> Number:
-    """Return the square root of a float or of an array."""
-    return np.sqrt(value)  # type: ignore[no-any-return]
 
 
 def shape(k_x: Number, k_y: Number, turning: Number, n_x: Number, n_y: Number) -> tuple[Number, Number]:
@@ -74,26 +65,9 @@ def lag(kappa: Number) -> Number:
     return (6.0 + kappa) / (12.0 + kappa * (4.0 + kappa))
 
 
-def turn(along: Number, across: Number, decay: Number) -> tuple[Number, Number, Number]:
-    """Return the factors of a step on a vector at half the angle of q̂: of x along x, of y across, of the other one.
-
-    As complex numbers, a step towards w takes the vector h to (1 + d)/2 h + (1 - d)/2 (w/|w|) h*; the tangent of half
-    the angle between q̂ and w decays by the factor d = exp -κ.
-    """
-    over = (0.5 - 0.5 * decay) / (root(along * along + across * across) + TINY)
-    stays, turns = 0.5 + 0.5 * decay, over * along
-    return stays + turns, stays - turns, over * across
-
-
 def taken_up(k: Number, p: Number, v: Number, behind: Number, cosine: float) -> Number:
     """Return e."""
     return k * v - p * (1.0 - behind + v) - (k - p) * root((2.0 - behind) * (v * (1.0 - cosine)))
-
-
-def direction(x: Number, y: Number) -> tuple[Number, Number]:
-    """Return the direction with (x, y) at half its angle, shortened for rounding."""
-    over = BELOW / (x * x + y * y + TINY)
-    return (x - y) * (x + y) * over, 2.0 * x * y * over
 
 
 def place(distance: Number, half_length: Number) -> Number:
