@@ -87,7 +87,7 @@ def case_of(path: Path) -> Case:
     DataError
         If the file is not one of CONTACT, of a version that is not known, or wrong.
     """
-    table = table_of(path, _most_rows)
+    table = table_of(path)
     version = _version(table)
     grid_row = _rows_of_position(version)
     if len(table.values) < grid_row + 3:
@@ -132,12 +132,6 @@ def _rows_of_position(version: int) -> int:
     return 3 if version >= 2320 else 2 if version >= 1801 else 1 if version >= 1401 else 0
 
 
-def _most_rows(head: Table) -> int:
-    """Return how many rows a file has at most, by its first rows: the head, and all elements of its grid."""
-    row = _rows_of_position(_version(head))
-    return row + 3 + math.prod(_grid(head, row))
-
-
 def _position(table: Table, version: int) -> dict[str, Any]:
     """Return the module, the radii of the bodies and the contact angle."""
     none = {"module": 3, "wheel_radius": 0.0, "roller_radius": 0.0, "angle": 0.0}
@@ -153,14 +147,9 @@ def _position(table: Table, version: int) -> dict[str, Any]:
     return {"module": 1, "wheel_radius": radius, "roller_radius": max(roller, 0.0), "angle": place[3] + roll}
 
 
-def _grid(table: Table, row: int) -> tuple[int, int]:
-    """Return the number of elements along x and y."""
-    return table.whole(row, 0, "MX", range(1, 10**7)), table.whole(row, 1, "MY", range(1, 10**7))
-
-
 def _kinematics(table: Table, row: int) -> dict[str, Any]:
     """Return the grid, the direction and the speed of rolling."""
-    mx, my = _grid(table, row)
+    mx, my = (table.whole(row, column, name, range(1, 10**7)) for column, name in enumerate(("MX", "MY")))
     xl, yl = table.values[row, 2:4].tolist()
     dx, dy = table.positive(row, 4, "DX"), table.positive(row, 5, "DY")
     chi = table.values[row, 6]

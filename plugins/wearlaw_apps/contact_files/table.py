@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
@@ -23,9 +23,6 @@ LARGEST = 256 * 2**20
 
 LONGEST = 1000
 """Most characters of a row; CONTACT writes some 200."""
-
-HEAD = 6
-"""Rows of which the first say how many follow."""
 
 HUGE = 1e30
 """What no number of a contact exceeds in magnitude, in any unit."""
@@ -72,21 +69,14 @@ def is_table(head: bytes) -> bool:
     return head.startswith(b"%") and b"\0" not in head
 
 
-def table_of(path: Path, most: Callable[[Table], int] | None = None) -> Table:
+def table_of(path: Path) -> Table:
     """Return the numbers of a file.
-
-    Parameters
-    ----------
-    path : path
-        The file.
-    most : callable, optional
-        Returns from the first rows how many rows the file may have, before the others are read.
 
     Raises
     ------
     DataError
-        If the file is none of CONTACT's, is cut short, has longer or more rows than CONTACT writes, or holds anything
-        but finite numbers.
+        If the file is none of CONTACT's, is cut short, has longer rows than CONTACT writes, or holds anything but
+        finite numbers.
     """
     try:
         text = wl.read_file(path, LARGEST).decode("ascii")
@@ -97,21 +87,8 @@ def table_of(path: Path, most: Callable[[Table], int] | None = None) -> Table:
     lines = text.splitlines()
     if not text.endswith(("\n", "\r")):
         raise DataError(f"'{path}', line {len(lines)}: ends without a line break; the file is cut short there")
-    rows = [number for number, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("%")]
-    if too_long := [number for number in rows if len(lines[number - 1]) > LONGEST]:
+    if too_long := [number for number, line in enumerate(lines, 1) if len(line) > LONGEST]:
         raise DataError(f"'{path}', line {too_long[0]}: is longer than any row of CONTACT; is it one of its files?")
-    if most is not None and len(rows) > HEAD:
-        said = most(_parsed(path, "".join(f"{line}\n" for line in lines[: rows[HEAD - 1]])))
-        if len(rows) > said:
-            raise DataError(
-                f"'{path}', line {rows[said]}: is row {said + 1} of numbers, but by the header there are at"
-                f" most {said}; is the file two in one?"
-            )
-    return _parsed(path, text)
-
-
-def _parsed(path: Path, text: str) -> Table:
-    """Return the numbers of a text."""
     try:
         table = wl.read_table(io.StringIO(text), sep=" ", comment="%")
         values = np.column_stack([_numbers(table, name) for name in table.columns])

@@ -71,7 +71,7 @@ CHANGES: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
     ),
     "more rows than the grid": (
         lambda lines: [*lines[:13], *lines[13:14] * 700],
-        "line 702: is row 695 of numbers, but by the header there are at most 694",
+        r"line 15, column 1 \(I\): must be greater than that of the row before it",
     ),
     "an element outside among those in contact": (
         replaced(15, 2, "0"), "ends after 130 elements, but the grid has 43 x 16 = 688, and the file lists those"
