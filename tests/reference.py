@@ -15,12 +15,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy import integrate
-
-from tests.roots import brentq
+from scipy import integrate, optimize
 
 Field = Callable[[Any], Any]
 """A function of v."""
+
+
+def brentq(function: Callable[[float], Any], low: float, high: float, **options: Any) -> float:
+    """Return where a function passes zero between two places at which it has different signs, by Brent's method."""
+    found: Any = optimize.brentq(function, low, high, **options)
+    return float(found)
 
 
 @dataclass(frozen=True)

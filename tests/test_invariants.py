@@ -5,7 +5,7 @@ Tolerances are rounding, EPS times a small number of operations, times the condi
 - A position x is exact to the rounding of a. What is integrated over a slip zone of length 2h is therefore exact
   to EPS·a/h, which is 1/`slip_share`.
 - The 24 Gauss-Legendre nodes of a zone meet p = p0 √(1-(x/a)²) to rounding except where the leading edge lies
-  just outside the zone: `GRAZING`, see `test_quadrature.py`, which measures it.
+  just outside the zone: `GRAZING`, see `test_integrate_estimates.py`, which measures it.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests import reference
 from tests.core.integrals import FULL_SLIP, MEANS, REFERENCE, RIG, SPEED, Points, compare, integrate_wear
-from tests.roots import brentq
+from tests.reference import brentq
 from tests.strategies import EPS, LINE_MODELS
 from wearlaw import Array, Q
 from wearlaw.numerics.integrate import BLOCK, NODE_BLOCK, integrate_slip  # private: sizes of blocks

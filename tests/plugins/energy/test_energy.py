@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 from tests.plugins.laws import around, contact_of
-from tests.roots import brentq
+from tests.reference import brentq
 from tests.strategies import EPS
 from wearlaw import Q
 

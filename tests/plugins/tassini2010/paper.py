@@ -12,7 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests import reference
-from tests.roots import brentq
+from tests.reference import brentq
 from wearlaw import Array
 
 LOAD, FRICTION, RADIUS = 741.43e3, 0.46, 0.047 / 4.0
