@@ -132,24 +132,6 @@ def test_a_rig_may_hand_its_conditions_on_to_its_base() -> None:
     assert found.problem.normal_force == TwoSpeeds().problem(**{**GIVEN, "mass": "300 kg"}).normal_force
 
 
-WRONG: list[tuple[dict[str, Any], type[Exception], str]] = [
-    ({"mass": None}, wl.ConditionsError, "give exactly one of mass, normal_force; got none of them"),
-    ({"normal_force": "1 kN"}, wl.ConditionsError, "got mass and normal_force"),
-    ({"upper_speed": None}, wl.ConditionsError, r'^upper_speed: is missing; give upper_speed=Q\(1.01, "m/s"\)$'),
-    ({"friction_coefficient": None}, wl.ConditionsError, "friction_coefficient: is missing; give .*=0.4$"),
-    ({"uper_speed": "1 m/s"}, wl.ConditionsError, "uper_speed: unknown condition; did you mean 'upper_speed'"),
-    ({"lower_speed": 1.0}, wl.UnitError, "^lower_speed: got the bare number 1.0"),
-    ({"traction_coefficient": FALLING}, wl.UnitError, "^traction_coefficient: .* is not a real number"),
-    ({"mass": Q([1, 2], "t"), "lower_speed": Q([1, 1, 1], "m/s")}, wl.ConditionsError, r"mass \(2,\), lower_speed"),
-]
-
-
-@pytest.mark.parametrize(("changes", "error", "message"), WRONG)
-def test_wrong_conditions_are_named(changes: dict[str, Any], error: type[Exception], message: str) -> None:
-    with pytest.raises(error, match=message):
-        TwoSpeeds().problem(**{**GIVEN, **changes})
-
-
 @pytest.mark.parametrize("force", [[Q(1, "kN"), Q(2000, "N")], ["1 kN", "2 kN"], ("1 kN", Q(2, "kN"))])
 def test_a_list_of_quantities_or_texts_is_an_array(force: Any) -> None:
     predict = wl.TwinDisc.suros() | wl.contact_model("exact")

@@ -68,35 +68,6 @@ def test_the_ellipse_is_the_one_of_johnsons_equations(ratio: float, axes: float,
     assert number(hertz_ellipse.approach, force, *found, modulus) == pytest.approx(approach, rel=others)
 
 
-@pytest.mark.validates(
-    "hertz",
-    "Equal curvatures give a circle, in closed form",
-    source="Johnson 1985, eqs. 4.22 to 4.24",
-    held_to="{axes} ε (a), {others} ε (p0, approach), relative",
-    axes=16,
-    others=48,
-)
-@given(log_uniform(1.0, 1e7), log_uniform(1e-3, 10.0), log_uniform(1e9, 1e12))
-def test_equal_curvatures_give_a_circle(axes: int, others: int, force: float, radius: float, modulus: float) -> None:
-    curvature = number(hertz_ellipse.curvature, radius, math.inf)
-    a, b = semi_axes(force, curvature, curvature, modulus)
-    assert a == b
-    # Johnson, eqs. (4.22) to (4.24)
-    expected = (3.0 * force * radius / (4.0 * modulus)) ** (1.0 / 3.0)
-    assert a == pytest.approx(expected, rel=axes * EPS)
-    assert number(hertz_ellipse.approach, force, a, b, modulus) == pytest.approx(expected**2 / radius, rel=others * EPS)
-    pressure = (6.0 * force * modulus**2 / (math.pi**3 * radius**2)) ** (1.0 / 3.0)
-    assert number(hertz_ellipse.max_pressure, force, a, b) == pytest.approx(pressure, rel=others * EPS)
-
-
-@given(log_uniform(1e-3, 1e3), log_uniform(1e-3, 1e3))
-def test_curvatures_that_change_places_turn_the_ellipse(curvature_x: float, curvature_y: float) -> None:
-    force = 1e5
-    a, b = semi_axes(force, curvature_x, curvature_y, 1e11)
-    assert (b, a) == semi_axes(force, curvature_y, curvature_x, 1e11)
-    assert (a >= b) == (curvature_x <= curvature_y)
-
-
 def displacement(x: float, y: float, a: float, b: float, max_pressure: float, modulus: float) -> float:
     """Boussinesq's integral of p/(πE*r) over the ellipse, by chords through the point."""
     # Both rules are trapezoidal over whole periods, so they converge faster than any power.

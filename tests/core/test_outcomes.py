@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -215,36 +214,18 @@ def test_a_wrong_outcome_is_refused(fields: dict[str, Any], error: type[Exceptio
 
 
 class Wrong(Damage):
-    """Returns what it is told to."""
+    """Returns a value for each node."""
 
     name: ClassVar[str] = "wrong"
-    fault: Literal["nodes", "negative"]
 
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Any:
-        return contact.pressure if self.fault == "nodes" else -contact.wear_index
-
-
-class Unsigned(Wrong):
-    """The same, for an outcome that cannot be negative."""
-
-    name: ClassVar[str] = "unsigned"
-    outcome = dataclasses.replace(Damage.outcome, sign="not negative")
+    def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
+        return contact.pressure
 
 
-@pytest.mark.parametrize(
-    ("law", "said"),
-    [
-        (
-            Wrong(fault="nodes"),
-            r"law 'wrong' returned values of shape \(3, \d+\); it must return one a patch, of shape \(3,\)",
-        ),
-        (Unsigned(fault="negative"), "law 'unsigned' gives a negative rcf damage, -"),
-    ],
-    ids=["nodes", "negative"],
-)
-def test_a_wrong_law_is_named(law: wl.Law, said: str) -> None:
+def test_a_law_of_the_patch_that_returns_a_value_for_each_node_is_named() -> None:
+    said = r"law 'wrong' returned values of shape \(3, \d+\); it must return one a patch, of shape \(3,\)"
     with pytest.raises(ModelError, match=said):
-        predicted(RIG | EXACT | law, **BATCH)
+        predicted(RIG | EXACT | Wrong(), **BATCH)
 
 
 # --- Borders in a variable of the law's own --------------------------------------------------------------------

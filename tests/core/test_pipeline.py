@@ -13,7 +13,6 @@ import pytest
 import wearlaw as wl
 from tests.cases import following_line
 from tests.core.stages import (
-    AS_PRINTED,
     BRR,
     CONDITIONS,
     ELLIPTIC,
@@ -28,20 +27,13 @@ from tests.core.stages import (
 from wearlaw import Q
 from wearlaw.errors import CompositionError
 
+OWN = {"high_pressure": 0.1, "low_speed": 1e-3, "mid_speed": 2e-3, "high_speed": 3e-3}
 PIPELINES = [
-    silently(RIG, *stages)
-    for stages in [
-        *product((EXACT, FASTSIM, ELLIPTIC, GLOBAL, AS_PRINTED), (*FITTED.values(), KTH)),
-        *product((EXACT, FASTSIM), (wl.patch_mean(),), (FITTED["global"], KTH, BRR)),
-        (GLOBAL, BRR),
-        (wl.contact_model("global", total_from=ELLIPTIC), wl.wear_law("usfd", m_m="6 ug/m/N")),
-        (
-            GLOBAL,
-            wl.wear_law(
-                "kth", coefficient={"high_pressure": 0.1, "low_speed": 1e-3, "mid_speed": 2e-3, "high_speed": 3e-3}
-            ),
-        ),
-    ]
+    *(silently(RIG, model, law) for model, law in product((EXACT, ELLIPTIC, GLOBAL), (*FITTED.values(), KTH))),
+    *(silently(RIG, FASTSIM, wl.patch_mean(), law) for law in (FITTED["global"], BRR)),
+    RIG | GLOBAL | BRR,
+    silently(RIG, wl.contact_model("global", total_from=ELLIPTIC), wl.wear_law("usfd", m_m="6 ug/m/N")),
+    RIG | GLOBAL | wl.wear_law("kth", coefficient=OWN),
 ]
 
 

@@ -133,10 +133,3 @@ def test_the_repr_of_one_point_shows_values_and_of_many_their_ranges() -> None:
     ]
     alone = (RIG | wl.contact_model("exact"))(creepage="1 %", **CONDITIONS)
     assert repr(alone).startswith("Prediction of 1 operating point\n  tangential_force ")
-
-
-@pytest.mark.parametrize("model", ["exact", "global", "fastsim"])
-def test_a_problem_without_operating_points_is_refused(model: str) -> None:
-    many = RIG.problem(**CONDITIONS, creepage=Q([0.1, 0.2], "%"))
-    with pytest.raises(wl.ConditionsError, match="problem: holds no operating points"):
-        (RIG | wl.contact_model(model) | wl.wear_law("kth")).predict(many[:0])

@@ -115,12 +115,6 @@ def test_patches_of_a_line_may_be_missing_too(model: str) -> None:
         assert np.isnan(one.profile.pressure.values[1]).all()
 
 
-@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # 8000 kN on a patch
-def test_what_warns_looks_at_patches_that_exist() -> None:
-    with pytest.warns(wl.RangeWarning, match=r"the maximum pressure of 5228 MPa .* is beyond the shakedown limit"):
-        PREDICT(**{**GIVEN, "load": "8000 kN"})
-
-
 @pytest.mark.parametrize("exists", [np.array([1.0, 0.0]), np.array([True]), [True, False]])
 def test_a_wrong_mask_is_the_rigs_fault(exists: Any) -> None:
     class Wrong(Axle):

@@ -116,13 +116,6 @@ def test_each_body_loses_mass_by_its_own_density() -> None:
     assert found.wear_profile("rail").depth.values == pytest.approx(depth, rel=64 * EPS)
 
 
-def test_the_weaker_body_yields_first() -> None:
-    with silent(), pytest.warns(wl.PlasticityWarning):
-        (rig(rail_material=IRON) | FASTSIM)(**{**CONDITIONS, "normal_force": Q(60, "kN")})
-    with silent():
-        (rig() | FASTSIM)(**{**CONDITIONS, "normal_force": Q(60, "kN")})
-
-
 # --- Dundurs' β ------------------------------------------------------------------------------------------------------
 
 
