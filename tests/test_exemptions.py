@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import pytest
 
 import wearlaw as wl
@@ -77,23 +75,6 @@ def test_the_elliptic_bound_never_lets_the_whole_patch_slip(
     assert 1.0 - float(contact.tangential_force) / (0.46 * 7414.3) == pytest.approx(
         {2.0: at_2, 20.0: at_20}[percent], rel=within
     )
-
-
-@pytest.mark.validates(
-    "limits",
-    (
-        'Kalker\'s flexibility of a long ellipse (`flexibility="kalker"`) is too stiff for a line: its '
-        "initial slope is 3π/8 of the exact one"
-    ),
-    source="ratio of 4a/(πE*) and 32a/(3π²E*)",
-    held_to="{within:g}, relative",
-    within=1e-05,
-)
-@pytest.mark.parametrize("name", exempt("initial_slope"))
-def test_the_flexibility_of_a_long_ellipse_has_another_initial_slope(name: str, within: float) -> None:
-    contact, exact = suros(name, 1e-5), suros("exact", 1e-5)
-    # L = 4a/(πE*) over 32a/(3π²E*)
-    assert float(contact.tangential_force / exact.tangential_force) == pytest.approx(3.0 * math.pi / 8.0, rel=within)
 
 
 @pytest.mark.parametrize("name", exempt("stick"))

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
-from tests.core.stages import RAILS, predicted
+from tests.core.stages import predicted
 from tests.plugins.fits.fits import usfd
 from tests.strategies import EPS
 from wearlaw import Array, Q
@@ -23,7 +23,6 @@ from wearlaw.errors import ModelError
 DRY: dict[str, Any] = {"static_coefficient": 0.55, "limit_ratio": 0.4, "decay": "0.6 s/m"}
 FRICTION = wl.FallingFriction(**DRY)
 
-ELLIPTIC = [name for name, model in wl.installed("contact model").items() if "ellipse" in model.geometries()]
 LINE = [name for name, model in wl.installed("contact model").items() if "line" in model.geometries()]
 
 
@@ -73,24 +72,6 @@ def test_discs_have_the_friction_of_the_difference_of_their_surface_speeds() -> 
     rig = wl.TwinDisc.suros(rolling_speed=Q(faster, "m/s"), speed_of="disc_1")
     found = rig.problem(normal_force="7 kN", creepage=Q(creepage, ""), friction_coefficient=FRICTION)
     assert found.friction_coefficient == pytest.approx(falling(np.abs(faster - slower)), rel=32 * EPS)
-
-
-@pytest.mark.parametrize("name", ELLIPTIC)
-def test_an_elliptic_contact_has_the_friction_of_its_creep_speed(name: str) -> None:
-    solve = RAILS | wl.contact_model(name, **({"cells": 8} if name == "half_space" else {}))
-    along, across = np.array([0.0, 0.001, 0.01, 0.1]), np.array([0.0, -0.002, 0.003, 0.0])
-    conditions: dict[str, Any] = {
-        "normal_force": Q(80, "kN"),
-        "longitudinal_creepage": Q(along, ""),
-        "lateral_creepage": Q(across, ""),
-        "spin": Q(0.3, "1/m"),
-    }
-    found = solve(friction_coefficient=FRICTION, **conditions)
-    coefficient = falling(30.0 * np.hypot(along, across))
-    assert found.friction_coefficient.magnitude == pytest.approx(coefficient, rel=8 * EPS)
-    plain = solve(friction_coefficient=coefficient, **conditions)
-    # A slip zone moves by the roundings of the coefficient over what is left of the patch.
-    assert found.tangential_force.magnitude == pytest.approx(plain.tangential_force.magnitude, rel=1e-10)
 
 
 WRONG: list[tuple[dict[str, Any], str]] = [

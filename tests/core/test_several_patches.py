@@ -115,15 +115,21 @@ def test_patches_of_a_line_may_be_missing_too(model: str) -> None:
         assert np.isnan(one.profile.pressure.values[1]).all()
 
 
-@pytest.mark.parametrize("exists", [np.array([1.0, 0.0]), np.array([True]), [True, False]])
-def test_a_wrong_mask_is_the_rigs_fault(exists: Any) -> None:
+@pytest.mark.parametrize(
+    ("field", "wrong"),
+    [
+        *(("exists", mask) for mask in (np.array([1.0, 0.0]), np.array([True]), [True, False])),
+        *(("dims", labels) for labels in (("side", "patch"), {"side": ("left",), "patch": (1, 2)}, {"patch": 2})),
+    ],
+)
+def test_a_mask_or_labels_that_do_not_fit_the_batch_are_the_rigs_fault(field: str, wrong: Any) -> None:
     class Wrong(Axle):
         name: ClassVar[str] = "wrong"
 
         def problem(self, **conditions: Any) -> wl.Problem:
-            return super().problem(**conditions).replaced(exists=exists)
+            return super().problem(**conditions).replaced(**{field: wrong})
 
-    with pytest.raises(ModelError, match=r"rig 'wrong' .*`exists`"):
+    with pytest.raises(ModelError, match=r"rig 'wrong' .*`exists`" if field == "exists" else "rig 'wrong' "):
         (Wrong() | wl.contact_model("fastsim"))(**GIVEN)
 
 
@@ -213,19 +219,6 @@ def test_another_normal_force_gives_the_patch_of_hertz(factor: float) -> None:
         loaded = one.with_normal_force(factor * one.normal_force)
         for name in ("a", "b", "normal_force", "max_pressure"):
             assert getattr(loaded, name) == pytest.approx(getattr(other, name), rel=16 * EPS)
-
-
-@pytest.mark.parametrize("dims", [("side", "patch"), {"side": ("left",), "patch": (1, 2)}, {"patch": 2}])
-def test_labels_of_axes_must_fit_the_batch(dims: Any) -> None:
-    class Mislabelled(Axle):
-        name: ClassVar[str] = "mislabelled"
-
-        def problem(self, **conditions: Any) -> wl.Problem:
-            return super().problem(**conditions).replaced(dims=dims)
-
-    predict = Mislabelled() | wl.contact_model("fastsim")
-    with pytest.raises(ModelError, match="rig 'mislabelled' "):
-        predict(**GIVEN)
 
 
 @pytest.mark.parametrize("predict", [PREDICT, CUT])
