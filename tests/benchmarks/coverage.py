@@ -12,49 +12,26 @@ import sys
 import time
 import warnings
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 import wearlaw as wl
-from wearlaw import Q
+from tests.plugins.fits.fits import ALL, made_up, usfd
 from wearlaw.errors import FitWarning
-from wearlaw_apps.fits import WearTests
 
 DOCS = Path(__file__).parents[2] / "docs"
 CONTACTS = ("global", "exact")
-FREE = ("m_m", "q_s", "m_c", "tr_sc")
 SCATTER = 0.1
-CREEPAGE = np.concatenate([np.geomspace(0.1, 1.3, 7), np.linspace(2.0, 13.0, 6), np.linspace(15.0, 20.0, 7)])
-"""Seven tests in the mild, six in the severe and seven in the catastrophic regime [%]."""
-
-
-def pipeline(contact: str) -> wl.Pipeline[...]:
-    """Return the pipeline that makes the tests and is fitted to them."""
-    return wl.TwinDisc.suros() | wl.contact_model(contact) | wl.wear_law("usfd", fitted_for=contact)
-
-
-def made_up(predict: wl.Pipeline[...], scatter: float, seed: int) -> WearTests:
-    """Return tests that follow a law but for lognormal scatter."""
-    conditions: Any = {
-        "creepage": Q(CREEPAGE, "%"),
-        "max_pressure": Q(1500, "MPa"),
-        "friction_coefficient": np.full(CREEPAGE.size, 0.46),
-    }
-    factor = np.exp(scatter * np.random.default_rng(seed).standard_normal(CREEPAGE.size))
-    return WearTests.from_arrays(**conditions, wear_rate=predict(**conditions).wear_rate * factor, source="made up")
 
 
 def coverage(contact: str, fits: int, bootstrap: int, first_seed: int = 0) -> dict[str, dict[str, float]]:
     """Return by parameter how often both kinds of 95 % intervals hold the true value, and how wide they are."""
-    predict = pipeline(contact)
-    held = {name: {"bootstrap": 0.0, "student": 0.0, "half_width": 0.0} for name in FREE}
+    predict = usfd(contact)
+    held = {name: {"bootstrap": 0.0, "student": 0.0, "half_width": 0.0} for name in ALL}
     for seed in range(first_seed, first_seed + fits):
         tests = made_up(predict, SCATTER, seed)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FitWarning)
-            fit = wl.fit(predict, tests, free=FREE, bootstrap=bootstrap, seed=seed)
-        for name in FREE:
+            fit = wl.fit(predict, tests, free=ALL, bootstrap=bootstrap, seed=seed)
+        for name in ALL:
             true = getattr(predict.wear_law, name)
             for kind, intervals in (("bootstrap", fit.intervals), ("student", fit.covariance_intervals)):
                 low, high = intervals[name]
