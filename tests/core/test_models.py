@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
+import numpy as np
 import pytest
 
 import wearlaw as wl
 from tests.cases import Coarse
+from tests.strategies import EPS
 from wearlaw import Array, Q
 from wearlaw.errors import CompositionError, ModelError
 
@@ -176,3 +178,32 @@ def test_an_unknown_variable_is_refused_and_not_ignored(declared: str, name: str
     assert str(error.value).startswith(
         f"wear law 'declares' names the variable '{name}' in `{declared}`, which is unknown{hint}"
     )
+
+
+class Bare(wl.LineContactModel):
+    """A block that slips as a whole, with the methods that must be there and no other."""
+
+    name: ClassVar[str] = "bare"
+    source: ClassVar[str] = "the tests"
+
+    def slip_length(self, problem: wl.Problem) -> Array:
+        return np.where(problem.creepage > 0.0, 2.0 * problem.half_width, 0.0)
+
+    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
+        pressure = wl.hertz.pressure(nodes.x, problem.half_width, problem.max_pressure)
+        bound = np.broadcast_to(problem.friction_coefficient * problem.max_pressure, nodes.x.shape)
+        slip = np.broadcast_to(problem.creepage, nodes.x.shape)
+        return wl.LineFields(pressure=pressure, traction=0.5 * bound, slip=slip, traction_bound=bound)
+
+    def tangential_force_per_width(self, problem: wl.Problem) -> Array:
+        force = problem.friction_coefficient * problem.max_pressure * problem.half_width
+        return np.where(problem.creepage > 0.0, force, 0.0)
+
+
+@pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
+def test_a_model_with_nothing_but_the_required_methods_predicts_wear() -> None:
+    predict = RIG | Bare() | wl.wear_law("usfd")
+    found = predict(max_pressure="1500 MPa", creepage=Q([-0.01, 0.0, 0.2], ""), friction_coefficient=0.46)
+    density = 0.5 * 0.46 * 1500.0 * np.array([0.01, 0.0, 0.2])  # q·s everywhere, in N/mm²
+    expected = np.minimum(5.3 * density, 55.0) + 61.9 * np.maximum(density - 77.26, 0.0)
+    assert found.wear_rate.m_as("ug/m/mm^2") == pytest.approx(expected, rel=64 * EPS)
