@@ -187,8 +187,8 @@ class Life:
                 ("depth", worn, "depth worn [mm]", "wear along the normal"),
             ):
                 curves = tuple(
-                    wl.Curve(f"{distance:,.0f} {unit or along}", shown["y"][number].values, shown[name][number].values,
-                             colour=number)
+                    wl.Curve(f"{short(round(distance))} {unit or along}", shown["y"][number].values,
+                             shown[name][number].values, colour=number)
                     for number, distance in enumerate(distances[chosen])
                 )  # fmt: skip
                 x, y = wl.PlotAxis("y, outwards [mm]"), wl.PlotAxis(label, inverted=True)

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 import wearlaw as wl
+from wearlaw_apps.life.life import short
 from wearlaw_apps.life.over_distance import wear_out
 from wearlaw_apps.life.steps import CONICITY
 from wearlaw_apps.output.notes import caught_warnings
@@ -60,9 +61,9 @@ def section(study: wl.Study) -> wl.Section:
     rates = f"{life.rates['depth']:.3g} mm at its deepest place and {-life.rates['diameter']:.3g} mm of its diameter"
     return wl.Section(
         title="The life of a wheel",
-        text=f"An example and no prediction of service: {OVER:~P} with equal shares of {held} in the sweep '{LINE}'."
-        f" Real lines have curves, in which flanges wear. In 1000 km it loses {rates}. Compare them with"
-        " rates of your own service: no published ones with their line could be read, so that none stand here.",
+        text=f"An example and no prediction of service: {short(OVER.m_as('km'))} km with equal shares of {held} in the"
+        f" sweep '{LINE}'. Real lines have curves, in which flanges wear. In 1000 km it loses {rates}. Compare them"
+        " with rates of your own service: no published ones with their line could be read, so that none stand here.",
         tables={"life": life.table.rename(columns={CONICITY: f"{CONICITY} [-]"})},
         figures=figures,
         summary=f"{head}: {'; '.join(' '.join(row.split()) for row in rows)}.",

@@ -40,7 +40,7 @@ by less than 10 %, and good if by less than 20 %; "of the plot" is relative to t
 paper's figure. A claim holds in part if it holds for some variants or over part of the range. The measured wear rates \
 have not been published as numbers; USFD on the patch means, which was fitted to them, stands in. The paper does not \
 say whether its rig keeps the speed of disc 1 or the mean of both speeds, which decides where cells pass the slip \
-speeds of KTH; a case with the other `speed_of` of its rig shows the difference.
+speeds of KTH; a case with the other speed_of of its rig shows the difference.
 
 Computed for the rig of this case at {load:.5g~P} and a friction coefficient of {friction:g}. The published tests are \
 from {source}."""

@@ -281,7 +281,7 @@ def _band(curve: Curve, panel: Panel, colour: str) -> Json:
 
 def _axis(axis: PlotAxis) -> Json:
     described: Json = {
-        "title": {"text": literal(axis.label)},
+        "title": {"text": literal(axis.label), "standoff": 8},
         "type": axis.scale,
         "exponentformat": "power",
         "minexponent": 5,

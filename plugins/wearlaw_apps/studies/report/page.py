@@ -100,7 +100,7 @@ def counted(claims: Sequence[CheckedClaim]) -> str:
     """Return how many claims there are of each verdict, such as "3 claims (holds: 2, does not hold: 1)"."""
     verdicts = Counter(claim.verdict for claim in claims)
     each = ", ".join(f"{verdict}: {verdicts[verdict]}" for verdict in VERDICTS if verdict in verdicts)
-    return f"{len(claims)} claims ({each})"
+    return f"{len(claims)} {'claim' if len(claims) == 1 else 'claims'} ({each})"
 
 
 def has_strip(figure: FigureData) -> bool:

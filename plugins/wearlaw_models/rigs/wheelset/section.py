@@ -48,7 +48,7 @@ def section(study: wl.Study) -> wl.Section:
         if not predictions:
             continue
         first = next(iter(predictions.values()))
-        tables[f"patches_{name}"] = _table(first)
+        tables[f"patches_of_{name}"] = _table(first)
         figures += rig.profile_figures(predictions, name)
     return wl.Section(
         title="The wheelset on its rails",
