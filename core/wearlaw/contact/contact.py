@@ -237,7 +237,7 @@ class Contact:
 
     @classmethod
     def of_patch(cls, problem: Problem, forces: CreepForces) -> Self:
-        """Return a contact of one node with the means of an ellipse, for a model that knows only the forces.
+        """Return a contact of one node, (batch, 1, 1), with the means of an ellipse, for a model of forces alone.
 
         The slip of the node is the root mean square of the rigid slip. Its slip components are those at the centre. Its
         `wear_index_density` is Tγ/A.

@@ -262,7 +262,10 @@ class Problem:
         creepage: Array,
         **fields: Any,
     ) -> Self:
-        """Return the problem of a line contact under P [N/m] by Hertz's theory, from SI arrays of one shape."""
+        """Return the problem of a line contact under P [N/m] by Hertz's theory, from SI arrays of one shape.
+
+        `fields` are the other fields of a `Problem`; lateral creepage, spin and Poisson's ratio are zero by default.
+        """
         a = hertz.half_width(normal_force_per_width, relative_radius, effective_modulus)
         none = np.broadcast_to(0.0, creepage.shape)
         return cls(
@@ -489,6 +492,11 @@ class Problem:
         """Return the problem under another normal force [N], of the batch shape, with the patch by Hertz's theory.
 
         a, b and p0 of an ellipse grow with the cube root of the force. a and p0 of a line grow with its square root.
+
+        Raises
+        ------
+        CompositionError
+            If the patch consists of strips, whose pressure is given.
         """
         if self.strips is not None:
             raise CompositionError("with_normal_force: the pressure of strips is given; make them for another load")
@@ -501,7 +509,7 @@ class Problem:
         return self.replaced(normal_force=normal_force, a=scale * self.a, b=b, max_pressure=scale * self.max_pressure)
 
     def with_creepages(self, longitudinal: Array, lateral: Array, spin: Array) -> Self:
-        """Return the problem at other creepages, as SI arrays of the batch shape; strips lose their own."""
+        """Return the problem at other ξ [-], η [-] and φ [1/m], of the batch shape; strips lose their own."""
         creepages: dict[str, Any] = {"longitudinal_creepage": longitudinal, "lateral_creepage": lateral, "spin": spin}
         none: dict[str, Any] = dict.fromkeys(creepages)
         return self.replaced(**creepages, strips=self.strips and dataclasses.replace(self.strips, **none))

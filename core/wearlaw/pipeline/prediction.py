@@ -538,6 +538,11 @@ class Prediction:
             The distance rolled, such as Q(10, "km").
         body : str
             Its name in the rig, such as "disc_1" or "wheel". Without it the error names the bodies.
+
+        Raises
+        ------
+        InputError
+            If the rig has no such body, or the distances do not broadcast to the operating points.
         """
         self.problem.body(body)
         distance, mass = Unit("km").si(over, "over"), self._solution.mass_per_distance(body)

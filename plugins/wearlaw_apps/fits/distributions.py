@@ -88,6 +88,11 @@ def lognormal(median: QuantityLike | float, geometric_standard_deviation: float)
         Half of the values lie below it.
     geometric_standard_deviation : float
         A factor above 1. Two thirds of the values lie within it of the median.
+
+    Raises
+    ------
+    InputError
+        If the factor is not above 1, or a value is not a finite number.
     """
     name = "geometric_standard_deviation"
     factor = _value(geometric_standard_deviation, name)

@@ -248,6 +248,16 @@ class Uncertainty(Drawn):
         ----------
         confidence : float
             Share of the samples inside, between 0 and 1.
+
+        Returns
+        -------
+        low, high : Quantity
+            In the shape of the operating points.
+
+        Raises
+        ------
+        InputError
+            If the share is not between 0 and 1.
         """
         if not 0.0 < confidence < 1.0:
             raise InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {shown(confidence)}")

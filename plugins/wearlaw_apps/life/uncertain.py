@@ -186,6 +186,11 @@ class UncertainLife:
         ----------
         confidence : float
             Share of the lives inside the interval, between 0 and 1. A limit that too few lives reach is infinitely far.
+
+        Raises
+        ------
+        InputError
+            If the share is not between 0 and 1.
         """
         if not 0.0 < confidence < 1.0:
             raise wl.InputError(f"confidence: must lie between 0 and 1, such as 0.95; got {wl.shown(confidence)}")

@@ -137,6 +137,13 @@ class TwinDisc(wl.Rig):
             Whose surface speed that is, and stays at every creepage. By default "disc_1" for a rotational speed, and
             "mean" for a `rolling_speed`.
 
+        Raises
+        ------
+        InputError
+            If both speeds are given, or a rotational speed of a flat disc 1.
+        ConfigurationError
+            If a value lacks its unit or is out of bounds.
+
         Notes
         -----
         Lewis and Dwyer-Joyce, Proc. IMechE J 218(6) (2004) 467-478, read in a secondary transcription. It gives 400 rpm

@@ -273,7 +273,7 @@ class Wheelset(wl.Rig):
         return geometry(self._section, axes, rolls, touching, position, most, wl.scalar_si(self.nominal_radius, "m"))
 
     def on_rails(self, displacement: Array) -> NDArray[np.bool_]:
-        """Return whether both wheels touch their rails at lateral displacements [m], without yaw."""
+        """Return whether both wheels touch their rails at lateral displacements (positions,) [m], without yaw."""
         _, touching = searched(self._section, displacement, np.zeros_like(displacement))
         return ~np.asarray(np.isnan(touching.arc[..., 0]).any(axis=-1))
 
