@@ -53,10 +53,6 @@ Creepage: TypeAlias = Annotated[QuantityLike, Unit("", positive=False, limit=1.0
 """A creepage: a ratio or in percent, of magnitude at most 1."""
 
 
-UNKNOWN = (-np.inf, np.inf)
-"""The usual range of a condition that states none."""
-
-
 @dataclass(frozen=True)
 class Condition:
     """A condition that a rig takes, or that a contact model, a stage or a law declares.
@@ -110,7 +106,8 @@ class Condition:
         first, second = (condition.unit or Unit("") for condition in (self, other))
         if not alike(first.unit, second.unit):
             return False
-        usual = ((end * unit_in_si(unit.unit) for end in unit.usual or UNKNOWN) for unit in (first, second))
+        any_value = -np.inf, np.inf
+        usual = ((end * unit_in_si(unit.unit) for end in unit.usual or any_value) for unit in (first, second))
         (low, high), (least, most) = usual
         return low <= most and least <= high
 

@@ -590,12 +590,7 @@ def _si(
 ) -> dict[str, Array]:
     arrays = {name: VARIABLES[name].expected.si(value, name) for name, value in quantities.items()}
     arrays["friction_coefficient"] = coefficient(friction_coefficient, "friction_coefficient")
-    arrays["poisson_ratio"] = _poisson_ratio(poisson_ratio)
-    return broadcast(arrays)
-
-
-def _poisson_ratio(value: object) -> Array:
-    ratio = coefficient(value, "poisson_ratio", positive=False)
+    arrays["poisson_ratio"] = ratio = coefficient(poisson_ratio, "poisson_ratio", positive=False)
     if not ((ratio >= 0.0) & (ratio <= 0.5)).all():
-        raise InputError(f"poisson_ratio: must lie between 0 and 0.5, got {shown(value)}")
-    return ratio
+        raise InputError(f"poisson_ratio: must lie between 0 and 0.5, got {shown(poisson_ratio)}")
+    return broadcast(arrays)

@@ -60,9 +60,6 @@ ROUNDINGS = 32.0
 
 EPS = float(np.finfo(np.float64).eps)
 
-ALL = slice(None)
-"""All operating points."""
-
 Ramps: TypeAlias = Sequence[tuple[Any, Any]]
 """Thresholds and slopes of a law, as from `Law.ramps`."""
 
@@ -140,7 +137,7 @@ def integrate_slip(model: ContactModel, problem: Problem, solved_before: Contact
     if solved_before is None:
         return _by_block(solver, problem, of_block)
     part = problem if solved_before.rolling_speed.shape == problem.batch_shape else problem.flatten()
-    slip: SlipTotals = each(problem.unflatten, solver.checked(of_block, part, ALL))
+    slip: SlipTotals = each(problem.unflatten, solver.checked(of_block, part, slice(None)))
     return slip
 
 
@@ -252,12 +249,10 @@ def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlo
             sliding=sliding,
         )
 
-    return solver.by_block(problem, block, of_block, on_block, kept=None if fields is None else _without_force)
+    def without_forces(totals: Totals) -> Totals:  # which a model with fields knows in closed form
+        return totals if fields is None else totals._replace(forces=None)
 
-
-def _without_force(totals: Totals) -> Totals:
-    """Return the totals without the forces, which a model with fields knows in closed form."""
-    return totals._replace(forces=None)
+    return solver.by_block(problem, block, of_block, on_block, kept=without_forces)
 
 
 def _ramps(law: Law, p: Numbers) -> Ramps | None:
