@@ -171,21 +171,8 @@ def fit(
     G. A. F. Seber and C. J. Wild, Nonlinear Regression, Wiley 1989.
     """
     tests = tests_of(tests, columns)
-    if scatter not in ("relative", "absolute"):
-        raise FitError(f'scatter: must be "relative" or "absolute", got {shown(scatter)}')
-    if robust not in LOSSES:
-        raise FitError(f"robust: must be one of {', '.join(map(shown, LOSSES))}; got {shown(robust)}")
-    for name, count in {"starts": starts, "bootstrap": bootstrap, "seed": seed}.items():
-        if not isinstance(count, int) or count < 0:
-            raise FitError(f"{name}: must be a whole number, zero or positive, got {shown(count)}")
-    if not 0.0 < confidence < 1.0:
-        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shown(confidence)}")
-    if 0 < bootstrap < round(2.0 / (1.0 - confidence), 6):
-        raise FitError(f"bootstrap: must be 0 or at least 2/(1 - confidence), got {shown(bootstrap)}")
-    free = [free] if isinstance(free, str) else list(free)
     settings = {
-        "predict": predict,
-        "free": free,
+        "free": [free] if isinstance(free, str) else list(free),
         "friction_coefficient": friction_coefficient,
         "scatter": scatter,
         "robust": robust,
@@ -194,39 +181,56 @@ def fit(
         "seed": seed,
         "confidence": confidence,
     }
+    _check(settings, bootstrap)
     with steadily(), OneWarning() as unusual:
-        task = _Task.of(predict, tests, free, friction_coefficient, scatter, robust, bounds or {}, body)
-        settings["predict"] = task.predict
+        task = _Task.of(predict, tests, body, settings)
         unusual.clear()  # columns are seen by their medians
     remark(task.tests.unusual(task.predict))
     with steadily(), OneWarning() as unusual:
         best = task.solve(starts, seed)
-        replicates = None
-        if bootstrap:
-            counts = [observed.measured.size for observed in task.observations]
-            groups = np.repeat(np.arange(len(counts)), counts)
-            replicates = replicate(
-                task.model, best, task.errors(best).residuals[0], task.free.bounds, groups, bootstrap, seed, on_progress
-            )
-        result = _result(task, best, replicates, confidence, settings)
+        replicates = task.replicated(best, bootstrap, seed, on_progress) if bootstrap else None
+        result = _result(task, best, replicates, {"predict": task.predict, **settings})
         unusual.clear()  # the search visits parameters that nobody asked for
-        if (
-            FRICTION in result.parameters
-            and (friction := result.parameters[FRICTION].magnitude) > RATIOS["friction"].most
-        ):
+        friction = float(result.parameters[FRICTION].magnitude) if FRICTION in result.parameters else 0.0
+        if friction > (most := RATIOS["friction"].most):
             unusual[FRICTION] = (
-                f"the fit gives {friction:.4g}, usually at most {RATIOS['friction'].most:g}; are tractions in percent,"
-                " loads in the wrong unit, or columns swapped?"
+                f"the fit gives {friction:.4g}, usually at most {most:g}; are tractions in percent, loads in the wrong"
+                " unit, or columns swapped?"
             )
+    _warn(task, best, replicates, result)
+    return result
+
+
+def _check(settings: Mapping[str, Any], bootstrap: int) -> None:
+    """Raise an error for a setting of a fit that is wrong whatever the tests."""
+    for name, choices in {"scatter": ("relative", "absolute"), "robust": tuple(LOSSES)}.items():
+        if settings[name] not in choices:
+            raise FitError(f"{name}: must be one of {', '.join(map(shown, choices))}; got {shown(settings[name])}")
+    for name, count in {"starts": settings["starts"], "bootstrap": bootstrap, "seed": settings["seed"]}.items():
+        if not isinstance(count, int) or count < 0:
+            raise FitError(f"{name}: must be a whole number, zero or positive, got {shown(count)}")
+    confidence = settings["confidence"]
+    if not 0.0 < confidence < 1.0:
+        raise FitError(f"confidence: must be a number between 0 and 1, such as 0.95, got {shown(confidence)}")
+    if 0 < bootstrap < round(2.0 / (1.0 - confidence), 6):
+        raise FitError(f"bootstrap: must be 0 or at least 2/(1 - confidence), got {shown(bootstrap)}")
+
+
+def _warn(task: _Task, best: Solutions, replicates: Replicates | None, result: Fit) -> None:
+    """Warn the caller of `fit` of contacts beyond the elastic limit, of what the fit lacks, and of laws it keeps."""
+    predict, free = task.predict, task.free
     problem = result.observations[0].problem
-    overload = overload_of(problem, integrate_forces(result.predict.staged_model, problem).tangential)
-    if overload:
+    if overload := overload_of(problem, integrate_forces(result.predict.staged_model, problem).tangential):
         overload.warn()
     poor = (test.warning for test in result.lack_of_fit if test.poor)
     if texts := [*poor, *_outliers(result), *_at_bounds(task, best), *_unreliable(task, replicates)]:
         warn(with_problems(texts[0], texts[1:]), FitWarning)
-    _warn_of_kept(task)
-    return result
+    freed = {(place.index, place.field) for place in free.places.values() if place.kind == "law"}
+    for observed in task.observations:
+        if observed.law is not None:
+            law, problem = predict.laws[observed.law], observed.problem
+            if any((observed.law, name) not in freed for name in law.numbers):
+                warn_of_parameters(law, predict.contact_model, predict.scale, problem.geometry, problem.bodies)
 
 
 @dataclass
@@ -235,7 +239,6 @@ class _Task:
 
     predict: Pipeline[...]
     tests: WearTests
-    scatter: Scatter
     free: FreeParameters
     observations: list[Observations]
     robust: str
@@ -248,16 +251,13 @@ class _Task:
         cls,
         predict: Pipeline[...],
         tests: WearTests,
-        free: Sequence[str],
-        friction: float | None,
-        scatter: Literal["relative", "absolute"],
-        robust: str,
-        bounds: Mapping[str, Any],
         body: str | None,
+        settings: Mapping[str, Any],
     ) -> _Task:
         """Return the task for the arguments of `fit`."""
         if not isinstance(predict, Pipeline):
             raise FitError(f"predict: give a rig with a contact model, and laws or none, not {shown(predict)}")
+        friction, free = settings["friction_coefficient"], settings["free"]
         if friction is not None:
             number = coefficient(friction, FRICTION)
             if number.ndim:
@@ -267,18 +267,21 @@ class _Task:
         first = _first_friction(tests, friction) if FRICTION in free else friction
         tests = tests.measuring(named_outcomes(predict.laws))
         tests, predict, conversions = in_outcomes(tests, predict, first, body)
-        parameters = FreeParameters.of(predict, free, first, bounds)
-        observations = observe(predict, tests, parameters, first, scatter)
-        stated = any(observed.scatter == "uncertainty" for observed in observations)
+        parameters = FreeParameters.of(predict, free, first, settings["bounds"] or {})
+        observations = observe(predict, tests, parameters, first, settings["scatter"])
         count = sum(observed.measured.size for observed in observations)
         if count <= len(parameters.names):
             raise FitError(
                 f"tests: {count} measurement{'s' if count > 1 else ''} cannot tell {len(parameters.names)} parameters"
                 f" ({', '.join(parameters.names)}) and their scatter; give more tests, or free fewer parameters"
             )
-        kind: Scatter = "uncertainty" if stated else scatter
         ones = np.ones(count), np.ones(count)
-        return cls(predict, tests, kind, parameters, observations, robust, *ones, conversions)
+        return cls(predict, tests, parameters, observations, settings["robust"], *ones, conversions)
+
+    @property
+    def scatter(self) -> Scatter:
+        """Kind of the residuals: by stated uncertainties if any are."""
+        return max((observed.scatter for observed in self.observations), key="uncertainty".__eq__)
 
     def parts(self, values: Array) -> list[Array]:
         """Return values of all measurements, (n,), by their kind, as views."""
@@ -358,6 +361,14 @@ class _Task:
         ]
         return np.repeat(MARGIN * np.maximum(scales, LEAST_SCATTER), [part.size for part in every])
 
+    def replicated(
+        self, best: Solutions, count: int, seed: int, on_progress: Callable[[int], None] | None
+    ) -> Replicates:
+        """Return bootstrap replicates, drawn within each kind of measurement."""
+        sizes = [observed.measured.size for observed in self.observations]
+        kinds, errors = np.repeat(np.arange(len(sizes)), sizes), self.errors(best).residuals[0]
+        return replicate(self.model, best, errors, self.free.bounds, kinds, count, seed, on_progress)
+
     def errors(self, best: Solutions) -> Solutions:
         """Return the fit with residuals that scatter as the estimate does: of a robust fit, s ψ(r/s)/mean ψ'.
 
@@ -404,10 +415,9 @@ def _first_friction(tests: WearTests, friction: float | None) -> float:
     return float(np.nanmax(traction))
 
 
-def _result(
-    task: _Task, best: Solutions, replicates: Replicates | None, confidence: float, settings: Mapping[str, Any]
-) -> Fit:
+def _result(task: _Task, best: Solutions, replicates: Replicates | None, settings: Mapping[str, Any]) -> Fit:
     """Return the result of a fit."""
+    confidence: float = settings["confidence"]
     free, values = task.free, task.free.columns(best.theta)
     observations = tuple(_with_friction(observed, values) for observed in task.observations)
     errors = task.errors(best)
@@ -576,15 +586,3 @@ def _unreliable(task: _Task, replicates: Replicates | None) -> Iterator[str]:
         yield f"some bootstrap replicates do not determine {', '.join(lost)}; their intervals may be too narrow"
     if replicates.converged < USABLE:
         yield f"only {replicates.converged:.0%} of the bootstrap replicates have converged; the intervals are rough"
-
-
-def _warn_of_kept(task: _Task) -> None:
-    """Warn the caller of `fit` if a law keeps parameters that were fitted for another contact."""
-    predict = task.predict
-    free = {(place.index, place.field) for place in task.free.places.values() if place.kind == "law"}
-    for observed in task.observations:
-        if observed.law is None:
-            continue
-        law, problem = predict.laws[observed.law], observed.problem
-        if any((observed.law, name) not in free for name in law.numbers):
-            warn_of_parameters(law, predict.contact_model, predict.scale, problem.geometry, problem.bodies)
