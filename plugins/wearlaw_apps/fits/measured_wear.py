@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,14 +26,6 @@ BOTH = "both"
 
 APART = 1.25
 """Ratio of two distances of one test from which they contradict each other. Creepage is at most a few percent."""
-
-
-class Measured(NamedTuple):
-    """Mass that bodies lost per distance rolled, its standard uncertainty, each (tests,), and its origin in words."""
-
-    mass: Array
-    uncertainty: Array
-    words: list[str]
 
 
 def in_outcomes(
@@ -122,9 +114,9 @@ class _Weighing:
             return self.tests, []
         factor = self._of_outcome(outcome, terms[0][1])
         count = sum(len(bodies) if self.weighed == BOTH and not suffix else 1 for suffix, bodies in terms)
-        every = [self._measured(suffix, bodies) for suffix, bodies in terms]
-        value = factor / count * np.sum([term.mass for term in every], axis=0)
-        error = factor / count * np.sqrt(np.sum([term.uncertainty**2 for term in every], axis=0))
+        masses, uncertainties, words = zip(*(self._measured(*term) for term in terms), strict=True)
+        value = factor / count * np.sum(masses, axis=0)
+        error = factor / count * np.sqrt(np.sum(np.square(uncertainties), axis=0))
         measured = self.tests.measured(name, outcome.unit)
         self._refuse(~np.isnan(measured) & ~np.isnan(value), f"their wear stands in {name} and in another column")
         tests = _with(self.tests, name, outcome.unit, np.where(np.isnan(measured), value, measured))
@@ -134,7 +126,7 @@ class _Weighing:
             tests = _with(tests, stated, outcome.unit, np.where(np.isnan(measured), error, before))
         area = self.problem.patch_area
         ends = " to ".join(f"{end:.4g}" for end in dict.fromkeys((1e6 * area.min(), 1e6 * area.max())))
-        return tests, [f"{words} and the patch's area, {ends} mm²" for term in every for words in term.words]
+        return tests, [f"{text} and the patch's area, {ends} mm²" for texts in words for text in texts]
 
     def of_weighed(self, law: Law) -> Law:
         """Return a law for the weighed body if its material differs from that of the first one."""
@@ -167,23 +159,23 @@ class _Weighing:
             raise DataError(f'body="{BOTH}": only {each[0]} has columns of its own')
         yield from ((f"_{name}", (name,)) for name in chosen if name in each)
 
-    def _measured(self, suffix: str, bodies: tuple[str, ...]) -> Measured:
-        """Return the mass per distance rolled from all ways with an ending."""
+    def _measured(self, suffix: str, bodies: tuple[str, ...]) -> tuple[Array, Array, list[str]]:
+        """Return the mass lost per distance rolled by all ways with an ending, its uncertainty, and its origin."""
         count = len(self.tests)
-        measured = Measured(np.full(count, np.nan), np.full(count, np.nan), [])
+        mass, uncertainty, origin = np.full(count, np.nan), np.full(count, np.nan), list[str]()
         for way, variable in WAYS.items():
             values = self.tests.measured(f"{way}{suffix}", variable.unit)
             there = ~np.isnan(values)
             if not there.any():
                 continue
-            self._refuse(there & ~np.isnan(measured.mass), f"their wear stands in {way} and in another column")
+            self._refuse(there & ~np.isnan(mass), f"their wear stands in {way} and in another column")
             factor, words = self._per_distance(way, bodies, there)
-            measured.mass[there] = (values * factor)[there]
-            measured.uncertainty[there] = (self._uncertainty(way, suffix) * factor)[there]
+            mass[there] = (values * factor)[there]
+            uncertainty[there] = (self._uncertainty(way, suffix) * factor)[there]
             whose = "both bodies, half to each" if len(bodies) > 1 else "".join(bodies)
             tests = "" if there.all() else f" in {there.sum()} of {count} tests"
-            measured.words.append(f"{way}{suffix}{tests}, of {whose}{words}")
-        return measured
+            origin.append(f"{way}{suffix}{tests}, of {whose}{words}")
+        return mass, uncertainty, origin
 
     def _uncertainty(self, way: str, suffix: str) -> Array:
         """Return the standard uncertainty of a measurement in SI, NaN where it is not known.
@@ -236,8 +228,8 @@ class _Weighing:
             apart = there & ((ratio > APART) | (ratio < 1.0 / APART))
             if apart.any():
                 warn(
-                    f"{name}: is {ratio[apart][0]:.3g} times the distance by {how[0]} in {self._names(apart)};"
-                    f" {how[0]} counts. Is its unit right, and the rig?",
+                    f"{name}: is {ratio[apart][0]:.3g} times the distance by {how[0]} in"
+                    f" {test_names(self.tests, apart)}; {how[0]} counts. Is its unit right, and the rig?",
                     UnusualWarning,
                 )
             if (there & np.isnan(distance) & ~np.isnan(amount)).any():
@@ -289,10 +281,7 @@ class _Weighing:
 
     def _refuse(self, wrong: NDArray[np.bool_], why: str) -> None:
         if wrong.any():
-            raise DataError(f"the tests: in {self._names(wrong)}, {why}; keep one, in columns={{...}}")
-
-    def _names(self, which: NDArray[np.bool_]) -> str:
-        return test_names(self.tests, which)
+            raise DataError(f"the tests: in {test_names(self.tests, wrong)}, {why}; keep one, in columns={{...}}")
 
 
 def _with(tests: WearTests, name: str, unit: str, values: Array) -> WearTests:

@@ -68,7 +68,7 @@ BY_UNIT = {"creepage": ("%",), "normal_force": ("kN", "N"), "mass_loss": ("mg", 
 
 
 def read_tests(
-    source: Source,
+    source: Source | io.StringIO,
     *,
     columns: Columns = None,
     outcomes: Collection[str] = (),
@@ -104,13 +104,39 @@ def read_tests(
     UnknownModelError
         If several plugins ship tests of that name.
     """
-    outcomes = names_in(outcomes, "outcomes")
-    name = str(source) if isinstance(source, str | os.PathLike) else "a table"
     if isinstance(source, str | os.PathLike) and not is_spreadsheet(source):
-        table = open_table(_text_file(text_of_tests(source), name), sep=sep, decimal=decimal, sheet=sheet)
-    else:
-        table = open_table(source, sep=sep, decimal=decimal, sheet=sheet)
-    return _checked(table, name, outcomes, columns, balance_resolution)
+        source = _text_file(text_of_tests(source), str(source))
+    of_file = str(source) if isinstance(source, str | os.PathLike) else "a table"
+    name = source.name if isinstance(source, io.StringIO) else of_file
+    table = open_table(source, sep=sep, decimal=decimal, sheet=sheet)
+    table.label = f"the tests {shown(Path(name))}"
+    conditions = {name for rig in loader.installed("rig").values() for name in rig.conditions()} | CONDITIONS
+    measured = {*names_in(outcomes, "outcomes"), *(law.outcome.name for law in loader.installed("law").values())}
+    names = {*COLUMNS, *TEXTS, *conditions, *measured}
+    table.columns, wrong = _chosen(table, names, columns)
+    wrong += _unknown(table, {*conditions, *measured}) if columns is None else []
+    if wrong:
+        raise DataError(f"{table.label} are wrong in:", wrong)
+    raw = _values_of(table)
+    count = len(next(iter(raw.values()), ()))
+    if not count:
+        raise DataError(f"{table.label}: no test follows the header")
+    if balance_resolution is not None:
+        step = parse(balance_resolution)
+        raw[BALANCE.name] = Q(np.full(count, float(step.magnitude)), str(step.units))
+    texts = {name: table.texts(name) for name in TEXTS if name in table.columns}
+    stated = next(
+        (comment.partition(":")[2].strip() for comment in table.comments if comment.casefold().startswith("source:")),
+        "",
+    )
+    return WearTests.checked(
+        raw,
+        texts.get("label", [""] * count),
+        stated or Path(name).name,
+        measured,
+        table.label,
+        lambda column, row: table.where(row, column),
+    )
 
 
 def tests_of(tests: WearTests | Source, columns: Columns) -> WearTests:
@@ -144,45 +170,20 @@ def text_of_tests(path_or_name: str | os.PathLike[str]) -> str:
         raise DataError(f"cannot read the tests {shown(path)}: {error}") from None
 
 
-def parse_tests(
-    text: str,
-    name: str,
-    outcomes: Collection[str] = (),
-    sep: str | None = None,
-    decimal: str = ".",
-    columns: Columns = None,
-) -> WearTests:
-    """Return the tests of a CSV text; its `name` stands in errors, and for the source of tests that state none."""
-    return _checked(open_table(_text_file(text, name), sep=sep, decimal=decimal), name, outcomes, columns)
-
-
 def _text_file(text: str, name: str) -> io.StringIO:
     file = io.StringIO(text)
     file.name = name
     return file
 
 
-def _checked(
-    table: Table,
-    name: str,
-    outcomes: Collection[str],
-    columns_of: Columns = None,
-    balance_resolution: QuantityLike | None = None,
-) -> WearTests:
-    """Return the tests of a table."""
-    table.label = f"the tests {shown(Path(name))}"
-    conditions = {name for rig in loader.installed("rig").values() for name in rig.conditions()} | CONDITIONS
-    measured = {*outcomes, *(law.outcome.name for law in loader.installed("law").values())}
-    names = {*COLUMNS, *TEXTS, *conditions, *measured}
-    table.columns, wrong = _chosen(table, names, columns_of)
-    wrong += _unknown(table, {*conditions, *measured}) if columns_of is None else []
-    if wrong:
-        raise DataError(f"{table.label} are wrong in:", wrong)
-    columns: dict[str, Values] = {}
+def _values_of(table: Table) -> dict[str, Values]:
+    """Return the columns of numbers with their units, or raise an error that names all faults."""
+    raw: dict[str, Values] = {}
+    wrong: list[str] = []
     for column in table.columns:
         try:
             if column not in TEXTS:
-                columns[column] = table[column]
+                raw[column] = table[column]
         except DataError as error:
             wrong += [problem for problem in error.problems if problem not in wrong]
         except UnitError as error:
@@ -194,25 +195,7 @@ def _checked(
             )
     if wrong:
         raise DataError(f"{table.label} are wrong in:", wrong)
-    if balance_resolution is not None and columns:
-        step = parse(balance_resolution)
-        columns[BALANCE.name] = Q(np.full(len(next(iter(columns.values()))), float(step.magnitude)), str(step.units))
-    texts = {name: table.texts(name) for name in TEXTS if name in table.columns}
-    count = len(next(iter(columns.values()), ()))
-    if not count:
-        raise DataError(f"{table.label}: no test follows the header")
-    source = next(
-        (comment.partition(":")[2].strip() for comment in table.comments if comment.casefold().startswith("source:")),
-        "",
-    )
-    return WearTests.checked(
-        columns,
-        texts.get("label", [""] * count),
-        source or Path(name).name,
-        measured,
-        table.label,
-        lambda column, row: table.where(row, column),
-    )
+    return raw
 
 
 def _chosen(table: Table, names: Collection[str], columns: Columns) -> tuple[dict[str, Column], list[str]]:
@@ -287,7 +270,7 @@ def explain_tests(name: str, text: str) -> Iterator[str]:
     for line in text.splitlines():
         if line.startswith("#"):
             yield line.removeprefix("#").strip()
-    tests = parse_tests(text, name)
+    tests = read_tests(_text_file(text, name))
     header, *_ = (line for line in text.splitlines() if not line.startswith("#"))
     yield from ("", f"tests: {len(tests)}", f"columns: {header}")
     yield from ("", f'In a case: measured = {{label = "Tests", tests = "{name}"}}. In Python: wl.read_tests("{name}").')

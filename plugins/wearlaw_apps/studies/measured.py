@@ -18,7 +18,7 @@ from wearlaw.text_files import beside
 from wearlaw.units.quantities import from_si, in_unit
 from wearlaw.units.variables import UNITS
 from wearlaw_apps.fits.measured_wear import in_outcomes
-from wearlaw_apps.fits.read_tests import parse_tests, text_of_tests
+from wearlaw_apps.fits.read_tests import read_tests, text_of_tests
 from wearlaw_apps.fits.wear_tests import COLUMNS, LOADS, WearTests
 
 OF_TESTS = ("half_width", "max_pressure", "normal_force", "normal_force_per_width", "creepage", "friction_coefficient")
@@ -50,7 +50,7 @@ class MeasuredTests(Configuration):
     @model_validator(mode="after")
     def _readable(self) -> MeasuredTests:
         """Read the tests with the case, so that errors appear before it runs."""
-        _ = self.data
+        _ = self.text, self.data
         return self
 
     @cached_property
@@ -61,7 +61,7 @@ class MeasuredTests(Configuration):
     @cached_property
     def data(self) -> WearTests:
         """The tests."""
-        return parse_tests(self.text, self.tests, (), self.sep, self.decimal, self.columns)
+        return read_tests(self.tests, sep=self.sep, decimal=self.decimal, columns=self.columns)
 
     def on(self, rig: Rig) -> WearTests:
         """Return the tests with wear in other measures, such as a mass loss, as wear rates on a rig."""
