@@ -31,8 +31,8 @@ BLOCK = 64
 OUTWARDS = 0.05e-3
 """Longest step outwards on a flange [m]."""
 
-ROUGH = 1e-3
-"""Greatest imbalance of a result."""
+ROUGH, PASSING = 1e-3, 1e-2
+"""Greatest imbalance of a result, and of a position on the way to one."""
 
 KEPT = 20_000_000
 """Influences that stay between the loads without and with creep forces; beyond these 160 MB they are found again."""
@@ -138,13 +138,13 @@ class Loads:
         """
         displacement = there.task.displacement
         rest = displacement - self.task.displacement
-        loads, moves = self.solved(forces, np.where(rest == 0.0, BALANCED, ROUGH)), rest != 0.0
+        loads, moves = self.solved(forces, np.where(rest == 0.0, BALANCED, PASSING)), rest != 0.0
         while True:
-            points = np.flatnonzero((rest != 0.0) & (loads.left[:, :3].max(axis=-1) <= ROUGH))
+            points = np.flatnonzero((rest != 0.0) & (loads.left[:, :3].max(axis=-1) <= PASSING))
             if not points.size:
                 break
             rest[points] -= np.clip(rest[points], -OUTWARDS, OUTWARDS)
-            goal = np.where(rest == 0.0, BALANCED, ROUGH)[points]
+            goal = np.where(rest == 0.0, BALANCED, PASSING)[points]
             loads = loads.moved(forces, points, (displacement - rest)[points], goal)
         lost = np.flatnonzero(moves & (loads.left[:, :3].max(axis=-1) > ROUGH))
         loads = replace(loads, task=there.task)
@@ -196,7 +196,8 @@ class Loads:
             parts.append([array[last[of] == number] for array in each[2:]])
         keys, ratio, sine = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
         order = np.argsort(keys)
-        return Creeping(np.arange(last.size), self.rotation, keys[order], ratio[order], sine[order])
+        rotation = self.rotation / self._gathered("rolling")
+        return Creeping(np.arange(last.size), rotation, keys[order], ratio[order], sine[order])
 
     def _kept(self, stands: list[Stand]) -> Loads:
         """Return the loads of stands as results keep them: the last ones, which need no influences any more."""

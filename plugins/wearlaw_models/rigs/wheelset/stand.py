@@ -132,7 +132,7 @@ class Creeping(NamedTuple):
     Attributes
     ----------
     points, rotation : ndarray, (positions,)
-        Positions of the whole task in their order, and their speeds of rotation [rad/s].
+        Positions of the whole task in their order, and their speeds of rotation over `Stand.rolling` [-].
     keys : ndarray, (rows,)
         Twenty times the position, ten more on the right, and the arc length of the rail [m].
     ratio, sine : ndarray, (rows,)
@@ -146,7 +146,7 @@ class Creeping(NamedTuple):
     sine: Array
 
     def of(self, points: NDArray[np.intp], wheel: NDArray[np.intp], arc: Array) -> tuple[Array, Array, Array]:
-        """Return speeds of rotation of positions, and ratio and sine of the rows nearest to other rows of theirs."""
+        """Return rotation of positions, and ratio and sine of the rows nearest to other rows of theirs."""
         keys = 20.0 * points[wheel // 2] + 10.0 * (wheel % 2) + arc
         after = np.clip(np.searchsorted(self.keys, keys), 1, self.keys.size - 1)
         nearest = np.where(keys - self.keys[after - 1] < self.keys[after] - keys, after - 1, after)
@@ -244,14 +244,10 @@ class Stand:
             side * task.lateral_velocity[point], side * task.turn_rate[point], side * turn[point], side,
             section.roller,
         )  # fmt: skip
-        if before is not None:
-            pass
-        elif task.rotation is not None:
+        if task.rotation is not None:
             stand.rotation = task.rotation.copy()
         else:
-            rolls = laid.place.radius / (1.0 - section.roller * laid.place.rail_z)
-            mean = np.bincount(point, force * rolls, count) / np.bincount(point, force, count)
-            stand.rotation = task.speed / mean
+            stand.rotation = stand.rolling * (1.0 if before is None else stand.rotation)
         stand.patches = stand._found()
         stand._sum(None, stand.patches)
         return stand
@@ -261,7 +257,15 @@ class Stand:
         """Return what rows that are laid anew take over."""
         wheel = self.rows.wheel
         keys = 20.0 * self.points[wheel // 2] + 10.0 * (wheel % 2) + self.rows.place.rail_arc
-        return Creeping(self.points, self.rotation, keys, self.ratio, self.sine)
+        return Creeping(self.points, self.rotation / self.rolling, keys, self.ratio, self.sine)
+
+    @property
+    def rolling(self) -> Array:
+        """Speed of rotation with which the mean of the rolling radii by force rolls [rad/s]."""
+        point, force, count = self.rows.wheel // 2, self._row_force(), self.roll.size
+        rolls = self.rows.place.radius / (1.0 - self.section.roller * self.rows.place.rail_z)
+        mean = np.bincount(point, force * rolls, count) / np.bincount(point, force, count)
+        return np.asarray(self.task.speed / mean)
 
     def copy(self) -> Stand:
         """Return a copy whose loads change on their own."""
