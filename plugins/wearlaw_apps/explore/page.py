@@ -183,7 +183,7 @@ class Page:
         laws = pn.Column(pn.pane.HTML("Wear laws"), self.laws)
         rig = pn.Card(*self.fields.values(), title="Rig", collapsed=True, visible=bool(self.fields), **STRETCHED)
         controls = [*self.sliders.values(), rig, self.model, laws, self.patch, self.numbers]
-        left = pn.Column(*controls, styles={**WIDE, "max-width": "420px"})
+        left = pn.Column(*controls, styles={**WIDE, "max-width": "420px", "padding-top": "10px"})
         right = pn.Column(self.notes, self.figures, self.python, styles={**WIDE, "flex": "4 1 600px"})
         return pn.FlexBox(left, right, flex_wrap="wrap", **STRETCHED)
 
@@ -260,7 +260,7 @@ class Page:
                 drawn = plotly_figure(replace(figure, panels=(replace(panel, title=panel.title or figure.title),)))
                 listed = len(panel.curves) > 1
                 margin = {"l": 60, "r": 10, "t": 30, "b": 90 if listed else 50}
-                look = {"height": 280, "margin": margin, "showlegend": listed, "template": "none"}
+                look = {"height": 280, "margin": margin, "showlegend": listed, "template": "none", "font": {"size": 10}}
                 look |= {"paper_bgcolor": "rgba(0,0,0,0)", "plot_bgcolor": "rgba(0,0,0,0)"}
                 below = {"orientation": "h", "yref": "container", "y": 0, "yanchor": "bottom"}
                 self.panes[name].object = {**drawn, "layout": {**drawn["layout"], **look, "legend": below}}

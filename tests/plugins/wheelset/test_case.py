@@ -92,7 +92,7 @@ def test_a_study_of_a_wheelset_reports_contact_points_forces_and_wear(study: wl.
         outwards = np.asarray(wheel.x)[np.nanargmax(np.abs(wheel.x))]
         assert np.sign(outwards) == {"left wheel": -1.0, "right wheel": 1.0}[panel.title]
         assert abs(deepest) < 717.5 < abs(outwards)
-    table = section.tables["patches_straight"]
+    table = section.tables["patches_of_straight"]
     assert [*table["side"]] == ["left", "right"]
     load = table["normal force [kN]"] * np.cos(np.radians(table["contact angle [deg]"]))
     load += table["lateral force [kN]"] * np.sin(np.radians(table["contact angle [deg]"]))
