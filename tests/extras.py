@@ -1,6 +1,6 @@
 """What each extra is for, run where nothing but that extra may be installed: `python tests/extras.py fits`.
 
-`nox -s extras` runs it where that is so, and tests/test_extras.py where other packages are hidden. It imports neither
+`nox -s extras` runs it where that is so, and tests/test_distribution.py where others are hidden. It imports neither
 pytest nor the other tests.
 """
 

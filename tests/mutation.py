@@ -67,7 +67,7 @@ TESTS = {
     " plugins/fastsim/test_given_strips.py core/test_several_patches.py core/test_outcomes.py"
     " plugins/studies/test_materials.py core/test_models.py core/test_blame.py",
     "wearlaw_models.laws.archard.coefficients": "plugins/archard/test_wear_coefficients.py",
-    "wearlaw.units.quantities": "core/test_units.py core/test_quantities.py core/test_configuration.py",
+    "wearlaw.units.quantities": "core/test_units.py core/test_configuration.py",
 }
 """The test files of each package or module; a plugin must pass the conformance kit too, and each mutant the oracle."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypedDict, assert_type
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, TypedDict, assert_type
 
 import numpy as np
 
@@ -86,18 +86,6 @@ rolled = Roller() | wl.contact_model("exact") | wl.wear_law("kth")
 assert_type(rolled(mass="20 kg", creepage="1 %"), wl.Prediction)
 
 
-class Chosen(Roller):
-    """A rig with a field that chooses the shape of its patch."""
-
-    name: ClassVar[str] = "chosen"
-    crowned: bool = False
-
-    @property
-    def patch_geometry(self) -> wl.Geometry:
-        """The shape of the patch."""
-        return "ellipse" if self.crowned else "line"
-
-
 class Patch(wl.WearLaw):
     """A law of the whole patch."""
 
@@ -134,31 +122,6 @@ class Half(wl.WearLaw):
         return 0.5 * self.inner.rate(contact, self.inner.numbers)
 
 
-class Same(wl.ContactModel):
-    """A contact model around another one."""
-
-    name: ClassVar[str] = "same"
-    source: ClassVar[str] = "made up"
-
-    inner: wl.ContactModelField
-
-    @property
-    def scale(self) -> Literal["patch", "cells"]:
-        return "patch" if self.inner.scale == "patch" else "cells"
-
-    def solve_line(self, problem: wl.Problem) -> wl.Contact:
-        return self.inner.solve_line(problem)
-
-
-class Forces(wl.CreepForceModel):
-    """A model of forces."""
-
-    scale = "patch"
-
-    def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
-        return wl.contact_model("polach").creep_forces(problem)
-
-
 class RailSteel(wl.Material):
     """A material with a property of its own; text for its quantities is accepted as the signature says."""
 
@@ -183,29 +146,6 @@ assert_type(contact(normal_force="7 kN", creepage="1 %", friction_coefficient=0.
 assert_type(wl.material("steel", density="7800 kg/m^3"), wl.Material)
 assert_type(wl.wear_coefficient(7e-3, "k_of_3h", to="k"), float)
 assert_type(wl.wear_coefficient("5 ug/J", "mass_per_energy", to="volume_per_energy", density="7 g/cm^3"), wl.Quantity)
-
-
-class Lubricated(wl.Stage):
-    """A stage of one's own that changes the problem."""
-
-    name: ClassVar[str] = "lubricated"
-    source: ClassVar[str] = "made up"
-
-    factor: float = 0.5
-
-    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
-        assert_type(forces(problem), wl.CreepForces)
-        return problem.replaced(friction_coefficient=self.factor * problem.friction_coefficient)
-
-
-class Consistent(wl.Stage):
-    """A stage of one's own that changes the solved contact."""
-
-    name: ClassVar[str] = "consistent"
-    source: ClassVar[str] = "made up"
-
-    def solve(self, problem: wl.Problem, inner: wl.Solve) -> wl.Contact:
-        return inner(problem).scaled_to_wear_index()
 
 
 class Fatigue(wl.Law):
@@ -239,29 +179,12 @@ class Flash(Fatigue):
         return contact.wear_index * wl.scalar_si(material.hardness, "Pa") * contact.half_width
 
 
-class Pressed(wl.Rig):
-    """A rig of one's own with a material by name in files."""
-
-    name: ClassVar[str] = "pressed"
-    source: ClassVar[str] = "made up"
-    example: ClassVar[Mapping[str, Any]] = {"force": "2 kN", "creepage": "1 %"}
-
-    material: wl.MaterialField
-
-    def problem(self, *, force: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.Problem:
-        return wl.TwinDisc.suros(material=self.material).problem(
-            normal_force=force, creepage=creepage, friction_coefficient=0.4
-        )
-
-
-pressed = Pressed(material=hard)
-staged = pressed | wl.contact_model("exact") | Lubricated(factor=0.4) | Consistent() | wl.patch_mean()
+staged = Roller() | wl.contact_model("exact") | wl.stage("lubricated", factor=0.5) | wl.patch_mean()
 several = staged | wl.wear_law("usfd") | Fatigue(threshold=Q(15, "N"), body="rail") | wl.law("flash", threshold="1 N")
 assert_type(several.stages, tuple[wl.Stage, ...])
 assert_type(several.laws, tuple[wl.Law, ...])
-assert_type(wl.stage("lubricated", factor=0.5), wl.Stage)
 assert_type(wl.law("fatigue", body="rail"), wl.Law)
-predicted = several(force="2 kN", creepage="1 %")
+predicted = several(mass="20 kg", creepage="1 %")
 assert_type(predicted, wl.Prediction)
 assert_type(predicted["rcf_damage"], wl.Quantity)
 assert_type(predicted.outcome("rcf_damage", "rail"), wl.Quantity)
@@ -273,40 +196,10 @@ assert_type(predicted.contact | wl.wear_law("usfd"), LocalOutcome)
 assert_type((predicted.contact | Fatigue(threshold=Q(15, "N"))).value, wl.Quantity)
 
 
-@wl.hookimpl
-def wearlaw_models() -> list[type[wl.Stage | wl.Law]]:
-    """Return classes of several kinds."""
-    return [Lubricated, Consistent, Fatigue, Flash, Patch, Half]
-
-
 @wl.hookimpl(specname="wearlaw_models")
 def rigs() -> Iterable[type[wl.Rig]]:
     """Return rigs."""
     return [Roller]
-
-
-@wl.hookimpl
-def wearlaw_commands() -> list[wl.Command]:
-    """Return a command."""
-    return [wl.Command("roll", "rolling.command:roll", "Roll.")]
-
-
-@wl.hookimpl
-def wearlaw_resources() -> dict[str, dict[str, str]]:
-    """Return a case."""
-    return {"case": {"rolling": "title = 'Rolling'"}}
-
-
-@wl.hookimpl
-def wearlaw_named() -> dict[str, wl.Material | type[wl.Material]]:
-    """Return a material and a class."""
-    return {"hard": hard, "RailSteel": RailSteel}
-
-
-@wl.hookimpl(specname="wearlaw_named")
-def sets() -> Mapping[str, wl.WearLaw]:
-    """Return a parameter set."""
-    return {"lab": Patch()}
 
 
 @wl.hookimpl(optionalhook=True)
