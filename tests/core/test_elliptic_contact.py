@@ -52,40 +52,6 @@ def on_strips() -> wl.Contact:
     )
 
 
-def test_pressure_is_that_of_hertz_at_the_nodes() -> None:
-    contact = on_strips()
-    p0 = 1.5 * np.array([5e4, 1e5]) / (np.pi * 6e-3 * 4e-3)
-    inside = 1.0 - (contact.x / 6e-3) ** 2 - (contact.y / 4e-3) ** 2
-    assert contact.pressure == pytest.approx(p0[:, None, None] * np.sqrt(inside), rel=16 * EPS)
-
-
-def test_magnitudes_are_those_of_the_vectors_and_their_product_is_a_scalar_product() -> None:
-    contact = on_strips()
-    assert contact.traction == pytest.approx(np.hypot(contact.traction_x, contact.traction_y), rel=2 * EPS)
-    assert contact.slip == pytest.approx(np.hypot(contact.slip_x, contact.slip_y), rel=2 * EPS)
-    product = contact.traction_x * contact.slip_x + contact.traction_y * contact.slip_y
-    assert contact.wear_index_density == pytest.approx(product, rel=2 * EPS)
-    assert (contact.wear_index_density < contact.traction * contact.slip).any()
-    assert contact.slip_speed == pytest.approx(20.0 * contact.slip, rel=2 * EPS)
-
-
-def test_totals_are_forces_and_what_the_creepages_feed_in() -> None:
-    contact = on_strips()
-    assert contact.force_x[0] == 3000.0
-    assert contact.force_y[1] == -4000.0
-    assert contact.moment_z[0] == 2.0
-    assert contact.tangential_force.tolist() == [5e3, 5e3]
-    assert contact.wear_index == pytest.approx([0.002 * 3e3 + 0.001 * 4e3 + 0.5 * 2.0] * 2, rel=4 * EPS)
-    assert contact.wear_index_without_spin == pytest.approx([0.002 * 3e3 + 0.001 * 4e3] * 2, rel=4 * EPS)
-
-
-def test_integrals_along_strips_add_up_to_the_sum_over_nodes() -> None:
-    contact = on_strips()
-    across = contact.over_strip(contact.wear_index_density)
-    assert across.shape == (2, 3)
-    assert (across * contact.strip_width).sum(-1) == pytest.approx(contact.cell_wear_index, rel=16 * EPS)
-
-
 def test_scaled_slip_dissipates_what_is_fed_in_and_keeps_its_directions() -> None:
     contact = on_strips()
     scaled = contact.scaled_to_wear_index()
@@ -162,26 +128,3 @@ def test_patch_means_of_strips_are_those_of_a_model_that_knows_the_forces_alone(
     bound = np.where(empty == 0.0, np.inf, contact.traction_bound)
     means = contact.replaced(area=empty, traction_bound=bound).patch_mean()
     assert means.traction_bound[0, 0, 0] == pytest.approx(3e8, rel=8 * EPS)
-
-
-def test_a_patch_without_force_dissipates_what_spin_feeds_in() -> None:
-    nothing = np.zeros(2)
-    spinning = wl.CreepForces(longitudinal=nothing, lateral=nothing, spin_moment=np.full(2, 2.0))
-    patch = wl.Contact.of_patch(problem(), spinning)
-    assert patch.cell_wear_index == pytest.approx([1.0, 1.0], rel=8 * EPS)
-
-
-def test_the_batch_can_be_reshaped() -> None:
-    column = problem()[:, None]
-    contact = on_strips().unflattened(column)
-    assert contact.problem is column
-    assert contact.force_x.shape == (2, 1)
-    assert contact.pressure.shape == (2, 1, 4, 3)
-    assert contact.strip_width.shape == (2, 1, 3)
-
-
-def test_one_point_of_the_batch_is_taken_with_its_problem() -> None:
-    one = on_strips()[1]
-    assert one.pressure.shape == (4, 3)
-    assert one.problem is not None
-    assert one.problem.normal_force == one.normal_force == 1e5

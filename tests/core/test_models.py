@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -38,47 +38,6 @@ def test_what_a_model_or_law_does_not_declare_has_a_cautious_default() -> None:
     assert law.calibration is None
     assert law.band() is None
     assert law.monotone_in == ()
-
-
-def calibration(**fields: Any) -> wl.Calibration:
-    return wl.Calibration(**{"contact_model": "fastsim", "scale": "cells", "materials": "-", "source": "-", **fields})
-
-
-FASTSIM, ELLIPTIC = wl.contact_model("fastsim"), wl.contact_model("fastsim", bound="elliptic")
-
-
-@pytest.mark.parametrize(
-    ("fitted_for", "model", "scale", "covered"),
-    [
-        (calibration(), FASTSIM, "cells", True),
-        (calibration(), FASTSIM, "patch", False),
-        (calibration(), wl.contact_model("exact"), "cells", False),
-        (calibration(), ELLIPTIC, "cells", True),
-        (calibration(options=(("bound", "parabolic"),)), FASTSIM, "cells", True),
-        (calibration(options=(("bound", "parabolic"),)), ELLIPTIC, "cells", False),
-        (calibration(options=(("no_such_field", "x"),)), FASTSIM, "cells", False),
-        (calibration(scale="patch"), wl.contact_model("global"), "patch", True),
-        (calibration(scale="patch"), wl.contact_model("exact"), "patch", True),
-        (calibration(scale="patch"), wl.contact_model("exact"), "cells", False),
-        (calibration(contact_model="any"), wl.contact_model("exact"), "cells", True),
-        (calibration(contact_model="any"), wl.contact_model("exact"), "patch", False),
-        (calibration(contact_model="any", scale="any"), wl.contact_model("exact"), "patch", True),
-        (calibration(geometry="ellipse"), FASTSIM, "cells", False),
-        (calibration(geometry="any"), FASTSIM, "cells", True),
-    ],
-)
-def test_a_calibration_covers_the_contact_it_was_fitted_for(
-    fitted_for: wl.Calibration, model: wl.ContactModel, scale: Literal["patch", "cells"], covered: bool
-) -> None:
-    assert fitted_for.covers(model, scale) is covered
-
-
-def test_a_calibration_says_what_it_was_fitted_for() -> None:
-    assert str(calibration(scale="patch")) == "patch means (the global model)"
-    assert str(calibration(contact_model="any", scale="any")) == "any contact"
-    assert str(calibration(options=(("bound", "parabolic"),))) == (
-        "the cells of contact_model('fastsim', bound='parabolic')"
-    )
 
 
 def test_what_a_model_knows_of_its_force_without_nodes_is_used() -> None:

@@ -201,14 +201,3 @@ def test_the_steps_at_the_ends_of_the_table_are_as_documented(
         ends = [float(end) for end in limit(0.1, nu)]
         steps.append([100.0 * abs(value / end - 1.0) for value, end in zip(values(0.1**turn, nu), ends, strict=True)])
     assert np.max(steps, axis=0) == pytest.approx(np.array(short_ends if limit is short else long_ends), abs=0.05)
-
-
-@given(st.lists(st.floats(1e-3, 1e3), min_size=1, max_size=5), st.lists(st.floats(0.0, 0.5), min_size=1, max_size=3))
-def test_arrays_broadcast_to_what_single_points_give(ratios: list[float], poisson: list[float]) -> None:
-    found = kalker.coefficients(np.array(ratios), np.array(poisson)[:, None])
-    for i, nu in enumerate(poisson):
-        for j, ratio in enumerate(ratios):
-            # vectorised logarithms and powers may round differently from scalar ones
-            one = [float(getattr(found, name)[i, j]) for name in NAMES]
-            assert one == pytest.approx(values(ratio, nu), rel=ROUNDING)
-    assert {getattr(found, name).shape for name in NAMES} == {(len(poisson), len(ratios))}
