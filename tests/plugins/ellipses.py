@@ -1,4 +1,4 @@
-"""Elliptic contacts for the tests of creep-force models."""
+"""Contacts for the tests of creep forces: ellipses of any shape, and the line of the SUROS discs."""
 
 from __future__ import annotations
 
@@ -39,6 +39,20 @@ def ellipse(**changes: Any) -> wl.Problem:
     units = {"longitudinal_creepage": "", "lateral_creepage": "", "spin": "1/m"}
     changes = {name: Q(value, units[name]) if name in units else value for name, value in changes.items()}
     return wl.Problem.ellipse(**{**GIVEN, **changes})
+
+
+def line(creepage: Any = 0.05, **changes: Any) -> wl.Problem:
+    """Return a line contact of the SUROS discs; the creepage as a number."""
+    given: dict[str, Any] = {
+        "normal_force": Q(7.4143, "kN"),
+        "track_width": Q(10, "mm"),
+        "relative_radius": Q(11.75, "mm"),
+        "shear_modulus": Q(80.66, "GPa"),
+        "poisson_ratio": 0.28,
+        "friction_coefficient": 0.46,
+        "rolling_speed": Q(10, "m/s"),
+    }
+    return wl.Problem.line(**{**given, "creepage": Q(creepage, ""), **changes})
 
 
 def of_ratio(axis_ratio: float, poisson_ratio: float, **changes: Any) -> wl.Problem:

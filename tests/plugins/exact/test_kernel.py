@@ -95,20 +95,6 @@ def test_a_threshold_next_to_nothing_leaves_the_whole_dissipation(copy: str) -> 
         assert (error <= (ROUNDINGS + 2 * EPS) * whole(reduced)).all()  # that of the test has four roundings
 
 
-@every_copy
-def test_values_in_si_are_reduced_as_in_the_literature(copy: str) -> None:
-    random, size = np.random.default_rng(44), 200
-    friction, pressure = random.uniform(0.05, 1.0, size), random.uniform(0.3e9, 4e9, size)
-    half_width, radius = random.uniform(1e-4, 1e-2, size), random.uniform(5e-3, 0.5, size)
-    reduced = crowded(random, size)
-    level = shares(random, size) * np.where(reduced < 1.0, 2.0 * reduced, 1.0 + reduced)
-    slip, traction, modulus = friction * half_width / radius, friction * pressure, 2.0 * pressure * radius / half_width
-    found = COPIES[copy](reduced * slip, friction, pressure, half_width, modulus, level * traction * slip)
-    error = np.abs(found / (traction * slip * half_width) - apply(copy, reduced, level))
-    # Less than forty roundings make d, of which the energy is the square at most, the level and the quotient.
-    assert (error <= (2.0 * ROUNDINGS + 2 * 40 * 0.5 * EPS) * whole(reduced)).all()
-
-
 def test_two_steps_find_the_roots_at_any_creepage_and_level(monkeypatch: pytest.MonkeyPatch) -> None:
     random = np.random.default_rng(46)
     reduced = crowded(random, 100_000)
@@ -120,13 +106,3 @@ def test_two_steps_find_the_roots_at_any_creepage_and_level(monkeypatch: pytest.
         found[steps] = apply("arrays", reduced, level)
     assert (np.abs(found[2] - found[8]) <= limit).all()
     assert not (np.abs(found[1] - found[8]) <= limit).all()
-
-
-@every_copy
-def test_no_creepage_dissipates_nothing_beside_points_that_do(copy: str) -> None:
-    reduced = np.array([0.0, 0.5, 0.0, 1.0, 2.0, 0.0])
-    level = np.array([1e-9, 1e-3, 1.0, 1e-3, 10.0, 1e9])
-    got = apply(copy, reduced, level)
-    assert (got[[0, 2, 4, 5]] == 0.0).all()
-    assert (got[[1, 3]] > 0.0).all()
-    assert (apply(copy, np.zeros(3), np.full(3, 1e-9)) == 0.0).all()

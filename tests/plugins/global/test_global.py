@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import re
 from pathlib import Path
 
@@ -15,33 +14,13 @@ from hypothesis import strategies as st
 import wearlaw as wl
 from tests.cases import load, table
 from tests.plugins.kit.cells import Cells
-from tests.strategies import EPS, LINE_MODELS, log_uniform, saturation_creepage, with_creepage
+from tests.strategies import EPS, LINE_MODELS, log_uniform, with_creepage
 from wearlaw import Q
 from wearlaw.errors import CaseError
 from wearlaw_kit import checks, line_problems
 
 SUROS = wl.TwinDisc.suros()
 CONDITIONS = {"normal_force": Q(7.4143, "kN"), "friction_coefficient": 0.46}
-
-
-@given(problem=line_problems())
-def test_the_one_cell_holds_the_patch_means(problem: wl.Problem) -> None:
-    contact = wl.contact_model("global").solve(problem)
-    area = float(2.0 * problem.half_width * problem.track_width)
-    assert contact.pressure.shape == (1,)
-    assert float(contact.area[0]) == pytest.approx(area, rel=4 * EPS)
-    # p = (π/4) p0
-    assert float(contact.pressure[0]) == pytest.approx(0.25 * math.pi * float(problem.max_pressure), rel=16 * EPS)
-    assert float(contact.slip[0]) == float(problem.creepage)
-    assert float(contact.traction[0]) * area == pytest.approx(float(contact.tangential_force), rel=4 * EPS)
-
-
-@given(problem=line_problems())
-def test_the_total_is_that_of_carter_by_default(problem: wl.Problem) -> None:
-    reduced = min(float(problem.creepage) / saturation_creepage(problem), 1.0)
-    # d (2-d), as 1-(1-d)² without its rounding at small d
-    expected = float(problem.friction_coefficient * problem.normal_force) * reduced * (2.0 - reduced)
-    assert float(wl.contact_model("global").solve(problem).tangential_force) == pytest.approx(expected, rel=16 * EPS)
 
 
 @pytest.mark.parametrize("name", LINE_MODELS)
@@ -66,15 +45,6 @@ def test_a_measured_traction_coefficient_takes_the_place_of_the_theory(
         coefficient * float(problem.normal_force * abs(measured.creepage)), rel=8 * EPS
     )
     assert abs(float(contact.traction[0])) <= float(contact.traction_bound[0]) * (1.0 + 4 * EPS)
-
-
-def test_the_patch_means_of_a_local_model_are_the_global_contact() -> None:
-    conditions = {"creepage": Q([-2.0, -0.5, 0.0, 0.5, 2.0], "%"), **CONDITIONS}
-    means = (SUROS | wl.contact_model("fastsim") | wl.patch_mean())(**conditions).contact  # type: ignore[arg-type]
-    one_cell = (SUROS | wl.contact_model("global", total_from="fastsim"))(**conditions).contact  # type: ignore[arg-type]
-    for field in ("pressure", "traction", "slip", "area", "tangential_force", "wear_index"):
-        # the means sum the nodes of the patch
-        assert getattr(means, field) == pytest.approx(getattr(one_cell, field), rel=64 * EPS), field
 
 
 def test_a_pipeline_hands_a_measured_traction_coefficient_on() -> None:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
 
 import wearlaw as wl
-from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, ellipses, limit, of_ratio
+from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, limit, of_ratio
 from tests.plugins.full_theory import creep_curve
 
 LINEAR = wl.contact_model("linear")
@@ -38,17 +37,6 @@ def test_forces_and_moment_are_those_of_kalkers_table(
     )
     moment = unit * (36e-6 * c33 * phi - 6e-3 * c23 * eta)
     assert found.spin_moment == pytest.approx(moment, rel=moment_within * EPS)
-
-
-@given(problem=ellipses())
-def test_twice_the_creepages_give_twice_the_forces(problem: wl.Problem) -> None:
-    twice = problem.with_creepages(
-        2.0 * problem.longitudinal_creepage, 2.0 * problem.lateral_creepage, 2.0 * problem.spin
-    )
-    once, doubled = LINEAR.creep_forces(problem), LINEAR.creep_forces(twice)
-    assert doubled.longitudinal == 2.0 * once.longitudinal
-    assert doubled.lateral == 2.0 * once.lateral
-    assert doubled.spin_moment == 2.0 * once.spin_moment
 
 
 def test_it_passes_the_friction_that_it_does_not_know() -> None:

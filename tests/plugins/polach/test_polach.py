@@ -107,61 +107,6 @@ def test_pure_creepage_is_what_fastsim_converges_to(share: float) -> None:
     assert (np.abs(found - (force_200 - step)) < share * np.abs(step)).all()
 
 
-def gradient_of(problem: wl.Problem) -> Any:
-    """Return ε of pure longitudinal creepage at a = b = 6 mm, ν = 1/4."""
-    return 0.25 * np.pi * 80e9 * 36e-6 * 4.12 * problem.longitudinal_creepage / limit(problem)
-
-
-def test_full_slip_is_approached_as_the_third_power_of_the_creepage() -> None:
-    problem = ellipse(longitudinal_creepage=[0.1, 0.2, 0.4, 0.8])
-    missing = 1.0 - POLACH.creep_forces(problem).longitudinal / limit(problem)
-    # (2/π)[ε/(1+ε²) + arctan ε] = 1 - (2/π)(2/3)/ε³ + O(1/ε⁵), where ε is 39 and more
-    assert missing == pytest.approx(4.0 / (3.0 * np.pi) / gradient_of(problem) ** 3, rel=2.0 / 38.0**2)
-
-
-def test_with_reduction_factors_full_slip_is_approached_as_the_creepage() -> None:
-    problem = ellipse(longitudinal_creepage=[0.5, 1.0], friction_coefficient=0.01)
-    missing = 1.0 - WET.creep_forces(problem).longitudinal / limit(problem)
-    # 1 - (2/π)(1/k_S - 1/k_A)/ε + O(1/(k_S ε)³), where k_S ε is 570 and more
-    expected = 2.0 / np.pi * (1.0 / 0.1 - 1.0 / 0.3) / gradient_of(problem)
-    assert missing == pytest.approx(expected, rel=1.0 / 570.0**2)
-
-
-@given(problem=ellipses())
-def test_the_force_stays_below_friction(problem: wl.Problem) -> None:
-    assert POLACH.creep_forces(problem).tangential <= limit(problem) * (1.0 + 8 * EPS)
-
-
-@pytest.mark.parametrize("model", [POLACH, WET], ids=["1, 1", "0.3, 0.1"])
-def test_the_force_rises_with_the_creepage(model: wl.ContactModel) -> None:
-    creepage = np.concatenate([[0.0], np.logspace(-7, 0, 200)])
-    for name in ("longitudinal_creepage", "lateral_creepage"):
-        problem = ellipse(**{name: creepage})
-        share = model.creep_forces(problem).tangential / limit(problem)
-        assert share[0] == 0.0
-        assert (np.diff(share) > 0.0).all()
-        assert share[-1] < 1.0
-
-
-@pytest.mark.parametrize(("slip_reduction", "rises"), [(0.135, True), (0.13, False)])
-def test_the_force_dips_where_the_area_of_slip_is_reduced_far_more(slip_reduction: float, rises: bool) -> None:
-    # F' ~ (1-ε²)/(1+ε²)² + k/(1+k²ε²) with k_A = 1 is least near ε = √3, where it is -1/8 + k/(1+3k²)
-    problem = ellipse(longitudinal_creepage=np.linspace(1e-4, 0.02, 2001))
-    model = wl.contact_model("polach", slip_reduction=slip_reduction)
-    assert (np.diff(model.creep_forces(problem).longitudinal) > 0.0).all() == rises
-
-
-def test_the_part_of_the_spin_rises_and_falls() -> None:
-    problem = ellipse(spin=np.logspace(-3, 3, 301))
-    share = POLACH.creep_forces(problem).lateral / limit(problem)
-    top = int(share.argmax())
-    assert (np.diff(share[: top + 1]) > 0.0).all()
-    assert (np.diff(share[top:]) < 0.0).all()
-    # (9/16) K times the largest of (2/3) ε/(1+ε²)², which is √3/8 at ε = 1/√3; K = 1 + 6.3 (1 - 1/e)
-    assert share[top] == pytest.approx(0.5625 * (1.0 + 6.3 * (1.0 - np.exp(-1.0))) * 3.0**0.5 / 8.0, rel=1e-3)
-    assert share[-1] < 1e-4
-
-
 @pytest.mark.validates(
     "creep-forces",
     "`polach` never gives back energy, with any creepages, spin and factors",
@@ -183,13 +128,6 @@ def test_no_creepage_and_spin_give_back_energy(model: wl.ContactModel, problem: 
     assert (problem.power(found) > 0.0) == moving
 
 
-def test_spin_against_lateral_creepage_dissipates_although_the_forces_alone_would_not() -> None:
-    problem = ellipse(lateral_creepage=-0.000625, spin=0.625)
-    found = POLACH.creep_forces(problem)
-    assert problem.lateral_creepage * found.lateral < 0.0
-    assert problem.power(found) > 0.0
-
-
 @pytest.mark.parametrize("spin", [-3.0, 0.5, 30.0])
 def test_the_moment_goes_smoothly_to_that_of_spin_alone(spin: float) -> None:
     # C is not defined without creepage; nothing may hang on its direction there.
@@ -199,14 +137,6 @@ def test_the_moment_goes_smoothly_to_that_of_spin_alone(spin: float) -> None:
     )
     assert along == pytest.approx(alone, rel=1e-8)
     assert across == pytest.approx(alone, rel=1e-8)
-
-
-def test_reduction_factors_act_as_published_at_an_ε_of_one() -> None:
-    problem = ellipse(longitudinal_creepage=1.0 / float(gradient_of(ellipse(longitudinal_creepage=1.0))))
-    for k_a, k_s in ((1.0, 0.4), (0.3, 0.1)):
-        model = wl.contact_model("polach", adhesion_reduction=k_a, slip_reduction=k_s)
-        expected = 2.0 / np.pi * (k_a / (1.0 + k_a**2) + np.arctan(k_s))
-        assert model.creep_forces(problem).longitudinal / limit(problem) == pytest.approx(expected, rel=16 * EPS)
 
 
 @pytest.mark.validates(

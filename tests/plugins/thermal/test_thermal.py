@@ -18,7 +18,7 @@ from scipy.special import k0e
 
 import wearlaw as wl
 import wearlaw_models.stages.thermal
-from tests.plugins.ellipses import EPS, ellipse, ellipses, limit
+from tests.plugins.ellipses import EPS, ellipse, ellipses, limit, line
 from wearlaw import Array, Q
 from wearlaw_models.stages.thermal import Thermal, ThermalProperties
 
@@ -29,19 +29,6 @@ STEEL = float(np.sqrt(50.0 * 7850.0 * 450.0))
 
 def thermal(**changes: Any) -> Thermal:
     return Thermal(**{"hot_ratio": 0.4, "temperature_range": "400 K", **changes})
-
-
-def line(creepage: Any = 0.05, **changes: Any) -> wl.Problem:
-    given: dict[str, Any] = {
-        "normal_force": Q(7.4143, "kN"),
-        "track_width": Q(10, "mm"),
-        "relative_radius": Q(11.75, "mm"),
-        "shear_modulus": Q(80.66, "GPa"),
-        "poisson_ratio": 0.28,
-        "friction_coefficient": 0.46,
-        "rolling_speed": Q(10, "m/s"),
-    }
-    return wl.Problem.line(**{**given, "creepage": Q(creepage, ""), **changes})
 
 
 def fast(problem: wl.Problem, speed: float = 30.0) -> wl.Problem:
@@ -461,18 +448,6 @@ def test_energy_grows_with_friction_so_that_there_is_one_solution(name: str, fri
         assert (more >= less * (1.0 - rounding)).all()
 
 
-@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # a made-up body
-def test_no_heat_leaves_the_friction_to_the_bit() -> None:
-    stage = thermal()
-    for name, still in (("exact", line(0.0)), ("fastsim", fast(ellipse())), ("polach", fast(ellipse()))):
-        assert hot(stage, name, still).friction_coefficient == still.friction_coefficient
-    cool = thermal(body_2=ThermalProperties(conductivity=Q(1e40, "W/m/K")))
-    assert hot(cool, "exact", line()).friction_coefficient == pytest.approx(0.46, rel=1e-12)
-    late = thermal(onset="5000 K")
-    assert hot(late, "exact", line()).friction_coefficient == 0.46
-    assert hot(thermal(hot_ratio=1.0), "exact", line()).friction_coefficient == 0.46
-
-
 @pytest.mark.parametrize(
     ("shape", "most"),
     [
@@ -489,13 +464,6 @@ def test_the_root_is_found_to_rounding(shape: Callable[[Array], Array], most: in
     assert found == pytest.approx(places, rel=8 * EPS)
     assert function.call_count <= most
     assert found[[0, -1]].tolist() == [0.1, 0.5]  # the ends of the bracket to the bit
-
-
-def test_a_measured_traction_leaves_the_forces() -> None:
-    measured = line(0.002).replaced(traction_coefficient=np.float64(0.1))
-    found = hot(thermal(), "global", measured)
-    assert found.friction_coefficient < 0.46
-    assert wl.contact_model("global").solve(found).tangential_force == 0.1 * measured.normal_force
 
 
 def test_slow_rolling_leaves_the_friction() -> None:
@@ -522,35 +490,6 @@ def test_a_long_patch_and_a_body_that_conducts_well_count_in_the_warning() -> No
         hot(stage, "polach", fast(long, 0.25))
     with warnings.catch_warnings(action="error"):  # friction that does not fall needs no temperature
         hot(stage, "polach", fast(ellipse(), 1e-3))
-
-
-def test_a_very_hot_contact_keeps_its_share_of_the_friction() -> None:
-    found = hot(thermal(temperature_range="1 K"), "exact", line(np.array([0.1, 1.0])))
-    assert found.friction_coefficient == pytest.approx(0.4 * 0.46, rel=2 * EPS)
-
-
-def test_the_traction_falls_beyond_its_largest() -> None:
-    creepage = np.geomspace(1e-4, 0.3, 60)
-    problem = hot(thermal(), "exact", line(creepage))
-    contact = wl.contact_model("exact").solve(problem)
-    force = contact.tangential_force / problem.normal_force
-    assert 5 < int(force.argmax()) < 50
-    assert force[-1] < 0.7 * force.max()
-    assert contact.cell_wear_index == pytest.approx(contact.wear_index, rel=5e-8)
-    assert (contact.traction <= contact.traction_bound * (1.0 + 4 * EPS)).all()
-    assert contact.traction_bound.max() <= 0.46 * problem.max_pressure[0]
-
-
-def test_forces_are_asked_for_at_the_shape_of_the_batch() -> None:
-    problem = line(np.full((2, 3), 0.1))
-    shapes = set()
-
-    def forces(one: wl.Problem) -> wl.CreepForces:
-        shapes.add(one.batch_shape)
-        return forces_of("exact", one)(one)
-
-    thermal().altered(problem, forces)
-    assert shapes == {(2, 3)}
 
 
 @pytest.mark.validates(

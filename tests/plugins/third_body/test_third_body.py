@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
 import wearlaw as wl
-from tests.plugins.ellipses import EPS, ellipse, ellipses, limit
+from tests.plugins.ellipses import EPS, ellipse, ellipses, limit, line
 from tests.plugins.full_theory import rows
 from wearlaw import Array, Q
 from wearlaw_models.stages.third_body import ThirdBody
@@ -27,18 +27,6 @@ FALLING = ThirdBody(reduction=0.54, limit_reduction=0.02 * 0.54, reduction_decay
 def never(problem: wl.Problem) -> wl.CreepForces:
     """The stage needs no forces."""
     raise AssertionError(problem)
-
-
-def line(creepage: Any, **changes: Any) -> wl.Problem:
-    given: dict[str, Any] = {
-        "normal_force": Q(7.4143, "kN"),
-        "track_width": Q(10, "mm"),
-        "relative_radius": Q(11.75, "mm"),
-        "shear_modulus": Q(80.66, "GPa"),
-        "poisson_ratio": 0.28,
-        "friction_coefficient": 0.46,
-    }
-    return wl.Problem.line(**{**given, "creepage": Q(creepage, ""), **changes})
 
 
 def forces(name: str, problem: wl.Problem) -> tuple[Array, ...]:
@@ -109,63 +97,6 @@ def test_the_initial_slope_of_an_ellipse_falls_by_the_reduction(name: str, stage
         assert found == pytest.approx(0.54 * 80e9 * 36e-6 * 4.12 * 1e-8, rel=within)
 
 
-@pytest.mark.parametrize("stage", [ThirdBody(reduction=0.54), FALLING])
-@pytest.mark.parametrize("name", ON_LINE)
-def test_the_initial_slope_of_a_line_falls_by_the_reduction(name: str, stage: ThirdBody) -> None:
-    problem = line(1e-9)
-    due = 0.54 * 0.5 * np.pi * problem.effective_modulus * problem.a * problem.track_width * 1e-9
-    assert forces(name, stage.altered(problem, never))[0] == pytest.approx(due, rel=1e-6)  # ξ/ξ_sat is 2e-7
-
-
-@given(problem=ellipses())
-@pytest.mark.parametrize("name", ON_ELLIPSE)
-def test_without_reduction_nothing_changes_to_the_bit(name: str, problem: wl.Problem) -> None:
-    altered = ThirdBody(reduction=1.0).altered(problem, never)
-    assert altered.effective_modulus == problem.effective_modulus
-    assert forces(name, altered) == forces(name, problem)
-
-
-@pytest.mark.parametrize("name", ["exact", "fastsim"])
-def test_a_line_in_full_slip_has_the_same_force_and_slip(name: str) -> None:
-    problem = line(np.array([0.05, 0.2]))
-    altered = ThirdBody(reduction=0.5).altered(problem, never)
-    model = wl.contact_model(name)
-    assert (model.tangential_force(altered) == model.tangential_force(problem)).all()
-    assert model.tangential_force(problem) == pytest.approx(0.46 * problem.normal_force, rel=4 * EPS)
-    # The slip is ξ + kx with k times the slope, so that its mean over the traction is ξ in both.
-    assert (model.solve(altered).slip > 0.0).all()
-
-
-def test_full_slip_begins_at_a_creepage_larger_by_the_reduction() -> None:
-    # Carter: ξ_sat = μa/R
-    saturation = 0.46 * line(0.0).a / 11.75e-3
-    stage, exact = ThirdBody(reduction=0.4), wl.contact_model("exact")
-    below, above = (stage.altered(line(share * saturation / 0.4), never) for share in (1.0 - 1e-6, 1.0 + 1e-6))
-    assert exact.solve(below).stick_ratio > 0.0
-    assert exact.solve(above).stick_ratio == 0.0
-
-
-@pytest.mark.parametrize("stage", [ThirdBody(reduction=0.6), FALLING])
-@pytest.mark.parametrize("name", ["exact", "fastsim"])
-def test_a_line_keeps_its_bound_and_its_energy(name: str, stage: ThirdBody) -> None:
-    problem = stage.altered(line(np.geomspace(1e-4, 0.3, 40)), never)
-    contact = wl.contact_model(name).solve(problem)
-    assert (contact.traction <= contact.traction_bound * (1.0 + 4 * EPS)).all()
-    # The accuracy of sums over nodes that line models declare
-    assert contact.cell_wear_index == pytest.approx(contact.wear_index, rel=5e-8)
-    assert contact.integral(contact.pressure) == pytest.approx(problem.normal_force, rel=5e-8)
-
-
-@pytest.mark.parametrize("stage", [ThirdBody(reduction=0.6), FALLING])
-def test_an_ellipse_keeps_its_bound_and_without_spin_its_energy(stage: ThirdBody) -> None:
-    problem = ellipse(longitudinal_creepage=np.geomspace(1e-5, 0.1, 30), lateral_creepage=1e-3)
-    model = wl.contact_model("fastsim")
-    contact = model.solve(stage.altered(problem, never))
-    assert (contact.traction <= contact.traction_bound * (1.0 + 8 * EPS)).all()
-    energy = np.abs(contact.cell_wear_index - contact.wear_index)
-    assert (energy <= model.elliptic_accuracy * limit(problem) * problem.rigid_slip).all()
-
-
 @pytest.mark.validates(
     "creep-forces",
     "`third_body` around `fastsim`: k and the creep curve of a locomotive wheel with falling friction",
@@ -228,20 +159,6 @@ def test_lateral_creepage_counts_at_the_leading_edge() -> None:
     # a = 6 mm: η + φa = 2e-3
     assert FALLING.factor(ellipse(lateral_creepage=1e-3, spin=1e-3 / 6e-3)) == pytest.approx(along, rel=4 * EPS)
     assert FALLING.factor(ellipse(lateral_creepage=2e-3, spin=-1e-3 / 6e-3)) == along
-
-
-def test_the_patch_and_its_pressure_stay() -> None:
-    problem = line(0.01)
-    altered = FALLING.altered(problem, never)
-    for name in ("a", "b", "normal_force", "max_pressure", "poisson_ratio", "friction_coefficient"):
-        assert getattr(altered, name) is getattr(problem, name)
-
-
-def test_a_measured_traction_stays() -> None:
-    measured = line(0.002).replaced(traction_coefficient=np.float64(0.1))
-    model = wl.contact_model("global")
-    for stage in (ThirdBody(reduction=0.3), FALLING):
-        assert model.solve(stage.altered(measured, never)).tangential_force == 0.1 * measured.normal_force
 
 
 @pytest.mark.parametrize(
