@@ -181,18 +181,6 @@ def test_a_rig_of_strips_wears() -> None:
     assert float(traction.magnitude) == pytest.approx(0.1, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("model", "said"),
-    [
-        ("exact", "'exact' solves line contacts only, but a Humps makes patches of strips; those that .*: fastsim"),
-        ("polach", "'polach' solves elliptic contacts only"),
-    ],
-)  # fmt: skip
-def test_models_that_do_not_solve_strips_say_so(model: str, said: str) -> None:
-    with pytest.raises(CompositionError, match=said):
-        Humps() | wl.contact_model(model)
-
-
 def test_given_strips_have_adaptive_nodes_whatever_the_march_on_ellipses() -> None:
     conditions: Any = {"creepage": "1 %", "friction_coefficient": 0.3}
     uniform, adaptive = (

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.ellipses import of_ratio
 from tests.plugins.full_theory import spheres
 from wearlaw import Array, Q
 
@@ -132,20 +131,3 @@ def test_few_strips_are_near_many_but_less_so_for_a_law_that_jumps(
     assert rms(off["usfd"]) < usfd
     assert rms(off["kth"]) < kth
     assert np.abs(off["kth"]).max() > single
-
-
-@pytest.mark.parametrize("model", ["linear", "fastsim"])
-def test_kalkers_table_can_be_read_as_the_program_contact_does(model: str) -> None:
-    # Where nearly all sticks, forces are as the coefficients; 1e-9 is six orders below full slip.
-    for creepage, coefficient in (("longitudinal_creepage", "c11"), ("lateral_creepage", "c22"), ("spin", "c23")):
-        problem = of_ratio(6.7, 0.28, **{creepage: 1e-9})
-        ours, contacts = (
-            wl.contact_model(model, interpolation=way).creep_forces(problem).tangential
-            for way in get_args(wl.kalker.Interpolation)
-        )
-        c, by_contact = (
-            getattr(wl.kalker.coefficients(problem.a / problem.b, 0.28, way), coefficient)
-            for way in get_args(wl.kalker.Interpolation)
-        )
-        assert contacts / ours == pytest.approx(by_contact / c, rel=1e-5)
-        assert by_contact / c > 1.05

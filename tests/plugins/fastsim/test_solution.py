@@ -9,7 +9,7 @@ import pytest
 
 import wearlaw as wl
 from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, of_ratio
-from wearlaw import Array, Q
+from wearlaw import Q
 from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: the flexibilities
 
 Bound = Literal["elliptic", "parabolic"]
@@ -65,22 +65,6 @@ def test_nodes_lie_on_strips_that_fill_the_ellipse(march: Literal["adaptive", "u
     assert (np.abs(contact.x) <= half_length[:, None, :] + 16 * EPS * 4e-3).all()
 
 
-@pytest.mark.parametrize("march", MARCHES)
-def test_forces_are_those_of_the_nodes(march: Literal["adaptive", "uniform"]) -> None:
-    contact = wl.contact_model("fastsim", march=march, strips=12).solve_ellipse(two_loads())
-
-    def total(density: Array) -> Array:
-        found: Array = (density * contact.area).sum(axis=(-2, -1))
-        return found
-
-    # Sums of some 200 terms of one sign, and in the moment of both.
-    assert contact.force_x == pytest.approx(total(contact.traction_x), rel=256 * EPS)
-    assert contact.force_y == pytest.approx(total(contact.traction_y), rel=256 * EPS)
-    moment = -total(contact.x * contact.traction_y + contact.y * contact.traction_x)
-    largest = total(np.abs(contact.x * contact.traction_y) + np.abs(contact.y * contact.traction_x))
-    assert (np.abs(contact.moment_z - moment) <= 256 * EPS * largest).all()
-
-
 @pytest.mark.parametrize("bound", BOUNDS)
 def test_the_bound_of_each_node_is_that_of_the_theory(bound: Bound) -> None:
     problem, model = two_loads(), wl.contact_model("fastsim", bound=bound, strips=8)
@@ -110,21 +94,6 @@ def test_strips_can_lie_where_they_are_asked_for() -> None:
 
 def test_a_uniform_march_has_its_own_strips() -> None:
     assert wl.contact_model("fastsim", march="uniform").on_strips(two_loads(), np.array([0.0])) is None
-
-
-@pytest.mark.parametrize("march", MARCHES)
-def test_what_rolls_freely_among_others_neither_slips_nor_drags(march: Literal["adaptive", "uniform"]) -> None:
-    def contact(longitudinal: float, lateral: float, spin: float) -> wl.Contact:
-        creepages = ([longitudinal, 1e-3], [lateral, 0.0], [spin, 0.0])
-        problem = ellipse().broadcast_to((2,)).with_creepages(*map(np.array, creepages))
-        return wl.contact_model("fastsim", march=march).solve_ellipse(problem)
-
-    free = contact(0.0, 0.0, 0.0)
-    for field in (free.traction_x, free.traction_y, free.slip_x, free.slip_y):
-        assert (field[0] == 0.0).all()
-    assert (free.traction_x[1] > 0.0).any()
-    for creepages in ((1e-3, 0.0, 0.0), (0.0, 1e-3, 0.0), (0.0, 0.0, 1.0)):
-        assert (contact(*creepages).slip[0] > 0.0).any()
 
 
 def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch) -> None:

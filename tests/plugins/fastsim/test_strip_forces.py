@@ -125,15 +125,6 @@ def test_energy_is_that_of_the_forces_without_spin(elliptic: bool, within: float
     np.testing.assert_allclose(found.power, work, rtol=within)
 
 
-@each_bound
-def test_without_spin_the_number_of_nodes_does_not_matter(elliptic: bool) -> None:
-    patches = sample(elliptic, spin=False)
-    few, many = solve(patches, stick=2, slip=12).forces, solve(patches, stick=5, slip=24).forces
-    np.testing.assert_allclose(few.longitudinal, many.longitudinal, rtol=1e-12)
-    np.testing.assert_allclose(few.lateral, many.lateral, rtol=1e-12)
-    np.testing.assert_allclose(few.spin_moment, many.spin_moment, atol=1e-12 * limit(patches).max() * CASE["a"])
-
-
 @pytest.mark.validates(
     "integration",
     "Forces of FASTSIM on 8 strips, and how fast they converge",

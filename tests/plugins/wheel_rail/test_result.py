@@ -45,16 +45,6 @@ def test_the_pipeline_gives_what_the_model_solves() -> None:
     assert result.traction_coefficient.magnitude == pytest.approx(result.tangential_force.magnitude / 8e4, rel=4 * EPS)
 
 
-def test_a_law_in_proportion_to_energy_wears_by_what_the_cells_dissipate() -> None:
-    result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
-    lost = 1e-12 * result.cell_wear_index.to("N").magnitude
-    assert result.mass_per_distance.to("kg/m").magnitude == pytest.approx(lost, rel=64 * EPS)
-    assert result.wear_rate.to("kg/m^3").magnitude * result.patch_area.to("m^2").magnitude == pytest.approx(
-        lost, rel=64 * EPS
-    )
-    assert result.mass_lost("10 km", "wheel").to("kg").magnitude == pytest.approx(1e4 * lost, rel=64 * EPS)
-
-
 @pytest.mark.validates(
     "limits",
     "With spin FASTSIM's cells do not dissipate Tγ; scaled, they do",
@@ -70,18 +60,6 @@ def test_with_slip_scaled_it_wears_by_what_the_creepages_feed_in(apart: float, r
     plain = (RIG | FASTSIM)(**CONDITIONS)
     assert result.wear_index == plain.wear_index
     assert abs(plain.cell_wear_index / plain.wear_index - 1) > apart  # with spin the two differ
-
-
-def test_many_points_are_the_same_as_one_after_the_other_and_keep_their_shape() -> None:
-    many = {**CONDITIONS, "spin": Q(np.linspace(0, 1, 150)[:, None], "1/m"), "normal_force": Q([40.0, 90.0], "kN")}
-    result = (RIG | FASTSIM | PER_ENERGY)(**many)
-    assert result.wear_rate.shape == result.stick_ratio.shape == result.lateral_force.shape == (150, 2)
-    for index in ((0, 0), (140, 1)):
-        one = {**CONDITIONS, "spin": many["spin"][index[0], 0], "normal_force": many["normal_force"][index[1]]}
-        alone = (RIG | FASTSIM | PER_ENERGY)(**one)
-        assert result.wear_rate[index].magnitude == pytest.approx(alone.wear_rate.magnitude, rel=64 * EPS)
-        assert result.mean_slip[index].magnitude == pytest.approx(alone.mean_slip.magnitude, rel=64 * EPS)
-        assert result.spin_moment[index].magnitude == pytest.approx(alone.spin_moment.magnitude, rel=64 * EPS)
 
 
 @pytest.mark.validates(
@@ -132,13 +110,6 @@ def test_in_full_slip_without_spin_each_point_slides_by_the_creepage(within: flo
     assert 1e-3 * profile.sliding_distance.values == pytest.approx(due, rel=within)
 
 
-def test_profiles_of_many_points_have_an_axis_for_each_of_the_batch() -> None:
-    result = (RIG | FASTSIM | PER_ENERGY)(**{**CONDITIONS, "normal_force": Q([40.0, 90.0], "kN")})
-    profile = result.wear_profile("wheel")
-    assert profile.depth.dims == ("point_0", "strip")
-    assert profile.y.shape == profile.depth.shape
-
-
 def test_a_uniform_march_has_the_profile_of_its_own_strips() -> None:
     coarse = RIG | wl.contact_model("fastsim", march="uniform", strips=20) | PER_ENERGY
     assert coarse(**CONDITIONS).wear_profile("wheel").y.size == 20
@@ -187,24 +158,6 @@ class Counted(type(wl.contact_model("fastsim"))):  # type: ignore[misc]
         return found
 
 
-@pytest.mark.parametrize("use_patch_mean", [False, True])
-def test_a_contact_is_solved_once_whatever_is_read_of_it(use_patch_mean: bool) -> None:
-    contact = RIG | Counted() | wl.patch_mean() if use_patch_mean else RIG | Counted()
-    conditions = {**CONDITIONS, "normal_force": Q([[40.0, 60.0], [70.0, 90.0]], "kN")}
-    Counted.solved.clear()
-    result = (contact | PER_ENERGY)(**conditions)
-    names = ("wear_rate", "mean_slip", "stick_ratio", "cell_wear_index", "patch_area")
-    values = [getattr(result, name) for name in names]
-    assert all(value.shape == (2, 2) for value in values)
-    assert result.contact.rolling_speed.shape == (2, 2)
-    if not use_patch_mean:
-        assert result.wear_profile("wheel").depth.shape == (2, 2, 10)
-    assert Counted.solved == [4]
-    alone = (contact | PER_ENERGY)(**{**conditions, "normal_force": Q(70.0, "kN")})
-    for name, value in zip(names, values, strict=True):
-        assert value[1, 0].magnitude == pytest.approx(getattr(alone, name).magnitude, rel=64 * EPS), name
-
-
 def test_the_slip_of_many_ellipses_is_kept_though_their_contacts_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("wearlaw.numerics.integrate.ELLIPSE_NODES", 2 * 140)  # private: blocks of two
     creepage = np.linspace(0.01, 1.0, 11)
@@ -219,13 +172,6 @@ def test_the_slip_of_many_ellipses_is_kept_though_their_contacts_are_not(monkeyp
             assert values[i] == pytest.approx(getattr(alone, name).magnitude, rel=64 * EPS), name
 
 
-def test_a_body_that_is_not_there_is_named() -> None:
-    result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
-    for call in (lambda: result.wear_profile("disc_1"), lambda: result.mass_lost("1 km", "disc_1")):
-        with pytest.raises(wl.InputError, match="no 'disc_1'; its bodies are 'wheel' and 'rail'"):
-            call()
-
-
 def test_means_of_the_patch_have_no_profile() -> None:
     result = (RIG | FASTSIM | wl.patch_mean() | PER_ENERGY)(**CONDITIONS)
     with pytest.raises(CompositionError, match="gives means of the whole patch"):
@@ -233,19 +179,6 @@ def test_means_of_the_patch_have_no_profile() -> None:
     assert result.wear_rate.to("kg/m^3").magnitude == pytest.approx(
         1e-12 * result.wear_index_density.to("N/m^2").magnitude, rel=8 * EPS
     )
-
-
-def test_a_law_of_the_whole_patch_needs_patch_means() -> None:
-    with pytest.raises(CompositionError, match="stated for the means of the whole patch"):
-        RIG | FASTSIM | wl.wear_law("brr")
-    assert (RIG | FASTSIM | wl.patch_mean() | wl.wear_law("brr"))(**CONDITIONS).wear_rate.magnitude > 0
-
-
-def test_the_contact_is_what_the_law_saw() -> None:
-    predicted = (RIG | FASTSIM | wl.patch_mean() | wl.wear_law("kth"))(**CONDITIONS)
-    assert predicted.contact.pressure.size == 1
-    seen = predicted.contact | wl.wear_law("kth")
-    assert seen.value.magnitude == pytest.approx(predicted.wear_rate.magnitude, rel=4 * EPS)
 
 
 @pytest.mark.parametrize("fitted_for", ["global", "exact", "fastsim"])
@@ -329,11 +262,6 @@ def test_the_error_is_estimated_up_to_the_largest_number_of_strips() -> None:
             assert f"strips={strips}" in repr(finest)
 
 
-def test_patch_means_have_no_error_but_rounding() -> None:
-    result = (RIG | FASTSIM | wl.patch_mean() | PER_ENERGY)(**CONDITIONS)
-    assert result.wear_rate_error.to("kg/m^3").magnitude == EPS * result.wear_rate.to("kg/m^3").magnitude > 0.0
-
-
 class Unrefined(Strips):
     """Strips that can be neither refined nor chosen."""
 
@@ -379,9 +307,3 @@ def test_a_problem_without_operating_points_is_refused() -> None:
     many = RIG.problem(**{**CONDITIONS, "longitudinal_creepage": Q([0.1, 0.2], "%")})
     with pytest.raises(wl.ConditionsError, match="problem: holds no operating points"):
         (RIG | FASTSIM | PER_ENERGY).predict(many[:0])
-
-
-def test_a_result_shows_itself() -> None:
-    shown = repr((RIG | FASTSIM | PER_ENERGY)(**CONDITIONS))
-    assert shown.startswith("Prediction of 1 operating point\n  wear_rate")
-    assert "longitudinal_force" in shown

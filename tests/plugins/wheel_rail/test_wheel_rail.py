@@ -11,6 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Q
+from wearlaw.errors import CompositionError
 
 GIVEN: dict[str, Any] = {
     "wheel_radius": Q(460, "mm"),
@@ -105,3 +106,14 @@ WRONG_CONDITIONS: list[tuple[dict[str, Any], str]] = [
 def test_wrong_conditions_are_named(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(wl.InputError, match=re.escape(message)):
         rig().problem(**{**CONDITIONS, **changes})
+
+
+def test_a_line_model_given_an_ellipse_says_so() -> None:
+    with pytest.raises(CompositionError, match="contact model 'exact' does not solve elliptic contacts, only line"):
+        wl.contact_model("exact").solve(rig().problem(**CONDITIONS))
+
+
+def test_an_elliptic_model_given_a_line_says_so() -> None:
+    line = wl.TwinDisc.suros().problem(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.3)
+    with pytest.raises(CompositionError, match="contact model 'polach' does not solve line contacts, only elliptic"):
+        wl.contact_model("polach").solve(line)

@@ -115,24 +115,20 @@ def turned(points: Array, angle: float) -> Array:
         ("units.len.f = 1.0D+03", lambda p: p),
         ("units.len.f = 500.0", lambda p: 2.0 * p),
         ("point.dist.min = 1.5", lambda p: p[::2]),
+        (
+            "mirror.z = 1;mirror.y = 1;shift.y = 2.0;shift.z = 1.0;rotate = 0.01",
+            lambda p: -turned(p + np.array([2.0, 1.0]), 0.01),
+        ),
     ],
 )  # fmt: skip
 def test_a_header_changes_the_points_in_the_order_of_its_numbers(tmp_path: Path, changes: str, change: Any) -> None:
-    points = table()
+    points = -table() if "mirror" in changes else table()
     text = simpack(points, changes)
     text = text.replace("    units.len.f    = +1.000000000000000e+03\n", "", "units.len.f" in changes)
     text = text.replace("    units.ang.f    = +1.000000000000000e+00\n", "", "units.ang.f" in changes)
     found = values(wl.read_profile(saved(tmp_path, "a.prw", text)))
     # Eight digits are printed of at most 70 mm, doubled by the unit: 0.5e-6 mm and its double.
     assert found == pytest.approx(change(points), abs=1.1e-6)
-
-
-def test_mirrors_come_after_shifts_and_turns(tmp_path: Path) -> None:
-    points = table()
-    text = simpack(points * [-1.0, -1.0], "mirror.z = 1;mirror.y = 1;shift.y = 2.0;shift.z = 1.0;rotate = 0.01")
-    found = values(wl.read_profile(saved(tmp_path, "a.prw", text)))
-    expected = turned(points * [-1.0, -1.0] + np.array([2.0, 1.0]), 0.01) * [-1.0, -1.0]
-    assert found == pytest.approx(expected, abs=1.1e-6)
 
 
 def test_weights_are_read_and_a_weight_of_zero_leaves_a_point_out(tmp_path: Path) -> None:
@@ -330,13 +326,20 @@ def test_columns_that_are_no_points_say_what_to_do(tmp_path: Path, line: str, sa
         wl.read_profile(saved(tmp_path, "a.txt", "\n".join(lines)), kind="rail")
 
 
-def test_columns_may_have_bars_between_or_the_ending_of_simpack(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "mark", "above"),
+    [
+        ("a.csv", "|", "y | z\n"),
+        ("a.txt", " ", "n y z\n"),
+        ("a.csv", ",", "n,X [mm],Y [mm]\n"),
+        ("a.prr", " ", "! a head\n"),  # an ending of Simpack without its sections
+    ],
+)
+def test_columns_have_other_names_marks_and_endings(tmp_path: Path, name: str, mark: str, above: str) -> None:
     points = table(profile=RAIL)
-    for name, mark, above in (("a.csv", "|", "y | z\n"), ("a.prr", " ", "! a head\n"), ("a.txt", " ", "n y z\n")):
-        lines = rows(np.column_stack([np.arange(len(points)), points]) if "n" in above else points, mark)
-        assert values(wl.read_profile(saved(tmp_path, name, above + lines), kind="rail")) == pytest.approx(
-            points, abs=1e-6
-        )
+    lines = rows(np.column_stack([np.arange(len(points)), points]) if above[0] == "n" else points, mark)
+    found = wl.read_profile(saved(tmp_path, name, above + lines), kind="rail")
+    assert values(found) == pytest.approx(points, abs=1e-6)
 
 
 # Repairs -------------------------------------------------------------------------------------------------------------
@@ -370,13 +373,6 @@ def test_repair_does_what_the_errors_suggest_and_lists_it(tmp_path: Path, change
     # The field side of the tread is a cone, so that a straight line fills its gap within the rounding of the points.
     assert z == pytest.approx(np.interp(y, *points.T) if (np.diff(points[:, 0]) > 0).all() else z, abs=1e-4)
     assert values(profile)[[0, -1]] == pytest.approx(points[[0, -1]], abs=1e-4)
-
-
-def test_a_case_may_name_the_same_options(tmp_path: Path) -> None:
-    path = saved(tmp_path, "a.csv", rows(table() * [-1.0, 1.0], ","))
-    with pytest.warns(wl.UnusualWarning, match="repaired: mirror_y=True"):
-        profile = wl.Profile.model_validate({"file": str(path), "kind": "wheel", "turn": "0.5 deg", "repair": True})
-    assert values(profile) == pytest.approx(turned(table() * [-1.0, 1.0], np.deg2rad(0.5)) * [-1.0, 1.0], abs=1e-5)
 
 
 def test_repair_leaves_points_alone_that_are_in_no_order(tmp_path: Path) -> None:
@@ -462,15 +458,6 @@ def test_white_space_titles_and_remarks_between_columns(tmp_path: Path, text: st
     assert values(found) == pytest.approx(points, abs=1e-5)
 
 
-def test_columns_x_and_y_are_outwards_and_down(tmp_path: Path) -> None:
-    points = table()
-    numbered = np.column_stack([np.arange(len(points)), points])
-    path = saved(tmp_path, "a.csv", "Index,X [mm],Y [mm]\n" + rows(numbered, ","))
-    assert values(wl.read_profile(path, kind="wheel")) == pytest.approx(points, abs=1e-5)
-    # An ending of Simpack without its sections.
-    assert values(wl.read_profile(saved(tmp_path, "a.prw", rows(points)))) == pytest.approx(points, abs=1e-5)
-
-
 def test_a_spreadsheet_is_read(tmp_path: Path) -> None:
     points = table()
     path = xlsx(tmp_path / "a.xlsx", [["z [mm]", "y [mm]"], *points[:, ::-1].tolist()])
@@ -533,13 +520,6 @@ def test_a_file_that_is_no_profile_says_where_and_why(tmp_path: Path, name: str,
     with pytest.raises(DataError, match=message) as caught:
         wl.read_profile(path)
     assert str(caught.value).startswith(f"profile '{path}': ")
-
-
-def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
-    with pytest.raises(DataError, match="there is no such file in '"):
-        wl.read_profile(tmp_path / "a.prw")
-    with pytest.raises(DataError, match="Is a directory"):
-        wl.read_profile(tmp_path)
 
 
 # Writing -------------------------------------------------------------------------------------------------------------
