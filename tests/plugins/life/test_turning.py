@@ -18,7 +18,8 @@ from wearlaw_apps.life.removal import between, even, positions, removed, swept  
 from wearlaw_apps.life.turning import least_cut  # private: the depth of a cut alone
 
 FLANGES = pd.DataFrame({"lateral_displacement [mm]": [-6.2, 6.2], "share": 0.5})
-LIMITS: dict[str, Any] = {"turn": {"flange_thickness": "32.42 mm"}, "least_diameter": "918.6 mm"}
+LIMITS: dict[str, Any] = {"turn": {"flange_thickness": "32.48 mm"}, "least_diameter": "919.3 mm"}
+LONG_STEPS: dict[str, Any] = {"depth_step": "0.1 mm", "conicity_step": 1.0, **GIVEN}
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
 
@@ -30,7 +31,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def turned(store: Path) -> Life:
-    return wl.wear_out(pipeline(), FLANGES, over="100000 km", store=store, **LIMITS, **GIVEN)
+    return wl.wear_out(pipeline(), FLANGES, over="100000 km", store=store, **LIMITS, **LONG_STEPS)
 
 
 def test_cut_of_a_cone_is_the_depth_over_the_cosine() -> None:
@@ -57,7 +58,7 @@ def test_each_cut_restores_the_profile_inside_the_worn_one(turned: Life) -> None
     radius = 920.0
     for cut in cuts.itertuples():
         before, after = np.flatnonzero(table["distance [km]"] == cut[1])
-        assert table["flange_thickness [mm]"][before] == pytest.approx(32.42, abs=1e-6)
+        assert table["flange_thickness [mm]"][before] == pytest.approx(32.48, abs=1e-6)
         same = [
             "depth [mm]",
             "worn_area [mm^2]",
@@ -92,7 +93,8 @@ def test_mass_worn_between_cuts_is_that_of_wheels_of_the_diameters_left(turned: 
 
 def test_rates_are_those_up_to_the_first_cut(turned: Life) -> None:
     distance = turned.cuts["distance [km]"][0]
-    assert turned.rates["flange_thickness"] * distance / 1e3 == pytest.approx(32.42 - 32.5, abs=1e-3)  # 32.5 is rounded
+    worn = 32.48 - turned.table["flange_thickness [mm]"][0]
+    assert turned.rates["flange_thickness"] * distance / 1e3 == pytest.approx(worn, abs=1e-6)
     before = np.flatnonzero(turned.table["distance [km]"] == distance)[0]
     worn = turned.table["diameter [mm]"][before] - 920.0
     assert turned.rates["diameter"] * distance / 1e3 == pytest.approx(worn, rel=1e-9)
@@ -105,13 +107,13 @@ def test_repr_and_figure_say_which_limit_governs(turned: Life) -> None:
     assert "to the limit of diameter" in text
     *_, measures = turned.figure().panels
     labels = [curve.label for curve in measures.curves]
-    assert labels == ["flange thickness, 32.5 to 32.42 mm", "diameter, 920 to 918.6 mm"]
+    assert labels == ["flange thickness, 32.5 to 32.48 mm", "diameter, 920 to 919.3 mm"]
 
 
 def test_both_sides_are_turned_to_one_diameter() -> None:
     """The right wheel alone touches its flange: the cut is its own, and the left wheel pays for it."""
     one_sided = FLANGES.assign(share=[0.0, 1.0])
-    found = wl.wear_out(pipeline(), one_sided, over="150 km", sides="each", turn=LIMITS["turn"], **GIVEN)
+    found = wl.wear_out(pipeline(), one_sided, over="25 km", sides="each", turn=LIMITS["turn"], **LONG_STEPS)
     (cut,) = found.cuts.to_dict("records")
     assert cut["limit"] == "flange_thickness_right"
     assert cut["diameter_left [mm]"] == cut["diameter_right [mm]"]
@@ -120,12 +122,12 @@ def test_both_sides_are_turned_to_one_diameter() -> None:
 
 def test_interrupted_life_with_cuts_goes_on(store: Path, turned: Life) -> None:
     with pytest.warns(ResumeWarning):
-        again = wl.wear_out(pipeline(), FLANGES, over="100000 km", store=store, resume=True, **LIMITS, **GIVEN)
+        again = wl.wear_out(pipeline(), FLANGES, over="100000 km", store=store, resume=True, **LIMITS, **LONG_STEPS)
     assert again.table.equals(turned.table)
     assert again.cuts.equals(turned.cuts)
     ending = {"until": LIMITS["turn"], "least_diameter": LIMITS["least_diameter"]}
     with pytest.raises(OutputError, match="turn"):
-        wl.wear_out(pipeline(), FLANGES, over="100000 km", store=store, resume=True, **ending, **GIVEN)
+        wl.wear_out(pipeline(), FLANGES, over="100000 km", store=store, resume=True, **ending, **LONG_STEPS)
 
 
 @pytest.mark.parametrize(
