@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 from typing import Any
 
@@ -67,15 +68,22 @@ def test_equal_shares() -> None:
 TIME = np.array([0.0, 1.0, 3.0, 4.0, 8.0])
 
 
+@functools.cache
+def mass_by_shares(speed: tuple[float, ...] | None, weights: tuple[float, ...]) -> float:
+    """Return the mass on the states of a run whose shares are given."""
+    states = line(5).assign(share=np.array(weights) / sum(weights))
+    return mass(states if speed is None else states.assign(**{"rolling_speed [m/s]": speed}), **GIVEN)
+
+
 @pytest.mark.parametrize("piece", [1_000_000, 2])
 @pytest.mark.parametrize("from_file", [False, True])
 @pytest.mark.parametrize(
     ("column", "speed", "expected"),
     [
         # half-way to the neighbours: 0.5, 1.5, 1.5, 2.5 and 2 of 8 s
-        ("time [s]", None, [0.5, 1.5, 1.5, 2.5, 2.0]),
-        ("distance [km]", [10.0, 20.0, 30.0, 40.0, 50.0], [0.5, 1.5, 1.5, 2.5, 2.0]),
-        ("time [min]", [10.0, 20.0, 30.0, 40.0, 50.0], [5.0, 30.0, 45.0, 100.0, 100.0]),
+        ("time [s]", None, (0.5, 1.5, 1.5, 2.5, 2.0)),
+        ("distance [km]", (10.0, 20.0, 30.0, 40.0, 50.0), (0.5, 1.5, 1.5, 2.5, 2.0)),
+        ("time [min]", (10.0, 20.0, 30.0, 40.0, 50.0), (5.0, 30.0, 45.0, 100.0, 100.0)),
     ],
 )
 def test_shares_of_a_run(
@@ -85,13 +93,12 @@ def test_shares_of_a_run(
     states: Any = line(5).drop(columns="share")
     if speed is not None:
         states["rolling_speed [m/s]"] = speed
-    given = states.assign(share=np.array(expected) / np.sum(expected))
     run = states.assign(**{column: TIME})
     if from_file:
         run.to_csv(tmp_path / "run.csv", index=False)
         run = tmp_path / "run.csv"
     name = column.partition(" ")[0]
-    assert mass(run, share=name, **GIVEN) == pytest.approx(mass(given, **GIVEN), rel=1e-12)
+    assert mass(run, share=name, **GIVEN) == pytest.approx(mass_by_shares(speed, expected), rel=1e-12)
 
 
 @pytest.mark.parametrize(("times", "row"), [([0.0, 1.0, 1.0, 2.0, 3.0], 2), ([0.0, 2.0, 3.0, 1.0, 4.0], 3)])

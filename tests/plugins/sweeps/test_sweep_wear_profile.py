@@ -54,17 +54,12 @@ def test_sum_is_weighted_by_the_shares() -> None:
     assert found["mass"].attrs["units"] == "mg/km"
 
 
-def test_sum_is_the_same_from_a_file_in_blocks_on_two_processes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_sum_is_the_same_from_a_file_in_blocks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("wearlaw_apps.sweeps.points.BLOCK", 300)  # private: small blocks
     TABLE.to_csv(tmp_path / "line.csv", index=False)
-    one, two = (
-        wl.wear_profiles(PREDICT, tmp_path / "line.csv", share="share", workers=workers, **GIVEN) for workers in (1, 2)
-    )
-    assert np.array_equal(one["depth"], two["depth"])
+    found = wl.wear_profiles(PREDICT, tmp_path / "line.csv", share="share", **GIVEN)
     whole = wl.wear_profiles(PREDICT, TABLE, share="share", **GIVEN)
-    assert one["depth"].values == pytest.approx(whole["depth"].values, rel=1e-12)
+    assert found["depth"].values == pytest.approx(whole["depth"].values, rel=1e-12)
 
 
 def test_sum_in_a_store_goes_on_after_an_interrupt(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,11 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 
 import wearlaw as wl
 from tests.plugins.sweeps.sweeps import CONDITIONS, OUTPUTS, Failing, deadly, ending, predictor
+from tests.plugins.sweeps.test_sweep_outcomes import FINE, STAGED, swept
+from tests.plugins.sweeps.test_sweep_wear_profile import GIVEN, PREDICT, TABLE
 from wearlaw import (
     Q,
     kernels,  # private: which kernels a worker chose
@@ -33,6 +36,16 @@ def test_several_processes_give_the_same_bytes_as_one() -> None:
     two = wl.sweep(predict, **CONDITIONS, outputs=OUTPUTS, workers=2)
     assert one.identical(two)
     assert one.wear_rate.to_numpy().tobytes() == two.wear_rate.to_numpy().tobytes()
+
+
+def test_several_processes_give_the_same_outcomes_of_all_laws() -> None:
+    xr.testing.assert_identical(swept(STAGED, **FINE), swept(STAGED, **FINE, workers=2))
+
+
+@pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning", "ignore::wearlaw.CalibrationWarning")
+def test_several_processes_give_the_same_sum_across_a_profile() -> None:
+    one, two = (wl.wear_profiles(PREDICT, TABLE, share="share [%]", workers=count, **GIVEN) for count in (1, 2))
+    assert np.array_equal(one["depth"], two["depth"])
 
 
 def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: Path) -> None:

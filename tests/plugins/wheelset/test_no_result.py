@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,6 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.wheelset.brute_force import positions
 from tests.plugins.wheelset.wheelsets import borne, through, wheelset
 from wearlaw import Array, Q
 from wearlaw_models.rigs import wheelset as ws
@@ -33,18 +31,6 @@ def worn() -> ws.Profile:
 
 
 WHEELS = {"new": ws.Profile.s1002(), "worn": worn()}
-
-
-def test_results_have_their_rows_where_the_wheels_stand() -> None:
-    """Where a worn flank lies along the rail, laying the rows again does not end: rows were millimetres away."""
-    pair = next(islice(positions(6, seed=408), 5, None)).pair
-    problem: Any = (pair | wl.contact_model("fastsim")).posed({
-        "lateral_displacement": Q(np.arange(6.64, 6.66, 0.0025), "mm"), "vertical_load": "75.2 kN",
-        "friction_coefficient": 1e-7,
-    })  # fmt: skip
-    last = problem.loads._gathered("shift")  # private: how far wheels stand from where their rows were laid
-    assert (last > 1.0).any()
-    assert (problem.exists.any(axis=(1, 2)) == (last <= 1.0)).all()
 
 
 def predicted(wheel: str, **conditions: Any) -> wl.Prediction:

@@ -1,12 +1,17 @@
-"""The normal problem at many random positions of new, worn and measured wheels, beside brute force in space."""
+"""The normal problem at many random positions of new, worn and measured wheels, on rollers too, beside brute force."""
 
 from __future__ import annotations
+
+from itertools import islice
+from typing import Any
 
 import numpy as np
 import pytest
 
+import wearlaw as wl
 from tests.plugins.wheelset.brute_force import TURNS, compared, positions
 from tests.plugins.wheelset.test_normal import AREA, MISPLACED
+from wearlaw import Q
 from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
 
 
@@ -46,3 +51,41 @@ def test_measured_wheels_are_pressed_as_by_brute_force(noise: float, share: floa
             assert off is not None, position
             if position.name == "measured" and due.turn <= TURNS:
                 assert abs(off.pressure) <= share, position
+
+
+@pytest.mark.validates(
+    "wheelset",
+    "Pressure of new and worn wheels on rollers of 350 and 800 mm at random displacements up to 6.2 mm, with yaw 0 and"
+    " 20 mrad: maximum, area",
+    source="half-spaces between the surfaces of revolution in space, on 120 by 120 elements, where the profile turns by"
+    " 0.2 rad or less",
+    held_to="{pressure:.0%}, {area:.0%}",
+    pressure=0.01,
+    area=0.03,
+)
+@pytest.mark.parametrize(("radius", "yaw"), [(350, 0.0), (350, 20e-3), (800, 0.0), (800, 20e-3)])
+def test_wheels_are_pressed_on_rollers_as_by_brute_force(radius: int, yaw: float, pressure: float, area: float) -> None:
+    found = []
+    for position in positions(8, seed=58 + radius, roller_radius=Q(radius, "mm")):
+        if abs(position.displacement) > 6.2e-3:  # beyond, wheels climb
+            continue
+        for due, off in compared(position._replace(yaw=yaw)):
+            assert off is not None, position
+            assert off.load == pytest.approx(0.0, abs=BALANCED), position
+            if due.turn <= TURNS:
+                found.append(off[:2])
+    assert len(found) > 4
+    assert (np.abs(found).max(axis=0) <= (pressure, area)).all()
+
+
+@pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
+def test_results_have_their_rows_where_the_wheels_stand() -> None:
+    """Where a worn flank lies along the rail, laying the rows again does not end: rows were millimetres away."""
+    pair = next(islice(positions(6, seed=408), 5, None)).pair
+    problem: Any = (pair | wl.contact_model("fastsim")).posed({
+        "lateral_displacement": Q(np.arange(6.64, 6.66, 0.0025), "mm"), "vertical_load": "75.2 kN",
+        "friction_coefficient": 1e-7,
+    })  # fmt: skip
+    last = problem.loads._gathered("shift")  # private: how far wheels stand from where their rows were laid
+    assert (last > 1.0).any()
+    assert (problem.exists.any(axis=(1, 2)) == (last <= 1.0)).all()

@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.wheelset.brute_force import TURNS, compared, positions
 from tests.plugins.wheelset.test_search import first, si
 from tests.plugins.wheelset.wheelsets import Body, least_gap, standing, wheelset
 from wearlaw import Q
-from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
 
 RADIUS = 0.35
 PAIR = wheelset(roller_radius=Q(RADIUS, "m"))
@@ -41,31 +39,6 @@ def test_wheels_touch_where_their_surfaces_in_space_are_nearest(
         there = np.array([si(found.sel(side=name), axis) for axis in "xyz"])
         assert abs(least) < 1e-9 + gap * abs(down)
         assert nearest == pytest.approx(there, rel=0.0, abs=2e-7 + place * abs(down))
-
-
-@pytest.mark.validates(
-    "wheelset",
-    "Pressure of new and worn wheels on rollers of 350 and 800 mm at random displacements up to 6.2 mm, with yaw 0 and"
-    " 20 mrad: maximum, area",
-    source="half-spaces between the surfaces of revolution in space, on 120 by 120 elements, where the profile turns by"
-    " 0.2 rad or less",
-    held_to="{pressure:.0%}, {area:.0%}",
-    pressure=0.01,
-    area=0.03,
-)
-@pytest.mark.parametrize(("radius", "yaw"), [(350, 0.0), (350, 20e-3), (800, 0.0), (800, 20e-3)])
-def test_wheels_are_pressed_on_rollers_as_by_brute_force(radius: int, yaw: float, pressure: float, area: float) -> None:
-    found = []
-    for position in positions(8, seed=58 + radius, roller_radius=Q(radius, "mm")):
-        if abs(position.displacement) > 6.2e-3:  # beyond, wheels climb
-            continue
-        for due, off in compared(position._replace(yaw=yaw)):
-            assert off is not None, position
-            assert off.load == pytest.approx(0.0, abs=BALANCED), position
-            if due.turn <= TURNS:
-                found.append(off[:2])
-    assert len(found) > 4
-    assert (np.abs(found).max(axis=0) <= (pressure, area)).all()
 
 
 def test_a_roller_as_large_as_the_earth_is_a_rail() -> None:
