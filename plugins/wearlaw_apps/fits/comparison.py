@@ -44,12 +44,6 @@ Predictor: TypeAlias = Pipeline[...] | Fit
 Folds: TypeAlias = int | Literal["leave-one-out"]
 """Number of folds, or one for each operating point."""
 
-SEED = 0
-"""Seed of the random order in which operating points are dealt to folds, so that a comparison can be repeated."""
-
-ROUNDING = 1e-9
-"""Relative difference up to which two rigs convert measured wear alike."""
-
 COLUMNS = {
     "predictor": "object",
     **dict.fromkeys(("rms_factor", "bias", "geometric_sd", "largest_factor", "rms_error"), "Float64"),
@@ -391,7 +385,7 @@ def _converted(
     unit = _law(named[0][1], outcome).outcome.unit
     first, *others = (some.measured(outcome, unit) for some in converted)
     for other, (names, _) in zip(others, predictors[1:], strict=True):
-        if not np.allclose(first, other, rtol=ROUNDING, atol=0.0, equal_nan=True):
+        if not np.allclose(first, other, rtol=1e-9, atol=0.0, equal_nan=True):
             raise InputError(
                 f"{names.label}: its rig converts the measured wear to another {name_of(outcome)} than that of"
                 f" {predictors[0][0].label}; compare predictors of one rig"
@@ -553,7 +547,7 @@ class _Task:
                 f'cross_validate: give "leave-one-out" or a number of folds from 2 to {count}, the number of operating'
                 f" points; got {shown(how)}"
             )
-        dealt = np.random.default_rng(SEED).permutation(count)
+        dealt = np.random.default_rng(0).permutation(count)  # a comparison can be repeated
         parts = [np.flatnonzero(np.isin(points, dealt[fold::number])) for fold in range(number)]
         return parts, "leave-one-out" if number == count else f"{number} folds"
 

@@ -47,35 +47,14 @@ from wearlaw_apps.fits.wear_tests import WearTests
 NEAR = 10.0
 """Starting points lie within this factor of the first value, up and down."""
 
-NORMAL = 1.4826
-"""Standard deviation of a normal distribution over the median of the magnitudes."""
-
 LEVEL = 0.01
 """Probability that a set of tests without outliers has a test that is named as one."""
 
 MARGIN = 2.0
 """Standard deviations from which on a robust loss takes a test for an outlier, scipy's `f_scale`."""
 
-MOST_ROUNDS = 100
-"""Most iterations of a robust fit."""
-
-LEAST_SLOPE = 0.1
-"""Least mean slope ψ' of a robust loss; near zero, most tests have hardly any weight, and intervals no meaning."""
-
-SETTLED = 1e-7
-"""Change of the scaled parameters from which on a robust fit has settled."""
-
-ROUNDS = 3
-"""Iterations in which the scatter about the fit sets the weights of two kinds of measurement."""
-
 LEAST_SCATTER = 1e-5
 """Least scatter for a weight; made-up tests without scatter would otherwise hide each other's parameters."""
-
-LEAST_GROUP = 4
-"""Least number of measurements of a kind to estimate their scatter."""
-
-AT_BOUND = 1e-6
-"""Distance from a bound, as a share of the range, up to which a fit counts as lying on it."""
 
 USABLE = 0.95
 """Share of the replicates that must converge and determine each parameter, for reliable intervals."""
@@ -306,7 +285,7 @@ class _Task:
         near = Bounds(bounds.clip(-reach), bounds.clip(reach))
         best = search(self.model, target, first, bounds, near, starts, seed)
         if len(self.observations) > 1:
-            for _ in range(ROUNDS):
+            for _ in range(3):  # the scatter about the fit sets the weights of its kind
                 self._weigh(best)
                 best = fit_many(self.model, target[None], best.theta, bounds)
         if self.robust != "linear":
@@ -327,7 +306,7 @@ class _Task:
         """Weigh each kind of measurement by its scatter about the fit."""
         for residuals, weights in zip(self.parts(self.residuals(best)), self.parts(self.weights), strict=True):
             scatter = math.sqrt(float(np.mean(residuals**2)))
-            if residuals.size >= LEAST_GROUP and scatter > 0.0:
+            if residuals.size >= 4 and scatter > 0.0:  # fewer do not tell their scatter
                 weights[:] = 1.0 / max(scatter, LEAST_SCATTER)
 
     def _robust(self, best: Solutions, bounds: Bounds) -> Solutions:
@@ -340,12 +319,12 @@ class _Task:
         P. W. Holland and R. E. Welsch, Commun. Statist. A 6 (1977) 813-827.
         """
         target, converged = np.zeros((1, self.weights.size)), False
-        for _ in range(MOST_ROUNDS):
+        for _ in range(100):
             before = best.theta
             size = self.residuals(best) * self.weights / self._scale(best)
             self.trust[:] = np.sqrt(LOSSES[self.robust](size**2))
             best = fit_many(self.model, target, before, bounds)
-            if converged := bool(best.converged[0] and np.abs(best.theta - before).max() < SETTLED):
+            if converged := bool(best.converged[0] and np.abs(best.theta - before).max() < 1e-7):
                 break
         self.trust[:] = 1.0
         residuals = self.model(best.theta)
@@ -356,7 +335,7 @@ class _Task:
         """Return the scale of the residuals in a robust loss, (n,)."""
         every = self.parts(self.residuals(best) * self.weights)
         scales = [
-            1.0 if observed.scatter == "uncertainty" else NORMAL * float(np.median(np.abs(part)))
+            1.0 if observed.scatter == "uncertainty" else 1.4826 * float(np.median(np.abs(part)))
             for observed, part in zip(self.observations, every, strict=True)
         ]
         return np.repeat(MARGIN * np.maximum(scales, LEAST_SCATTER), [part.size for part in every])
@@ -384,7 +363,7 @@ class _Task:
         size = best.residuals[0] / scale
         low, size, high = (value * loss(value**2) for value in (size - STEP, size, size + STEP))
         slope = float(np.mean(high - low)) / (2.0 * STEP)
-        if slope < LEAST_SLOPE:
+        if slope < 0.1:  # near zero, most tests have hardly any weight, and intervals no meaning
             raise FitError(f'robust: too many tests lie far from the fit for {shown(self.robust)}; take "soft_l1"')
         return dataclasses.replace(best, residuals=(scale * size / slope)[None])
 
@@ -567,7 +546,7 @@ def _outliers(fit: Fit) -> Iterator[str]:
 
 def _at_bounds(task: _Task, best: Solutions) -> Iterator[str]:
     bounds, theta = task.free.bounds, best.theta[0]
-    margin = AT_BOUND * (bounds.high - bounds.low)
+    margin = 1e-6 * (bounds.high - bounds.low)
     ended = (theta <= bounds.low + margin) | (theta >= bounds.high - margin)
     if ended.any():
         names = ", ".join(name for name, at in zip(task.free.names, ended, strict=True) if at)

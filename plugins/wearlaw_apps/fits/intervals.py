@@ -22,15 +22,6 @@ UNSEEN = 1e-6
 """Influence of a parameter, or of a combination of some, relative to the greatest, below which it counts as none: a
 hundred times the error of the derivatives."""
 
-INVOLVED = 0.1
-"""Share of a parameter in an undetermined combination from which it counts as undetermined."""
-
-LEAST_ERROR = 1e-3
-"""Least scatter by which residuals are studentised; made-up tests scatter by less, and have no outliers."""
-
-SINGULAR = 1e-12
-"""Eigenvalues of JᵀJ, over the largest, that count as zero."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Replicates:
@@ -58,7 +49,8 @@ def undetermined(jacobian: Array) -> NDArray[np.bool_]:
     unseen = size <= UNSEEN * np.maximum(size.max(axis=-1, keepdims=True), UNSEEN)
     scaled = jacobian * np.where(unseen, 0.0, 1.0 / np.where(unseen, 1.0, size))[:, None, :]
     _, singular, directions = np.linalg.svd(scaled, full_matrices=False)
-    involved: NDArray[np.bool_] = (singular < UNSEEN)[..., None] & (np.abs(directions) > INVOLVED)
+    # Parameters with a share of a tenth in an undetermined combination count.
+    involved: NDArray[np.bool_] = (singular < UNSEEN)[..., None] & (np.abs(directions) > 0.1)
     return np.asarray(involved.any(axis=1))
 
 
@@ -103,7 +95,7 @@ def studentised(residuals: Array, errors: Array, leverages: Array, count: int) -
     usable = (leverages < DECIDED_ALONE) & (degrees > 0)
     size = np.where(usable, spare, 1.0)
     without = (np.sum(errors**2) - errors**2 / size) / max(degrees, 1)
-    scatter = np.sqrt(np.maximum(without, LEAST_ERROR**2) * size)
+    scatter = np.sqrt(np.maximum(without, 1e-3**2) * size)  # made-up tests scatter by less, and have no outliers
     return np.where(usable, residuals / scatter, np.nan)
 
 
@@ -182,5 +174,5 @@ def _inverse_normal(slopes: Array) -> Array:
     normal = scaled.swapaxes(1, 2) @ scaled
     index = np.arange(size.shape[1])
     normal[:, index, index] = 1.0
-    result: Array = np.linalg.pinv(normal, rcond=SINGULAR, hermitian=True) * seen[:, :, None] * seen[:, None, :]
+    result: Array = np.linalg.pinv(normal, rcond=1e-12, hermitian=True) * seen[:, :, None] * seen[:, None, :]
     return result

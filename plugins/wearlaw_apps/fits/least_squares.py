@@ -25,15 +25,6 @@ STEP = float(np.sqrt(np.finfo(np.float64).eps))
 TOLERANCE = 1e-9
 """Change of the parameters below which a fit has converged."""
 
-LEAST_GAIN = float(np.finfo(np.float64).eps)
-"""Relative change of the sum of squares below which a fit has converged: it is rounding."""
-
-ITERATIONS = 100
-"""Most iterations of a fit; smooth problems take about ten."""
-
-FITTED = 8
-"""Number of starting points from which `search` fits, besides the given one."""
-
 SOFTEST, STIFFEST = 1e-12, 1e12
 """Least and greatest damping. At the greatest one, a step is as small as rounding. A fit that it does not improve has
 converged: the best fit may lie on a kink of the model, where the gradient does not vanish."""
@@ -110,7 +101,7 @@ def fit_many(model: Model, targets: Array, start: Array, bounds: Bounds) -> Solu
     residuals, slopes = predicted - targets, jacobian(model, theta, predicted, bounds)
     damping, growth, scale = np.full(len(theta), 1e-3), np.full(len(theta), 2.0), np.zeros(theta.shape)
     active = np.arange(len(theta))
-    for _ in range(ITERATIONS):
+    for _ in range(100):  # smooth problems take about ten
         if not active.size:
             break
         normal = slopes[active].swapaxes(1, 2) @ slopes[active]
@@ -130,7 +121,8 @@ def fit_many(model: Model, targets: Array, start: Array, bounds: Bounds) -> Solu
         softer = np.maximum(1.0 / 3.0, 1.0 - (2.0 * ratio - 1.0) ** 3)
         damping[active] = np.clip(damping[active] * np.where(better, softer, growth[active]), SOFTEST, STIFFEST)
         growth[active] = np.where(better, 2.0, 2.0 * growth[active])
-        still, little = np.abs(step).max(axis=-1) <= TOLERANCE, better & (gain <= LEAST_GAIN * before)
+        still = np.abs(step).max(axis=-1) <= TOLERANCE
+        little = better & (gain <= np.finfo(np.float64).eps * before)  # it is rounding
         stiff = ~better & (damping[active] >= STIFFEST)
         accepted = active[better]
         if accepted.size:
@@ -168,7 +160,7 @@ def search(
         points = bounds.clip(near.low + shares * (near.high - near.low))
         with np.errstate(over="ignore"):
             cost = _squares(model(points) - target)
-        chosen = np.concatenate([chosen, points[np.argsort(cost, kind="stable")[:FITTED]]])
+        chosen = np.concatenate([chosen, points[np.argsort(cost, kind="stable")[:8]]])
     fits = fit_many(model, np.broadcast_to(target, (len(chosen), target.size)), chosen, bounds)
     return fits[int(np.argmin(fits.cost))]
 

@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 
 from wearlaw.arrays import Array
 from wearlaw.contact.problem import Problem
-from wearlaw.errors import DataError, UnitError, UnusualWarning, did_you_mean, shown, warn
+from wearlaw.errors import DataError, UnusualWarning, did_you_mean, shown, warn
 from wearlaw.models.law import WEAR, Law, Outcome, named_outcomes
 from wearlaw.pipeline.pipeline import Pipeline
 from wearlaw.units.quantities import Q, Quantity, from_si, scalar_si
-from wearlaw.units.registry import si_factor
 from wearlaw_apps.fits.observations import test_names
 from wearlaw_apps.fits.wear_tests import BALANCE, ROLLED, TOTALS, UNCERTAIN, WAYS, WearTests
 
@@ -266,14 +265,11 @@ class _Weighing:
             "": lambda: count,
             "*m": lambda: self._circumference(outcome.name, bodies),
         }
-        for what, density in (("kg", 1.0), ("m^3", None)):
-            for ending, factor in per.items():
-                try:
-                    si_factor(Q(1.0, outcome.unit), f"{what}/m{ending}")
-                except UnitError:
-                    continue
-                divisor = self._same(outcome.name, "density", self._density, bodies) if density is None else density
-                return factor() * count / divisor
+        for ending, factor in per.items():
+            if Q(1.0, outcome.unit).is_compatible_with(f"kg/m{ending}"):
+                return factor() * count
+            if Q(1.0, outcome.unit).is_compatible_with(f"m^3/m{ending}"):
+                return factor() * count / self._same(outcome.name, "density", self._density, bodies)
         raise DataError(
             f"{outcome.name}: its unit {shown(outcome.unit)} is no mass or volume by distance and area, by distance or"
             " by revolution, so that no measured mass converts to it"

@@ -32,10 +32,6 @@ FLOOR = 1e-300
 """Replaces a prediction of zero, whose logarithm is infinite."""
 
 
-NOT_WEAR = "; by its law, {} is no wear that a measured mass converts to (wear=True of its Outcome)"
-"""Added to the error for tests that measure a mass, and a law of another outcome."""
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Observations:
     """Measurements of one kind, with the pipeline that predicts them.
@@ -141,7 +137,8 @@ def observe(
             hint = (
                 f"; {', '.join(unused)}: no conditions of this rig, so say what they are by columns" if unused else ""
             )
-            hint = NOT_WEAR.format(name) if tests.ways and law is not None and not law.outcome.wear else hint
+            if tests.ways and law is not None and not law.outcome.wear:
+                hint = f"; by its law, {name} is no wear that a measured mass converts to (wear=True of its Outcome)"
             raise FitError(f"tests: none of the {len(tests)} tests has a {name_of(name)}, which is fitted{hint}")
         if not (needed or (of_contact and there.any())):
             continue

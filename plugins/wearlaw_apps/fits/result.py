@@ -49,9 +49,6 @@ WEAR_INDEX_DENSITY = "wear_index_density"
 LONGEST = 6
 """Most letters of a parameter's name that is its symbol, such as "tr_sc"."""
 
-BETWEEN = 8
-"""Points of a curve between two tests."""
-
 MOST_SAMPLES = 200
 """Most replicates for a band; more would not change it visibly."""
 
@@ -412,7 +409,7 @@ def _finer(value: Any, order: NDArray[np.intp]) -> Any:
     numbers = _numbers(value)
     if numbers.ndim == 0:
         return value
-    places = np.linspace(0.0, order.size - 1.0, BETWEEN * (order.size - 1) + 1)
+    places = np.linspace(0.0, order.size - 1.0, 8 * (order.size - 1) + 1)  # eight between two tests
     finer = np.interp(places, np.arange(order.size), numbers[order])
     return Q(finer, str(value.units)) if isinstance(value, pint.Quantity) else finer
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -35,65 +36,43 @@ Sampled: TypeAlias = dict[str | Place, Any]
 
 
 @dataclass(frozen=True)
-class UncertainInput:
-    """A condition, or numbers of a law or stage, which a distribution moves together.
+class Uncertain:
+    """A condition, numbers of a law or stage that move together, or the parameters of a fit.
 
-    The distribution has two numbers in SI for each of them. The rig gets a condition in `unit`, None for plain numbers.
+    Its `at` returns the values at probabilities.
     """
 
     name: str
     shown: str
-    distribution: Distribution
-    ends: Mapping[str | Place, Ends]
-    unit: str | None = None
-
-    def at(self, probability: Array) -> Sampled:
-        """Return the values at probabilities."""
-        values = {key: self.distribution.quantiles(probability, *ends) for key, ends in self.ends.items()}
-        return {key: number if self.unit is None else from_si(number, self.unit) for key, number in values.items()}
+    at: Callable[[Array], Sampled]
 
 
-@dataclass(frozen=True)
-class UncertainFit:
-    """The parameters of a fit, which its bootstrap replicates move together, with their correlation.
-
-    The fitted friction coefficient is the condition of that name, if it is not given otherwise.
-    """
-
-    fit: Fit
-    takes_friction: bool
-
-    name = "fit"
-
-    @property
-    def shown(self) -> str:
-        """The parameters."""
-        return f"of {', '.join(self.fit.samples)}, {self._count} replicates"
-
-    def at(self, probability: Array) -> Sampled:
-        """Return the values at probabilities."""
-        which = np.minimum((probability * self._count).astype(np.intp), self._count - 1)
-        samples, drawn = self.fit.values_in_si(self.fit.samples), Sampled()
-        for name, place in self.fit.observations[0].places.items():
-            if place.kind != "condition":
-                drawn[place] = samples[name][which]
-            elif self.takes_friction:
-                drawn[name] = samples[name][which]
-        return drawn
-
-    @property
-    def _count(self) -> int:
-        return len(next(iter(self.fit.samples.values())))
+def _drawn(distribution: Distribution, ends: Mapping[Any, Ends], unit: str | None, probability: Array) -> Sampled:
+    """Return values of a distribution with two numbers in SI for each; the rig gets a condition in `unit`."""
+    values = {key: distribution.quantiles(probability, *pair) for key, pair in ends.items()}
+    return {key: number if unit is None else from_si(number, unit) for key, number in values.items()}
 
 
-Uncertain: TypeAlias = UncertainInput | UncertainFit
+def _replicated(samples: Mapping[str, Array], places: Mapping[str, Place], probability: Array) -> Sampled:
+    """Return the parameters of a fit from its replicates, all of the same for a probability."""
+    drawn: Sampled = {}
+    for name, place in places.items():
+        count = samples[name].size
+        which = np.minimum((probability * count).astype(np.intp), count - 1)
+        drawn[name if place.kind == "condition" else place] = samples[name][which]
+    return drawn
 
 
-def of_fit(fit: Fit, conditions: Mapping[str, Any]) -> UncertainFit:
-    """Return the parameters of a fit as an input."""
+def of_fit(fit: Fit, conditions: Mapping[str, Any]) -> Uncertain:
+    """Return the parameters of a fit as an input; a fitted friction coefficient only if it is not given otherwise."""
     if not fit.samples:
         raise InputError("the fit has no replicates to draw from; fit it with a bootstrap, as in bootstrap=1000")
-    return UncertainFit(fit, FRICTION in fit.samples and conditions.get(FRICTION) is None)
+    places = dict(fit.observations[0].places)
+    if conditions.get(FRICTION) is not None:
+        places.pop(FRICTION, None)
+    samples = fit.values_in_si(fit.samples)
+    count = len(next(iter(samples.values())))
+    return Uncertain("fit", f"of {', '.join(samples)}, {count} replicates", partial(_replicated, samples, places))
 
 
 def uncertain_inputs(
@@ -125,13 +104,14 @@ def uncertain_inputs(
     return inputs
 
 
-def of_condition(name: str, distribution: Distribution) -> UncertainInput:
+def of_condition(name: str, distribution: Distribution) -> Uncertain:
     """Return a condition as an input, in the unit of the distribution's first number."""
     unit = symbol(distribution.first.units, "~C") if isinstance(distribution.first, pint.Quantity) else None
-    return UncertainInput(name, str(distribution), distribution, {name: ends_in_si(name, distribution, unit)}, unit)
+    ends = {name: ends_in_si(name, distribution, unit)}
+    return Uncertain(name, str(distribution), partial(_drawn, distribution, ends, unit))
 
 
-def of_numbers(predict: Pipeline[...], kind: Kind, distributions: Mapping[str, Any]) -> list[UncertainInput]:
+def of_numbers(predict: Pipeline[...], kind: Kind, distributions: Mapping[str, Any]) -> list[Uncertain]:
     """Return distributed numbers of the laws or stages of a pipeline as inputs, by their names as in `place_of`."""
     inputs = []
     for name, number in distributions.items():
@@ -141,8 +121,8 @@ def of_numbers(predict: Pipeline[...], kind: Kind, distributions: Mapping[str, A
             raise InputError(f"{kind}: {error}") from None
         part = (predict.laws if kind == "law" else predict.stages)[place.index]
         ends, distribution = parameter(place.field, number, part)
-        at_places: dict[str | Place, Ends] = {replace(place, field=field): pair for field, pair in ends.items()}
-        inputs.append(UncertainInput(name, str(number), distribution, at_places))
+        at_places = {replace(place, field=field): pair for field, pair in ends.items()}
+        inputs.append(Uncertain(name, str(number), partial(_drawn, distribution, at_places, None)))
     return inputs
 
 

@@ -98,9 +98,6 @@ USUAL: Mapping[str, Unit] = {
 NEEDED = ("creepage", *LOADS, "friction_coefficient")
 """Columns that need a value for every test."""
 
-DIGEST = 16
-"""Hexadecimal digits of the digest of a test; two of a million tests share one with a probability below 1e-7."""
-
 Values = Quantity | Array
 """Values of a column with their unit, or plain numbers."""
 
@@ -352,7 +349,8 @@ class WearTests:
             ";".join(f"{column}={values[i]:.8e}" for column, values in in_si.items())
             for i in range(len(self))
         )
-        return tuple(hashlib.sha256(text.encode()).hexdigest()[:DIGEST] for text in texts)
+        # Of a million tests, two share 16 digits with a probability below 1e-7.
+        return tuple(hashlib.sha256(text.encode()).hexdigest()[:16] for text in texts)
 
     def conditions(
         self, model: ContactModel, friction_coefficient: ArrayLike | None = None, rig: Rig | Pipeline[...] | None = None
