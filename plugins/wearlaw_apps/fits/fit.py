@@ -59,9 +59,6 @@ LEAST_SCATTER = 1e-5
 USABLE = 0.95
 """Share of the replicates that must converge and determine each parameter, for reliable intervals."""
 
-DIGITS = 4
-"""Significant digits of the stated range of a fitted law, rounded outwards."""
-
 
 def fit(
     predict: Pipeline[...],
@@ -502,11 +499,11 @@ def _calibration(task: _Task, predict: Pipeline[...], observed: Observations) ->
 
 
 def _ends(variable: str, values: Array) -> tuple[str, str]:
-    """Return the least and the greatest value with the unit, rounded outwards."""
+    """Return the least and the greatest value with the unit, rounded outwards to four digits."""
     unit = UNITS[variable]
     shown = in_unit(values, unit)
     low, high = (
-        float(Context(DIGITS, rounding).create_decimal_from_float(float(end)))
+        float(Context(4, rounding).create_decimal_from_float(float(end)))
         for end, rounding in ((shown.min(), ROUND_FLOOR), (shown.max(), ROUND_CEILING))
     )
     return f"{low!r} {unit}", f"{high!r} {unit}"

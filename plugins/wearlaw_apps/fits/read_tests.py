@@ -31,9 +31,6 @@ LARGEST = 2**22
 TEXTS = ("label", "comment")
 """Columns of text."""
 
-LATER = (*WAYS, *ROLLED, BALANCE.name)
-"""Columns that others must resemble closely to be taken for them: a mass is no mass_loss."""
-
 
 Source: TypeAlias = "str | os.PathLike[str] | pd.DataFrame"
 """A file of tests, the name of shipped tests, or a table."""
@@ -225,7 +222,8 @@ def _unknown(table: Table, names: Collection[str]) -> Iterator[str]:
     Another condition of a rig has a unit, and a name unlike those of missing columns.
     """
     missing = [name for name in (*COLUMNS, *TEXTS) if name not in table.columns]
-    near, nearer = ([name for name in missing if (name in LATER) == later] for later in (False, True))
+    close_alone = (*WAYS, *ROLLED, BALANCE.name)  # a mass is no mass_loss
+    near, nearer = ([name for name in missing if (name in close_alone) == close] for close in (False, True))
     unknown: list[Column] = []
     likely: dict[str, str] = {}
     for column in table.columns.values():

@@ -46,12 +46,6 @@ if TYPE_CHECKING:
 WEAR_INDEX_DENSITY = "wear_index_density"
 """The variable over which wear is drawn if creepage alone varies."""
 
-LONGEST = 6
-"""Most letters of a parameter's name that is its symbol, such as "tr_sc"."""
-
-MOST_SAMPLES = 200
-"""Most replicates for a band; more would not change it visibly."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Fit:
@@ -344,9 +338,9 @@ class Fit:
 
 
 def symbol_of(parameter: str) -> str:
-    """Return the symbol of a parameter, such as "μ", or else its name, which of laws is the symbol, or words."""
+    """Return the symbol of a parameter, such as "μ"; a short name, such as "tr_sc", is its symbol, others are words."""
     variable = VARIABLES.get(parameter)
-    return (variable and variable.symbol) or (parameter if len(parameter) <= LONGEST else parameter.replace("_", " "))
+    return (variable and variable.symbol) or (parameter if len(parameter) <= 6 else parameter.replace("_", " "))
 
 
 def _plural(observable: str) -> str:
@@ -424,7 +418,7 @@ def _curve(fit: Fit, observed: Observations, problem: Problem, along: Array) -> 
     low = high = None
     if fit.samples:
         values = fit.values_in_si(fit.samples)
-        step = max(len(next(iter(values.values()))) // MOST_SAMPLES, 1)
+        step = max(len(next(iter(values.values()))) // 200, 1)  # more would not change the band visibly
         tail = 0.5 - 0.5 * fit.confidence
         low, high = np.quantile(at({name: some[::step] for name, some in values.items()}), [tail, 1.0 - tail], axis=0)
     return Curve("fitted", along[order], at(fit.values_in_si())[0], low=low, high=high)
