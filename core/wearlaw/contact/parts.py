@@ -191,7 +191,8 @@ class CreepForces:
     @classmethod
     def of_line(cls, force: Array) -> Self:
         """Return the forces of a line, which has a longitudinal force alone [N]."""
-        none = np.broadcast_to(0.0, np.shape(force))
+        shape = getattr(force, "shape", ())  # what a model returns is checked later
+        none: Any = np.broadcast_to(0.0, shape) if shape else np.float64(0.0)
         return cls(longitudinal=force, lateral=none, spin_moment=none)
 
     @property

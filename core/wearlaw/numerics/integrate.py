@@ -113,7 +113,8 @@ class Forces:
             return forces
 
         if problem.geometry == "line":
-            block = BLOCK if isinstance(model, LineContactModel) else NODE_BLOCK
+            closed_form = isinstance(model, LineContactModel)  # without nodes that would fill the memory
+            block = problem.size if closed_form else NODE_BLOCK
         else:
             if problem.size > FEW and not self._block:
                 self._block = _block(model, problem)

@@ -209,13 +209,16 @@ def check_results(model: ContactModel, problem: Problem, result: Any, name: str 
     """Raise a `ModelError` unless each array among results holds finite float64 for each operating point."""
     if type(result) is Across:  # made of checked rates
         return
-    fields = CreepForces.__slots__ if isinstance(result, CreepForces) else getattr(result, "_fields", ())
-    if fields or isinstance(result, tuple):
-        one_point = problem.batch_shape == ()
-        for field, part in [(field, getattr(result, field)) for field in fields] or [(name, part) for part in result]:
+    names = getattr(result, "_fields", None)
+    if type(result) is CreepForces:
+        names = ("longitudinal",) if problem.geometry == "line" else CreepForces.__slots__  # the others of a line are 0
+        result = tuple([getattr(result, field) for field in names])
+    if isinstance(result, tuple):
+        one_point, names = problem.batch_shape == (), names or (name,) * len(result)
+        for place, part in enumerate(result):
             if part is None or (one_point and type(part) is np.float64 and math.isfinite(part)):
                 continue
-            check_results(model, problem, part, field)
+            check_results(model, problem, part, names[place])
         return
     check_type(model, name, result, problem.batch_shape)
     if not math.isfinite(_product(result, result)) and not np.isfinite(result).all():

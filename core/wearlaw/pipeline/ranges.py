@@ -207,7 +207,7 @@ def unusual_ratios(problem: Problem, laws: Iterable[Law] = ()) -> dict[str, floa
     for body in problem.bodies.values():
         radius = body.rolling_radius
         relative = extremes(problem.a / radius)[1] if isinstance(radius, np.ndarray) else a / radius
-        every += [("strain", pressure / body.youngs_modulus), ("length", relative), ("width", b / body.usual_width)]
+        every += ("strain", pressure / body.youngs_modulus), ("length", relative), ("width", b / body.usual_width)
     every += [("hardness", pressure / hardness_of(law, problem)) for law in laws if has_hardness(type(law))]
     for name, ratio in every:
         if ratio > RATIOS[name].most:
