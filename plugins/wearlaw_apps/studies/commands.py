@@ -91,10 +91,11 @@ def _print(tables: Sequence[NamedTable]) -> None:
 
 def _by_column(frame: pd.DataFrame) -> pd.DataFrame:
     """Return a table of a sweep with its axis in the first column, and a column for each row, with units."""
-    what, _, over = str(frame.columns[0]).partition(" by ")
-    unit, rows = what[what.rindex(" [") :], frame.itertuples(index=False, name=None)
+    unit, of_axis = (f" [{unit}]" if unit else "" for unit in frame.attrs["units"])
+    over = str(frame.columns[0]).partition(" by ")[2].partition(" [")[0]
+    rows = frame.itertuples(index=False, name=None)
     columns = {f"{label}{unit}": list(map(float, values)) for label, *values in rows}
-    return pd.DataFrame({over: frame.attrs["at"], **columns})
+    return pd.DataFrame({f"{over}{of_axis}": frame.attrs["at"], **columns})
 
 
 def _partial(folder: Path, resume: bool) -> Path:

@@ -249,6 +249,15 @@ def test_maps_share_a_scale_of_colours_and_draw_borders_of_regions(scale: Litera
     assert [trace["name"] for trace in shown["data"] if trace["showlegend"]] == ["beyond"]
 
 
+def test_the_legend_of_a_single_map_stands_below_since_its_bar_is_beside_it() -> None:
+    region = {"beyond": np.array([[True, False, False], [True, True, False]])}
+    drawn_map = Map("wear [g]", X, np.array([1.0, 2.0]), np.ones((2, 3)), "linear", region)
+    _, of_map = both(panel(map=drawn_map, curves=()))
+    _, of_curves = both(panel())
+    assert of_map["layout"]["legend"]["orientation"] == "h"
+    assert "orientation" not in of_curves["layout"]["legend"]
+
+
 # Axes, panels and texts
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from wearlaw_apps.output.curves import (
+    BLACK,
     OUTSIDE,
     STRIP,
     Curve,
@@ -81,7 +82,8 @@ def plotly_figure(figure: FigureData) -> Json:
     width = COLUMN if len(numbered) == 1 else PAGE / 2
     tall = max(panel_height(panel, width) for panel in figure.panels) / PRINTED
     longest = max((len(curve.label) for panel in figure.panels for curve in panel.curves), default=0)
-    below = {"orientation": "h", "y": -0.24 / rows / tall} if len(numbered) > 1 or longest > LONG else {}
+    beside = len(numbered) == 1 and longest <= LONG and figure.panels[0].map is None  # no bar of colours is there
+    below = {} if beside else {"orientation": "h", "y": -0.24 / rows / tall}
     head = head_of_legend(figure)
     layout: Json = {
         "height": round(ROW_HEIGHT * tall) * rows + 100,
@@ -242,7 +244,7 @@ def _map(shown: Map, number: str, ends: Ends) -> list[Json]:
             "legendgroup": literal(label),
             "z": [_numbers(row) for row in region.astype(float)],
             "contours": {"start": 0.5, "end": 0.5, "size": 1.0, "coloring": "none"},
-            "line": {"color": "black", "width": 2, "dash": _dash(LINES[place])},
+            "line": {"color": PALETTE[BLACK], "width": 2, "dash": _dash(LINES[place])},
             "hoverinfo": "skip",
             "showscale": False,
             "showlegend": True,

@@ -225,9 +225,11 @@ def summary(sweep: xarray.Dataset, creepage: str | None, outcome: str, pairs: li
         rows |= {label: list(map(Marked, each.values, marks)) for label, each in values.items()}
     heads = [np.format_float_positional(at, precision=4, fractional=False, trim="-") for at in line[axis].values]
     frame = pd.DataFrame(list(rows.values()), columns=heads, dtype=object)
-    what, over = (label_of(name, units={name: line[name].attrs["units"]}) for name in (outcome, axis))
+    units = {name: line[name].attrs["units"] for name in (outcome, axis)}
+    what, over = (label_of(name, units=units) for name in units)
     frame.insert(0, f"{what} by {over}", list(rows))
-    frame.attrs["at"] = line[axis].values.tolist()  # which the heads round
+    # The heads round the values, and spell the units for readers.
+    frame.attrs |= {"at": line[axis].values.tolist(), "units": list(units.values())}
     return frame
 
 
