@@ -20,16 +20,12 @@ from wearlaw_kit.law_contacts import (
     has_rates_at_nodes,
     random_contacts,
     retotalled,
-    with_problem,
     with_totals,
 )
 from wearlaw_kit.rules import rule
 
 PATHS = 64
 """Number of paths between random contacts to search for jumps and kinks."""
-
-TURNS = 16
-"""Number of contacts whose slip turns."""
 
 KINK = 1e-4
 """Change of slope that counts as a kink: of the rate, per e-fold of all values of the contact together."""
@@ -88,31 +84,6 @@ def rate_jumps_only_where_declared(law: Law) -> None:
     for path, share, before, behind in find_jumps(paths.rate, PATHS):
         what = f"the rate jumps from {before:.6g} to {behind:.6g} kg/m/m², not declared in `jumps`"
         paths.assert_declared(jumps, path, (share, share), what)
-
-
-@rule(Law, applies=has_rates_at_nodes)
-def rate_does_not_jump_with_direction(law: Law) -> None:
-    """The rate is continuous as slip and traction turn together through all directions on an ellipse."""
-    contact = forward(random_contacts(TURNS, seed=3, loaded=True, law=law))
-    values = {name: np.repeat(getattr(contact, name)[:, None, :], 2, axis=2) for name in (*VALUES[:5], "x")}
-    traction, slip = values.pop("traction"), values.pop("slip")
-    still = {**values, "y": values["x"], "strip_width": np.ones((TURNS, 2))}
-
-    def rate(index: Indices, share: Array) -> Array:
-        along, across = (function(2.0 * np.pi * share)[:, None, None] for function in (np.cos, np.sin))
-        vectors = {"traction": traction[index], "slip": slip[index]}
-        turned = with_totals(
-            **{name: value[index] for name, value in still.items()},
-            **{f"{name}_x": along * value for name, value in vectors.items()},
-            **{f"{name}_y": across * value for name, value in vectors.items()},
-            rolling_speed=contact.rolling_speed[index],
-            density=contact.density[index],
-        )
-        values: Array = law.rate(with_problem(turned, law), law.numbers)[:, 0, 0]
-        return values
-
-    for _, share, before, behind in find_jumps(rate, TURNS):
-        raise AssertionError(f"the rate jumps from {before:.6g} to {behind:.6g} at {360.0 * share:.4g}° to rolling")
 
 
 @rule(Law, applies=lambda law: has_rates_at_nodes(law) and law.breakpoints(law.numbers) is not None)

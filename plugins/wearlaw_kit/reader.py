@@ -80,18 +80,6 @@ def vectors_have_their_magnitudes(reader: Reader) -> None:
         assert_close(value, due, f"the {name} against its components", 0.0, printed * due.max())
 
 
-@rule(Reader)
-def slip_lies_along_the_traction(reader: Reader) -> None:
-    """Where the bodies slip, dry friction has the traction along the slip, and so the energy is not negative."""
-    contact = contact_of(reader)
-    across = contact.traction_x * contact.slip_y - contact.traction_y * contact.slip_x
-    product = contact.integral(np.abs(contact.traction), np.abs(contact.slip))
-    along = contact.integral(np.abs(across)) <= ASIDE * product
-    assert along.all() or _is_mean(contact), "slip and traction lie across each other"
-    energy = contact.wear_index_density
-    assert (energy >= -PRINTED * energy.max()).all(), "the slip points against the traction"
-
-
 @rule(Reader, "stick")
 def traction_slips_at_its_bound(reader: Reader) -> None:
     """Where the bodies slip, the traction is at its bound, if that is known."""

@@ -265,7 +265,7 @@ CAUGHT: dict[Any, str] = {
     BandUpsideDown: "band_is_ordered",
     OfTheEnergy: "pressure_times_slip_is_followed",
     NumberOfTheClass: "numbers_are_fields",
-    Driven: "rate_does_not_jump_with_direction",
+    Driven: "direction_of_creepage_does_not_matter",
     UnknownClaim: "exemptions_are_claims",
     NoReason: "exemptions_are_claims",
     NoSource: "source_is_stated",

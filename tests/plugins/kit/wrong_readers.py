@@ -34,7 +34,7 @@ def of_problem(contact: wl.Contact, factor: float, name: str) -> wl.Contact:
 
 CHANGES: dict[str, tuple[str, Callable[[wl.Contact], wl.Contact]]] = {
     "HalfTheMagnitude": ("vectors_have_their_magnitudes", lambda c: scaled(c, 0.5, "slip")),
-    "SwappedSlip": ("slip_lies_along_the_traction", lambda c: c.replaced(slip_x=c.slip_y, slip_y=c.slip_x)),
+    "SwappedSlip": ("elements_dissipate_the_wear_index", lambda c: c.replaced(slip_x=c.slip_y, slip_y=c.slip_x)),
     "HalfTheIndex": ("wear_index_is_forces_times_creepages_of_the_file", lambda c: scaled(c, 0.5, "wear_index")),
     "HalfTheSlip": ("elements_dissipate_the_wear_index", lambda c: scaled(c, 0.5, "slip", "slip_x", "slip_y")),
     "HalfTheTraction": (

@@ -270,7 +270,7 @@ CAUGHT: dict[Any, str] = {
     **{of_friction(name, friction): check for name, (check, friction) in WRONG_FRICTIONS.items()},
     **{of_problem(name, change): check for name, (check, change) in WRONG_PROBLEMS.items()},
     SinglePressure: "contact_is_in_double_precision",
-    Reversed: "contact_does_not_gain_energy",
+    Reversed: "pipelines_take_the_contact",
     Forgets: "pipelines_take_the_contact",
     Film: "units_of_parameters_do_not_matter",
     Slower: "units_of_parameters_do_not_matter",
