@@ -265,30 +265,6 @@ def _inside(problem: Problem, contact: Contact) -> NDArray[np.bool_]:
     return within
 
 
-@on_problems(*SHAPES, applies=has_nodes)
-def nodes_lie_where_their_areas_do(model: ContactModel, problem: Problem) -> None:
-    """The sums of x, y, x² and y² over the areas are the integrals over the patch."""
-    contact, error = model.solve(problem), error_of_sums(model, problem)
-    for name, half, (first, second) in _moments(problem):
-        at, size = getattr(contact, name), problem.patch_area * half
-        assert_close(contact.integral(at), first, f"∫ {name} dA", 0.0, error * size)
-        assert_close(contact.integral(at, at), second, f"∫ {name}² dA", 0.0, error * size * half)
-
-
-def _moments(problem: Problem) -> list[tuple[str, Array, tuple[Array, Array]]]:
-    """Return x and y, half the extent of the patch along each, and the integrals of both and of their squares."""
-    a, b, area, strips = problem.a, problem.b, problem.patch_area, problem.strips
-    none = np.zeros_like(area)
-    if problem.geometry == "line":
-        return [("x", a, (none, area * a**2 / 3.0))]
-    if strips is None:
-        return [("x", a, (none, area * a**2 / 4.0)), ("y", b, (none, area * b**2 / 4.0))]
-    middle = (strips.area * strips.x).sum(axis=-1)
-    along = (strips.area * (strips.half_length**2 / 3.0 + strips.x**2)).sum(axis=-1)
-    across = (strips.area * strips.y).sum(axis=-1), (strips.area * strips.y**2).sum(axis=-1)
-    return [("x", strips.half_length.max(axis=-1), (middle, along)), ("y", b, across)]
-
-
 @on_problems(ELLIPSE, PATCH, applies=has_nodes)
 def strips_have_their_widths(model: ContactModel, problem: Problem) -> None:
     """The widths of strips sum to that of the patch, and each strip has the area of its width times its length.

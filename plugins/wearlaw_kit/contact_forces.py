@@ -10,7 +10,7 @@ from wearlaw.contact.parts import CreepForces
 from wearlaw.contact.problem import Problem
 from wearlaw.models.contact_model import ContactModel
 from wearlaw_kit.bisection import Indices, each_once, find_jumps
-from wearlaw_kit.contact import POINTS_OF_STEPS, has_nodes, mixed_batch
+from wearlaw_kit.contact import POINTS_OF_STEPS, mixed_batch
 from wearlaw_kit.examples import SAME, SUM, assert_close, for_each, leeway, left_out, part
 from wearlaw_kit.reduced import (
     STRIP_AT,
@@ -47,9 +47,6 @@ POINTS = 32
 
 FAR = 100.0
 """Reduced creepage far beyond the saturation of any theory that saturates."""
-
-FULL = 1e4
-"""Reduced creepage at which hardly more than the rigid slip is left."""
 
 SMALL = 0.1
 """Reduced spin at which theories are still close to linear theory."""
@@ -379,26 +376,3 @@ def spin_has_its_force_and_moment(model: ContactModel, shape: Shape) -> None:
     assert least >= 0.25 * (1.0 - leeway()), (
         f"a spin alone gives only {least:.3g} of the Fy of linear theory, and no Mz of that size"
     )
-
-
-@on_shapes(ELLIPSE, PATCH, claims=("spin",), applies=has_nodes)
-def slip_turns_with_the_spin(model: ContactModel, shape: Shape) -> None:
-    """In full slip the slip turns with the spin: it gains (-φy, -φx), where a model resolves the patch.
-
-    It gains a quarter to four times that, since theories with a flexibility each for x, y and spin turn at other rates:
-    the simplified theory at 1 to 3.9 times that, at a/b from 1/20 to 20. The check compares ∫ y s_x dA and ∫ x s_y dA.
-    Half the difference between both signs of the spin leaves out the slip of elastic bodies without spin.
-    """
-    if left_out("spin"):
-        return
-    problem = at_magnitude(without_spin(shape.draw(POINTS)), FULL)
-    spin = 0.5 * translation(problem) / np.maximum(problem.a, problem.b)
-    more, less = (
-        model.solve(problem.with_creepages(problem.creepage, problem.lateral_creepage, side * spin))
-        for side in (1.0, -1.0)
-    )
-    for slip, arm in (("slip_x", "y"), ("slip_y", "x")):
-        turned = [contact.integral(getattr(contact, slip), getattr(contact, arm)) for contact in (more, less)]
-        rate = -0.5 * (turned[0] - turned[1]) / (spin * more.integral(getattr(more, arm), getattr(more, arm)))
-        wrong = ~((rate >= 0.25) & (rate <= 4.0))
-        assert not wrong.any(), f"along {arm}, {slip} falls at {rate[wrong][0]:.3g} times the spin"

@@ -355,7 +355,7 @@ def order_of_x(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
     return with_sums(contact.replaced(**moved), problem)
 
 
-@wrong("nodes_lie_where_their_areas_do", *NODES)
+@wrong("pressure_is_that_of_the_problem", *NODES)
 def x_over_half_the_patch(contact: wl.Contact, problem: wl.Problem) -> wl.Contact:
     """x ends half-way to the edges."""
     return with_sums(contact.replaced(x=0.5 * contact.x), problem)
@@ -456,7 +456,7 @@ class SpinBackwards(OwnSlope):
         return with_sums(super().at(problem.with_creepages(*creepages, -problem.spin), shares, widths), problem)
 
 
-@wrong("slip_turns_with_the_spin")
+@wrong("no_node_gains_energy")
 class SlipWithoutSpin(OwnSlope):
     """The tractions know of the spin, and the slips do not."""
 
@@ -506,7 +506,7 @@ def creeping_less_by_strips(contact: wl.Contact, problem: wl.Problem) -> wl.Cont
     return times(contact, 0.9 if problem.strips.has_creepages else 1.0)
 
 
-ON_GIVEN_STRIPS = {"strips_have_their_widths", "spin_has_its_force_and_moment", "slip_turns_with_the_spin"}
+ON_GIVEN_STRIPS = {"strips_have_their_widths", "spin_has_its_force_and_moment"}
 """Checks on which models of given strips are tried too, beside those of every shape."""
 
 
