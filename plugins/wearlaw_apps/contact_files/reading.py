@@ -143,14 +143,13 @@ def _stacked(paths: Sequence[Path], contacts: Sequence[Contact]) -> Contact:
     problem = _stacked_problem(problems)
     nodes = tuple(np.max([contact.pressure.shape for contact in contacts], axis=0).tolist())
     fields: dict[str, Any] = {name: np.array([getattr(contact, name) for contact in contacts]) for name in TOTALS}
-    for name in ("pressure", "traction", "slip", "traction_bound", "area", *COMPONENTS):
-        fields[name] = np.array([_padded(getattr(contact, name), nodes, "constant") for contact in contacts])
-    fields["x"] = np.array([_padded(contact.x, nodes, "edge") for contact in contacts])
+    for name in ("pressure", "traction", "slip", "traction_bound", "area", "x", *COMPONENTS):
+        fields[name] = np.array([_padded(getattr(contact, name), nodes) for contact in contacts])
     if not contacts[0].on_strips:
         return Contact(**{name: value for name, value in fields.items() if name not in COMPONENTS}, problem=problem)
-    width = [_padded(contact.strip_width, nodes[1:], "edge") for contact in contacts]
-    fields["y"] = np.array([_evenly_on(contact.y, contact.strip_width, nodes) for contact in contacts])
-    return Contact(**fields, strip_width=np.array(width), problem=problem)
+    for name, shape in (("y", nodes), ("strip_width", nodes[1:])):
+        fields[name] = np.array([_padded(getattr(contact, name), shape) for contact in contacts])
+    return Contact(**fields, problem=problem)
 
 
 COMPONENTS = ("traction_x", "traction_y", "slip_x", "slip_y")
@@ -191,13 +190,10 @@ def _stacked_problem(problems: Sequence[Problem]) -> Problem:
     strips = [problem.strips for problem in problems if problem.strips is not None]
     if strips:
         count = (max(strip.y.size for strip in strips),)
-        made = {
-            name: np.array([_padded(getattr(strip, name), count, "constant") for strip in strips])
-            for name in ("half_length", "max_pressure")
-        }
-        made["width"] = np.array([_padded(strip.width, count, "edge") for strip in strips])
-        made["y"] = np.array([_evenly_on(strip.y, strip.width, count) for strip in strips])
-        fields["strips"] = Strips(**made)
+        names = ("y", "width", "half_length", "max_pressure")
+        fields["strips"] = Strips(
+            **{name: np.array([_padded(getattr(strip, name), count) for strip in strips]) for name in names}
+        )
     bodies = {name: _stacked_body([problem.bodies[name] for problem in problems]) for name in problems[0].bodies}
     return problems[0].replaced(**fields, bodies=bodies)
 
@@ -212,15 +208,6 @@ def _stacked_body(bodies: Sequence[Body]) -> Body:
     return dataclasses.replace(bodies[0], **fields)
 
 
-def _padded(values: Array, shape: tuple[int, ...], mode: Any) -> Array:
-    """Return an array of a larger shape, with zeros or the values of the edge after its own."""
-    more = [(0, whole - size) for whole, size in zip(shape, values.shape, strict=True)]
-    return np.pad(values, more, mode=mode)
-
-
-def _evenly_on(y: Array, width: Array, shape: tuple[int, ...]) -> Array:
-    """Return the positions of strips, continued beyond the last one by its width."""
-    padded = _padded(y, shape, "edge")
-    beyond = np.maximum(np.arange(shape[-1]) - (width.size - 1), 0) * width[-1]
-    positions: Array = padded + beyond
-    return positions
+def _padded(values: Array, shape: tuple[int, ...]) -> Array:
+    """Return an array of a larger shape, with zeros after its own values, as strips that fill up a batch have."""
+    return np.pad(values, [(0, whole - size) for whole, size in zip(shape, values.shape, strict=True)])

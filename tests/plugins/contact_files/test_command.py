@@ -49,7 +49,7 @@ def test_forces_powers_and_wear_of_each_body_are_printed(folder: Path) -> None:
     assert "note: half_space.0001.mat: the slip of the nodes dissipates 1083 W, the creepages 1197 W; the laws" in (
         result.stderr
     )
-    assert "note: wear: the parameters of wear law 'usfd' were fitted for line contacts" in result.stderr
+    assert "wear: the parameters of wear law 'usfd' were fitted for line contacts" in result.stderr
     written = {"wear.csv", "profile_wheel.csv", "profile_rail.csv", "wear.png", "wear.json", ".wearlaw-files"}
     assert files(folder / "half_space.0001-wear") == written
     assert all(f"half_space.0001-wear/{name}" in result.stdout for name in written - {".wearlaw-files"})
