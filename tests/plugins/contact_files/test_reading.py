@@ -10,7 +10,6 @@ import pytest
 
 import wearlaw as wl
 from tests.cases import wearlaw
-from tests.core.axles import GIVEN, KTH, Axle
 from tests.core.distributions import Install
 from tests.plugins.contact_files.files import FILES
 from wearlaw import Q
@@ -246,25 +245,6 @@ def test_laws_on_a_solved_contact_give_what_the_pipeline_gives() -> None:
             assert again[name].m == pytest.approx(found[name].m, rel=1e-12), (model, name)
         assert again.scale == found.scale
     assert again.depth_per_distance("wheel").m == pytest.approx(found.depth_per_distance("wheel").m)
-
-
-def test_laws_on_a_solved_line_give_what_the_pipeline_gives_on_its_nodes() -> None:
-    given: Any = {"max_pressure": "1500 MPa", "creepage": Q([0.5, 2.0], "%"), "friction_coefficient": 0.4}
-    found = (wl.TwinDisc.suros() | wl.contact_model("exact") | wl.wear_law("kth"))(**given)
-    again = wl.Prediction.of(found.contact, wl.wear_law("kth"))
-    assert again.wear_rate.m == pytest.approx(found.contact.mean(wl.wear_law("kth").checked_rate(found.contact)) * 1e3)
-    assert again.tangential_force.m == pytest.approx(found.tangential_force.m)
-    assert again.wear_rate_of("disc_2").m == pytest.approx(again.wear_rate.m)
-
-
-def test_missing_patches_stay_missing() -> None:
-    found = (Axle() | wl.contact_model("fastsim") | KTH)(**GIVEN)
-    again = wl.Prediction.of(found.contact, KTH)
-    assert np.isnan(again.wear_rate.m).sum() == 5
-    assert again.wear_rate.m == pytest.approx(found.wear_rate.m, rel=1e-12, nan_ok=True)
-    assert again.sel(side="right", patch=2).wear_rate_of("rail").m == pytest.approx(
-        found.sel(side="right", patch=2).wear_rate_of("rail").m, rel=1e-12, nan_ok=True
-    )
 
 
 def test_what_a_solved_contact_cannot_do_says_so() -> None:

@@ -75,15 +75,6 @@ def test_strips_of_an_ellipse_are_solved_as_the_ellipse(bound: Any) -> None:
     np.testing.assert_allclose(strips.rigid_slip, ellipse.rigid_slip, rtol=32 * EPS)
 
 
-def test_the_load_of_strips_is_that_of_the_ellipse() -> None:
-    # Strips have loads in proportion to 1-η², which is no √(1-η²) times a polynomial: the error is of fourth order.
-    one = np.ones(1)
-    load = 2.0 / 3.0 * np.pi
-    few, many = (abs(cut(one, one, one, count).normal_force.sum() / load - 1.0) for count in (10, 21))
-    assert few < 1e-4
-    assert many == pytest.approx(few / 16.0, rel=0.1)
-
-
 def two_humps(creepage: float, friction: float = 0.3) -> wl.Problem:
     """Return a patch with two humps of pressure, such as a worn wheel's, without spin."""
     y = np.linspace(-9e-3, 9e-3, 19)
@@ -120,27 +111,6 @@ def test_without_spin_each_strip_has_the_force_of_a_line(bound: Any, creepage: f
     np.testing.assert_allclose(along, force, rtol=1e-9)
     np.testing.assert_allclose(contact.force_x, force.sum(axis=-1), rtol=1e-9)
     np.testing.assert_allclose(contact.cell_wear_index, contact.wear_index, rtol=1e-6)
-
-
-def test_the_pressure_of_a_strip_is_half_an_ellipse_and_zero_a_rounding_beyond_its_edge() -> None:
-    problem = two_humps(1e-3)
-    assert problem.strips is not None
-    strips, share = problem.strips, np.array([-np.nextafter(1.0, 2.0), -0.6, 0.0, 0.8, np.nextafter(1.0, 2.0)])
-    x = share[:, None] * strips.half_length[:, None, :]
-    nothing, none = np.zeros_like(x), np.zeros(1)
-    contact = wl.Contact.from_strips(
-        problem,
-        wl.CreepForces(longitudinal=none, lateral=none, spin_moment=none),
-        x=x,
-        y=strips.y,
-        length=np.ones_like(x),
-        strip_width=strips.width,
-        traction=(nothing, nothing),
-        slip=(nothing, nothing),
-        traction_bound=nothing,
-    )
-    due = np.array([0.0, 0.8, 1.0, 0.6, 0.0])[:, None] * strips.max_pressure[:, None, :]
-    np.testing.assert_allclose(contact.pressure, due, rtol=8 * EPS, atol=0.0)
 
 
 class Humps(wl.Rig):
@@ -195,16 +165,3 @@ def test_what_strips_cannot_do_is_said() -> None:
     found: Any = (Humps() | wl.contact_model("fastsim"))(creepage="1 %", friction_coefficient=0.3)
     with pytest.raises(CompositionError, match="semi_axis_a: belongs to elliptic contacts, not to patches of strips"):
         _ = found.semi_axis_a
-
-
-def test_strips_are_indexed_flattened_and_kept_apart() -> None:
-    _, strips = patches()
-    column = strips[:, None].broadcast_to((POINTS, 2))
-    assert column.strips is not None and column.strips.y.shape == (POINTS, 2, STRIPS)  # noqa: PT018
-    flat = column.flatten().strips
-    assert flat is not None
-    np.testing.assert_array_equal(flat.y[::2], strips.strips.y if strips.strips is not None else None)
-    model = wl.contact_model("fastsim")
-    together = model.solve(column)
-    assert together.pressure.shape[:2] == (POINTS, 2)
-    np.testing.assert_allclose(together.force_x[:, 1], model.solve(strips).force_x, rtol=64 * EPS)
