@@ -307,10 +307,13 @@ def test_arrow_keys_move_a_slider_and_the_numbers_follow(browser: webdriver.Chro
 
 
 @needs_browser
+@pytest.mark.parametrize("width", [1300, 390])
 @pytest.mark.parametrize("wanted", ["light", "dark"])
-def test_the_page_is_dark_where_its_reader_prefers_that(browser: webdriver.Chrome, address: str, wanted: str) -> None:
+def test_the_page_is_dark_where_its_reader_prefers_that(
+    browser: webdriver.Chrome, address: str, wanted: str, width: int
+) -> None:
     scheme(browser, wanted)
-    page = opened(browser, address, 1300)
+    page = opened(browser, address, width)
     shot = plt.imread(io.BytesIO(page.get_screenshot_as_png()))[..., :3]
     assert (np.median(shot) < 0.2) == (wanted == "dark")
     scheme(browser, "light")

@@ -261,8 +261,12 @@ def test_the_first_screen_holds_title_and_the_main_figure(browser: webdriver.Chr
     assert browser.execute_script("return document.querySelector('.main .cartesianlayer').getBBox().height") > 100.0
 
 
-def test_nothing_is_wider_than_the_screen(browser: webdriver.Chrome, screen: tuple[int, int]) -> None:
+@pytest.mark.parametrize("wanted", ["light", "dark"])
+def test_nothing_is_wider_than_the_screen(browser: webdriver.Chrome, screen: tuple[int, int], wanted: str) -> None:
     width, _ = screen
+    scheme(browser, wanted)
+    paper = browser.find_element("tag name", "body").value_of_css_property("background-color")
+    assert (luminance(paper) < 0.5) == (wanted == "dark")
     assert browser.execute_script("return document.documentElement.scrollWidth") <= width
     everything = "h1, h2, h3, p, li, figcaption, summary, .wide, .plot, .legend, .xtitle, .ytitle, .annotation-text"
     cut = [box for box in boxes(browser, everything) if box[1] < 0.0 or box[3] > width]
