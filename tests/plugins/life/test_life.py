@@ -252,7 +252,7 @@ def test_result_has_a_table_profiles_and_a_picture(short: Life) -> None:
     assert [curve.label for curve in measures.curves] == ["depth", "flange thickness", "diameter"]
     assert measures.curves[2].y == pytest.approx(table["diameter [mm]"].to_numpy() - 920.0)
     legends = [axes.get_legend() for axes in short.plot().axes]
-    distances = [f"{table['distance [km]'].iloc[place]:,.0f} km" for place in (0, 2, 3, 5)]
+    distances = [f"{table['distance [km]'].iloc[place]:.0f} km" for place in (0, 2, 3, 5)]
     names = [[text.get_text() for text in legend.get_texts()] for legend in legends if legend]
     assert names == [distances, distances, ["depth", "flange thickness", "diameter"]]
 
