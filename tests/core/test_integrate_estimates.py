@@ -173,7 +173,7 @@ class WithAHole(type(LINE_MODELS["exact"])):  # type: ignore[misc]
         return None
 
     def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
-        fields = super().fields(problem, nodes)
+        fields: wl.LineFields = super().fields(problem, nodes)
         pressure = np.where(np.abs(fields.pressure - 1e9) < 1e6, np.nan, fields.pressure)
         return dataclasses.replace(fields, pressure=pressure)
 
