@@ -12,12 +12,12 @@ from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: patches with any flexibilities
 from wearlaw_models.contact_models.fastsim.strips import (  # private: with any number of nodes
-    even_strips,
     forces,
     layout_on,
     strips,
 )
 from wearlaw_models.contact_models.fastsim.zones import Nodes  # private: as above
+from wearlaw_models.strips import even_strips  # private: with any number of nodes
 
 ROUNDING = 100 * EPS
 

@@ -13,11 +13,11 @@ from tests.plugins.fastsim.strips import CASE, ROUNDING, ellipses, limit, sample
 from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: patches with any flexibilities
-from wearlaw_models.contact_models.fastsim.strips import even_strips  # private: with any number of nodes
 from wearlaw_models.contact_models.fastsim.zones import (  # private: whatever the excess along a slip zone
     Nodes,
     _where_it_sticks,
 )
+from wearlaw_models.strips import even_strips  # private: with any number of nodes
 
 
 @pytest.mark.validates(

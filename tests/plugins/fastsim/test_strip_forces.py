@@ -14,12 +14,12 @@ from tests.plugins.fastsim.strips import CASE, ROUNDING, ellipses, limit, sample
 from tests.plugins.full_theory import rows
 from wearlaw import Q
 from wearlaw_models.contact_models.fastsim.strips import (  # private: any nodes
-    even_strips,
     forces,
     forces_alone,
     layout_on,
     strips,
 )
+from wearlaw_models.strips import even_strips  # private: with any number of nodes
 
 
 @pytest.mark.validates(
