@@ -145,7 +145,8 @@ class Line:
             table = points.coordinates()
         states = {name: digest(column.values, column.unit) for name, column in table.items()}
         if self._kept is not None and part is not None:
-            check_same(self._kept.path, {f"step {step + 1}": part.record["states"]}, {f"step {step + 1}": states})
+            now = f"step {step + 1}"
+            check_same(self._kept.path, {now: part.record["states"]}, {now: states}, "life")
             wears = [Wear(*(part.arrays[f"{head}{name}"] for name in Wear._fields)) for head in HEADS[: len(at)]]
             notes = part.record["notes"]
         else:

@@ -92,7 +92,7 @@ class Folder:
             raise OutputError(
                 f"store: {shown(self.path)} holds {what}; add resume=True, choose another folder, or remove it"
             )
-        check_same(self.path, before, self.provenance)
+        check_same(self.path, before, self.provenance, self._subject)
         return True
 
     def close(self) -> None:

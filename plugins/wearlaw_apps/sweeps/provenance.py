@@ -73,8 +73,8 @@ def digest(values: Array, unit: str | None, more: str = "") -> str:
     return f"{values.size} values, {ends}{more}, SHA-256 {hashed.hexdigest()[:16]}"
 
 
-def check_same(path: Path, before: Provenance, now: Provenance) -> None:
-    """Raise an error unless the sweep in a store is the same as this one.
+def check_same(path: Path, before: Provenance, now: Provenance, subject: str) -> None:
+    """Raise an error unless what a store holds, such as a "sweep", is the same as this one.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def check_same(path: Path, before: Provenance, now: Provenance) -> None:
     """
     changes = list(_changes("", before, now))
     if changes:
-        head = f"{shown(path)} holds another sweep and cannot be resumed, since these have changed:"
+        head = f"{shown(path)} holds another {subject} and cannot be resumed, since these have changed:"
         raise OutputError(
             with_problems(head, changes)
             + f"\nChange them back, choose another place, or remove {shown(path)} to start again"

@@ -153,18 +153,36 @@ def test_mass_does_not_depend_on_the_smoothing_of_dense_states() -> None:
     assert masses[0] == pytest.approx(masses[1], rel=0.02)
 
 
-def test_a_flange_keeps_the_place_and_the_depth_of_its_wear() -> None:
-    """A state on the flange beside those of the tread, in one step."""
+def worn_flange(over: str, **options: Any) -> tuple[Life, Q, np.ndarray[Any, Any]]:
+    """Return the life of a state on the flange beside those of the tread, places there, and their depths [um]."""
     states = line(9)
     flange = {"lateral_displacement [mm]": [6.2], "yaw [mrad]": [3.0], "share": [0.2]}
     states["share"] *= 0.8
     states = pd.concat([states.assign(**{"yaw [mrad]": 0.0}), pd.DataFrame(flange)])
-    found = life(states, "3 km", sides="each")
+    found = life(states, over, sides="each", **options)
     at = Q(np.linspace(-60.0, -28.0, 641), "mm")
-    depth = found.worn_profiles[0][1].depth_to(found.profile, at).m_as("um")
+    return found, at, found.worn_profiles[0][1].depth_to(found.profile, at).m_as("um")
+
+
+def test_a_flange_keeps_the_place_and_the_depth_of_its_wear() -> None:
+    """In one step it wears as the state does on the new profile."""
+    found, at, depth = worn_flange("3 km")
     alone = pipeline()(lateral_displacement="6.2 mm", yaw="3 mrad", **GIVEN).wear_profile("wheel", at=at)["depth"]
     direct = 0.2 * 3.0 * alone.sel(side="right").values  # um/km
     print(f"deepest {depth.max():.3g} of {direct.max():.3g} um")
     assert len(found.table) == 2
     assert depth.max() == pytest.approx(direct.max(), rel=0.1)
     assert at[depth.argmax()].m_as("mm") == pytest.approx(at[direct.argmax()].m_as("mm"), abs=0.25)
+
+
+def test_smoothing_over_many_steps_does_not_flatten_a_flange() -> None:
+    """The patch widens as it wears in: 61 um, not the 105 um of the new profile, whatever smooths each step."""
+    found = [worn_flange("40 km", resolution=f"{width} mm") for width in (0.4, 0.1)]
+    depths = [depth.max() for _, _, depth in found]
+    _, at, depth = found[1]
+    middles = [float((each @ at.m_as("mm")) / each.sum()) for *_, each in found]
+    width = np.ptp(at.m_as("mm")[depth > 0.3 * depth.max()])
+    print(f"steps {[len(worn.table) - 1 for worn, *_ in found]}, depths {depths}, middles {middles}, width {width}")
+    assert len(found[0][0].table) > 4
+    assert depths[0] == pytest.approx(depths[1], rel=0.1)
+    assert middles[0] == pytest.approx(middles[1], abs=0.1 * width)
