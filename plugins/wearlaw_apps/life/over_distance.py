@@ -67,7 +67,8 @@ def wear_out(
     removes it along the normal over a distance that wears at most `depth_step`, and takes new points at even arc
     lengths. The wear of a step is that of its middle, extrapolated from its beginning and from the step before. At
     each place it changes as an exponential with its relative rate of change, a method of second order like that of
-    Adams and Bashforth. A step needs one prediction of the line.
+    Adams and Bashforth. A step needs one prediction of the line. Flanks get hardly steeper than 80°: where a rail would
+    cut further in, the edge below wears too.
 
     Parameters
     ----------

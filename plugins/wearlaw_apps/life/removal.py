@@ -29,6 +29,13 @@ STEPS = 6
 FLANGE = np.radians(30.0)
 """Angle of a profile beyond which it is the flange of a wheel, or the gauge side of a rail [rad]."""
 
+STEEPEST = np.radians(80.0)
+"""Slope up to which wear makes a flank steeper [rad]. Rigs look for contact up to 86°; a patch beside that place ends
+there, with the pressure of an edge."""
+
+PASSES = 3
+"""How often the edge of a flank is looked for: smoothing leaves a part of it."""
+
 EDGE = 1e-3
 """Share of the deepest wear at an end of a profile that says that the profile is too short."""
 
@@ -92,6 +99,43 @@ def smoothed(depth: Array, at: Array, width: Array) -> Array:
         row[worn] = 0.0
         row += np.bincount(np.clip(place, 0, at.size - 1).ravel(), kernel.ravel(), at.size)
     return spread
+
+
+def shared(profile: Profile, at: Array, depth: Array, resolution: float) -> Array:
+    """Return depths at even positions [m] after which the flank of a wheel is hardly steeper than `STEEPEST`.
+
+    The gauge corner of a rail cuts its shape into a flank, down to where the rail is too steep for a rig to look for
+    contact. There an edge would stay, which the side of a rail takes away: bodies that conform wear at the rate at
+    which they approach. The edge goes, and the wear of the flank gives it up, so that the sum of the depths stays.
+
+    Parameters
+    ----------
+    profile : Profile
+        The profile before the wear.
+    at, depth : ndarray, (positions,)
+        Positions, and depths there [m].
+    resolution : float
+        Standard deviation of the kernel that smooths the depth of the edge [m].
+    """
+    curve = profile.curve
+    inside = (at >= curve.s[int(np.argmax(curve.z))]) & (at <= curve.s[-1])
+    y, z, angle, _ = curve.at(at[inside])
+    steep = np.where(y < 0.0, np.clip(-angle - FLANGE, 0.0, STEEPEST - FLANGE) / (STEEPEST - FLANGE), 0.0)
+    if profile.kind != "wheel" or not steep.any():
+        return depth
+    rate, total = np.cos(angle) / np.tan(STEEPEST) - np.sin(angle), depth
+    for _ in range(PASSES):
+        along = y + z / np.tan(STEEPEST) - rate * total[inside]
+        beyond = along - np.minimum.accumulate(along[::-1])[::-1]  # of the steepest line from nearer to the tread
+        edge = np.zeros_like(depth)
+        edge[inside] = np.where(steep > 0.0, beyond / rate, 0.0)
+        if not edge.any():
+            break
+        total = total + smoothed(edge[None], at, np.full((1, at.size), resolution))[0]
+    if total is not depth:
+        weight = steep**2 * (3.0 - 2.0 * steep) * total[inside]
+        total[inside] -= min((total - depth).sum() / weight.sum(), 1.0) * weight
+    return total
 
 
 def between(profile: Profile, at: Array, depth: Array) -> Array:

@@ -22,6 +22,7 @@ from wearlaw_apps.life.removal import (  # private: the parts of a step in close
     even,
     positions,
     removed,
+    shared,
     smoothed,
     swept,
     widths,
@@ -119,6 +120,30 @@ def test_kernels_are_as_wide_as_patches_are_apart_but_on_flanges() -> None:
         assert found == pytest.approx(share * distance, abs=1e-12)
     single = np.where(np.arange(601) == 300, 1.0, 0.0)[None]
     assert widths(single, at, angle, 3e-3, 0.25e-3) == pytest.approx(0.25e-3, rel=1e-9)
+
+
+def test_a_rail_that_cuts_into_a_flank_leaves_no_edge() -> None:
+    """A corner of radius r = 13 mm that cuts h deep makes a flank of 70° steeper by √(2 h/r) = 18°, less smoothing."""
+    profile = new = even(wl.Profile.s1002())
+    at = positions([new], int(np.ceil(np.ptp(new.curve.s) / 0.1e-3)) + 1)
+    middle, radius, steps = -43.2e-3, 13e-3, 13
+    away, slopes = at - middle, []
+    for edges in (True, False):
+        profile = new
+        for step in range(steps):
+            # The arc moves evenly. Its depth is a parabola.
+            whole = np.maximum(0.65e-3 * (step + 1) / steps - 0.5 * away**2 / radius, 0.0)
+            before = np.maximum(0.65e-3 * step / steps - 0.5 * away**2 / radius, 0.0)
+            (depth,) = smoothed((whole - before)[None], at, np.full((1, at.size), 0.4e-3))
+            worn = shared(profile, at, depth, 0.4e-3) if edges else depth
+            assert worn.sum() == pytest.approx(depth.sum(), rel=1e-9)
+            profile, _ = conserving(profile, at, worn, 2.0 * np.pi * R0 * float(np.trapezoid(depth, at)), R0)
+        slopes.append(float(np.degrees(-profile.curve.angle[profile.curve.y < 0.0].min())))
+    print(f"steepest slopes {slopes}")
+    assert slopes[0] < 82.0
+    assert slopes[1] > 84.0
+    tread = np.exp(-0.5 * ((at + 10e-3) / 5e-3) ** 2) * 0.05e-3
+    assert shared(new, at, tread, 0.4e-3) is tread
 
 
 def test_one_factor_makes_the_mass_exact_on_a_flange() -> None:

@@ -243,3 +243,18 @@ def test_results_of_wheels_are_in_datasets_and_sweeps() -> None:
 def test_displacement_or_force_and_one_way_to_state_the_loads(given: dict[str, str], said: str) -> None:
     with pytest.raises(wl.ConditionsError, match=said), warnings.catch_warnings():
         PAIR(**given, friction_coefficient=0.3)
+
+
+def test_a_wheel_beyond_an_edge_of_its_worn_flank_does_not_climb_while_it_bears_more() -> None:
+    """Wear leaves the steepest place above the contact. The sum of the lateral forces still grows there."""
+    new = wl.Profile.s1002()
+    depth = 0.3 * np.exp(-0.5 * ((new.curve.s + 41.5e-3) / 1.2e-3) ** 2)
+    rig = wheelset(wheel=new.worn(Q(1e3 * new.curve.s, "mm"), Q(depth, "mm")), rolling_speed="20 m/s")
+    given: dict[str, Any] = {"yaw": "3 mrad", "vertical_load": "60 kN", "friction_coefficient": 0.3}
+    found = (rig | wl.contact_model("strip_theory"))(lateral_force=Q([60.0, 66.0], "kN"), **given)
+    place = np.asarray(found.problem.bodies["wheel"].profile_position)[:, 1, 0]
+    steepest = rig.wheel.curve.s[int(rig.wheel.curve.angle.argmin())]
+    print(f"patches at {place}, the steepest place at {steepest} m")
+    assert place[0] < steepest
+    assert (found.problem.status[:, 1, 0] == "balanced").all()
+    assert not found.problem.climbs.any()

@@ -279,8 +279,13 @@ class Loads:
 
     @property
     def climbs(self) -> NDArray[np.bool_]:
-        """Whether the first patch of each wheel lies on its flange beyond the steepest place, (positions, 2)."""
+        """Whether the first patch of each wheel lies on its flange beyond the steepest place, (positions, 2).
+
+        Never under a lateral force: the search stops where its sum grows outwards, as beyond an edge of a worn flank.
+        """
         patches, climbs = self.patches, np.zeros((self.task.yaw.size, 2), dtype=np.bool_)
+        if self.task.lateral_force is not None:
+            return climbs
         steepest = np.array([pair.steepest for pair in self.section.sides])
         over = (patches.number == 0) & (patches.arc < steepest[patches.side])
         climbs[patches.point[over], patches.side[over]] = True
