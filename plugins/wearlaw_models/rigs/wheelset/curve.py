@@ -19,8 +19,9 @@ ROUNDING = 1e-12
 """Arc length that a position may lie beyond the ends of a curve, by rounding [m]."""
 
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-_NEWTON = 6
-"""Newton steps to find a parameter from its arc length: three give rounding, the others are free."""
+_NEWTON, _CLOSE = 6, 1e-9
+"""Most steps of Newton's method to find a parameter from its arc length, and the error that the last one may mend [m]:
+its square is below rounding."""
 _HALVINGS = 200
 """Most steps to find the weight of a smoothing spline: bisections of its logarithm."""
 
@@ -213,6 +214,8 @@ class Parametric:
         for _ in range(_NEWTON):
             excess = lengths[cell] + self._between(low, u) - s
             u = np.clip(u - excess / np.hypot(*self._derivative(u, 1)), low, high)
+            if np.abs(excess).max() < _CLOSE:
+                break
         return u
 
     def at(self, s: Array) -> Local:
