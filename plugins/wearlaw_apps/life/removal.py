@@ -33,9 +33,6 @@ STEEPEST = np.radians(80.0)
 """Slope up to which wear makes a flank steeper [rad]. Rigs look for contact up to 86°; a patch beside that place ends
 there, with the pressure of an edge."""
 
-PASSES = 3
-"""How often the edge of a flank is looked for: smoothing leaves a part of it."""
-
 EDGE = 1e-3
 """Share of the deepest wear at an end of a profile that says that the profile is too short."""
 
@@ -115,26 +112,26 @@ def shared(profile: Profile, at: Array, depth: Array, resolution: float) -> Arra
     at, depth : ndarray, (positions,)
         Positions, and depths there [m].
     resolution : float
-        Standard deviation of the kernel that smooths the depth of the edge [m].
+        Standard deviation of the kernel that smooths the lower end of the edge [m].
     """
     curve = profile.curve
     inside = (at >= curve.s[int(np.argmax(curve.z))]) & (at <= curve.s[-1])
     y, z, angle, _ = curve.at(at[inside])
-    steep = np.where(y < 0.0, np.clip(-angle - FLANGE, 0.0, STEEPEST - FLANGE) / (STEEPEST - FLANGE), 0.0)
+    steep = np.where(y < 0.0, np.clip((-angle - FLANGE) / (STEEPEST - FLANGE), 0.0, 1.0), 0.0)
     if profile.kind != "wheel" or not steep.any():
         return depth
-    rate, total = np.cos(angle) / np.tan(STEEPEST) - np.sin(angle), depth
-    for _ in range(PASSES):
-        along = y + z / np.tan(STEEPEST) - rate * total[inside]
-        beyond = along - np.minimum.accumulate(along[::-1])[::-1]  # of the steepest line from nearer to the tread
-        edge = np.zeros_like(depth)
-        edge[inside] = np.where(steep > 0.0, beyond / rate, 0.0)
-        if not edge.any():
-            break
-        total = total + smoothed(edge[None], at, np.full((1, at.size), resolution))[0]
-    if total is not depth:
-        weight = steep**2 * (3.0 - 2.0 * steep) * total[inside]
-        total[inside] -= min((total - depth).sum() / weight.sum(), 1.0) * weight
+    rate = np.cos(angle) / np.tan(STEEPEST) - np.sin(angle)
+    along = y + z / np.tan(STEEPEST) - rate * depth[inside]
+    beyond = along - np.minimum.accumulate(along[::-1])[::-1]  # of the steepest line from nearer to the tread
+    edge = np.zeros_like(depth)
+    edge[inside] = np.where(steep > 0.0, beyond / rate, 0.0)
+    if not edge.any():
+        return depth
+    (smooth,) = smoothed(edge[None], at, np.full((1, at.size), resolution))
+    edge = np.where(at > at[edge.argmax()], np.minimum(edge, smooth), smooth)  # the contact is on the upper side
+    total = depth + edge
+    weight = steep**2 * (3.0 - 2.0 * steep) * total[inside]
+    total[inside] -= min(edge.sum() / weight.sum(), 1.0) * weight
     return total
 
 

@@ -346,7 +346,7 @@ class Profile(wl.Configuration):
         s : Quantity, shape (n,)
             Arc lengths of this profile's `curve`, growing [m].
         depth : Quantity, shape (n,) or a scalar
-            Depth removed there, not negative; linear between, and zero beyond the ends of `s` [m].
+            Depth removed there, linear between, where coarse places leave kinks of unbounded pressure; else zero [m].
         smoothing : Quantity or str
             Smoothing of the new profile; see `from_points`.
 
