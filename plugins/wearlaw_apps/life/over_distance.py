@@ -99,6 +99,7 @@ def wear_out(
         vanishes with dense states. On flanges, steeper than 30°, there is none. Zero does not smooth.
     resolution : Quantity or str
         Standard deviation of the Gaussian kernel that smooths all wear [m], as instruments that measure profiles do.
+        For lines with curves take 0.8 mm, so that no ripples grow on flanges.
     spacing : Quantity or str
         Distance between the positions of the wear along the profile [m].
     until : mapping, optional

@@ -177,12 +177,12 @@ def test_a_flange_keeps_the_place_and_the_depth_of_its_wear() -> None:
 
 def test_smoothing_over_many_steps_does_not_flatten_a_flange() -> None:
     """The patch widens as it wears in: 61 um, not the 105 um of the new profile, whatever smooths each step."""
-    found = [worn_flange("40 km", resolution=f"{width} mm") for width in (0.4, 0.1)]
+    found = [worn_flange("40 km", resolution=f"{width} mm") for width in (0.4, 0.8, 0.1)]
     depths = [depth.max() for _, _, depth in found]
-    _, at, depth = found[1]
+    _, at, depth = found[-1]
     middles = [float((each @ at.m_as("mm")) / each.sum()) for *_, each in found]
     width = np.ptp(at.m_as("mm")[depth > 0.3 * depth.max()])
     print(f"steps {[len(worn.table) - 1 for worn, *_ in found]}, depths {depths}, middles {middles}, width {width}")
-    assert len(found[0][0].table) > 4
-    assert depths[0] == pytest.approx(depths[1], rel=0.1)
-    assert middles[0] == pytest.approx(middles[1], abs=0.1 * width)
+    assert len(found[1][0].table) > 4
+    assert depths[:2] == pytest.approx([depths[2]] * 2, rel=0.1)
+    assert middles[:2] == pytest.approx([middles[2]] * 2, abs=0.1 * width)
