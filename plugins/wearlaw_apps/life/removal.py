@@ -128,7 +128,7 @@ def shared(profile: Profile, at: Array, depth: Array, resolution: float) -> Arra
     if not edge.any():
         return depth
     (smooth,) = smoothed(edge[None], at, np.full((1, at.size), resolution))
-    edge = np.where(at > at[edge.argmax()], np.minimum(edge, smooth), smooth)  # the contact is on the upper side
+    edge = np.maximum(edge, np.where(at < at[edge.argmax()], smooth, 0.0))  # the upper end is in contact
     total = depth + edge
     weight = steep**2 * (3.0 - 2.0 * steep) * total[inside]
     total[inside] -= min(edge.sum() / weight.sum(), 1.0) * weight
