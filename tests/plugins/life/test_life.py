@@ -140,7 +140,7 @@ def test_a_rail_that_cuts_into_a_flank_leaves_no_edge() -> None:
             profile, _ = conserving(profile, at, worn, 2.0 * np.pi * R0 * float(np.trapezoid(depth, at)), R0)
         slopes.append(float(np.degrees(-profile.curve.angle[profile.curve.y < 0.0].min())))
     print(f"steepest slopes {slopes}")
-    assert slopes[0] < 83.0
+    assert slopes[0] < 82.0
     assert slopes[1] > 84.0
     tread = np.exp(-0.5 * ((at + 10e-3) / 5e-3) ** 2) * 0.05e-3
     assert shared(new, at, tread, 0.4e-3) is tread
