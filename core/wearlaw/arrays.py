@@ -1,8 +1,9 @@
-"""The type of arrays in SI, their extremes, and errors of floats."""
+"""The type of arrays in SI, their extremes and equality, and errors of floats."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -59,3 +60,19 @@ def extremes(array: Array) -> tuple[float, float]:
         return float(np.minimum.reduce(array, None)), float(np.maximum.reduce(array, None))
     value = float(array.item(0) if array.ndim else array)  # one number, maybe broadcast
     return value, value
+
+
+def same(first: object, second: object) -> bool:
+    """Return whether two values are the same, with arrays in records compared by entry; NaN is the same as NaN."""
+    if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
+        first, second = np.asarray(first), np.asarray(second)
+        return np.array_equal(first, second, equal_nan=first.dtype.kind == second.dtype.kind == "f")
+    if type(first) is not type(second):
+        return False
+    if is_dataclass(first):
+        return all(same(getattr(first, field.name), getattr(second, field.name)) for field in fields(first))
+    if isinstance(first, Mapping) and isinstance(second, Mapping):
+        return list(first) == list(second) and all(same(first[key], second[key]) for key in first)
+    if isinstance(first, (tuple, list)) and isinstance(second, (tuple, list)):
+        return len(first) == len(second) and all(map(same, first, second))
+    return bool(first == second)

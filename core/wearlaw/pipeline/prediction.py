@@ -190,6 +190,12 @@ class Prediction:
         """Return whether there is a variable of this name."""
         return isinstance(name, str) and name in (*outcome_units(self.laws), *default_variables(self))
 
+    def __eq__(self, other: object) -> bool:
+        return self._solution == other._solution if isinstance(other, Prediction) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._solution)
+
     def _si(self, values: Array, unit: str) -> Quantity:
         """Return SI values of the patches as a quantity, zero for patches that bear no load."""
         unloaded = self.problem.unloaded
@@ -277,8 +283,7 @@ class Prediction:
         InputError
             If there is nothing to draw, or too many axes.
         """
-        draw = method("draw", "a picture")
-        drawn: Axes = draw(self, self._solution, name, x, ax)
+        drawn: Axes = method("draw", "a picture")(self, self._solution, name, x, ax)
         return drawn
 
     @property
@@ -466,8 +471,7 @@ class Prediction:
         CompositionError
             If the contact is a line or is not resolved across the patch.
         """
-        of_strips = method("wear_profile", "a wear profile")
-        depth: xarray.Dataset = of_strips(self._solution, body, strips, at)
+        depth: xarray.Dataset = method("wear_profile", "a wear profile")(self._solution, body, strips, at)
         return depth
 
     @property
@@ -564,8 +568,7 @@ class Prediction:
         return "".join([self._head, *(f"\n  {name:<20} {text}" for name, text in self._summary.items())])
 
     def _repr_html_(self) -> str:
-        of_prediction = method("of_prediction", "a notebook")
-        html: str = of_prediction(self, self._solution, self._head, self._summary)
+        html: str = method("of_prediction", "a notebook")(self, self._solution, self._head, self._summary)
         return html
 
     @property

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from wearlaw.arrays import Array
+from wearlaw.arrays import Array, same
 from wearlaw.contact.contact import Contact
 from wearlaw.contact.parts import CreepForces
 from wearlaw.contact.problem import Problem
@@ -47,6 +47,14 @@ class Solution:
         self.totals = totals
         self.conditions = conditions
         self.whole = whole
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether another solution is one of the same contacts with the same models."""
+        parts = self.problem, self.model, self.laws
+        return isinstance(other, Solution) and same(parts, (other.problem, other.model, other.laws))
+
+    def __hash__(self) -> int:
+        return hash((self.problem.geometry, self.problem.batch_shape))
 
     @classmethod
     def of(
