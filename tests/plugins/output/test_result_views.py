@@ -194,12 +194,22 @@ def test_iterating_goes_along_the_first_axis_and_names_are_members() -> None:
     ("predict", "given"),
     [(EXACT, GRID), (GLOBAL, POINT), (ON_RAIL, OF_RAIL), (axles.PREDICT, GIVEN), (axles.CUT, GIVEN)],
 )
-def test_a_copy_of_a_prediction_has_its_values(predict: Any, given: Any) -> None:
+def test_a_prediction_equals_its_copy_and_no_other(predict: Any, given: Any) -> None:
     found = predict(**given)
-    for other in (copy.deepcopy(found), pickle.loads(pickle.dumps(found))):
-        # Sums over the nodes of a copy, whose arrays lie elsewhere in memory, may round otherwise.
-        xr.testing.assert_allclose(other.to_dataset(), found.to_dataset(), rtol=64 * EPS, atol=0.0)
+    for other in (copy.deepcopy(found), pickle.loads(pickle.dumps(found)), predict(**given)):
+        assert found == other
+        assert hash(found) == hash(other)
         np.testing.assert_array_equal(other.contact.slip, found.contact.slip)
+    assert found != predict(**{**given, "friction_coefficient": 0.35})
+    assert found != predict.without_law()(**given)
+    assert found != predict.with_law(wl.wear_law("kth", coefficient="low"))(**given)
+
+
+def test_of_equal_points_only_the_same_ones_are_equal() -> None:
+    found = axles.PREDICT(**GIVEN)
+    assert found[2] == axles.PREDICT(**GIVEN)[2]
+    assert found[2] != found[1]
+    assert found.sel(side="left", patch=1) != found.sel(side="right", patch=1)
 
 
 def test_the_html_names_models_conditions_and_values() -> None:
