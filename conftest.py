@@ -66,10 +66,14 @@ def pytest_ignore_collect(collection_path: Path) -> bool | None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put what takes long first and the many short shares of the kit last, or one worker would be left at the end."""
+    """Put what takes long first and the many short shares of the kit last, or one worker would be left at the end.
+
+    Free motion compiles the loops of wheelsets, which several workers would else compile at once.
+    """
 
     def place(item: pytest.Item) -> tuple[bool, ...]:
-        return item.path.stem == "test_conformance", item.path.parent.name != "third_party", item.path.suffix != ".md"
+        first = item.path.suffix == ".md" or item.path.stem == "test_free_motion"
+        return item.path.stem == "test_conformance", item.path.parent.name != "third_party", not first
 
     items.sort(key=place)
 
