@@ -8,7 +8,8 @@ is the lateral force H of the vehicle on the wheelset. As the wheelset moves out
 and steeply on a flange, and falls where the flange climbs. Of several displacements with this force, the wheelset takes
 one at which ∑ Y grows: there it is stable.
 
-The search begins where rigid wheels bear the force without friction. From there on, wheelsets move by Newton's method
+The search begins where rigid wheels bear the force without friction, but on the tread: beyond it, a flange may bear
+alone or together with the tread, and a wheelset comes from the tread. From there on, wheelsets move by Newton's method
 between bounds, each with the creep forces that it had before; the rates are those of the pressure. Where ∑ Y nowhere
 reaches H, the greatest ∑ Y lies where its rate vanishes.
 """
@@ -52,6 +53,9 @@ FLANGE, INWARDS = 0.8, 0.9
 go on with.
 """
 
+TREAD = 0.95
+"""Share of the way to the end of the tread up to which a search may begin."""
+
 STEPS, SLOW = 40, 8
 """Greatest number of steps, and those after which every other one halves the bounds."""
 
@@ -78,6 +82,11 @@ class Play(NamedTuple):
     def at(self, share: Array) -> Array:
         """Return displacements [m] at which rigid wheels bear lateral forces over the load of a wheel."""
         return np.asarray(np.interp(share, self.slope, self.displacement))
+
+    def begin(self, share: Array) -> Array:
+        """Return where a search for lateral forces over the load of a wheel begins, on the treads [m]."""
+        first, last = self.treads
+        return np.clip(self.at(share), TREAD * first, TREAD * last)
 
     def share(self, displacement: Array) -> Array:
         """Return lateral forces over the load of a wheel that rigid wheels bear at displacements [m]."""

@@ -417,7 +417,7 @@ class Wheelset(wl.Rig):
         if force is None:
             displacement = conditions["lateral_displacement"]
         else:
-            displacement = self._play.at(force / np.where(bears, loads, touching).mean(axis=-1))
+            displacement = self._play.begin(force / np.where(bears, loads, touching).mean(axis=-1))
         return Task(
             displacement, conditions["yaw"], speed, conditions["lateral_velocity"],
             conditions["yaw_velocity"], conditions["yaw_velocity"] + speed / conditions["curve_radius"],
