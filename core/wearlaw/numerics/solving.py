@@ -209,7 +209,7 @@ def check_results(model: ContactModel, problem: Problem, result: Any, name: str 
     """Raise a `ModelError` unless each array among results holds finite float64 for each operating point."""
     if type(result) is Across:  # made of checked rates
         return
-    names = getattr(result, "_fields", None)
+    names: Any = getattr(result, "_fields", None)
     if type(result) is CreepForces:
         names = ("longitudinal",) if problem.geometry == "line" else CreepForces.__slots__  # the others of a line are 0
         result = tuple([getattr(result, field) for field in names])
