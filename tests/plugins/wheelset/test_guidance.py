@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +14,7 @@ import wearlaw as wl
 from tests.plugins.wheelset.wheelsets import borne, through, wheelset
 from wearlaw import Array, Q
 from wearlaw_models.rigs.wheelset.guidance import BORNE  # private: the accuracy that a search ends at
+from wearlaw_models.rigs.wheelset.rows import rows as lay  # private: rows are laid otherwise
 from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
 
 # Rows stay while a wheel moves by up to 50 µm along its rail. Over a relative curvature of 1/13 mm that is 0.1 µm of
@@ -104,6 +107,21 @@ def test_a_force_to_the_right_moves_the_right_flange_to_its_rail() -> None:
     assert si(found, "lateral_displacement")[1] > 6e-3
     assert force[1] > 20e3 > 0.0 > force[0]  # the yaw makes the left wheel push its rail to the left
     assert quotient == pytest.approx(force / 60e3, rel=1e-6)
+
+
+def test_layings_of_rows_that_differ_leave_no_force_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where flanks are worn, rows that are laid anew bear other forces, here by the overlap of a micrometre."""
+    number = itertools.count()
+
+    def differing(*arguments: Any) -> Any:
+        rows = lay(*arguments)
+        deeper = 1e-6 if next(number) % 2 else -1e-6
+        return replace(rows, overlap=rows.overlap + np.where(np.abs(rows.place.angle) > 0.5, deeper, 0.0))
+
+    monkeypatch.setattr("wearlaw_models.rigs.wheelset.stand.rows", differing)
+    force = np.array([20e3, 40e3, 60e3])
+    r = PAIR(lateral_force=Q(force, "N"), vertical_load="60 kN", friction_coefficient=0.3)
+    np.testing.assert_allclose(si(r, "guiding_force").sum(axis=-1), force, rtol=0, atol=BORNE * 120e3)
 
 
 def test_mirrored_forces_have_mirrored_results(found: wl.Prediction) -> None:

@@ -10,8 +10,9 @@ one at which ∑ Y grows: there it is stable.
 
 The search begins where rigid wheels bear the force without friction, but on the tread: beyond it, a flange may bear
 alone or together with the tread, and a wheelset comes from the tread. From there on, wheelsets move by Newton's method
-between bounds, each with the creep forces that it had before; the rates are those of the pressure. Where ∑ Y nowhere
-reaches H, the greatest ∑ Y lies where its rate vanishes.
+between bounds, each with the creep forces that it had before; the rates are those of the pressure. Rows that are laid
+anew may bear another force, so close to the end wheelsets move within the rows of one laying. Where ∑ Y nowhere reaches
+H, the greatest ∑ Y lies where its rate vanishes.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from wearlaw import Array
 from wearlaw_models.rigs.wheelset.geometry import patches
 from wearlaw_models.rigs.wheelset.loads import ROUGH, Loads
 from wearlaw_models.rigs.wheelset.search import Section, both_sides, searched
-from wearlaw_models.rigs.wheelset.stand import BALANCED
+from wearlaw_models.rigs.wheelset.stand import BALANCED, WITHIN
 
 STEP, USUAL, FARTHEST = 0.1e-3, 15e-3, 60e-3
 """Steps in which rigid wheels are looked at, and their end [m], usually and at most: the play is at most 40 mm."""
@@ -166,7 +167,9 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
     for step in range(STEPS):
         if step:
             goal = np.where(fine[going], BALANCED, ROUGH)
-            loads = loads.moved(forces, going, side[going] * distance[going], goal)
+            close = (high - low)[going] < WITHIN
+            loads = loads.moved(forces, going, side[going] * distance[going], goal, close)
+            distance[going] = side[going] * loads.displacement[going]
         d, rate = distance[going], loads.stiffness[going]
         balanced = (loads.left[:, :3].max(axis=-1) <= ROUGH) | ~loads.task.bears.any(axis=-1)
         excess = (side * (np.where(balanced, loads.lateral.sum(axis=-1), np.nan) - task.lateral_force))[going]

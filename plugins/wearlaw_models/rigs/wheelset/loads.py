@@ -92,16 +92,19 @@ class Loads:
         return loads
 
     def until_near(
-        self, stand: Stand, forces: Callable[[wl.Problem], wl.CreepForces] | None = None, goal: Array | None = None
-    ) -> Iterator[Stand]:
+        self, stand: Stand, forces: Callable[[wl.Problem], wl.CreepForces] | None = None, goal: Array | None = None,
+        slides: NDArray[np.bool_] | None = None,
+    ) -> Iterator[Stand]:  # fmt: skip
         """Yield a stand, and those of its positions that are laid again because they have moved far.
 
-        With creep forces, they are balanced to the greatest imbalance of each position, (positions of the stand,).
+        With creep forces, they are balanced to the greatest imbalance of each position, (positions of the stand,), and
+        slide as `Stand.balance` says.
         """
+        slides = np.zeros(stand.points.shape, dtype=np.bool_) if slides is None else slides
         for number in range(AGAIN + 1):
             if forces is not None:
                 assert goal is not None
-                stand.balance(forces, self.patch, number >= WHOLE, goal)
+                stand.balance(forces, self.patch, number >= WHOLE, goal, slides)
             yield stand
             far = stand.shift > 1.0
             if number == AGAIN or not far.any():
@@ -109,10 +112,12 @@ class Loads:
             points, (height, roll) = stand.points[far], stand.now
             height = np.clip(height, stand.height - FARTHEST, stand.height + FARTHEST)
             roll = np.clip(roll, stand.roll - MOST_ROLL, stand.roll + MOST_ROLL)
+            task = replace(stand.task.part(np.flatnonzero(far)), displacement=stand.displacement[far])
             stand = Stand.laid(
-                self.section, self.samples, self.elastic, stand.task.part(np.flatnonzero(far)), points, height[far],
-                roll[far], None, None if forces is None else stand.creeping,
+                self.section, self.samples, self.elastic, task, points, height[far], roll[far], None,
+                None if forces is None else stand.creeping,
             )  # fmt: skip
+            slides = slides[far]
             goal = None if goal is None else goal[far]
 
     def under(self, conditions: Mapping[str, Array]) -> Loads:
@@ -151,20 +156,21 @@ class Loads:
         return loads._again(forces, lost, *there._ahead(displacement), None, np.full(lost.size, BALANCED))
 
     def moved(
-        self, forces: Callable[[wl.Problem], wl.CreepForces], points: NDArray[np.intp], displacement: Array, goal: Array
-    ) -> Loads:
+        self, forces: Callable[[wl.Problem], wl.CreepForces], points: NDArray[np.intp], displacement: Array,
+        goal: Array, slides: NDArray[np.bool_] | None = None,
+    ) -> Loads:  # fmt: skip
         """Return the loads with some positions at other displacements [m], with the creep forces that they had.
 
-        `goal` is the greatest imbalance of each of them.
+        `goal` is the greatest imbalance of each of them, and `slides` whether each may slide from there.
         """
         whole = self.task.displacement.copy()
         whole[points] = displacement
         moved = replace(self, task=replace(self.task, displacement=whole))
-        return moved._again(forces, points, *self._ahead(whole), self._creeping, goal)
+        return moved._again(forces, points, *self._ahead(whole), self._creeping, goal, slides)
 
     def _again(
         self, forces: Callable[[wl.Problem], wl.CreepForces], points: NDArray[np.intp], height: Array, roll: Array,
-        creeping: Creeping | None, goal: Array,
+        creeping: Creeping | None, goal: Array, slides: NDArray[np.bool_] | None = None,
     ) -> Loads:  # fmt: skip
         """Return the loads with some positions laid anew, by heights [m] and rolls [rad] of all."""
         stands = list(self.stands)
@@ -174,7 +180,8 @@ class Loads:
                 self.section, self.samples, self.elastic, self.task.part(some), some, height[some], roll[some], None,
                 creeping,
             )  # fmt: skip
-            stands += self.until_near(stand, forces, goal[start : start + BLOCK])
+            part = slice(start, start + BLOCK)
+            stands += self.until_near(stand, forces, goal[part], None if slides is None else slides[part])
         return self._kept(stands)
 
     def _ahead(self, displacement: Array) -> tuple[Array, Array]:
@@ -227,6 +234,11 @@ class Loads:
     def rotation(self) -> Array:
         """Speed of rotation at each position, Ω [rad/s]."""
         return self._gathered("rotation")
+
+    @cached_property
+    def displacement(self) -> Array:
+        """Lateral displacement at each position [m]."""
+        return self._gathered("displacement")
 
     @cached_property
     def left(self) -> Array:

@@ -408,9 +408,8 @@ def carry(
                         forces[begin:end, k] = area[begin:end] * per_area
             sums = weights[rows].T @ forces[rows]
             step = np.zeros(moved.shape[1])
-            step[:held] = np.linalg.solve(
-                np.ascontiguousarray(sums[:, 1 : 1 + held]), load[point] - sums[:, 0]
-            ) - moved[point, :held]  # fmt: skip
+            rest = load[point] - sums[:, 0] - sums[:, 1 + held :] @ moved[point, held:]
+            step[:held] = np.linalg.solve(np.ascontiguousarray(sums[:, 1 : 1 + held]), rest) - moved[point, :held]
             most = np.abs(rates[rows] @ step).max()
             share = min(LONGEST * deepest[point] / max(most, TINY), 1.0)
             moved[point] += share * step

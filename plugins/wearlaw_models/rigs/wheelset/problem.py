@@ -146,7 +146,7 @@ def warn_of_climbing(loads: Loads) -> None:
     over = loads.climbs
     if over.any():
         point, side = (int(index[0]) for index in np.nonzero(over))
-        displacement = 1e3 * loads.task.displacement[point]
+        displacement = 1e3 * loads.displacement[point]
         wl.errors.warn(
             f"at a lateral displacement of {displacement:.4g} mm the {DIMS['side'][side]} wheel climbs its rail: it"
             " stands on its flange beyond the steepest point",

@@ -500,7 +500,7 @@ class Wheelset(wl.Rig):
             "roll": wide(loads.roll[point]),
             "penetration": wide(patches.approach),
             "imbalance": wide(loads.left.max(axis=-1)[point]),
-            "lateral_displacement": wide(loads.task.displacement[point]),
+            "lateral_displacement": wide(loads.displacement[point]),
             "guiding_force": wide(loads.lateral[wheel]),
             "wheel_load": wide(loads.vertical[wheel]),
             "derailment_quotient": wide((loads.lateral / loads.vertical)[wheel]),

@@ -52,6 +52,9 @@ SHIFT = 5e-5
 LEAST_WEIGHT = 0.02
 """Least part of a normal force that bears a wheel in the search; a flange that friction holds bears nothing."""
 
+WITHIN, SLID = 1e-5, 5e-5
+"""Longest way aside within rows [m], and the lateral force that may be left over, over the load of a wheel."""
+
 MOST_TURN = 0.01
 """Greatest step of the speed of rotation, as a share of it."""
 
@@ -406,11 +409,20 @@ class Stand:
             self.left[some, 3] = np.abs(lacks / task.load.mean(axis=-1))[some]
         return np.asarray(torque - task.torque)
 
-    def balance(self, forces: Callable[[wl.Problem], wl.CreepForces], patch: Patch, last: bool, goal: Array) -> None:
-        """Balance the loads with the creep forces, in place, to the greatest imbalance of each position."""
+    def balance(
+        self, forces: Callable[[wl.Problem], wl.CreepForces], patch: Patch, last: bool, goal: Array,
+        slides: NDArray[np.bool_],
+    ) -> None:  # fmt: skip
+        """Balance the loads with the creep forces, in place, to the greatest imbalance of each position.
+
+        Wheelsets that slide move aside within their rows, by up to `WITHIN`, to where the rails bear their lateral
+        force.
+        """
         task, count = self.task, self.roll.size
         going, scale = np.ones(count, dtype=np.bool_), SCALE / self.rotation
-        sequence = Sequence()
+        sequence, of_load = Sequence(), np.ones(count)
+        if slides.any():
+            of_load = np.maximum(self.rates[:, 2], TINY) / task.load.mean(axis=-1)
         low, high = np.full(count, -np.inf), np.full(count, np.inf)
         best = np.full(count, np.inf)
         kept = self.ratio.copy(), self.sine.copy(), self.rotation.copy()
@@ -437,7 +449,8 @@ class Stand:
                 np.where(rows, self.ratio, kept[0]), np.where(rows, self.sine, kept[1]),
                 np.where(nearer, self.rotation, kept[2]),
             )  # fmt: skip
-            going = going & (most > goal)
+            aside = self._aside(slides)
+            going = going & ((most > goal) | ((aside != 0.0) & (self.left[:, 3] > SLID)))
             if step and not last:
                 going &= self.shift <= 1.0
             if not going.any() or step == STEPS:
@@ -448,13 +461,17 @@ class Stand:
                 turn = np.clip(-excess / np.maximum(rate, TINY), -widest, widest)
             row, of = self.of_row
             used = self.ratio[row[np.flatnonzero(np.diff(of, prepend=-1))]]
-            slot = some.point, 1 + some.side * PATCHES + some.number
-            now, new = np.zeros((2, count, 1 + 2 * PATCHES))
+            slot = some.point, 2 + some.side * PATCHES + some.number
+            now, new = np.zeros((2, count, 2 + 2 * PATCHES))
+            now[:, 1] = self.pressed.moved[:, 2] * of_load
+            new[:, 1] = now[:, 1] + aside * of_load
             now[:, 0] = self.rotation * scale
             new[:, 0] = (self.rotation + turn) * scale
             now[slot] = used[np.isin(self.patches.point, some.point)]
             new[slot] = (force.lateral + drift * turn[some.point]) / some.force
             new = sequence.next(now, new)
+            there = np.clip(new[:, 1] / of_load, -WITHIN, WITHIN)
+            self.pressed.moved[:, 2] = np.where(going & slides, there, self.pressed.moved[:, 2])
             if task.rotation is None:
                 ahead = np.clip(new[:, 0] / scale, self.rotation - widest, self.rotation + widest)
                 # The torque grows with Ω, steeply at first and then hardly, so bounds help once the loads hardly move.
@@ -506,6 +523,19 @@ class Stand:
         power = problem.rolling_speed * (xi * force_x + eta * force_y)
         return np.asarray(np.bincount(patches.point, power, self.roll.size), np.float64), force_y
 
+    def _aside(self, slides: NDArray[np.bool_]) -> Array:
+        """Return how far wheelsets that slide are from where the rails bear their lateral forces, by rates [m]."""
+        if self.task.lateral_force is None or not slides.any():
+            return np.zeros(slides.shape)
+        rate, now = self.rates[:, 2], self.pressed.moved[:, 2]
+        step = (self.task.lateral_force - self.lateral.sum(axis=-1)) / np.where(rate > 0.0, rate, np.inf)
+        return np.where(slides, np.clip(now + step, -WITHIN, WITHIN) - now, 0.0)
+
+    @property
+    def displacement(self) -> Array:
+        """Lateral displacement, to which wheelsets may have slid [m]."""
+        return np.asarray(self.task.displacement + self.pressed.moved[:, 2])
+
     @property
     def shift(self) -> Array:
         """How far wheels have moved since their rows were laid, over what these allow: along the rail, and into it."""
@@ -515,7 +545,7 @@ class Stand:
         lowered = (height - self.height)[point, rows.wheel % 2]
         leaned = side * (roll - self.roll)[point]
         angle = rows.place.angle
-        aside = -rows.place.z * leaned
+        aside = side * self.pressed.moved[point, 2] - rows.place.z * leaned
         moved = aside * np.cos(angle) + (lowered + rows.place.y * leaned) * np.sin(angle)
         shift = np.zeros(self.roll.size)
         np.maximum.at(shift, point, np.where(self._row_force() > 0.0, np.abs(moved) / SHIFT, 0.0))
@@ -546,7 +576,7 @@ class Stand:
 
     def ahead(self, displacement: Array) -> tuple[Array, Array]:
         """Return heights of the axle [m] and rolls [rad] at other displacements [m], by their rates."""
-        (height, roll), moves = self.now, self.rates * (displacement - self.task.displacement)[:, None]
+        (height, roll), moves = self.now, self.rates * (displacement - self.displacement)[:, None]
         if self.task.free:
             return height + moves[:, :1], roll + moves[:, 1]
         return height + moves[:, :2], roll
