@@ -153,7 +153,7 @@ def test_mass_does_not_depend_on_the_smoothing_of_dense_states() -> None:
     assert masses[0] == pytest.approx(masses[1], rel=0.02)
 
 
-def worn_flange(over: str, **options: Any) -> tuple[Life, Q, np.ndarray[Any, Any]]:
+def worn_flange(over: str, **options: Any) -> tuple[Life, wl.Quantity, np.ndarray[Any, Any]]:
     """Return the life of a state on the flange beside those of the tread, places there, and their depths [um]."""
     states = line(9)
     flange = {"lateral_displacement [mm]": [6.2], "yaw [mrad]": [3.0], "share": [0.2]}

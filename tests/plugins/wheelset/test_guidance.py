@@ -274,5 +274,6 @@ def test_a_wheel_beyond_an_edge_of_its_worn_flank_does_not_climb_while_it_bears_
     steepest = rig.wheel.curve.s[int(rig.wheel.curve.angle.argmin())]
     print(f"patches at {place}, the steepest place at {steepest} m")
     assert place[0] < steepest
-    assert (found.problem.status[:, 1, 0] == "balanced").all()
-    assert not found.problem.climbs.any()
+    problem: Any = found.problem
+    assert (problem.status[:, 1, 0] == "balanced").all()
+    assert not problem.climbs.any()
