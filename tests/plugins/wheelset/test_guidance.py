@@ -118,7 +118,7 @@ def test_layings_of_rows_that_differ_leave_no_force_out(monkeypatch: pytest.Monk
         deeper = 1e-6 if next(number) % 2 else -1e-6
         return replace(rows, overlap=rows.overlap + np.where(np.abs(rows.place.angle) > 0.5, deeper, 0.0))
 
-    monkeypatch.setattr("wearlaw_models.rigs.wheelset.stand.rows", differing)
+    monkeypatch.setattr("wearlaw_models.rigs.wheelset.stand.rows", differing)  # private: as above
     force = np.array([20e3, 40e3, 60e3])
     r = PAIR(lateral_force=Q(force, "N"), vertical_load="60 kN", friction_coefficient=0.3)
     np.testing.assert_allclose(si(r, "guiding_force").sum(axis=-1), force, rtol=0, atol=BORNE * 120e3)
