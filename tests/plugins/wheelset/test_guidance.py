@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.wheelset.wheelsets import borne, through, wheelset
+from tests.plugins.wheelset.wheelsets import borne, on_round_heads, through, wheelset
 from wearlaw import Array, Q
 from wearlaw_models.rigs.wheelset.guidance import BORNE  # private: the accuracy that a search ends at
 from wearlaw_models.rigs.wheelset.rows import rows as lay  # private: rows are laid otherwise
@@ -107,6 +107,15 @@ def test_a_force_to_the_right_moves_the_right_flange_to_its_rail() -> None:
     assert si(found, "lateral_displacement")[1] > 6e-3
     assert force[1] > 20e3 > 0.0 > force[0]  # the yaw makes the left wheel push its rail to the left
     assert quotient == pytest.approx(force / 60e3, rel=1e-6)
+
+
+def test_a_search_begins_on_the_side_of_the_force_where_treads_are_crowned() -> None:
+    """Rigid wheels on crowned treads bear the less lateral force, the farther out they stand; worn ones become so."""
+    y = np.linspace(-60e-3, 60e-3, 241)
+    rig = on_round_heads(through(y, -0.05 * y - y**2 / 6.0, "wheel"), 0.3)
+    left, right = rig._play.begin(np.array([-1e-3, 1e-3]))  # private: the place where a search begins
+    assert left == pytest.approx(-right)
+    assert right > 1e-3
 
 
 def test_layings_of_rows_that_differ_leave_no_force_out(monkeypatch: pytest.MonkeyPatch) -> None:

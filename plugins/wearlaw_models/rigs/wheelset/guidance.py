@@ -70,7 +70,7 @@ class Play(NamedTuple):
         Lateral displacements at which both wheels stand below the steepest points of their flanges [m].
     slope : ndarray
         The lateral force that they bear without friction, over the load of a wheel: tan δ of the right wheel less that
-        of the left one, where it falls that from before.
+        of the left one, where it falls outwards that from before.
     ends, treads : tuple of float
         Displacements up to which a search may go, and up to which both wheels stand on their treads [m].
     """
@@ -121,7 +121,10 @@ def _play(section: Section, flange_angle: float, middle: int) -> Play:
     first, final = displacement[list(last(~np.isnan(arc)))]
     some = slice(begin, end + 1)
     steep = np.tan(angle[some])
-    slope = np.asarray(np.maximum.accumulate(steep[:, 1] - steep[:, 0]), np.float64)
+    apart = steep[:, 1] - steep[:, 0]
+    slope = np.concatenate([
+        np.minimum.accumulate(apart[middle - begin :: -1])[:0:-1], np.maximum.accumulate(apart[middle - begin :])
+    ])  # fmt: skip
     ends = max(displacement[begin] - BEYOND, first), min(displacement[end] + BEYOND, final)
     treads = displacement[list(last(angle <= flange_angle))]
     return Play(displacement[some], slope + 1e-9 * np.arange(slope.size), ends, (float(treads[0]), float(treads[1])))
