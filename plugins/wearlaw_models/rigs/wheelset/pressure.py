@@ -408,7 +408,9 @@ def carry(
                         forces[begin:end, k] = area[begin:end] * per_area
             sums = weights[rows].T @ forces[rows]
             step = np.zeros(moved.shape[1])
-            rest = load[point] - sums[:, 0] - sums[:, 1 + held :] @ moved[point, held:]
+            rest = load[point] - sums[:, 0]
+            for k in range(held, moved.shape[1]):  # of what is given
+                rest -= sums[:, 1 + k] * moved[point, k]
             step[:held] = np.linalg.solve(np.ascontiguousarray(sums[:, 1 : 1 + held]), rest) - moved[point, :held]
             most = np.abs(rates[rows] @ step).max()
             share = min(LONGEST * deepest[point] / max(most, TINY), 1.0)
