@@ -122,9 +122,8 @@ def _play(section: Section, flange_angle: float, middle: int) -> Play:
     some = slice(begin, end + 1)
     steep = np.tan(angle[some])
     apart = steep[:, 1] - steep[:, 0]
-    slope = np.concatenate([
-        np.minimum.accumulate(apart[middle - begin :: -1])[:0:-1], np.maximum.accumulate(apart[middle - begin :])
-    ])  # fmt: skip
+    to_left, to_right = apart[middle - begin :: -1], apart[middle - begin :]
+    slope = np.append(np.minimum.accumulate(to_left)[:0:-1], np.maximum.accumulate(to_right)).astype(np.float64)
     ends = max(displacement[begin] - BEYOND, first), min(displacement[end] + BEYOND, final)
     treads = displacement[list(last(angle <= flange_angle))]
     return Play(displacement[some], slope + 1e-9 * np.arange(slope.size), ends, (float(treads[0]), float(treads[1])))
