@@ -118,6 +118,25 @@ def test_a_search_begins_on_the_side_of_the_force_where_treads_are_crowned() -> 
     assert right > 1e-3
 
 
+def test_strongly_crowned_treads_bear_no_lateral_force_and_say_so() -> None:
+    """Rigid wheels do not stand in the middle of the track; displaced ones have results all the same."""
+    y = np.linspace(-60e-3, 60e-3, 241)
+    rig = on_round_heads(through(y, -0.05 * y - y**2 / 3.0, "wheel"), 0.3)
+    predict = rig | wl.contact_model("strip_theory")
+    given: Any = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
+    pushed = predict(lateral_force=Q([0.0, 1.0], "kN"), **given)
+    assert "the greatest lateral force is" in pushed.problem.status[1, 0, 0]  # type: ignore[attr-defined]
+    assert np.isnan(si(pushed, "wheel_load")[1]).all()
+    displaced = predict(lateral_displacement=Q([-0.3, 0.0, 0.3], "mm"), **given)
+    np.testing.assert_allclose(si(displaced, "wheel_load"), 60e3, rtol=2.0 * BALANCED)
+
+
+def test_loads_that_nowhere_balance_have_no_greatest_force(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("wearlaw_models.rigs.wheelset.guidance.ROUGH", -1.0)  # private: no model lacks a balance
+    with pytest.raises(wl.ConditionsError, match="have no balance"):
+        PAIR(lateral_force="20 kN", vertical_load="60 kN", friction_coefficient=0.3)
+
+
 def test_layings_of_rows_that_differ_leave_no_force_out(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where flanks are worn, rows that are laid anew bear other forces, here by the overlap of a micrometre."""
     number = itertools.count()

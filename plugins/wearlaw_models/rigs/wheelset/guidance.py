@@ -113,8 +113,9 @@ def _play(section: Section, flange_angle: float, middle: int) -> Play:
     angle = np.abs(np.where(np.isnan(arc), np.inf, angle[..., 0]))
 
     def last(stands: NDArray[np.bool_]) -> tuple[int, int]:
-        """Return the first and the last place about the middle up to which both wheels stand so."""
+        """Return the first and the last place about the middle, which counts, up to which both wheels stand so."""
         both = np.pad(stands.all(axis=-1), 1)
+        both[middle + 1] = True
         return middle + 1 - int(np.argmin(both[middle + 1 :: -1])), middle - 1 + int(np.argmin(both[middle + 1 :]))
 
     begin, end = last(arc >= [pair.steepest for pair in section.sides])
@@ -190,7 +191,8 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
             array[going] = np.where(over, array[going], value)
         top = at_low[going] + rise[going] * (high - low)[going]  # the sum bends down before the wheel climbs
         total = np.abs(most + side * task.lateral_force)[going]
-        vain |= falls[going] & (top < 0.0) & (top - most[going] < SURE * total)
+        with np.errstate(invalid="ignore"):  # where nothing has balanced so far, there is no greatest force
+            vain |= falls[going] & (top < 0.0) & (top - most[going] < SURE * total)
         vain |= reached[going] & (high - low <= CLOSE)[going]
         climbs[going] = vain & ~done & (most[going] < 0.0)
         # The next distance, by the rate of the pressure and what the last step shows of that of the creep forces.
