@@ -34,7 +34,6 @@ from wearlaw import Array
 from wearlaw_models.rigs.wheelset.curve import Curve
 from wearlaw_models.rigs.wheelset.reach import reach
 from wearlaw_models.rigs.wheelset.search_loops import (
-    FIRST,
     PATCHES,
     ROLL_ACCURACY,
     ROLLS,
@@ -61,8 +60,8 @@ BESIDE = 1e3
 STRAIGHT = np.radians(0.5)
 """Difference in the angle of a flank that is straight, given by points [rad]; arcs beside it make splines overshoot."""
 
-PROBE = 1e-6
-"""First step along a wheel by which a contact point is followed [m]."""
+LEVELS = 4
+"""Steps of the roll by which the least gaps below coarse points become about equal."""
 
 ON_EDGE = 1e-6
 """Difference between slopes at a contact point that only the end of a profile can have."""
@@ -226,6 +225,11 @@ class Section:
         coarse.y[[0, -1]] = BESIDE
         return coarse
 
+    def below_points(self, position: Position) -> Gaps:
+        """Return the gaps below the coarse points of the wheel of this section alone; the arrays broadcast."""
+        points = self.coarse
+        return _gaps(position, points.y, points.radius, points.slope, self.axes, self.rail_z.near)
+
 
 def _at(of: Table | Curve, x: Array) -> tuple[Array, ...]:
     return of.at(x) if isinstance(of, Table) else of.at(np.minimum(np.maximum(x, of.s[0]), of.s[-1]))
@@ -357,6 +361,11 @@ class Gaps(NamedTuple):
     rail_slope: Array
     radius: Array
 
+    @property
+    def lean(self) -> Array:
+        """Fall of the gap with the roll that lowers this side [m]."""
+        return self.y + self.rail_slope * self.z
+
 
 def gaps(section: Section, position: Position, arc: Array) -> Gaps:
     """Return the gaps below points of the wheel at arc lengths [m]; the arrays broadcast."""
@@ -399,19 +408,15 @@ class Touching(NamedTuple):
     least: Array
 
 
-def touching(section: Section, position: Position, every: int = 1) -> Touching:
-    """Return the places where the gaps of wheels are least; positions are of shape (positions, sides).
-
-    `every` leaves out coarse points, for a first estimate.
-    """
+def touching(section: Section, position: Position) -> Touching:
+    """Return the places where the gaps of wheels are least; positions are of shape (positions, sides)."""
     if section.left is not None:
         single = []
         for side, half in enumerate(section.sides):
             here = Position(*(array[:, [side]] for array in position))
-            single.append(touching(half, here, every))
+            single.append(touching(half, here))
         return Touching(*(np.concatenate(pair, axis=1) for pair in zip(*single, strict=True)))
-    points = Coarse(*(array[::every] for array in section.coarse))
-    around = _gaps(position.widened(), points.y, points.radius, points.slope, section.axes, section.rail_z.near)
+    around = section.below_points(position.widened())
     gap, rise = around.gap, around.rise
     falls = (rise < 0.0) | np.isinf(gap)
     low = falls[..., :-1] & ~falls[..., 1:]
@@ -421,7 +426,7 @@ def touching(section: Section, position: Position, every: int = 1) -> Touching:
     arc = np.full(valid.shape, np.nan)
     height = np.full(valid.shape, np.inf)
     place = np.nonzero(valid)
-    arcs = np.broadcast_to(points.arc, gap.shape)
+    arcs = np.broadcast_to(section.coarse.arc, gap.shape)
     left, right = ((*place[:-1], index[place] + step) for step in (0, 1))
     there = Position(*(array[place[:-1]] for array in position))
     begin, end = (
@@ -514,68 +519,40 @@ def _compiled(section: Section, displacement: Array, yaw: Array, roll: Array | N
 
 
 def _searched(section: Section, displacement: Array, yaw: Array, fixed: Array | None) -> tuple[Array, Touching]:
-    roll = np.zeros_like(displacement) if fixed is None else fixed
-    places = touching(section, both_sides(displacement, roll, yaw), every=1 if fixed is not None else FIRST)
     if fixed is not None:
-        return roll, places
-    open_ = np.arange(displacement.size)
+        return fixed, touching(section, both_sides(displacement, fixed, yaw))
+    roll, open_ = _leveled(section, displacement, yaw), np.arange(displacement.size)
+    places = touching(section, both_sides(displacement, roll, yaw))
     for _ in range(ROLLS):
-        _level(section, displacement, yaw, roll, places, open_)
-        position = both_sides(displacement[open_], roll[open_], yaw[open_])
-        whole = touching(section, position)
-        for old, new in zip(places, whole, strict=True):
-            old[open_] = new
-        with np.errstate(invalid="ignore"):  # both wheels may be beside their rails
-            tilted = np.asarray(np.abs(whole.least[:, 1] - whole.least[:, 0]) > 2.0 * ROLL_ACCURACY)
+        open_ = open_[~np.isnan(places.arc[open_, :, 0]).any(axis=-1)]  # a wheel may be beside its rail
+        at = gaps(section, both_sides(displacement[open_], roll[open_], yaw[open_]), places.arc[open_, :, 0])
+        step = roll_step(places.least[open_, 1] - places.least[open_, 0], at.lean.sum(axis=-1))
+        tilted = np.abs(step) > ROLL_ACCURACY
         open_ = open_[tilted]
         if not open_.size:
             break
+        roll[open_] += step[tilted]
+        position = both_sides(displacement[open_], roll[open_], yaw[open_])
+        for old, new in zip(places, touching(section, position), strict=True):
+            old[open_] = new
     return roll, places
 
 
-def _level(
-    section: Section, displacement: Array, yaw: Array, roll: Array, places: Touching, rows: NDArray[np.intp]
-) -> None:
-    """Roll the wheelset, in place, until the contact points near those found touch on both sides."""
-    least, arc = places.least[rows], places.arc[rows, :, 0]
-    for _ in range(ROLLS):
-        lost = np.isnan(arc).any(axis=-1)
-        excess = np.subtract(least[:, 1], least[:, 0], out=np.zeros(rows.size), where=~lost)
-        going = np.abs(excess) > ROLL_ACCURACY
-        rows, arc, excess = rows[going], arc[going], excess[going]
-        if not rows.size:
-            return
-        place = gaps(section, both_sides(displacement[rows], roll[rows], yaw[rows]), arc)
-        roll[rows] += roll_step(excess, (place.y + place.rail_slope * place.z).sum(axis=-1))
-        arc, least = _followed(section, both_sides(displacement[rows], roll[rows], yaw[rows]), arc)
-
-
-def _followed(section: Section, position: Position, arc: Array) -> tuple[Array, Array]:
-    """Return where contact points at arc lengths [m] have moved after a small roll, and the gaps there [m].
-
-    The gap has the same constant as `Touching.least`. The arc length is NaN where a point is lost, or has moved by more
-    than `COARSE`.
-    """
-    valid = ~np.isnan(arc)
-    position = Position(*(np.broadcast_to(array, arc.shape)[valid] for array in position))
-    start = place = arc[valid]
-    at = gaps(section, position, place)
-    rise, step = at.rise, np.full(place.shape, PROBE)
-    lost = going = np.zeros(place.shape, dtype=np.bool_)
-    for _ in range(ROOTS):
-        place = place + step
-        at = gaps(section, position, place)
-        change, rise = at.rise - rise, at.rise
-        going = np.abs(rise) >= ROUNDING
-        slope = np.divide(change, step, out=np.ones(place.shape), where=going & (step != 0.0))
-        lost = (slope <= 0.0) | (np.abs(place - start) > COARSE)
-        going &= ~lost
-        step = np.where(going, np.clip(-rise / slope, -COARSE, COARSE), 0.0)
-        if not going.any():
-            break
-    moved, gap = np.full((2, *arc.shape), np.nan)
-    moved[valid], gap[valid] = np.where(lost | going, np.nan, place), at.gap
-    return moved, gap
+def _leveled(section: Section, displacement: Array, yaw: Array) -> Array:
+    """Return rolls at which the least gaps below the coarse points are about equal [rad]; gaps are linear in rolls."""
+    roll = np.zeros_like(displacement)
+    around = [
+        half.below_points(Position(*(array[:, side, None] for array in both_sides(displacement, roll, yaw))))
+        for side, half in enumerate(section.sides)
+    ]
+    for _ in range(LEVELS):
+        below = [at.gap - way * at.lean * roll[:, None] for at, way in zip(around, (-1.0, 1.0), strict=True)]
+        lowest = [gap.argmin(axis=-1)[:, None] for gap in below]
+        left, right = (np.take_along_axis(gap, at, axis=-1)[:, 0] for gap, at in zip(below, lowest, strict=True))
+        levers = (np.take_along_axis(at.lean, k, axis=-1)[:, 0] for at, k in zip(around, lowest, strict=True))
+        with np.errstate(invalid="ignore"):  # both wheels may be beside their rails
+            roll += np.where(np.isfinite(right - left), roll_step(right - left, sum(levers)), 0.0)
+    return roll
 
 
 def both_sides(displacement: Array, roll: Array, yaw: Array) -> Position:

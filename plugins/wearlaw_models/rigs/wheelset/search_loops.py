@@ -20,7 +20,7 @@ ROLLS = 30
 """Greatest number of iterations for the roll; four or five are usual."""
 
 ROLL_ACCURACY = 1e-12
-"""Greatest difference between the least gaps of both sides [m]."""
+"""Step of the roll that ends its search [rad]."""
 
 ROOTS = 40
 """Greatest number of iterations for a contact point; eight to twelve are usual."""
@@ -287,11 +287,11 @@ def compiled_search(
                     contacts[point, side], above[point, side],
                 )  # fmt: skip
                 levers += lever
-            excess = least[point, 1] - least[point, 0]
+            step = roll_step(least[point, 1] - least[point, 0], levers)
             lost = math.isnan(contacts[point, 0, 0]) or math.isnan(contacts[point, 1, 0])
-            level = not abs(excess) > ROLL_ACCURACY
+            level = not abs(step) > ROLL_ACCURACY
             if fixed or (every == 1 and level):
                 break
             every = 1 if lost or level else 0
             if not every:
-                roll[point] += roll_step(excess, levers)
+                roll[point] += step
