@@ -24,6 +24,7 @@ from wearlaw.fields import is_law_file
 from wearlaw.models.law import named_outcomes
 from wearlaw.pipeline.variables import SHOWN
 from wearlaw.text_files import reason_of
+from wearlaw.units.registry import symbol
 from wearlaw.units.variables import VARIABLES, name_of
 from wearlaw_apps.explore.subject import Subject, code_of, numbered
 from wearlaw_apps.output.commands import values
@@ -32,6 +33,7 @@ from wearlaw_apps.output.curves import BLACK
 from wearlaw_apps.output.labels import in_words, label, readable
 from wearlaw_apps.output.notes import Notes, caught_warnings
 from wearlaw_apps.output.pictures import of_patch
+from wearlaw_apps.output.styled import plain_number
 from wearlaw_apps.show import LAWS, completed
 from wearlaw_apps.studies.case import load_case
 from wearlaw_apps.studies.report.interactive import plotly_figure
@@ -65,6 +67,9 @@ MAPS = "@media (prefers-color-scheme: dark) { .heatmaplayer, .cbfills { filter: 
 
 WRONG = ":host { outline: 2px solid #c04000; outline-offset: 4px }"
 """Style of a control whose value is refused."""
+
+BAR = "#8a8a8a"
+"""Colour of a slider up to its value, to be seen on bright and on dark ground."""
 
 LOCAL = r"(localhost|127\.0\.0\.1|\[?::1\]?)"
 """The hosts under which the page is served."""
@@ -109,7 +114,12 @@ def numbers(patches: Mapping[str, Mapping[str, wl.Prediction]]) -> str:
         first = next(iter(predictions.values()))
         wear = {f"wear rate by {law}": prediction.wear_rate for law, prediction in predictions.items()}
         columns[patch] = wear | {name_of(name): first[name] for name in SHOWN[first.problem.geometry]}
-    return str(pd.DataFrame(columns).map(repr).to_html(border=0, header=any(columns)))
+    return str(pd.DataFrame(columns).map(in_text).to_html(border=0, header=any(columns)))
+
+
+def in_text(value: wl.Quantity) -> str:
+    """Return a quantity with four digits, as tables have it."""
+    return f"{plain_number(float(value.magnitude))} {symbol(value.units, '~P')}".rstrip()
 
 
 def slider(condition: Any, name: str, value: object) -> Any:
@@ -142,7 +152,7 @@ def of_rig(name: str, value: Any) -> Any:
 
 def _slider(text: str, unit: str, start: float, low: float, high: float) -> Any:
     ends = {"start": low, "end": high, "step": (high - low) / 200.0, "format": "0.[0000]"}
-    made: Any = pn.widgets.EditableFloatSlider(label=text, value=start, **ends, **STRETCHED)
+    made: Any = pn.widgets.EditableFloatSlider(label=text, value=start, bar_color=BAR, **ends, **STRETCHED)
     made.unit = unit
     return made
 
@@ -181,7 +191,8 @@ class Page:
     def layout(self) -> Any:
         """Return the controls beside the figures, or above them on a phone."""
         laws = pn.Column(pn.pane.HTML("Wear laws"), self.laws)
-        rig = pn.Card(*self.fields.values(), title="Rig", collapsed=True, visible=bool(self.fields), **STRETCHED)
+        look: dict[str, Any] = {"title": "Rig", "collapsed": True, "margin": (5, 10), **STRETCHED}
+        rig = pn.Card(*self.fields.values(), visible=bool(self.fields), **look)
         controls = [*self.sliders.values(), rig, self.model, laws, self.patch, self.numbers]
         left = pn.Column(*controls, styles={**WIDE, "max-width": "420px", "padding-top": "10px"})
         right = pn.Column(self.notes, self.figures, self.python, styles={**WIDE, "flex": "4 1 600px"})

@@ -292,8 +292,9 @@ def test_a_notebook_gets_a_page_that_renders() -> None:
 
 
 @needs_browser
-def test_arrow_keys_move_a_slider_and_the_numbers_follow(browser: webdriver.Chrome, address: str) -> None:
-    page = opened(browser, address, 1300)
+@pytest.mark.parametrize("width", [1300, 390])
+def test_arrow_keys_move_a_slider_and_the_numbers_follow(browser: webdriver.Chrome, address: str, width: int) -> None:
+    page = opened(browser, address, width)
     (first, *_) = deep(page, ".noUi-handle")
     before = text(page)
     assert "normal_force='80 kN'" in before

@@ -9,10 +9,12 @@ import re
 import subprocess
 import sys
 from base64 import b64decode
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import plotly
 import pytest
 
@@ -21,6 +23,7 @@ from tests import cases
 from tests.plugins.studies.report_data import EVIL, ODD, ONE, THREE, page_of, small_study
 from wearlaw_apps.output.notes import by_kind  # private: notes as the page has them
 from wearlaw_apps.studies.report.interactive import plotly_figure  # private: the numbers that the page holds
+from wearlaw_apps.studies.report.page import LONGEST  # private: rows of a table that stands on no page
 from wearlaw_apps.studies.report.tables import headline, main_table  # private: what the page begins with
 
 VOID = {"meta"}
@@ -125,6 +128,40 @@ def test_long_lists_of_a_case_are_shortened(study: wl.Study) -> None:
     numbers = ",\n    ".join(f"{number}.5" for number in range(100))
     (shown,) = Page(page_of(study, f"values = [\n    {numbers},\n]\nfew = [1.0, 2.0]")).within("pre")
     assert shown == "values = [0.5, 1.5, 2.5, … 96 more …, 99.5]\nfew = [1.0, 2.0]"
+
+
+@pytest.mark.usefixtures("blank_figures")
+def test_points_of_a_measured_profile_stand_in_a_file_of_their_own_and_not_on_the_page(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    wheel = {"file": "worn.csv", "kind": "wheel"}
+    rig = {"type": "wheelset", **wl.installed("rig")["wheelset"].example_fields, "wheel": wheel}
+    points = np.column_stack([value.m_as("mm")[::10] for value in wl.Profile.s1002().points])
+    np.savetxt("worn.csv", points, header="y [mm],z [mm]", delimiter=",", comments="")
+    point = {"lateral_displacement": "0 mm", "vertical_load": "50 kN", "friction_coefficient": 0.3}
+    models = {"contact_models": ["strip_theory"], "wear_laws": ["usfd"]}
+    cases.write(tmp_path / "c.toml", cases.table(rig=rig, **models, profiles={}, sweeps={"p": point}))
+    done = cases.wearlaw("run", "c.toml", "-o", "out")
+    assert done.exit_code == 0, done.output
+    read = wl.read_profile("out/tables/points_of_wheel.csv", kind="wheel")
+    for values, column in zip((read.y, read.z), points.T, strict=True):
+        assert values is not None
+        np.testing.assert_allclose(values.m_as("mm"), column, rtol=1e-14, atol=1e-14)  # rounded to metres and back
+    page = Page(Path("out/report.html").read_text(encoding="utf-8"))
+    assert f"Points of the wheel: {len(points)} rows in points_of_wheel.csv" in page.text
+    assert "tables/points_of_wheel.csv" in page.attributes("href")
+    assert f"wheel.y {len(points)} values from" in page.text
+    assert sum(tag == "tr" for tag, _ in page.elements) < 100
+    assert not list(Path("out/tables").glob("points_of_rail*")), "a formula has no points"
+
+
+def test_a_table_of_many_rows_is_a_link(study: wl.Study) -> None:
+    rows = pd.DataFrame({"step": range(LONGEST + 1)})
+    page = Page(page_of(replace(study, sections=(wl.Section("Long", "", tables={"steps": rows}),))))
+    assert f"Steps: {LONGEST + 1} rows in steps.csv" in page.text
+    assert "tables/steps.csv" in page.attributes("href")
+    assert "Steps" not in page.within("caption")
 
 
 def test_the_contents_lead_to_every_part(page: Page) -> None:

@@ -304,7 +304,7 @@ def _axis(axis: PlotAxis) -> Json:
 def _notes(panel: Panel, number: str) -> list[Json]:
     """Return the title of a panel, and the names of its limits."""
     place = {"xref": f"x{number} domain", "yref": f"y{number} domain", "showarrow": False}
-    title = {**place, "x": 0.5, "y": 1.0, "yanchor": "bottom", "text": literal(panel.title)}
+    title = {**place, "x": 0.5, "y": 1.0, "yanchor": "bottom", "yshift": 5, "text": literal(panel.title)}
     return [*([title] if panel.title else []), *(_named(limit, panel, place, number) for limit in panel.limits)]
 
 

@@ -21,12 +21,21 @@ from wearlaw_apps.output.notes import by_kind
 from wearlaw_apps.output.style import DARK, PALETTE
 from wearlaw_apps.output.styled import html_table
 from wearlaw_apps.studies.report.interactive import plotly_figure
-from wearlaw_apps.studies.report.tables import headline, main_table, models, of_section, parameters, profiles, summaries
+from wearlaw_apps.studies.report.tables import (
+    headline,
+    main_table,
+    models,
+    of_section,
+    parameters,
+    points,
+    profiles,
+    summaries,
+)
 from wearlaw_apps.studies.sections import VERDICTS, CheckedClaim
 from wearlaw_apps.studies.study import Study, used
 
-LONG = 12
-"""Most rows of a table that is not folded."""
+LONG, LONGEST = 12, 100
+"""Most rows of a table that is not folded, and of one that stands on the page at all."""
 
 
 def report(study: Study, case_text: str) -> str:
@@ -53,10 +62,12 @@ def report(study: Study, case_text: str) -> str:
             if (table.title, table.frame.columns[0]) != (first.title, first.frame.columns[0])
         ],
         parameters=parameters(study),
+        points=points(study),
         models=models(study),
         used=[(kind, name, origin) for kind, names in used(study.case).items() for name, origin in names.items()],
         version=__version__,
         long=LONG,
+        longest=LONGEST,
         on_dark=dict(zip(PALETTE, DARK, strict=True)),
         plotlyjs=packed(get_plotlyjs()),
     )

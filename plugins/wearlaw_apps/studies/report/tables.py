@@ -71,7 +71,8 @@ class NamedTable:
 def tables(study: Study) -> list[NamedTable]:
     """Return all tables of a study."""
     sections = (table for section in study.sections for table in of_section(section))
-    return [main_table(study), *summaries(study), *profiles(study), parameters(study), models(study), *sections]
+    results = [main_table(study), *summaries(study), *profiles(study)]
+    return [*results, parameters(study), *points(study), models(study), *sections]
 
 
 def of_section(section: Section) -> list[NamedTable]:
@@ -272,6 +273,28 @@ def parameters(study: Study) -> NamedTable:
     return NamedTable("parameters", "Parameters", pd.DataFrame(rows, columns=columns))
 
 
+def points(study: Study) -> list[NamedTable]:
+    """Return a table for each part of the rig whose fields are lists, such as the points of a measured profile."""
+    return [
+        NamedTable(f"points_of_{name}", f"Points of the {name.replace('_', ' ')}", pd.DataFrame(columns))
+        for name, columns in _lists(study.case.rig)
+    ]
+
+
+def _lists(record: Configuration, within: str = "") -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the names of nested records with lists of numbers, and these lists by heads with units."""
+    columns = {}
+    for name in type(record).model_fields:
+        value = getattr(record, name)
+        if isinstance(value, Configuration):
+            yield from _lists(value, f"{within}{name}_")
+        elif _is_list(value):
+            unit = f" [{symbol(value.units, '~C')}]" if isinstance(value, pint.Quantity) else ""
+            columns[f"{name}{unit}"] = getattr(value, "magnitude", value)
+    if columns:
+        yield within.removesuffix("_"), columns
+
+
 def models(study: Study) -> NamedTable:
     """Return the distribution and the literature source of each model."""
     origins = used(study.case)
@@ -305,7 +328,12 @@ def _fields(record: Configuration, within: str = "") -> Iterator[tuple[str, str,
 def _text(value: Any) -> str:
     if isinstance(value, pint.Quantity):
         return f"{_number(value.magnitude)} {symbol(value.units, '~P')}".rstrip()
-    return _number(value) if isinstance(value, float) else str(value)
+    return _number(value) if isinstance(value, float) or _is_list(value) else str(value)
+
+
+def _is_list(value: Any) -> bool:
+    """Return whether a value is a list of numbers."""
+    return np.ndim(value) > 0 and np.asarray(getattr(value, "magnitude", value)).dtype.kind == "f"
 
 
 def _number(value: Any) -> str:
