@@ -48,7 +48,7 @@ def test_leaving_the_range_of_a_law_is_warned_of_once_a_call_at_the_users_line(s
     assert caught[0].category is wl.PlasticityWarning
     assert "wear law 'usfd' has a known range of mean slip speed" in str(caught[1].message)
     message = str(caught[2].message)
-    assert "wear law 'usfd' has a known range of mean wear index density from 0.000 N/mm² to 108.4 N/mm²" in message
+    assert "wear law 'usfd' has a known range of mean wear index density from 0 N/mm² to 108.4 N/mm²" in message
     assert f"{size} of {size} operating points {'lies' if size == 1 else 'lie'} outside" in message
 
 

@@ -137,7 +137,7 @@ def test_variables_are_warned_of_one_by_one() -> None:
             return {"slip": (0.0, 0.1), "slip_speed": (0.03, 10.0), "pressure": (0.0, 1e10)}
 
     slip, speed = messages(Both(), [0.01, 0.02, 0.2])
-    assert "mean slip from 0.000 % to 10.00 %; 1 of 3" in slip
+    assert "mean slip from 0 % to 10.00 %; 1 of 3" in slip
     assert "mean slip speed from 0.03000 m/s to 10.00 m/s; 1 of 3" in speed
 
 

@@ -68,7 +68,7 @@ def test_every_unit_becomes_coherent_si(unit: str, factor: float) -> None:
         ("nan mm", "must be a number, got nan mm"),
         ("inf mm", "must be finite, got inf mm"),
         ("-1 mm", "must be greater than zero, got -1.000 mm"),
-        ("0 mm", "must be greater than zero, got 0.000 mm"),
+        ("0 mm", "must be greater than zero, got 0 mm"),
         (pint.Quantity(1j, "mm"), "1j is not a real number"),
         (pint.Quantity([3, -2, -1], "mm"), "must be greater than zero, got -2.000 mm at index [1]"),
         (Q(np.array([[1, 2], [np.nan, 3]]), "mm"), "must be a number, got nan mm at index [1, 0]"),

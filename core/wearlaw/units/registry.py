@@ -215,6 +215,8 @@ def _digits(magnitude: Any) -> str:
         return f"{number:#.{_SIGNIFICANT_DIGITS}g}".rstrip(".")
 
     if np.ndim(magnitude) == 0:
-        return text(magnitude) if isinstance(magnitude, (int, float, np.number)) else repr(magnitude)
+        if not isinstance(magnitude, (int, float, np.number)):
+            return repr(magnitude)
+        return text(magnitude) if magnitude else "0"
     formatter: Any = {"float_kind": text}
     return np.array2string(np.asarray(magnitude), formatter=formatter)

@@ -42,7 +42,7 @@ EXPECTED: dict[str, list[str]] = {
         "fitted for: patch means (the global model); R8T wheel steel on UIC 60 900A rail steel; parameters: Tassini",
         "never falls with: wear_index_density",
         "branches in wear_index_density at 10.38 N/mm², 77.26 N/mm²",
-        "known range of mean wear_index_density from 0.000 N/mm² to 108.4 N/mm²",
+        "known range of mean wear_index_density from 0 N/mm² to 108.4 N/mm²",
     ],
     "kth": [  # Table 2 of Tassini et al. (2010)
         "coefficient = 'mid' one of 'low', 'mid', 'high'",

@@ -292,7 +292,8 @@ def test_a_claim_has_the_verdict_and_the_numbers_of_the_formulas(
     says, numbers = (PAPER if kept == "disc_1" else MEAN_KEPT)[name]
     row = rows[kept][name]
     assert row.verdict == says
-    shown = re.findall(r"(?<![\w(.])[+-]?\d+(?:\.\d+)?(?:e-\d)?(?![\w(])", row.ours)
+    ours = row.ours.replace("−", "-").replace(" × 10⁻⁴", "e-4")
+    shown = re.findall(r"(?<![\w(.])[+-]?\d+(?:\.\d+)?(?:e-\d)?(?![\w(])", ours)
     for text, expected in zip(shown, numbers(), strict=True):
         value, slack = expected if isinstance(expected, tuple) else (expected, 0.0)
         mantissa, _, power = text.partition("e")

@@ -37,7 +37,7 @@ def test_table_1_is_that_of_the_paper() -> None:
     assert rows(tables.table_1()) == [
         ("Tγ < 100", "0.25 Tγ / D"),
         ("100 ≤ Tγ < 200", "25 / D"),
-        ("Tγ ≥ 200", "(1.19 Tγ - 154) / D"),
+        ("Tγ ≥ 200", "(1.19 Tγ − 154) / D"),
     ]
 
 
@@ -56,9 +56,9 @@ def test_table_3_is_that_of_the_paper_with_the_global_parameters() -> None:
     assert [(regime, equation) for regime, _, equation, _ in table] == [
         ("mild", "m_m w"),
         ("severe", "q_s"),
-        ("catastrophic", "m_c w - (m_c tr_sc - q_s)"),
+        ("catastrophic", "m_c w − (m_c tr_sc − q_s)"),
     ]
-    assert [with_numbers for *_, with_numbers in table] == ["5.3 w", "55", "61.9 w - 4727.39"]
+    assert [with_numbers for *_, with_numbers in table] == ["5.3 w", "55", "61.9 w − 4727.39"]
     offset = 61.9 * 77.26 - 55.0
     assert f"{offset:.2f}" == "4727.39"
     assert table[1][1] == "10.38 ≤ w < tr_sc = 77.26"

@@ -96,7 +96,7 @@ def verdict(parts: Iterable[bool | np.bool_]) -> Verdict:
 
 def percent(share: float) -> str:
     """Return a relative difference with its sign, as in "+12.3 %"."""
-    return f"{100 * share:+z.{0 if abs(share) >= 1 else 1}f} %"
+    return f"{100 * share:+z.{0 if abs(share) >= 1 else 1}f} %".replace("-", "−")
 
 
 def farthest(differences: Array) -> float:
@@ -228,7 +228,8 @@ def kth_above_usfd(bench: Bench) -> tuple[Array, str, bool]:
     k_low, k_high = (dict(dict(law.explicit())["coefficient"])["low_speed"] for law in (KTH_LOW, KTH_HIGH))
     position = max(float(((bench.usfd - low) / (high - low))[bench.severe_window].max()), 0.0)
     share = min(position, 1.0)
-    return low + share * (high - low), f"{1e4 * (k_low + share * (k_high - k_low)):.2g}e-4", position <= 1.0
+    k = f"{1e4 * (k_low + share * (k_high - k_low)):.2g} × 10⁻⁴"
+    return low + share * (high - low), k, position <= 1.0
 
 
 def above_in_severe_wear(bench: Bench) -> wl.CheckedClaim:

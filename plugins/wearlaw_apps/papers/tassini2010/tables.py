@@ -48,7 +48,7 @@ def table_1() -> pd.DataFrame:
     rows = [
         (f"Tγ < {mild}", f"{slope} Tγ / D"),
         (f"{mild} ≤ Tγ < {severe}", f"{plateau} / D"),
-        (f"Tγ ≥ {severe}", f"({steep} Tγ - {offset}) / D"),
+        (f"Tγ ≥ {severe}", f"({steep} Tγ − {offset}) / D"),
     ]
     return pd.DataFrame(rows, columns=["Tγ [N]", "material loss [mm²/km]"])
 
@@ -67,7 +67,7 @@ def table_2() -> pd.DataFrame:
         "mid_speed": (f"p < {limit}", f"{slow} ≤ ṡ < {fast}"),
         "high_speed": (f"p < {limit}", f"ṡ ≥ {fast}"),
     }
-    columns = ["pressure p [GPa]", "slip velocity ṡ [m/s]", "lowest k [1e-4]", "highest k [1e-4]"]
+    columns = ["pressure p [GPa]", "slip velocity ṡ [m/s]", "lowest k [10⁻⁴]", "highest k [10⁻⁴]"]
     rows = [(*ranges, round(1e4 * low[field], 9), round(1e4 * high[field], 9)) for field, ranges in where.items()]
     return pd.DataFrame(rows, columns=columns)
 
@@ -80,7 +80,7 @@ def table_3() -> pd.DataFrame:
     rows = [
         ("mild", f"w < q_s/m_m = {border:.4g}", "m_m w", f"{m_m:g} w"),
         ("severe", f"{border:.4g} ≤ w < tr_sc = {tr_sc:g}", "q_s", f"{q_s:g}"),
-        ("catastrophic", f"w ≥ {tr_sc:g}", "m_c w - (m_c tr_sc - q_s)", f"{m_c:g} w - {offset:.6g}"),
+        ("catastrophic", f"w ≥ {tr_sc:g}", "m_c w − (m_c tr_sc − q_s)", f"{m_c:g} w − {offset:.6g}"),
     ]
     head = ["wear regime", "w = Tγ/A [N/mm²]", "wear rate", "wear rate, global parameters [µg/m/mm²]"]
     return pd.DataFrame(rows, columns=head)
