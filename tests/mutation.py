@@ -41,7 +41,7 @@ TESTS = {
     "wearlaw_models.contact_models.fastsim": "plugins/fastsim/test_kernel.py plugins/fastsim/test_first_slip.py"
     " plugins/fastsim/test_fastsim.py plugins/fastsim/test_solution.py plugins/fastsim/test_strip_forces.py"
     " plugins/fastsim/test_strip_fields.py"
-    " plugins/fastsim/test_march.py plugins/fastsim/test_march_convergence.py plugins/fastsim/test_limits.py"
+    " plugins/fastsim/test_limits.py"
     " plugins/fastsim/test_given_strips.py",
     "wearlaw_models.contact_models.global_": "plugins/global/test_global.py",
     "wearlaw_models.laws.kth": "plugins/kth/test_kth.py",

@@ -32,11 +32,7 @@ CONTACT_MODELS: list[wl.ContactModel] = [
         wl.contact_model("fastsim", bound=bound, flexibility=flexibility)
         for bound, flexibility in itertools.product(("parabolic", "elliptic"), ("line", "kalker"))
     ),
-    *(
-        wl.contact_model("fastsim", bound=bound, march=march, slip=slip)
-        for bound in ("parabolic", "elliptic")
-        for march, slip in (("uniform", "local"), ("adaptive", "scaled"))
-    ),
+    *(wl.contact_model("fastsim", bound=bound, slip="scaled") for bound in ("parabolic", "elliptic")),
     wl.contact_model("fastsim", interpolation="contact"),
     *(
         wl.contact_model("global", total_from=model)

@@ -9,7 +9,7 @@ import wearlaw as wl
 from docs import half_spaces
 from tests.plugins.full_theory import rows
 from wearlaw import Array, Q
-from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: the flexibilities
+from wearlaw_models.contact_models.fastsim.strips import Ellipses  # private: the flexibilities
 
 DIGITS = 5e-3
 """Three digits are printed: half of the last one, of 1.00."""

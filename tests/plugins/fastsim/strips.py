@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 import wearlaw as wl
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: patches with any flexibilities
-from wearlaw_models.contact_models.fastsim.strips import (  # private: with any number of nodes
+from wearlaw_models.contact_models.fastsim.strips import (  # private: any flexibilities and number of nodes
+    Ellipses,
     forces,
     layout_on,
     strips,

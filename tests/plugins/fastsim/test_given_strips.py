@@ -151,14 +151,6 @@ def test_a_rig_of_strips_wears() -> None:
     assert float(traction.magnitude) == pytest.approx(0.1, rel=1e-9)
 
 
-def test_given_strips_have_adaptive_nodes_whatever_the_march_on_ellipses() -> None:
-    conditions: Any = {"creepage": "1 %", "friction_coefficient": 0.3}
-    uniform, adaptive = (
-        (Humps() | wl.contact_model("fastsim", march=march))(**conditions) for march in ("uniform", "adaptive")
-    )
-    assert uniform.longitudinal_force == adaptive.longitudinal_force
-
-
 def test_what_strips_cannot_do_is_said() -> None:
     with pytest.raises(CompositionError, match="the pressure of strips is given"):
         two_humps(1e-3).with_normal_force(np.array([1e4]))

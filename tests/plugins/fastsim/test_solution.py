@@ -10,11 +10,10 @@ import pytest
 import wearlaw as wl
 from tests.plugins.ellipses import EPS, TABLE_E3, ellipse, of_ratio
 from wearlaw import Q
-from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: the flexibilities
+from wearlaw_models.contact_models.fastsim.strips import Ellipses  # private: the flexibilities
 
 Bound = Literal["elliptic", "parabolic"]
 BOUNDS: tuple[Bound, ...] = ("elliptic", "parabolic")
-MARCHES: tuple[Literal["adaptive", "uniform"], ...] = ("adaptive", "uniform")
 
 
 def two_loads() -> wl.Problem:
@@ -39,19 +38,14 @@ def test_flexibilities_and_bound_are_those_of_the_simplified_theory(
     assert found.bound_centre == pytest.approx(share * 0.3 * 80e3 / (np.pi * a * b), rel=8 * EPS)
 
 
-@pytest.mark.parametrize("march", MARCHES)
 @pytest.mark.parametrize("strips", [2, 10, 25])
-def test_nodes_lie_on_strips_that_fill_the_ellipse(march: Literal["adaptive", "uniform"], strips: int) -> None:
+def test_nodes_lie_on_strips_that_fill_the_ellipse(strips: int) -> None:
     problem = two_loads()
-    contact = wl.contact_model("fastsim", march=march, strips=strips).solve_ellipse(problem)
+    contact = wl.contact_model("fastsim", strips=strips).solve_ellipse(problem)
     number = np.arange(strips)
-    if march == "uniform":
-        share, width = (2.0 * number + 1.0) / strips - 1.0, np.full(strips, 2.0 / strips)
-        along = strips
-    else:  # even in the angle of y = b cos β
-        angle = np.pi * (strips - number) / (strips + 1)
-        share, width = np.cos(angle), np.pi / (strips + 1) * np.sin(angle)
-        along = max(round(0.4 * strips), 4) + max(strips, 8)
+    angle = np.pi * (strips - number) / (strips + 1)  # even in the angle of y = b cos β
+    share, width = np.cos(angle), np.pi / (strips + 1) * np.sin(angle)
+    along = max(round(0.4 * strips), 4) + max(strips, 8)
     assert contact.x.shape == contact.area.shape == (2, along, strips)
     # a cosine loses up to an EPS of b
     assert contact.y == pytest.approx(np.broadcast_to(6e-3 * share, contact.y.shape), abs=2 * EPS * 6e-3)
@@ -92,26 +86,6 @@ def test_strips_can_lie_where_they_are_asked_for() -> None:
     assert alone.traction_x[..., 0] == pytest.approx(contact.traction_x[..., 1], rel=16 * EPS)
 
 
-def test_a_uniform_march_has_its_own_strips() -> None:
-    assert wl.contact_model("fastsim", march="uniform").on_strips(two_loads(), np.array([0.0])) is None
-
-
-def test_no_cell_of_a_uniform_march_gains_energy(monkeypatch: pytest.MonkeyPatch) -> None:
-    random = np.random.default_rng(91)
-    creepages = 10.0 ** random.uniform(-4.0, -1.5, (2, 200)) * random.choice([-1.0, 1.0], (2, 200))
-    problem = ellipse().broadcast_to((200,)).with_creepages(creepages[0], creepages[1], np.full(200, 3.0))
-
-    def least_power() -> float:
-        contact = wl.contact_model("fastsim", march="uniform", strips=20).solve_ellipse(problem)
-        return float((contact.traction_x * contact.slip_x + contact.traction_y * contact.slip_y).min())
-
-    assert least_power() >= 0.0
-    monkeypatch.setattr(
-        "wearlaw_models.contact_models.fastsim.march.drop_gains", lambda _: None
-    )  # private: a march that gains energy
-    assert least_power() < 0.0
-
-
 @pytest.mark.parametrize("bound", BOUNDS)
 def test_scaled_slip_dissipates_what_the_creepages_do_and_local_slip_does_not(bound: Bound) -> None:
     problem = two_loads()
@@ -147,7 +121,24 @@ def test_exemptions_are_those_of_the_settings() -> None:
         (("bound", "elliptic"), ("flexibility", "kalker")): {"saturation", "initial_slope"},
         (("strips", 4),): {"accuracy"},
         (("strips", 5),): set(),
-        (("march", "uniform"), ("strips", 9)): {"accuracy"},
     }
     for settings, claims in exempt.items():
         assert set(wl.contact_model("fastsim", **dict(settings)).exemptions) == claims
+
+
+@pytest.mark.parametrize("strips", [1, 1001, 10.0])
+def test_strips_are_a_whole_number_from_2_to_1000(strips: object) -> None:
+    with pytest.raises(wl.ConfigurationError, match="strips"):
+        wl.contact_model("fastsim", strips=strips)
+
+
+def test_settings_of_an_ellipse_are_shown_where_they_differ_from_the_default() -> None:
+    assert "strips" not in repr(wl.contact_model("fastsim"))
+    assert "bound='parabolic'" in repr(wl.contact_model("fastsim", strips=20))
+    assert "strips=20" in repr(wl.contact_model("fastsim", strips=20))
+
+
+def test_the_stated_accuracy_is_in_inverse_proportion_to_the_strips() -> None:
+    model = wl.contact_model("fastsim", strips=20)
+    assert model.elliptic_accuracy == 0.5 / 20
+    assert model.refined() == wl.contact_model("fastsim", strips=40)

@@ -12,7 +12,7 @@ from tests.plugins.fastsim.marks import COMPILED, each_bound
 from tests.plugins.fastsim.strips import CASE, ROUNDING, ellipses, limit, sample, solve, strips_at
 from tests.strategies import EPS
 from wearlaw import Array
-from wearlaw_models.contact_models.fastsim.march import Ellipses  # private: patches with any flexibilities
+from wearlaw_models.contact_models.fastsim.strips import Ellipses  # private: patches with any flexibilities
 from wearlaw_models.contact_models.fastsim.zones import (  # private: whatever the excess along a slip zone
     Nodes,
     _where_it_sticks,

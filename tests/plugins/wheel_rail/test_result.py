@@ -110,12 +110,6 @@ def test_in_full_slip_without_spin_each_point_slides_by_the_creepage(within: flo
     assert 1e-3 * profile.sliding_distance.values == pytest.approx(due, rel=within)
 
 
-def test_a_uniform_march_has_the_profile_of_its_own_strips() -> None:
-    coarse = RIG | wl.contact_model("fastsim", march="uniform", strips=20) | PER_ENERGY
-    assert coarse(**CONDITIONS).wear_profile("wheel").y.size == 20
-    assert coarse(**CONDITIONS).wear_profile("wheel", strips=50).y.size == 20
-
-
 def test_strips_of_a_profile_must_be_a_number_of_them() -> None:
     result = (RIG | FASTSIM | PER_ENERGY)(**CONDITIONS)
     for strips in (1, 0, True, 10.0):

@@ -10,12 +10,12 @@ from pydantic import Field
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_models.contact_models.fastsim import march, strips
+from wearlaw_models.contact_models.fastsim import strips
 from wearlaw_models.contact_models.fastsim.line import elliptic_excess, parabolic_excess
-from wearlaw_models.contact_models.fastsim.march import Ellipses
+from wearlaw_models.contact_models.fastsim.strips import Ellipses
 from wearlaw_models.strips import widths_at
 
-ON_ELLIPSE = ("march", "strips", "slip", "interpolation")
+ON_ELLIPSE = ("strips", "slip", "interpolation")
 """Settings that have no effect on a line."""
 
 
@@ -57,17 +57,12 @@ class Fastsim(wl.LineContactModel):
     """L on a line [m³/N]. "line": 4a/(πE*), which gives the initial slope of the exact theory. "kalker": 32a/(3π²E*),
     the limit of Kalker's coefficient for a long ellipse. On an ellipse the flexibilities are always Kalker's three."""
 
-    march: Literal["adaptive", "uniform"] = "adaptive"
-    """Nodes on an ellipse. "adaptive": few in the stick zone and the others in the slip zone, with formulas of second
-    order between them. "uniform": cells of equal length along each strip, as in Kalker's march. On a patch of given
-    strips the nodes are always adaptive."""
-
     strips: Annotated[int, Field(ge=2, le=1000, strict=True)] = 10
-    """Number of strips of an ellipse. The number of nodes along a strip is proportional to it; a uniform march has as
-    many cells as strips. On 10 strips forces are off by 0.4 % of μN, the energy of the cells and USFD by 0.4 %, and
-    KTH, which jumps, by 5 %, root mean square over a/b from 1/10 to 10, maximum pressures from 0.6 to 2.4 GPa, and any
-    creepages up to μN/(G ab); single points are ten times further off. The documentation of wheels on rails has a
-    table. `wear_rate_error` solves four times as many: with 1000 strips that takes a minute and 4 GB for a patch."""
+    """Number of strips of an ellipse. The number of nodes along a strip is proportional to it. On 10 strips forces are
+    off by 0.4 % of μN, the energy of the cells and USFD by 0.4 %, and KTH, which jumps, by 5 %, root mean square over
+    a/b from 1/10 to 10, maximum pressures from 0.6 to 2.4 GPa, and any creepages up to μN/(G ab); single points are ten
+    times further off. The documentation of wheels on rails has a table. `wear_rate_error` solves four times as many:
+    with 1000 strips that takes a minute and 4 GB for a patch."""
 
     slip: Literal["local", "scaled"] = "local"
     """Slip on an ellipse. "local": the slip of the theory. "scaled": the same times one factor for the patch, so that
@@ -104,18 +99,16 @@ class Fastsim(wl.LineContactModel):
 
     @property
     def elliptic_accuracy(self) -> float:
-        """0.5/strips, as a share of full slip; 1/strips with the uniform march.
+        """0.5/strips, as a share of full slip.
 
         On 10 strips one in five thousand random points of the range in the documentation is further off, with a/b
         beyond 6 or below 1/6, where spin and creepage nearly cancel in a strip; a search found 0.14 at a/b = 10. The
         root mean square is 0.004.
         """
-        return 0.5 / self.strips if self.march == "adaptive" else 1.0 / self.strips
+        return 0.5 / self.strips
 
     def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
         """Return the contact on strips."""
-        if self.march == "uniform":
-            return self._scaled(march.solve(problem, self._ellipses(problem), self.strips))
         return self.solve_strips(problem)
 
     def solve_strips(self, problem: wl.Problem) -> wl.Contact:
@@ -126,18 +119,15 @@ class Fastsim(wl.LineContactModel):
 
     def creep_forces(self, problem: wl.Problem) -> wl.CreepForces:
         """Return the forces of an ellipse or of strips, without the fields that only wear needs."""
-        if self.march == "uniform" and problem.geometry == "ellipse":
-            return self.solve(problem).forces
         return strips.creep_forces(problem, self._ellipses(problem), self.strips)
 
     def on_strips(self, problem: wl.Problem, shares: Array) -> wl.Contact | None:
-        """Return the contact on strips at y = `shares` × b; a uniform march has its own strips."""
-        if self.march == "uniform" or problem.geometry == "strips":
+        """Return the contact on strips of an ellipse at y = `shares` × b."""
+        if problem.geometry == "strips":
             return None
         ellipses = self._ellipses(problem)
-        return self._scaled(
-            strips.solve(problem, ellipses, strips.layout_on(ellipses, shares, widths_at(shares)), self.strips)
-        )
+        layout = strips.layout_on(ellipses, shares, widths_at(shares))
+        return self._scaled(strips.solve(problem, ellipses, layout, self.strips))
 
     def _ellipses(self, problem: wl.Problem) -> Ellipses:
         return Ellipses.of(problem.flatten(), self.bound == "elliptic", self.interpolation)

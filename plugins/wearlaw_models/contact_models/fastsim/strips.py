@@ -7,18 +7,81 @@ strips have as many nodes as the others, divided among their zones.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import dataclasses
+from dataclasses import dataclass
+from typing import NamedTuple, Self
 
 import numpy as np
 
 import wearlaw as wl
 from wearlaw import Array
-from wearlaw_models.contact_models.fastsim.march import Ellipses
 from wearlaw_models.contact_models.fastsim.zones import NODES, Nodes, Strips, stick_and_slip, sums
 from wearlaw_models.strips import contact_of, even_strips, forces_of, unflattened
 
 STICK_NODES_PER_STRIP, SLIP_NODES_PER_STRIP = 0.4, 1.0
 """Nodes along a strip over the number of strips: these make errors along and across strips about equal."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ellipses:
+    """Elliptic patches of the simplified theory, as SI arrays of shape (points,).
+
+    Attributes
+    ----------
+    a, b : ndarray
+        Semi-axes in the rolling direction and across it [m].
+    longitudinal_creepage, lateral_creepage : ndarray
+        ξ and η [-].
+    spin : ndarray
+        φ [1/m].
+    longitudinal_flexibility, lateral_flexibility, spin_flexibility : ndarray
+        L1, L2 and L3 [m³/N].
+    bound_centre : ndarray
+        Bound of the traction at the centre of the patch, μ p2(0) [Pa].
+    elliptic : bool
+        Whether the bound is a half-ellipsoid; otherwise it is a paraboloid.
+    """
+
+    a: Array
+    b: Array
+    longitudinal_creepage: Array
+    lateral_creepage: Array
+    spin: Array
+    longitudinal_flexibility: Array
+    lateral_flexibility: Array
+    spin_flexibility: Array
+    bound_centre: Array
+    elliptic: bool
+
+    @classmethod
+    def of(cls, problem: wl.Problem, elliptic: bool, interpolation: wl.kalker.Interpolation = "scaled") -> Self:
+        """Return the patches of a problem with one batch axis, with Kalker's three flexibilities.
+
+        L1 = 8a/(3 C11 G), L2 = 8a/(3 C22 G), L3 = π a √(a/b)/(4 C23 G) (Kalker 1982).
+        """
+        a, modulus = problem.a, problem.shear_modulus
+        ratio = a / problem.b
+        c = wl.kalker.coefficients(ratio, problem.poisson_ratio, interpolation)
+        return cls(
+            a=a,
+            b=problem.b,
+            longitudinal_creepage=problem.longitudinal_creepage,
+            lateral_creepage=problem.lateral_creepage,
+            spin=problem.spin,
+            longitudinal_flexibility=8.0 / 3.0 * a / (c.c11 * modulus),
+            lateral_flexibility=8.0 / 3.0 * a / (c.c22 * modulus),
+            spin_flexibility=0.25 * np.pi * a * np.sqrt(ratio) / (c.c23 * modulus),
+            bound_centre=(1.5 if elliptic else 2.0)
+            * problem.friction_coefficient
+            * problem.normal_force
+            / problem.patch_area,
+            elliptic=elliptic,
+        )
+
+    @property
+    def arrays(self) -> tuple[Array, ...]:
+        """The arrays, in the order above."""
+        return tuple(getattr(self, field.name) for field in dataclasses.fields(self)[:-1])
 
 
 class Layout(NamedTuple):
