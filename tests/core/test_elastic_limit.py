@@ -189,7 +189,6 @@ def test_the_tables_are_as_exact_as_the_docstrings_say(
     share = np.array([1.0, 0.96, 0.7, 0.3, 0.05])
     limits = {
         "von_mises": first_yield(1.0, mu * share, mu, poisson_ratio=nu, axis_ratio=ratio),
-        "tresca": first_yield(1.0, mu * share, mu, poisson_ratio=nu, axis_ratio=ratio, criterion="tresca"),
         "forward": shakedown_limit(1.0, mu * share, mu, axis_ratio=ratio),
     }
     monkeypatch.setattr(elastic_limit, "DIRECTIONS", 150)
@@ -208,11 +207,6 @@ def test_a_body_is_elastic_without_traction_or_friction_and_alike_in_both_direct
     assert first_yield(1.0, 0.0, 0.0, poisson_ratio=0.3) == first_yield(1.0, 0.0, poisson_ratio=0.3)
     assert first_yield(1.0, -0.3, poisson_ratio=0.3) == first_yield(1.0, 0.3, poisson_ratio=0.3)
     assert first_yield(1.0, 0.3, 0.2, poisson_ratio=0.3) == first_yield(1.0, 0.3, poisson_ratio=0.3)
-
-
-def test_a_criterion_that_is_not_known_is_refused() -> None:
-    with pytest.raises(wl.InputError, match='criterion: must be "von_mises" or "tresca", got \'rankine\''):
-        first_yield(1.0, 0.1, poisson_ratio=0.3, criterion="rankine")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

@@ -540,7 +540,7 @@ class Contact:
         """Return the contact with some of its fields replaced."""
         return dataclasses.replace(self, **fields)
 
-    def patch_mean(self) -> Contact:
+    def patch_mean(self) -> Self:
         """Return a contact of one node with the patch means.
 
         Pressure and traction are area means. The slip of a line is s = Tγ / T, which dissipates the same energy and
@@ -569,10 +569,8 @@ class Contact:
                 "traction_y": self.force_y / area,
             }
             across = {"strip_width": self.strip_width.sum(axis=-1)[..., None]}
-        totals = {name: getattr(self, name) for name in TOTALS}
         axes = (..., *[None] * (2 if across else 1))
-        arrays = {name: value[axes] for name, value in nodes.items()} | across | totals
-        return Contact(**arrays, problem=self.problem, conditions=self.conditions)
+        return self.replaced(**{name: value[axes] for name, value in nodes.items()}, **across)
 
 
 TOTALS = (

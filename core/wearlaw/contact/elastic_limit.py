@@ -43,18 +43,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from wearlaw.arrays import Array
-from wearlaw.errors import InputError, PlasticityWarning, shown, warn
+from wearlaw.errors import InputError, PlasticityWarning, warn
 from wearlaw.units.quantities import coefficient
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-Criterion: TypeAlias = Literal["von_mises", "tresca"]
 
 _Value = TypeVar("_Value", float, Array)
 
@@ -93,14 +91,13 @@ def first_yield(
     *,
     poisson_ratio: float,
     axis_ratio: ArrayLike = 0.0,
-    criterion: Criterion = "von_mises",
 ) -> Array:
-    """Return Hertz's maximum pressure at first yield [Pa]; arguments broadcast.
+    """Return Hertz's maximum pressure at first yield by von Mises's criterion [Pa]; arguments broadcast.
 
     Parameters
     ----------
     shear_yield_stress : array_like of float
-        Yield stress in shear, k [Pa]: Y/√3 of the yield stress Y in tension by von Mises's criterion, Y/2 by Tresca's.
+        Yield stress in shear, k [Pa]: Y/√3 of the yield stress Y in tension.
     traction_coefficient : array_like of float
         The transmitted traction, T/N [-], of either sign.
     friction_coefficient : array_like of float, optional
@@ -109,22 +106,18 @@ def first_yield(
         ν of the body [-].
     axis_ratio : array_like of float
         a/b of the patch [-], a in the rolling direction; 0 for a line.
-    criterion : {"von_mises", "tresca"}
-        The yield criterion.
 
     Raises
     ------
     InputError
-        If the criterion is unknown, or a coefficient or axis ratio is not a finite number or is negative.
+        If a coefficient or axis ratio is not a finite number or is negative.
 
     Notes
     -----
     Interpolated in tables: within 0.15 % if the whole patch of a line slips, otherwise at most 3.5 % too low and 2 %
     too high, for a/b from 1/20 to 20, T/N up to 1 and T/μN from 0.05 on.
     """
-    if criterion not in ("von_mises", "tresca"):
-        raise InputError(f'criterion: must be "von_mises" or "tresca", got {shown(criterion)}')
-    shear = _peak_of(criterion, float(poisson_ratio), traction_coefficient, friction_coefficient, axis_ratio)
+    shear = _peak_of("von_mises", float(poisson_ratio), traction_coefficient, friction_coefficient, axis_ratio)
     limit: Array = np.asarray(shear_yield_stress, dtype=np.float64) / shear
     return limit
 
@@ -442,22 +435,11 @@ def _von_mises(pressed: Array, sheared: Array, share: Array) -> Array:
     return stress
 
 
-def _tresca(pressed: Array, sheared: Array, share: Array) -> Array:
-    """Return the greatest shear stress at each share of the traction, the greater for its two directions."""
-
-    def greatest(x: Array, y: Array, z: Array, zx: Array) -> Array:
-        radius, middle = np.hypot(0.5 * (x - z), zx), 0.5 * (x + z)
-        return np.maximum(radius, 0.5 * (radius + np.abs(middle - y)))
-
-    pressure, traction = (1.0 - share) * pressed[:, None], share * sheared[:, None]
-    return np.maximum(greatest(*(pressure + traction)), greatest(*(pressure - traction)))
-
-
 def _forward(pressed: Array, sheared: Array, share: Array) -> Array:
     """Return |τzx| at each share of the traction, the greater for its two directions."""
     stress: Array = (1.0 - share) * np.abs(pressed[3]) + share * np.abs(sheared[3])
     return stress
 
 
-MEASURES = {"von_mises": _von_mises, "tresca": _tresca, "forward": _forward}
+MEASURES = {"von_mises": _von_mises, "forward": _forward}
 """The deciding shear stress, (n, points), from σx, σy, σz, τzx, (4, points), at shares, (n, 1), of the traction."""

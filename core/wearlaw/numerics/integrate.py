@@ -237,8 +237,9 @@ def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlo
                 mean = _on_own_nodes(solver, law, _at_points(p, points), part, contact)
             else:
                 of = part.worn_on(law.body)
-                at_points = ramps if ramps is None or p is law.numbers else _ramps_at(ramps, points)
-                closed = None if at_points is None else closed_form(by_zones, at_points, of)
+                if ramps is not None and p is not law.numbers:
+                    ramps = _ramps(law, _of_patches(_at_points(p, points)))
+                closed = None if ramps is None else closed_form(by_zones, ramps, of)
                 mean = closed or _over_zones(solver, law, _at_points(p, points), of)
             means.append(mean)
             sliding = mean.sliding if sliding is None else sliding
@@ -260,15 +261,6 @@ def _ramps(law: Law, p: Numbers) -> Ramps | None:
     with Blame(law, p):
         ramps = law.ramps(p)
         return None if ramps is None else [(threshold, slope) for threshold, slope in ramps]
-
-
-def _ramps_at(ramps: Ramps, points: slice) -> Ramps:
-    """Return the ramps of a law at some operating points, without the axis of the nodes."""
-
-    def at(number: Any) -> Any:
-        return number[points, 0] if isinstance(number, np.ndarray) and number.ndim else number
-
-    return [(at(threshold), at(slope)) for threshold, slope in ramps]
 
 
 def _contact_of(law: Law, contact: Contact, problem: Problem) -> Contact:
