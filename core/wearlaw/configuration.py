@@ -171,7 +171,7 @@ def _unknown_type(cls: type[BaseModel], error: PydanticSchemaGenerationError) ->
         if not any(isinstance(part, Unit) for part in field.metadata) and _is_plain_quantity(field.annotation):
             return (
                 f"{cls.__name__}.{name}: its annotation has no unit; write {name}: Annotated[wl.Quantity, wl.Unit(...)]"
-                ' with the customary unit, such as wl.Unit("mm"), and a default as text, such as "1 mm"'
+                ' with the customary unit, such as wl.Unit("mm"), and a default such as wl.Q(1, "mm")'
             )
     return f"{cls.__name__}: a field has a type that pydantic cannot check; {str(error).partition('. Set')[0]}"
 

@@ -18,6 +18,8 @@ Sources: K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, aft
 
 from __future__ import annotations
 
+from typing import overload
+
 import numpy as np
 import scipy
 
@@ -27,27 +29,36 @@ _ITERATIONS = 10
 """Largest number of iterations; five are enough within the stated range of axis ratios."""
 
 
-def curvature(radius_1: Array, radius_2: Array) -> Array:
+@overload
+def curvature(radius_1: float, radius_2: float) -> float: ...
+@overload
+def curvature(radius_1: Array, radius_2: float | Array) -> Array: ...
+@overload
+def curvature(radius_1: float, radius_2: Array) -> Array: ...
+def curvature(radius_1: float | Array, radius_2: float | Array) -> float | Array:
     """Return A = (1/R1 + 1/R2)/2 [1/m], half the relative curvature in one principal plane.
 
     Parameters
     ----------
-    radius_1, radius_2 : ndarray
+    radius_1, radius_2 : ndarray or float
         Radii of curvature of the two bodies in that plane [m]; infinite where flat, negative where concave.
     """
     return 0.5 * (1.0 / radius_1 + 1.0 / radius_2)
 
 
 def semi_axes(
-    normal_force: Array, curvature_x: Array, curvature_y: Array, effective_modulus: Array | float
+    normal_force: float | Array,
+    curvature_x: float | Array,
+    curvature_y: float | Array,
+    effective_modulus: float | Array,
 ) -> tuple[Array, Array]:
     """Return the semi-axes a along and b across the rolling direction [m].
 
     Parameters
     ----------
-    normal_force : ndarray
+    normal_force : ndarray or float
         N [N].
-    curvature_x, curvature_y : ndarray
+    curvature_x, curvature_y : ndarray or float
         A and B of the gap A x² + B y² [1/m], both positive. The axis ratio is solved in their own common shape, so that
         a sweep over loads costs one solution for each pair of curvatures.
     effective_modulus : ndarray or float
@@ -67,12 +78,12 @@ def semi_axes(
     return np.where(long, major, minor), np.where(long, minor, major)
 
 
-def max_pressure(normal_force: Array, a: Array, b: Array) -> Array:
+def max_pressure(normal_force: float | Array, a: Array, b: Array) -> Array:
     """Return p0 = 3N/(2πab) [Pa]."""
     return normal_force * (1.5 / np.pi) / (a * b)
 
 
-def approach(normal_force: Array, a: Array, b: Array, effective_modulus: Array | float) -> Array:
+def approach(normal_force: float | Array, a: Array, b: Array, effective_modulus: float | Array) -> Array:
     """Return δ [m], the approach of distant points of the two bodies."""
     distance: Array = normal_force * (1.5 / np.pi) / effective_modulus * scipy.special.elliprf(0.0, a**2, b**2)
     return distance
@@ -85,7 +96,7 @@ def pressure(x: Array, y: Array, a: Array, b: Array, max_pressure: Array) -> Arr
     return max_pressure / a * np.sqrt(inside)
 
 
-def _elongation(curvature_x: Array, curvature_y: Array) -> Array:
+def _elongation(curvature_x: float | Array, curvature_y: float | Array) -> Array:
     """Return the ratio of the major to the minor axis, which depends on the ratio of the curvatures alone.
 
     Newton's method in the logarithms solves B/A = R_D(0, a², b²) / R_D(0, b², a²). Their slope d ln(B/A) / d ln(a/b)

@@ -34,7 +34,7 @@ from wearlaw.numerics.crossings import crossings
 from wearlaw.numerics.solving import Solver, check_type
 from wearlaw.numerics.splits import split_rates
 from wearlaw.numerics.staged import Staged
-from wearlaw.numerics.totals import Across, OfBlock, OnBlock, ResultT, SlipTotals, Totals, by_block, each
+from wearlaw.numerics.totals import Across, OnBlock, SlipTotals, Totals, by_block, each
 
 BLOCK = 16384
 """Operating points of a block in closed form: its arrays stay in the cache and in reused memory."""
@@ -136,7 +136,7 @@ def integrate_slip(model: ContactModel, problem: Problem, solved_before: Contact
         return slip
 
     if solved_before is None:
-        return _by_block(solver, problem, of_block)
+        return solver.by_block(problem, _block(model, problem), of_block)
     part = problem if solved_before.rolling_speed.shape == problem.batch_shape else problem.flatten()
     slip: SlipTotals = each(problem.unflatten, solver.checked(of_block, part, slice(None)))
     return slip
@@ -211,7 +211,7 @@ def _over_ellipse(solver: Solver, laws: Numbered, problem: Problem, on_block: On
             across=tuple(kept),
         )
 
-    return _by_block(solver, problem, of_block, on_block)
+    return solver.by_block(problem, _block(solver.model, problem), of_block, on_block)
 
 
 def _over_line(solver: Solver, laws: Numbered, problem: Problem, on_block: OnBlock[Totals] | None) -> Totals:
@@ -305,7 +305,7 @@ def outcome_error(model: ContactModel, law: Law, problem: Problem, totals: Total
         contact = _contact_of(law, solver.solve(part), part)
         return thinning_error(contact, solver.rate(law, contact, part))
 
-    return _by_block(solver, problem, of_block)
+    return solver.by_block(problem, _block(model, problem), of_block)
 
 
 @steady
@@ -348,15 +348,8 @@ def integrate_across(
     return each(problem.unflatten, across)  # type: ignore[no-any-return]
 
 
-def _by_block(
-    solver: Solver, problem: Problem, of_block: OfBlock[ResultT], on_block: OnBlock[ResultT] | None = None
-) -> ResultT:
-    """Return results over blocks; the model's number of nodes decides the number of operating points in a block."""
-    return solver.by_block(problem, _block(solver.model, problem), of_block, on_block)
-
-
 def _block(model: ContactModel, problem: Problem) -> int:
-    """Return the number of operating points of a block with nodes."""
+    """Return the number of operating points of a block with nodes, which the model's number of nodes decides."""
     if problem.geometry == "line" or isinstance(model, Solved):
         return NODE_BLOCK
     if problem.size <= FEW:

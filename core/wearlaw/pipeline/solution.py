@@ -47,6 +47,7 @@ class Solution:
         self.totals = totals
         self.conditions = conditions
         self.whole = whole
+        self._errors: dict[int, Array] = {}
 
     def __eq__(self, other: object) -> bool:
         """Return whether another solution is one of the same contacts with the same models."""
@@ -179,10 +180,6 @@ class Solution:
             fix = f'name the other body, or take wear_profile("{body}"), which is per passage'
             raise InputError(f"body: {body} makes no revolutions; {fix}")
         return 2.0 * np.pi * radius
-
-    @cached_property
-    def _errors(self) -> dict[int, Array]:
-        return {}
 
     def error(self, index: int) -> Array:
         """Return an estimate of the numerical error of the outcome of a law."""

@@ -45,6 +45,7 @@ OTHER_NAMES = {
     "load": "normal_force",
     "force": "normal_force",
     "pressure": "max_pressure",
+    "p0": "max_pressure",
     "mu": "friction_coefficient",
     "cof": "friction_coefficient",
     "friction": "friction_coefficient",

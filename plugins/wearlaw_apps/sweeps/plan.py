@@ -16,7 +16,7 @@ Where other programs take the processors, a start takes as many times longer as 
 measured where a sample took 2.1 times its processor time.
 """
 
-BUSIEST = 4.0
+BUSIEST = 8.0
 """Most that a start is lengthened by, since a model that waits for another program takes hardly any processor time."""
 
 SENT_S = 1.5e-8

@@ -280,6 +280,7 @@ FAULTY = [
             ("creepage [%]", "crepage [%]", "did you mean 'creepage'"),
             ("creepage [%]", "slide_creepage [%]", "slide_creepage"),
             ("label,", "max_pressur [MPa],", "did you mean 'max_pressure'"),
+            ("label,", "p0 [GPa],", "did you mean 'max_pressure'"),
             ("label", "friction", "did you mean 'friction_coefficient'"),
             ("label", "Wear [mg]", "did you mean 'mass_loss'"),
             ("label", "mass [kgg]", "kgg"),

@@ -89,6 +89,12 @@ def test_processes_start_later_where_other_programs_take_the_processors(monkeypa
         assert plan.planned(job, points, 2, stored=True)[1] == several
 
 
+def test_twelve_programs_on_two_processors_are_counted_in_full(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plan, "_time", lambda *_: (0.6, 0.1))
+    _, busy = plan.seconds_per_point(Job(predictor(), {"wear_rate": "ug/m/mm^2"}), grid(creepage=10_000_000))
+    assert busy == pytest.approx(6.0)
+
+
 def test_a_cheap_sweep_starts_no_processes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweep, "in_processes", None)
     assert wl.sweep(predictor(), **CONDITIONS, workers=2).identical(wl.sweep(predictor(), **CONDITIONS))

@@ -70,6 +70,12 @@ ellipse = wl.Problem.ellipse(
 solved = wl.contact_model("fastsim", bound="elliptic").solve(ellipse)
 assert_type(solved, wl.Contact)
 assert_type(solved.force_x, wl.Array)
+across = wl.hertz_ellipse.curvature(0.46, 0.3)
+assert_type(across, float)
+along = wl.hertz_ellipse.curvature(np.array([0.45, 0.46]), np.inf)
+assert_type(along, wl.Array)
+axes = wl.hertz_ellipse.semi_axes(80e3, along, across, 115e9)
+assert_type(wl.hertz_ellipse.max_pressure(80e3, *axes), wl.Array)
 
 
 class Roller(wl.Rig):
