@@ -98,41 +98,54 @@ def smoothed(depth: Array, at: Array, width: Array) -> Array:
     return spread
 
 
-def shared(profile: Profile, at: Array, depth: Array, resolution: float) -> Array:
-    """Return depths at even positions [m] after which the flank of a wheel is hardly steeper than `STEEPEST`.
+def shared(profile: Profile, depth: Array, resolution: float) -> Array:
+    """Return depths at the points of a profile [m] after which the flank of a wheel is hardly steeper than `STEEPEST`.
 
     The gauge corner of a rail cuts its shape into a flank, down to where the rail is too steep for a rig to look for
     contact. There an edge would stay, which the side of a rail takes away: bodies that conform wear at the rate at
-    which they approach. The edge goes, and the wear of the flank gives it up, so that the sum of the depths stays.
+    which they approach. The edge goes, and the wear of the flank gives it up, so that the sum of the depths stays,
+    unless the edge is more than that wear. What a place gives up follows the slope about it, since ripples would grow
+    if each point followed its own.
 
     Parameters
     ----------
     profile : Profile
         The profile before the wear.
-    at, depth : ndarray, (positions,)
-        Positions, and depths there [m].
+    depth : ndarray, (points,)
+        Depths at the points of its curve [m].
     resolution : float
         Standard deviation of the kernel that smooths the lower end of the edge [m].
     """
-    curve = profile.curve
-    inside = (at >= curve.s[int(np.argmax(curve.z))]) & (at <= curve.s[-1])
-    y, z, angle, _ = curve.at(at[inside])
-    steep = np.where(y < 0.0, np.clip((-angle - FLANGE) / (STEEPEST - FLANGE), 0.0, 1.0), 0.0)
+    curve, tip = profile.curve, int(np.argmax(profile.curve.z))
+    y, z, angle = curve.y, curve.z, curve.angle
+    flank = np.where((y < 0.0) & (np.arange(y.size) >= tip), -angle, 0.0)
+    steep = np.clip((flank - FLANGE) / (STEEPEST - FLANGE), 0.0, 1.0)
     if profile.kind != "wheel" or not steep.any():
         return depth
     rate = np.cos(angle) / np.tan(STEEPEST) - np.sin(angle)
-    along = y + z / np.tan(STEEPEST) - rate * depth[inside]
-    beyond = along - np.minimum.accumulate(along[::-1])[::-1]  # of the steepest line from nearer to the tread
-    edge = np.zeros_like(depth)
-    edge[inside] = np.where(steep > 0.0, beyond / rate, 0.0)
-    if not edge.any():
+    sigma = max(resolution / (curve.s[-1] - curve.s[0]) * (y.size - 1), 1e-6)  # in steps of the curve, not zero
+
+    def smooth(values: Array) -> Array:
+        return np.asarray(scipy.ndimage.gaussian_filter1d(values, sigma, truncate=WIDEST))
+
+    def with_edge(left: Array) -> Array:
+        """Return depths with the edge that they would leave."""
+        along = (y + z / np.tan(STEEPEST) - rate * left)[tip:]
+        beyond = along - np.minimum.accumulate(along[::-1])[::-1]  # of the steepest line from nearer to the tread
+        edge = np.where(steep > 0.0, np.pad(beyond, (tip, 0)) / rate, 0.0)
+        lower = curve.s < curve.s[edge.argmax()]  # the upper end is in contact
+        return np.asarray(left + np.maximum(edge, np.where(lower, smooth(edge), 0.0)))
+
+    weight = smooth(steep**2 * (3.0 - 2.0 * steep)) * depth
+
+    def excess(share: float) -> float:
+        """Return what the sum of the depths gains if the flank gives up a share of its wear."""
+        return float(with_edge(depth - share * weight).sum() - depth.sum())
+
+    if excess(0.0) <= 0.0:
         return depth
-    (smooth,) = smoothed(edge[None], at, np.full((1, at.size), resolution))
-    edge = np.maximum(edge, np.where(at < at[edge.argmax()], smooth, 0.0))  # the upper end is in contact
-    total = depth + edge
-    weight = steep**2 * (3.0 - 2.0 * steep) * total[inside]
-    total[inside] -= min(edge.sum() / weight.sum(), 1.0) * weight
-    return total
+    share = scipy.optimize.brentq(excess, 0.0, 1.0, xtol=1e-12) if excess(1.0) < 0.0 else 1.0
+    return with_edge(depth - share * weight)
 
 
 def between(profile: Profile, at: Array, depth: Array) -> Array:
@@ -166,36 +179,36 @@ def enclosed(old: Array, new: Array, radius: float) -> float:
     return float(abs((section * np.diff(y)).sum()))
 
 
-def conserving(profile: Profile, at: Array, depth: Array, volume: float, radius: float) -> tuple[Profile, float]:
+def conserving(profile: Profile, depth: Array, volume: float, radius: float) -> tuple[Profile, float]:
     """Return the profile after removal of depths, and the factor that makes them remove a given volume.
 
-    Without the factor the volume differs: a depth along the normal of a curved profile sweeps an area that also depends
-    on the curvature, and smoothing moves wear to other radii.
+    The depths are those at the points of its curve. Without the factor the volume differs: a depth along the normal of
+    a curved profile sweeps an area that also depends on the curvature, and smoothing moves wear to other radii.
 
     Raises
     ------
     InputError
         If the profile is too short for the wear.
     """
-    for name, value in zip(("first", "last"), np.interp(profile.curve.s[[0, -1]], at, depth), strict=True):
+    for name, value in zip(("first", "last"), depth[[0, -1]], strict=True):
         if value > EDGE * depth.max():
             raise wl.InputError(
                 f"{profile.kind}: the profile is too short for the wear, which reaches {value / depth.max():.2g} of its"
                 f" deepest place at the {name} point; give a wider profile, or less smoothing"
             )
 
-    curve, deep = profile.curve, between(profile, at, depth)
+    curve = profile.curve
     points = np.stack([curve.y, curve.z])
     normal = curve.sign * np.stack([-np.sin(curve.angle), np.cos(curve.angle)])
     # The points alone tell the factor nearly, and the slope: what they enclose is of second order in it.
-    once, twice = (enclosed(points, points + times * deep * normal, radius) for times in (1.0, 2.0))
+    once, twice = (enclosed(points, points + times * depth * normal, radius) for times in (1.0, 2.0))
     rate, bend = 2.0 * once - 0.5 * twice, 0.5 * twice - once
     slope = math.sqrt(rate**2 + 4.0 * bend * volume)
     factor = 2.0 * volume / (rate + slope)
     for _ in range(STEPS):
-        new = removed(profile, factor * deep)
+        new = removed(profile, factor * depth)
         lost = swept(profile, new, radius)
         if abs(lost - volume) <= ACCURACY * volume:
             return new, factor
         factor += (volume - lost) / slope
-    return removed(profile, factor * deep), factor
+    return removed(profile, factor * depth), factor

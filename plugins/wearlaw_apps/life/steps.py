@@ -16,7 +16,7 @@ from wearlaw.errors import DataError
 from wearlaw.units.registry import unit_in_si
 from wearlaw_apps.life.life import NEAR, RAIL, SIDES, measure_of, name_and_unit
 from wearlaw_apps.life.line import Line, NoResultError, Wear
-from wearlaw_apps.life.removal import conserving, positions, shared, smoothed, swept, widths
+from wearlaw_apps.life.removal import between, conserving, positions, shared, smoothed, swept, widths
 from wearlaw_apps.output.notes import caught_warnings
 
 if TYPE_CHECKING:
@@ -277,7 +277,7 @@ class Steps:
         volumes = distance * self._of_profiles(middle.mass) / density
         removals = zip(now.profiles, distance * self._of_profiles(middle.depth), volumes, strict=True)
         worn = [
-            conserving(profile, at, shared(profile, at, depth, self.resolution), float(volume), radius)
+            conserving(profile, shared(profile, between(profile, at, depth), self.resolution), float(volume), radius)
             for profile, depth, volume in removals
         ]
         profiles, factors = zip(*worn, strict=True)
