@@ -137,7 +137,7 @@ class Model(Configuration, ABC):
         return {} if self.conditions is None else of_table(self.conditions, f"{self.kind} '{self.name}'")
 
     def _repr_html_(self) -> str:
-        """Return the model for a notebook: its fields, with a drawing of a rig or the curve of a law."""
+        """Return the model for a notebook: its name and fields."""
         shown: str = method("html", "a notebook")(self)
         return shown
 

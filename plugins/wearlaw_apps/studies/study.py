@@ -40,6 +40,7 @@ from wearlaw.units.variables import UNITS, name_of
 from wearlaw.version import __version__
 from wearlaw_apps.fits.pairs import Pair
 from wearlaw_apps.output.notes import Notes, caught_warnings
+from wearlaw_apps.output.wear_profile import POSITION
 from wearlaw_apps.studies.case import Case
 from wearlaw_apps.studies.figures import figures_of, wrong_figures
 from wearlaw_apps.studies.results import LIMITS, PATCH_AXES, Results, axes_of, pairs_of
@@ -384,7 +385,7 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
             continue
         with notes.of(f"profile '{name}'"):
             prediction = pair.pipeline.predict(pair.pipeline.posed(grid.conditions()))
-            of_pair, whole = _by_patch(prediction, case.rig) if problem.dims else _seen(prediction, case.rig)
+            of_pair, whole = _seen(prediction, case.rig)
         if not whole:
             notes.add(f"profile '{name}' is left out: rig '{case.rig.name}' does not name its bodies")
             return xarray.Dataset()
@@ -395,47 +396,29 @@ def _profile(name: str, grid: Grid, case: Case, pairs: list[Pair], notes: Notes)
     return _side_by_side(of_pairs, contacts) if of_pairs else xarray.Dataset()
 
 
-def _by_patch(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
-    """Return the result of `_seen` for several patches, with their axes.
-
-    Each patch lies elsewhere, so its position is a variable over the axis "node".
-    """
-    axes, exists = prediction.problem.dims, prediction.problem.exists
-    of_law: list[str] = []
-    each = []
-    for labels in itertools.product(*axes.values()):
-        patch = dict(zip(axes, labels, strict=True))
-        place = tuple(axis.index(label) for axis, label in zip(axes.values(), labels, strict=True))
-        if exists is None or exists[place]:
-            of_law, profile = _seen(prediction.sel(**patch), rig)
-            if not profile:
-                return [], profile
-            (position,) = map(str, profile.dims)
-            profile = profile.reset_index(position).rename_dims({position: "node"}).reset_coords(position)
-            numbered = profile.assign_coords(node=range(profile.sizes["node"]))
-            each.append(numbered.expand_dims({axis: [label] for axis, label in patch.items()}))
-    merged = xarray.merge(each, join="outer", compat="no_conflicts")
-    merged = merged.reindex({axis: np.array(labels) for axis, labels in axes.items()})
-    return of_law, merged.assign_attrs({PATCH_AXES: " ".join(axes)})
-
-
 def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     """Return the variables of a profile that differ from law to law, and the profile of a prediction.
 
     The profile of a line runs along the patch, over x. That of an ellipse runs across it, over y, with the wear of
-    each body that the law is for.
+    each body that the law is for. Several patches lie elsewhere each, so y is then a variable over the axis "node".
     """
+    axes = prediction.problem.dims
     limits = offered(prediction, ("max_pressure", *LIMITS))  # if the yield stress of a body is known
-    whole = {name: ((), getattr(prediction, name).magnitude, {"units": UNITS[name]}) for name in limits}
-    of_law = {"outside_range": ((), prediction.outside_range.magnitude, {"units": ""})}
+    whole = {name: ([*axes], getattr(prediction, name).magnitude, {"units": UNITS[name]}) for name in limits}
+    of_law = {"outside_range": ([*axes], prediction.outside_range.magnitude, {"units": ""})}
     (law,) = prediction.laws
     if prediction.problem.geometry == "line":
         local = [law.outcome.name] if law.outcome.of == "area mean" else []
         return [*local, *of_law], prediction.profile.assign(whole | of_law)
     bodies = [body for body in rig.bodies if law.body in (None, body)]
-    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS).reset_coords() for body in bodies}
-    named = {f"{body}_{name}": values for body, profile in across.items() for name, values in profile.data_vars.items()}
+    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in bodies}
+    named = {f"{body}_{name}": values for body, profile in across.items()
+             for name, values in profile.reset_coords({*profile.coords} & {POSITION}).data_vars.items()}  # fmt: skip
     if not named:
         return [], xarray.Dataset()
     shown = [name for name in named if not name.endswith(("_sliding_distance", "_profile_position"))]
-    return [*shown, *of_law], xarray.Dataset(named).assign(whole | of_law)
+    seen = xarray.Dataset(named).assign(whole | of_law)
+    if axes:
+        seen = seen.rename_dims(strip="node").reset_coords("y").assign_coords(node=range(seen.sizes["strip"]))
+        seen = seen.assign_attrs({PATCH_AXES: " ".join(axes)})
+    return [*shown, *of_law], seen
