@@ -1,4 +1,4 @@
-r"""Tables through pandas' Styler: as HTML for the page, and for LaTeX, to \input into a paper."""
+r"""Tables as HTML for the page, and for LaTeX, to \input into a paper."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ import html
 import numbers
 import re
 import unicodedata
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from pandas.io.formats.style import Styler
 
 from wearlaw_apps.output.labels import raised, readable
 
@@ -34,9 +33,6 @@ _SYMBOLS = str.maketrans({**{character: f"${command}$" for character, command in
 _SHIFTED = {"superscript": "⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹", "subscript": "₀₁₂₃₄₅₆₇₈₉ᵢᵣ"}
 LONG = 40
 """Letters beyond which a text column wraps."""
-
-UUID = "0"
-"""Identifier of a table, left out of the page, where tables would share it; Styler draws one by lot otherwise."""
 
 
 class Marked(float):
@@ -74,14 +70,16 @@ def cell(value: Any) -> tuple[str, str, str]:
 def html_table(frame: pd.DataFrame, caption: str) -> str:
     """Return a table for the page, with the first column as the heads of its rows, and numbers at the right."""
     rows = list(frame.itertuples(index=False, name=None))
-    classes = pd.DataFrame([[_class(value) for value in row] for row in rows])
     heads = [html.escape(_head(str(head))) for head in frame.columns]
-    right = [any(is_number(row[number]) for row in rows) for number in range(len(heads))]
-    heads = [f'<span class="number">{head}</span>' if at_right else head
-             for head, at_right in zip(heads, right, strict=True)]  # fmt: skip
-    style = _styled(frame, _html, heads, first_as_index=True).set_td_classes(classes.iloc[:, 1:])
-    table: str = style.set_caption(html.escape(caption)).to_html()
-    return table[table.index("<table") :].replace(f' id="T_{UUID}"', "")
+    for number, head in enumerate(heads):
+        if any(is_number(row[number]) for row in rows):
+            heads[number] = f'<span class="number">{head}</span>'
+    lines = ["<table>", f"<caption>{html.escape(caption)}</caption>", "<thead>", "<tr>"]
+    lines += [*(f'<th scope="col">{head}</th>' for head in heads), "</tr>", "</thead>", "<tbody>"]
+    for first, *others in rows:
+        cells = (f"<td{_class(value)}>{_html(value)}</td>" for value in others)
+        lines += ["<tr>", f'<th scope="row">{_html(first)}</th>', *cells, "</tr>"]
+    return "\n".join([*lines, "</tbody>", "</table>"])
 
 
 def _head(head: str) -> str:
@@ -94,28 +92,17 @@ def _head(head: str) -> str:
 def latex_table(frame: pd.DataFrame, footnotes: Iterable[str] = ()) -> str:
     """Return a table as a tabular, with the units in the heads of its columns, and footnotes below it."""
     heads = [_guarded(escaped(str(head))) for head in frame.columns]
-    tabular = _styled(frame, _latex, heads).hide(axis="index").to_latex(column_format=_columns(frame), hrules=True)
+    rows = [[_latex(value) for value in row] for row in frame.itertuples(index=False, name=None)]
+    head, *body = (" & ".join(cells) + r" \\" for cells in (heads, *rows))
+    begin = [r"% \usepackage{booktabs}", rf"\begin{{tabular}}{{{_columns(frame)}}}", r"\toprule", head, r"\midrule"]
     below = (rf"\par{{\footnotesize {escaped(note)}}}" for note in footnotes)
-    return "\n".join([r"% \usepackage{booktabs}", tabular.rstrip("\n"), *below]) + "\n"
-
-
-def _styled(
-    frame: pd.DataFrame, source: Callable[[Any], str], heads: list[str], first_as_index: bool = False
-) -> Styler:
-    """Return a table whose cells and heads are their sources."""
-    shown = pd.DataFrame([[source(value) for value in row] for row in frame.itertuples(index=False, name=None)])
-    shown = shown.reindex(columns=range(frame.shape[1]))
-    firsts = shown[0].tolist()
-    if first_as_index:
-        shown = shown.drop(columns=0).rename_axis(columns=heads[0])
-    style = Styler(shown, uuid=UUID, cell_ids=False)
-    style = style.format_index(lambda number: heads[int(str(number))], axis="columns")
-    return style.format_index(lambda number: firsts[int(str(number))], axis="index")
+    return "\n".join([*begin, *body, r"\bottomrule", r"\end{tabular}", *below]) + "\n"
 
 
 def _class(value: Any) -> str:
     """Return the class of a cell: a number, or a text that wraps."""
-    return "number" if is_number(value) else "long" if len(str(value)) > LONG // 2 else ""
+    name = "number" if is_number(value) else "long" if len(str(value)) > LONG // 2 else ""
+    return f' class="{name}"' if name else ""
 
 
 def plain_number(value: Any) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, model_validator
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
@@ -47,14 +47,9 @@ _SHOWN = (WEAR, MASS, *OF_PROFILE, *ACROSS)
 Variables = Annotated[tuple[str, ...], BeforeValidator(_several), Field(min_length=1), _Schema(*_SHOWN, several=True)]
 """One variable, or several with the same unit."""
 
-Labels = Annotated[
-    tuple[str | int, ...],
-    BeforeValidator(_several),
-    Field(min_length=1),
-    WithJsonSchema(
-        {"anyOf": [_LABEL := {"type": ["string", "integer"]}, {"type": "array", "items": _LABEL, "minItems": 1}]}
-    ),
-]
+_LABELS = Annotated[tuple[str | int, ...], Field(min_length=1)]
+
+Labels = Annotated[_LABELS, BeforeValidator(_several, json_schema_input_type=str | int | _LABELS)]
 """One label of an axis of patches, or several."""
 
 Range = tuple[float | str, float | str]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import warnings
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -400,7 +399,7 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     """Return the variables of a profile that differ from law to law, and the profile of a prediction.
 
     The profile of a line runs along the patch, over x. That of an ellipse runs across it, over y, with the wear of
-    each body that the law is for. Several patches lie elsewhere each, so y is then a variable over the axis "node".
+    each body that the law is for. Several patches lie elsewhere each, so x or y is a variable over the axis "node".
     """
     axes = prediction.problem.dims
     limits = offered(prediction, ("max_pressure", *LIMITS))  # if the yield stress of a body is known
@@ -408,17 +407,19 @@ def _seen(prediction: Prediction, rig: Rig) -> tuple[list[str], xarray.Dataset]:
     of_law = {"outside_range": ([*axes], prediction.outside_range.magnitude, {"units": ""})}
     (law,) = prediction.laws
     if prediction.problem.geometry == "line":
-        local = [law.outcome.name] if law.outcome.of == "area mean" else []
-        return [*local, *of_law], prediction.profile.assign(whole | of_law)
-    bodies = [body for body in rig.bodies if law.body in (None, body)]
-    across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in bodies}
-    named = {f"{body}_{name}": values for body, profile in across.items()
-             for name, values in profile.reset_coords({*profile.coords} & {POSITION}).data_vars.items()}  # fmt: skip
-    if not named:
-        return [], xarray.Dataset()
-    shown = [name for name in named if not name.endswith(("_sliding_distance", "_profile_position"))]
-    seen = xarray.Dataset(named).assign(whole | of_law)
+        shown = [law.outcome.name] if law.outcome.of == "area mean" else []
+        profile = prediction.profile
+    else:
+        bodies = [body for body in rig.bodies if law.body in (None, body)]
+        across = {body: prediction.wear_profile(body, strips=PROFILE_STRIPS) for body in bodies}
+        named = {f"{body}_{name}": values for body, wear in across.items()
+                 for name, values in wear.reset_coords({*wear.coords} & {POSITION}).data_vars.items()}  # fmt: skip
+        shown = [name for name in named if not name.endswith(("_sliding_distance", "_profile_position"))]
+        profile = xarray.Dataset(named)
+    if not profile:
+        return [], profile
     if axes:
-        seen = seen.rename_dims(strip="node").reset_coords("y").assign_coords(node=range(seen.sizes["strip"]))
-        seen = seen.assign_attrs({PATCH_AXES: " ".join(axes)})
-    return [*shown, *of_law], seen
+        (inner,) = {*profile.sizes} - {*axes}
+        profile = profile.rename_dims({inner: "node"}).reset_coords().assign_coords(node=range(profile.sizes[inner]))
+        profile = profile.assign_attrs({PATCH_AXES: " ".join(axes)})
+    return [*shown, *of_law], profile.assign(whole | of_law)

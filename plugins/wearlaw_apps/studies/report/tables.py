@@ -6,6 +6,7 @@ Each can be written as CSV with all digits, and for LaTeX with the digits shown.
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -339,5 +340,5 @@ def _is_list(value: Any) -> bool:
 def _number(value: Any) -> str:
     """Return a number with 12 digits, or the count and the ends of an array, such as the points of a profile."""
     if np.ndim(value):
-        return f"{np.size(value)} values from {np.min(value):.12g} to {np.max(value):.12g}"
-    return f"{value:.12g}"
+        return f"{np.size(value)} values from {_number(np.min(value))} to {_number(np.max(value))}"
+    return re.sub("^-", "−", f"{value:.12g}")
