@@ -120,6 +120,17 @@ def release(session: nox.Session) -> None:
 
 @nox.session(python="3.11", default=False)
 def mutation(session: nox.Session) -> None:
-    """Break modules in every small way and see if tests fail: `nox -s mutation -- wearlaw_models.laws.kth`."""
+    """Break a module in every small way and see if tests fail, as tests/mutation.md says."""
     session.install("-e", ".[test]", "cosmic-ray>=8.7")
-    session.run("python", "-m", "tests.mutation", *session.posargs)
+    module, *tests = session.posargs or session.error("name a module and its tests, as tests/mutation.md does")
+    folder = Path(session.create_tmp())
+    config, results = str(folder / "config.toml"), str(folder / "results.sqlite")
+    Path(config).write_text(
+        f'[cosmic-ray]\nmodule-path = "{module}"\ntimeout = 300.0\n'
+        f'test-command = "python -m pytest -x -q {" ".join(tests)}"\n[cosmic-ray.distributor]\nname = "local"\n',
+        encoding="utf-8",
+    )
+    session.run("cosmic-ray", "init", "--force", config, results)
+    session.run("cosmic-ray", "baseline", config)
+    session.run("cosmic-ray", "exec", config, results)
+    session.run("cr-report", "--surviving-only", "--show-diff", results)

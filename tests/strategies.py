@@ -23,18 +23,6 @@ MODELS: dict[str, wl.ContactModel] = {
 
 LINE_MODELS = {name: model for name, model in MODELS.items() if isinstance(model, wl.LineContactModel)}
 
-FULL_SLIP = {
-    "exact": 1.0,
-    "exact-as_printed": 1.0,
-    "fastsim-parabolic-line": 1.5,
-    "fastsim-parabolic-kalker": 1.5 * 8.0 / (3.0 * np.pi),
-    "global": 1.0,
-}
-"""Creepage of full slip over μa/R, for the models that saturate.
-
-FASTSIM: 3μPL/(2a²) with L = 4a/(πE*) or 32a/(3π²E*), and P/E* = πa²/(4R).
-"""
-
 
 def saturation_creepage(problem: wl.Problem) -> float:
     """Return μa/R."""

@@ -19,6 +19,7 @@ from tests.plugins.kit.strips import Strips, StripsOnStrips
 from tests.plugins.kit.wrong_contacts import Wrapped
 from tests.plugins.kit.wrong_laws import HottestNode, Linear, Ramps, Severe, Smooth
 from tests.plugins.kit.wrong_rigs import Delegating, Weight
+from tests.test_shipped_models import FEW, SHIPPED
 from wearlaw_kit import Check, checks
 from wearlaw_models.laws.kth import PUBLISHED
 from wearlaw_models.rigs.wheelset import Wheelset
@@ -112,7 +113,15 @@ RIGHT: list[Any] = [
 ]
 MODELS = [*CONTACT_MODELS, *WEAR_LAWS, *LAWS, *STAGES, *RIGS.values(), *RIGHT]
 
-CASES = [pytest.param(check, id=f"{named(model)}-{check.name}") for model in MODELS for check in checks(model)]
+USUAL = {name: cls(**cls.example_fields) for name, cls in SHIPPED.items()}
+
+CASES = [
+    pytest.param(check, id=f"{named(model)}-{check.name}")
+    for model in MODELS
+    for check in checks(model)
+    if model != USUAL.get(getattr(model, "name", "")) or check.name not in FEW.get(model.name, {check.name})
+]
+"""Those that `test_shipped_models.py` does not run."""
 
 
 @pytest.mark.validates(

@@ -1,12 +1,14 @@
-"""The invariants that a contact model does not keep, and its actual behaviour."""
+"""The energy balance of line models, the invariants that a contact model does not keep, and its actual behaviour."""
 
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
 
 import wearlaw as wl
 from tests.strategies import EPS, MODELS
 from wearlaw import Q
+from wearlaw_kit import line_problems
 
 
 def exempt(claim: str) -> list[str]:
@@ -82,3 +84,40 @@ def test_the_one_cell_slips_below_its_bound(name: str) -> None:
     contact = suros(name, 0.1)
     assert float(contact.traction[0]) < 0.2 * float(contact.traction_bound[0])
     assert float(contact.slip[0]) == pytest.approx(0.001, rel=EPS)
+
+
+GRAZING = 5e-8
+"""Relative error of an integral of Hertz's pressure next to full slip, at most.
+
+The 24 Gauss-Legendre nodes of a zone meet p = p0 √(1-(x/a)²) to rounding except where the leading edge lies just
+outside the zone; `test_integrate_estimates.py` measures it.
+"""
+
+SMOOTH_DISSIPATION = ("exact", "fastsim-parabolic-line", "fastsim-parabolic-kalker", "global", "global-of-elliptic")
+"""Models whose q·s is smooth in θ wherever the slip zone begins, so that its quadrature ends at rounding."""
+
+
+@pytest.mark.validates(
+    "invariants",
+    "∫ q s dx = T ξ on a line, all models that claim it, any load, friction and creepage",
+    source="conservation of energy",
+    held_to=("{roundings:g} ε over the share that slips; {grazing:g} more next to full slip where q·s is not smooth"),
+    roundings=64.0,
+    grazing=GRAZING,
+)
+@pytest.mark.parametrize("name", [name for name in MODELS if "energy_balance" not in MODELS[name].exemptions])
+@given(problem=line_problems())
+@pytest.mark.filterwarnings("ignore::wearlaw.UnusualWarning")  # it holds at any values
+def test_slip_dissipates_the_energy_that_the_creepage_feeds_in(
+    name: str, problem: wl.Problem, roundings: float, grazing: float
+) -> None:
+    contact = MODELS[name].solve(problem)
+    dissipated = float(contact.sum_over_nodes(contact.wear_index_density * contact.area))
+    # A position x is exact to the rounding of a. What is integrated over a slip zone of length 2h is therefore exact to
+    # EPS·a/h, one over the share that slips.
+    share = float(contact.slip_area / contact.patch_area)
+    quadrature = 0.0 if name in SMOOTH_DISSIPATION else grazing
+    assert dissipated == pytest.approx(
+        float(contact.tangential_force * problem.creepage), rel=quadrature + roundings * EPS / share
+    )
+    assert contact.wear_index == pytest.approx(contact.tangential_force * problem.creepage, rel=EPS)

@@ -11,11 +11,7 @@ from typing import Any
 import pytest
 
 import wearlaw as wl
-from tests.plugins.tassini2010.paper import (
-    CONDITIONS,
-    FRICTION,
-    printed,
-)
+from tests.plugins.tassini2010.paper import CONDITIONS, FRICTION, printed
 from wearlaw import Q
 
 RIG = wl.TwinDisc.suros()

@@ -1,4 +1,4 @@
-"""Each model that comes with wearlaw passes the kit with its own options; `test_conformance.py` tries all options."""
+"""Each model that comes with wearlaw passes the kit with its usual options; `test_conformance.py` tries all others."""
 
 from __future__ import annotations
 

@@ -101,7 +101,6 @@ class Unnamed(wl.Rig):
     """A rig whose bodies only its problems show."""
 
     name = "unnamed"
-    source = "-"
     material: wl.Material
 
     def problem(self, **conditions: Any) -> wl.Problem:

@@ -6,7 +6,7 @@ import copy
 import inspect
 import pickle
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 import pytest
@@ -97,8 +97,6 @@ def test_a_field_needs_its_type(default: object) -> None:
 
 def test_a_model_without_its_name_says_what_to_write() -> None:
     class Mine(wl.WearLaw):
-        source: ClassVar[str] = "made up"
-
         def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
             return contact.wear_index_density
 

@@ -172,7 +172,6 @@ def test_parameters_of_another_scale_are_warned_of() -> None:
 def test_negative_wear_is_refused() -> None:
     class Gain(wl.WearLaw):
         name = "gain"
-        source = "made up"
 
         def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
             return -contact.pressure

@@ -34,7 +34,6 @@ class Smooth(wl.WearLaw):
     """Rises with the square of q·s."""
 
     name: ClassVar[str] = "smooth"
-    source: ClassVar[str] = "the tests"
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         return (contact.wear_index_density / 1e6) ** 2
@@ -110,7 +109,6 @@ class Celled(wl.ContactModel):
     """Carter's solution on uniform cells, as a model that knows no closed form would give it."""
 
     name: ClassVar[str] = "celled"
-    source: ClassVar[str] = "the tests"
     cells: int = 100
 
     @property

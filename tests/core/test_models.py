@@ -26,7 +26,6 @@ def test_the_bases_are_abstract(base: type[Any]) -> None:
 def test_what_a_model_or_law_does_not_declare_has_a_cautious_default() -> None:
     class Proportional(wl.WearLaw):
         name = "proportional"
-        source = "a test"
 
         def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
             return contact.wear_index_density
@@ -43,7 +42,6 @@ def test_what_a_model_or_law_does_not_declare_has_a_cautious_default() -> None:
 def test_what_a_model_knows_of_its_force_without_nodes_is_used() -> None:
     class Knows(wl.ContactModel):
         name = "knows"
-        source = "a test"
 
         def solve_line(self, problem: wl.Problem) -> wl.Contact:
             raise AssertionError("not needed")
@@ -59,7 +57,6 @@ class Half(wl.WearLaw):
     """Half the wear of another law."""
 
     name: ClassVar[str] = "half"
-    source: ClassVar[str] = "a test"
 
     inner: wl.WearLawField
 
@@ -75,7 +72,6 @@ class Declares(wl.WearLaw):
     """A law that declares what its class attributes say."""
 
     name: ClassVar[str] = "declares"
-    source: ClassVar[str] = "a test"
     of: ClassVar[Any] = {}
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
@@ -143,7 +139,6 @@ class Bare(wl.LineContactModel):
     """A block that slips as a whole, with the methods that must be there and no other."""
 
     name: ClassVar[str] = "bare"
-    source: ClassVar[str] = "the tests"
 
     def slip_length(self, problem: wl.Problem) -> Array:
         return np.where(problem.creepage > 0.0, 2.0 * problem.half_width, 0.0)

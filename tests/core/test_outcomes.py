@@ -22,7 +22,6 @@ class Pressure(wl.Law):
     """The mean pressure: a value that is not zero where the bodies stick."""
 
     name: ClassVar[str] = "pressure_law"
-    source: ClassVar[str] = "test"
     outcome = wl.Outcome("mean_pressure", unit="MPa", of="area mean")
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
@@ -118,7 +117,6 @@ class OfItsBody(wl.WearLaw):
     """Wear that starts at a traction, in proportion to the stiffness of the body that wears."""
 
     name: ClassVar[str] = "of_its_body"
-    source: ClassVar[str] = "test"
     border: float = 1e8
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
@@ -193,7 +191,6 @@ def test_a_law_without_an_outcome_is_refused() -> None:
 
         class Bare(wl.Law):
             name: ClassVar[str] = "bare"
-            source: ClassVar[str] = "test"
 
             def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
                 return contact.pressure
@@ -238,7 +235,6 @@ class Switch(wl.WearLaw):
     """Wear that starts at a frictional power density, named by the table of variables or by the law itself."""
 
     name: ClassVar[str] = "switch"
-    source: ClassVar[str] = "test"
     variable: Literal["frictional_power_density", "power"] = "frictional_power_density"
     border: Annotated[wl.Quantity, wl.Unit("GPa")] = Q(1.0, "MPa")  # at 1 m/s, 1 MPa is 1 W/mm²
 
@@ -296,7 +292,6 @@ class Pressed(wl.Law):
     """1 where the pressure passes a border, whether the bodies stick there or not."""
 
     name: ClassVar[str] = "pressed"
-    source: ClassVar[str] = "test"
     outcome = wl.Outcome("pressed_share", unit="", of="area mean")
     border: float
 

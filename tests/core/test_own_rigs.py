@@ -22,7 +22,6 @@ class Roller(wl.Rig):
     """A roller that a weight presses on another."""
 
     name: ClassVar[str] = "roller"
-    source: ClassVar[str] = "a test"
 
     def problem(
         self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike, friction_coefficient: ArrayLike = 0.4
@@ -36,7 +35,6 @@ class Returning(wl.Rig):
     """A rig that returns or raises a given object."""
 
     name: ClassVar[str] = "returning"
-    source: ClassVar[str] = "a test"
     what: ClassVar[Any] = None
 
     def problem(self, *, creepage: wl.QuantityLike) -> Any:
@@ -50,7 +48,6 @@ class OnRail(wl.Rig):
     """A wheel under a weight."""
 
     name: ClassVar[str] = "on_rail"
-    source: ClassVar[str] = "a test"
     creepage: ClassVar[str] = "longitudinal_creepage"
 
     def problem(self, *, mass: wl.QuantityLike, longitudinal_creepage: wl.QuantityLike) -> wl.Problem:
@@ -74,7 +71,6 @@ class Delegating(wl.Rig):
     """A rig whose conditions are those of another, and which fails."""
 
     name: ClassVar[str] = "delegating"
-    source: ClassVar[str] = "a test"
 
     def problem(self, **conditions: Any) -> wl.Problem:
         """Fail."""

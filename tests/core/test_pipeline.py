@@ -12,18 +12,7 @@ import pytest
 
 import wearlaw as wl
 from tests.cases import following_line
-from tests.core.stages import (
-    BRR,
-    CONDITIONS,
-    ELLIPTIC,
-    EXACT,
-    FASTSIM,
-    FITTED,
-    GLOBAL,
-    KTH,
-    RIG,
-    silently,
-)
+from tests.core.stages import BRR, CONDITIONS, ELLIPTIC, EXACT, FASTSIM, FITTED, GLOBAL, KTH, RIG, silently
 from wearlaw import Q
 from wearlaw.errors import CompositionError
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Any
 
 import numpy as np
 import pytest
 
 import wearlaw as wl
 from tests.plugins.kit.brushes import Brush, BrushOnCells, LetGo
+from tests.plugins.kit.wrong_laws import Linear
 from wearlaw import Q
 
 RIG = wl.TwinDisc.suros()
@@ -16,23 +17,7 @@ SLOPE = 5e-9
 CONDITIONS: Any = {"max_pressure": Q(1500, "MPa"), "friction_coefficient": 0.46}
 
 
-class EnergyLaw(wl.WearLaw):
-    """Wear in proportion to the energy dissipated."""
-
-    name: ClassVar[str] = "energy_law"
-    source: ClassVar[str] = "made up for the tests"
-
-    slope: Annotated[wl.Quantity, wl.Unit("ug/m/N", positive=False)] = Q(5.0, "ug/m/N")
-    """Slope."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-        return p["slope"] * contact.wear_index_density
-
-    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
-        return {}
-
-
-ENERGY_LAW = EnergyLaw()
+ENERGY_LAW = Linear()
 
 
 def solved(model: wl.ContactModel, creepage: Any) -> Any:

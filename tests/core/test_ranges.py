@@ -23,7 +23,6 @@ class Stated(wl.WearLaw):
     """A law of two ramps with a range, one of whose ways to be integrated is by closed form."""
 
     name: ClassVar[str] = "stated"
-    source: ClassVar[str] = "the tests"
     variable: str = "slip"
     low: float = 0.01
     high: float = 0.1

@@ -98,7 +98,6 @@ class Slower(wl.Stage):
     """Friction that may differ from node to node."""
 
     name: ClassVar[str] = "slower"
-    source: ClassVar[str] = "made up"
 
     def solve(self, problem: wl.Problem, inner: wl.Solve) -> wl.Contact:
         return inner(problem)

@@ -33,7 +33,6 @@ class PerEnergy(wl.WearLaw):
     """Wear in proportion to what is dissipated."""
 
     name: ClassVar[str] = "per_energy"
-    source: ClassVar[str] = "the tests"
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:
         return contact.wear_index_density
@@ -214,7 +213,6 @@ class FarFromItsForce(wl.LineContactModel):
     """Carter's fields with five times the traction; closed forms and fields do not agree."""
 
     name: ClassVar[str] = "five_times"
-    source: ClassVar[str] = "the tests"
     fault: str
 
     def slip_length(self, problem: wl.Problem) -> Array:
@@ -316,7 +314,6 @@ class Told(wl.WearLaw):
     """Returns what it is told to."""
 
     name: ClassVar[str] = "told"
-    source: ClassVar[str] = "the tests"
     change: Any
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:

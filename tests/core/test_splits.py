@@ -22,7 +22,6 @@ class PressedHard(wl.WearLaw):
     """Wears at one rate where a body slips under a pressure in some intervals, and not elsewhere."""
 
     name: ClassVar[str] = "pressed_hard"
-    source: ClassVar[str] = "none"
     levels: ClassVar[tuple[float, ...]] = ()
     variable: ClassVar[str] = "pressure"
 

@@ -29,7 +29,6 @@ class Lubricated(wl.Stage):
     """Friction that falls to a share."""
 
     name: ClassVar[str] = "lubricated"
-    source: ClassVar[str] = "test"
 
     share: Annotated[float, Field(gt=0.0, le=1.0)] = 0.5
 
@@ -50,7 +49,6 @@ class Softening(wl.Stage):
     """Friction that falls with the traction coefficient, one step of a fixed point."""
 
     name: ClassVar[str] = "softening"
-    source: ClassVar[str] = "test"
 
     def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
         used = forces(problem).tangential / (problem.friction_coefficient * problem.normal_force)
@@ -159,7 +157,6 @@ class Wrong(wl.Stage):
     """Returns what is not a problem, or another one."""
 
     name: ClassVar[str] = "wrong"
-    source: ClassVar[str] = "test"
     fault: str
 
     def altered(self, problem: wl.Problem, forces: wl.Forces) -> Any:
@@ -240,7 +237,6 @@ def test_a_stage_that_changes_nothing_is_refused() -> None:
 
         class Idle(wl.Stage):
             name: ClassVar[str] = "idle"
-            source: ClassVar[str] = "test"
 
 
 class SeesOnlyNumbers(Lubricated):

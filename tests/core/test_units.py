@@ -309,10 +309,6 @@ def test_what_is_shown_to_a_reader_has_all_digits(value: Any, text: str) -> None
     assert text_of(value) == text
 
 
-def test_magnitude_keeps_all_digits() -> None:
-    assert Q(27.704131234567, "ug").magnitude == 27.704131234567
-
-
 @pytest.mark.parametrize("value", ["3", True, 1j, None, [[1], [2, 3]], ["a"], np.array([True]), [object()]])
 def test_q_refuses_what_is_no_real_number(value: Any) -> None:
     with pytest.raises(wl.UnitError, match=r"is not a real number|is not an array of numbers"):

@@ -160,7 +160,6 @@ class Outside(wl.Rig):
     """A rig from outside, with usual values of its own."""
 
     name: ClassVar[str] = "outside"
-    source: ClassVar[str] = "the tests"
     arm: Annotated[wl.Quantity, wl.Unit("mm", usual=(50, 500))]
     share: Annotated[float, wl.Unit("", usual=(0, 1))] = 0.5
 

@@ -34,7 +34,6 @@ def law_with(predicted: wl.Outcome) -> type[wl.Law]:
 
     class Swinging(wl.Law):
         name: ClassVar[str] = "swinging"
-        source: ClassVar[str] = "test"
         outcome: ClassVar[wl.Outcome] = predicted
 
         def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:

@@ -26,7 +26,6 @@ class Stepped(wl.WearLaw):
     """A law without ramps and without a closed form of where it branches, in traction times slip."""
 
     name: ClassVar[str] = "stepped"
-    source: ClassVar[str] = "made up for the tests"
 
     threshold: Annotated[wl.Quantity, wl.Unit("GPa")] = Q(4.0, "MPa")
     """Where the rate triples."""

@@ -10,12 +10,11 @@ from numpy.typing import ArrayLike
 
 import wearlaw as wl
 from tests.cases import Table
+from tests.core.axles import CONICITY, FLANGE, RADIUS, WHEEL
 
-RADIUS, CONICITY, FLANGE = 0.46, 0.05, 6e-3
 LEFT_OR_RIGHT = np.array([[-1.0], [1.0]])
 TREAD_OR_FLANGE = np.array([False, True])
 SIDES, PATCHES = ("left", "right"), (1, 2)
-WHEEL = wl.WheelRail(wheel_radius="460 mm", rail_head_radius="300 mm", material=wl.steel(), rolling_speed="30 m/s")
 
 
 class Axle(wl.Rig):

@@ -58,11 +58,9 @@ def rows(name: str) -> list[dict[str, str]]:
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
-def creep_curve() -> Reference:
-    """Return a locomotive wheel in pure longitudinal creepage from 1e-5 to 0.25, at a = b/2, by the full theory."""
-    table = rows("creep_curve.csv")
-    creepage, force = (np.array([float(row[column]) for row in table]) for column in ("xi", "fx"))
-    problem = wl.Problem.ellipse(
+def locomotive(creepage: Array) -> wl.Problem:
+    """Return a locomotive wheel in pure longitudinal creepage, at a = b/2."""
+    return wl.Problem.ellipse(
         a=Q(6.304, "mm"),
         b=Q(12.61, "mm"),
         normal_force=Q(106.7, "kN"),
@@ -73,7 +71,14 @@ def creep_curve() -> Reference:
         lateral_creepage=Q(0, ""),
         spin=Q(0, "1/m"),
     )
-    return Reference([row["xi"] for row in table], problem, -force, np.zeros_like(force), -creepage * force)
+
+
+def creep_curve() -> Reference:
+    """Return the locomotive wheel at creepages from 1e-5 to 0.25, by the full theory."""
+    table = rows("creep_curve.csv")
+    creepage, force = (np.array([float(row[column]) for row in table]) for column in ("xi", "fx"))
+    names = [row["xi"] for row in table]
+    return Reference(names, locomotive(creepage), -force, np.zeros_like(force), -creepage * force)
 
 
 def spheres(method: str) -> Reference:

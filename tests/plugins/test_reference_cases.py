@@ -7,8 +7,8 @@ import pytest
 
 import wearlaw as wl
 from docs import half_spaces
-from tests.plugins.full_theory import rows
-from wearlaw import Array, Q
+from tests.plugins.full_theory import locomotive, rows
+from wearlaw import Array
 from wearlaw_models.contact_models.fastsim.strips import Ellipses  # private: the flexibilities
 
 DIGITS = 5e-3
@@ -79,20 +79,6 @@ def test_carters_force_meets_the_half_space(share: float, within: float, printed
     force = wl.contact_model("exact").tangential_force(problem)
     assert force / (0.3 * 35780.0) == pytest.approx(share, abs=within)  # Carter's own, with c = 0.6 a
     assert force == pytest.approx(printed, abs=0.3 * 35780.0 * element)
-
-
-def locomotive(creepage: Array) -> wl.Problem:
-    return wl.Problem.ellipse(
-        a=Q(6.304, "mm"),
-        b=Q(12.61, "mm"),
-        normal_force=Q(106700, "N"),
-        shear_modulus=Q(82000, "MPa"),
-        poisson_ratio=0.28,
-        friction_coefficient=0.33,
-        longitudinal_creepage=Q(creepage, ""),
-        lateral_creepage=Q(0, ""),
-        spin=Q(0, "1/m"),
-    )
 
 
 @pytest.mark.validates(

@@ -138,12 +138,6 @@ def test_its_command_is_one_of_the_program(environment: Environment) -> None:
     assert "Error: " in refused.stderr
 
 
-def test_the_law_passes_the_checks(environment: Environment) -> None:
-    done = environment.wearlaw("check", "made_up", "--option", "slope=6 ug/m/N")
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "\nok " in done.stdout
-
-
 def test_the_outside_distribution_passes_its_own_tests(environment: Environment, tmp_path: Path) -> None:
     shutil.copytree(OUTSIDE / "tests", tmp_path / "tests")
     # What its contact model is exempt from is skipped.

@@ -49,21 +49,6 @@ def test_the_rate_is_the_section_of_table_1_around_the_wheel(roundings: int, wea
     assert rate(BRR, wear_index) == pytest.approx(expected, rel=roundings * EPS, abs=1e-300)
 
 
-@pytest.mark.validates(
-    "wear-laws",
-    "BRR is continuous at 100 N and jumps by 84/25 at 200 N, as published",
-    source="Tassini et al. 2010, Table 1",
-    held_to="{smooth} ε and {jump} ε, relative",
-    smooth=8,
-    jump=64,
-)
-def test_the_borders_belong_to_the_upper_regimes(smooth: int, jump: int) -> None:
-    below, at = (rate(BRR, float(w)) for w in around(100.0))
-    assert at == pytest.approx(below, rel=smooth * EPS)
-    below, at = (rate(BRR, float(w)) for w in around(200.0))
-    assert at / below == pytest.approx(84.0 / 25.0, rel=jump * EPS)
-
-
 def test_the_plateau_may_have_no_width() -> None:
     law = wl.wear_law("brr", severe_limit="100 N", severe_offset="90 mm^3/km")
     below, at = (rate(law, float(w)) / (7850.0 * math.pi * 1e-6) for w in around(100.0))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib.util
 from typing import NamedTuple
 
 import numpy as np
+import pytest
 from numpy.typing import ArrayLike
 
 import wearlaw as wl
@@ -18,6 +20,10 @@ from wearlaw_models.contact_models.fastsim.strips import (  # private: any flexi
 )
 from wearlaw_models.contact_models.fastsim.zones import Nodes  # private: as above
 from wearlaw_models.strips import even_strips  # private: with any number of nodes
+
+COMPILED = [False, True] if importlib.util.find_spec("numba") else [False]
+
+each_bound = pytest.mark.parametrize("elliptic", [False, True], ids=["parabolic", "elliptic"])
 
 ROUNDING = 100 * EPS
 

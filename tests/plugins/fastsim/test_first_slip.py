@@ -6,7 +6,7 @@ import mpmath  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 
-from tests.plugins.fastsim.marks import each_bound
+from tests.plugins.fastsim.strips import each_bound
 from tests.strategies import EPS
 from wearlaw import Array
 from wearlaw_models.contact_models.fastsim.zones import (  # private: strips with any growth of the traction

@@ -117,7 +117,6 @@ class Humps(wl.Rig):
     """A worn wheel, whose pressure is known."""
 
     name: ClassVar[str] = "humps"
-    source: ClassVar[str] = "a test"
     creepage: ClassVar[str] = "creepage"
     patch_geometry: ClassVar[wl.Geometry | None] = "strips"
 
@@ -154,6 +153,8 @@ def test_a_rig_of_strips_wears() -> None:
 def test_what_strips_cannot_do_is_said() -> None:
     with pytest.raises(CompositionError, match="the pressure of strips is given"):
         two_humps(1e-3).with_normal_force(np.array([1e4]))
+    for model in (wl.contact_model("fastsim"), wl.contact_model("strip_theory")):
+        assert model.on_strips(two_humps(1e-3), np.array([0.0])) is None
     found: Any = (Humps() | wl.contact_model("fastsim"))(creepage="1 %", friction_coefficient=0.3)
     with pytest.raises(CompositionError, match="semi_axis_a: belongs to elliptic contacts, not to patches of strips"):
         _ = found.semi_axis_a

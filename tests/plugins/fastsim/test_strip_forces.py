@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.fastsim.marks import each_bound
-from tests.plugins.fastsim.strips import CASE, ROUNDING, ellipses, limit, sample, solve
+from tests.plugins.fastsim.strips import CASE, ROUNDING, each_bound, ellipses, limit, sample, solve
 from tests.plugins.full_theory import rows
 from wearlaw import Q
 from wearlaw_models.contact_models.fastsim.strips import (  # private: any nodes

@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 
 import wearlaw as wl
+from tests.plugins.fits.fits import EXACT
 from wearlaw import Q
 from wearlaw_apps.fits import Comparison, WearTests
 from wearlaw_apps.fits.comparison import Compared  # private: for its type
 
-RIG = wl.TwinDisc.suros()
-EXACT = RIG | wl.contact_model("exact")
-GLOBAL = RIG | wl.contact_model("global")
 CREEPAGE = [0.2, 0.5, 1.0, 2.0, 5.0, 12.0, 18.0, 20.0]
 SCATTER = np.array([1.1, 0.9, 1.05, 0.97, 1.02, 0.93, 1.08, 0.99])
 TRACTION = [0.13, 0.3, 0.42, 0.45, 0.46, 0.46, 0.46, 0.46]

@@ -48,7 +48,6 @@ class Sloping(wl.WearLaw):
     """A line, straight or bent."""
 
     name: ClassVar[str] = "sloping"
-    source: ClassVar[str] = "made up"
 
     offset: Annotated[wl.Quantity, wl.Unit("ug/m/mm^2", positive=False)] = Q(1.0, "ug/m/mm^2")
     """Rate without energy."""

@@ -172,7 +172,6 @@ class Greased(wl.Rig):
     """Discs of one friction coefficient."""
 
     name: ClassVar[str] = "greased"
-    source: ClassVar[str] = "a test"
 
     def problem(self, *, normal_force: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.Problem:
         """Return the problem of the discs."""

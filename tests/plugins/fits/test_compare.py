@@ -10,18 +10,8 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.plugins.fits.comparisons import (
-    CREEPAGE,
-    EXACT,
-    GLOBAL,
-    RIG,
-    TRACTION,
-    by_label,
-    made,
-    order,
-    scattered,
-    usfd,
-)
+from tests.plugins.fits.comparisons import CREEPAGE, TRACTION, by_label, made, order, scattered, usfd
+from tests.plugins.fits.fits import EXACT, GLOBAL, RIG
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.errors import FitWarning
@@ -197,7 +187,6 @@ class Above(wl.WearLaw):
     """Wear in proportion to the wear-index density, but none below a threshold of it."""
 
     name = "above"
-    source = "A test, 3. ed., 2026"
     scale = "patch"
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:

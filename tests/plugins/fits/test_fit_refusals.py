@@ -54,7 +54,6 @@ class Narrow(wl.WearLaw):
     """A law that allows its parameters little, and fails beyond."""
 
     name: ClassVar[str] = "narrow"
-    source: ClassVar[str] = "made up"
     k: Annotated[wl.Quantity, wl.Unit("ug/m/N", limit=8.0)]
     power: Annotated[float, Field(ge=1.0, le=2.0)] = 1.0
 

@@ -24,7 +24,6 @@ class Softer(wl.Stage):
     """Bodies with a layer between them: the modulus falls to a share, and with it the initial slope of the traction."""
 
     name: ClassVar[str] = "softer"
-    source: ClassVar[str] = "test"
 
     reduction: Annotated[float, Field(gt=0.0, le=1.0)] = 1.0
 
@@ -36,7 +35,6 @@ class Rubbed(wl.Stage):
     """Friction that falls by a share of its own, as a stage that overrides `solve`; its number has a unit."""
 
     name: ClassVar[str] = "rubbed"
-    source: ClassVar[str] = "test"
 
     share: Annotated[wl.Quantity, wl.Unit("", limit=1.0)] = Q(80.0, "%")
     reduction: Annotated[float, Field(gt=0.0)] = 1.0

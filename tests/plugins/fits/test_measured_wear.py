@@ -156,7 +156,6 @@ class Worn(wl.Law):
     """Volume lost per distance rolled, by the energy."""
 
     name: ClassVar[str] = "worn"
-    source: ClassVar[str] = "made up"
     outcome: ClassVar[wl.Outcome] = wl.Outcome("lost_volume", "mm^3/m", of="patch", wear=True)
 
     volume_per_energy: Annotated[wl.Quantity, wl.Unit("mm^3/J")] = Q(1e-3, "mm^3/J")

@@ -6,24 +6,15 @@ import importlib
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Any
 
-import numpy as np
 import pytest
 
 import wearlaw as wl
 from tests.core import axles
 from tests.plugins.axle_case import Axle
-from tests.plugins.kit import (
-    cells,
-    strips,
-    wrong_contacts,
-    wrong_laws,
-    wrong_readers,
-    wrong_rigs,
-    wrong_stages,
-)
-from wearlaw_kit import Check, checks, conformance
+from tests.plugins.kit import cells, strips, wrong_contacts, wrong_laws, wrong_readers, wrong_rigs, wrong_stages
+from wearlaw_kit import checks
 
 WRONG: dict[Any, str] = {
     **wrong_laws.CAUGHT,
@@ -101,34 +92,6 @@ def test_a_check_on_each_shape_catches_a_mutant_of_each(shape: str) -> None:
     of_shape = {name for mutant, name in WRONG.items() if getattr(mutant, "geometries", tuple)() == (shape,)}
     assert of_shape >= ON_EACH_SHAPE
     assert len(ON_EACH_SHAPE) > 20
-
-
-class TwoSlopes(wl.WearLaw):
-    """Two slopes with a jump between them."""
-
-    name: ClassVar[str] = "two_slopes"
-    source: ClassVar[str] = "made up for the tests"
-
-    mild: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = wl.Q(5.0, "ug/m/N")
-    """Slope below the limit [kg/m/N]."""
-    severe: Annotated[wl.Quantity, wl.Unit("ug/m/N")] = wl.Q(15.0, "ug/m/N")
-    """Slope above the limit [kg/m/N]."""
-    limit: Annotated[wl.Quantity, wl.Unit("N/mm^2")] = wl.Q(4.0, "N/mm^2")
-    """Wear-index density at the jump [N/m²]."""
-
-    def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
-        w = contact.wear_index_density
-        return np.where(w < p["limit"], p["mild"], p["severe"]) * w
-
-    def breakpoints(self, p: wl.Numbers) -> wl.BreakpointMap:
-        return {"wear_index_density": (p["limit"],)}
-
-    jumps = breakpoints
-
-
-@conformance(TwoSlopes())
-def test_a_law_with_a_jump_passes(check: Check) -> None:
-    check()
 
 
 RIGHT = (*wrong_stages.RIGHT, *RIGHT_READERS, *RIGHT_RIGS, Axle(), axles.Cut(), axles.Placed(hertzian=False))

@@ -416,12 +416,6 @@ def equal_widths(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
 
 
 @wrong("strips_have_their_widths", OwnSlope)
-def twice_the_width(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
-    """The strips are twice as wide as their areas."""
-    return contact.replaced(strip_width=2.0 * contact.strip_width)
-
-
-@wrong("strips_have_their_widths", OwnSlope)
 def widths_of_others(contact: wl.Contact, _: wl.Problem) -> wl.Contact:
     """The widths are in the order of other strips."""
     count = contact.strip_width.shape[-1]
@@ -511,15 +505,6 @@ ON_GIVEN_STRIPS = {"strips_have_their_widths", "spin_has_its_force_and_moment"}
 
 
 # Fields in closed form -----------------------------------------------------------------------------------------------
-
-
-@wrong("slip_dissipates_the_energy_fed_in")
-class LosesEnergyAnywhere(Exact):  # type: ignore[misc]
-    """A tenth of the slip is missing at any position, so that the energy is not there however fine the cells."""
-
-    def fields(self, problem: wl.Problem, nodes: wl.Nodes) -> wl.LineFields:
-        fields: wl.LineFields = super().fields(problem, nodes)
-        return dataclasses.replace(fields, slip=0.9 * fields.slip)
 
 
 @wrong("tractions_sum_to_the_forces")

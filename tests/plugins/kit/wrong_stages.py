@@ -115,18 +115,6 @@ class Forgets(Lubricated):
         return problem[:1]
 
 
-class Film(Lubricated):
-    """Friction that falls with the thickness of a film, whose number is read as millimetres."""
-
-    name: ClassVar[str] = "film"
-    thickness: Annotated[wl.Quantity, wl.Unit("m")] = Field(default="0.5 m", validate_default=True)
-    """Thickness of the film [m]."""
-
-    def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
-        share = 1.0 / (1.0 + float(self.thickness.magnitude))
-        return problem.replaced(friction_coefficient=share * problem.friction_coefficient)
-
-
 class Slower(Lubricated):
     """A speed that the contact does not feel, from a parameter without its unit."""
 
@@ -272,7 +260,6 @@ CAUGHT: dict[Any, str] = {
     SinglePressure: "contact_is_in_double_precision",
     Reversed: "pipelines_take_the_contact",
     Forgets: "pipelines_take_the_contact",
-    Film: "units_of_parameters_do_not_matter",
     Slower: "units_of_parameters_do_not_matter",
     ReadsItself: "parameters_may_vary",
     Unsigned: "rate_is_never_negative",

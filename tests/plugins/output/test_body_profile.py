@@ -9,16 +9,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
-from tests.core.axles import (
-    CONICITY,
-    EXISTS,
-    GIVEN,
-    KTH,
-    PREDICT,
-    RADIUS,
-    Placed,
-    of,
-)
+from tests.core.axles import CONICITY, EXISTS, GIVEN, KTH, PREDICT, RADIUS, Placed, of
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw.errors import ModelError

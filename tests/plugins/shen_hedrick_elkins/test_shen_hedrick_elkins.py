@@ -2,31 +2,15 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from hypothesis import given
 
 import wearlaw as wl
-from tests.plugins.ellipses import EPS, TABLE_E3, ellipses, initial_slopes, limit
+from tests.plugins.ellipses import EPS, ellipses, limit
 from tests.plugins.full_theory import assert_energy_misses_by, assert_forces_miss_by
 
 SHE = wl.contact_model("shen_hedrick_elkins")
 LINEAR = wl.contact_model("linear")
-
-
-@pytest.mark.validates(
-    "creep-forces",
-    "`shen_hedrick_elkins` at vanishing creepage: Kalker's slopes, moment included",
-    source="Kalker 1990, Table E.3",
-    held_to="{within:g}, relative (the creepage)",
-    within=1e-06,
-)
-@pytest.mark.parametrize(("axis_ratio", "poisson_ratio"), TABLE_E3)
-def test_the_slopes_at_vanishing_creepage_are_kalkers(axis_ratio: float, poisson_ratio: float, within: float) -> None:
-    c11, c22, c23, c33 = TABLE_E3[axis_ratio, poisson_ratio]
-    expected = np.array([[c11, 0.0, 0.0], [0.0, c22, -c23], [0.0, c23, c33]])
-    # The factor is 1 - u/3 with u = F'/(μN), at most 7e-9 G ab/(μN) = 1e-6 here.
-    assert initial_slopes(SHE, axis_ratio, poisson_ratio) == pytest.approx(expected, rel=within, abs=0.0)
 
 
 @pytest.mark.validates(

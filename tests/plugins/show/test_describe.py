@@ -77,7 +77,6 @@ class Silent(wl.WearLaw):
     """Says nothing about itself."""
 
     name = "silent"
-    source = "none"
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
         return 0.0 * contact.pressure

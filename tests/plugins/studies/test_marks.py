@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import warnings
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import pytest
 import wearlaw as wl
 from tests import cases
 from tests.cases import case
+from tests.core.stages import silently
 from tests.plugins.studies.panels import by_label, by_name
 from tests.plugins.studies.report_data import page_of
 from wearlaw import Q
@@ -23,13 +23,6 @@ from wearlaw_apps.studies.report.tables import FOOTNOTES, summaries  # private: 
 RIG = wl.TwinDisc.suros()
 BRONZE = wl.Material(youngs_modulus="110 GPa", poisson_ratio=0.34, density="8800 kg/m^3")
 LOADS = {"from": "300 MPa", "to": "3000 MPa", "points": 28}  # in steps of 100 MPa
-
-
-def silently(pipeline: Any) -> Any:
-    """Return the result of composing a pipeline, without its warnings."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return pipeline()
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +73,7 @@ def test_points_outside_are_those_that_the_warning_counts() -> None:
 
 
 def test_all_points_of_other_materials_are_outside() -> None:
-    predict = silently(lambda: wl.TwinDisc.suros(material=BRONZE) | wl.contact_model("global") | wl.wear_law("brr"))
+    predict = silently(wl.TwinDisc.suros(material=BRONZE), wl.contact_model("global"), wl.wear_law("brr"))
     r = predict(max_pressure="1000 MPa", creepage=Q([1, 2], "%"), friction_coefficient=0.3)
     assert r.outside_range.magnitude.tolist() == [1, 1]
 

@@ -156,7 +156,6 @@ def test_the_record_of_a_fit_keeps_the_class_of_its_bodies(install: Install) -> 
 def test_a_law_takes_a_material_by_its_name_in_a_field() -> None:
     class Counterpart(wl.WearLaw):
         name: ClassVar[str] = "counterpart"
-        source: ClassVar[str] = "a test"
 
         other: wl.MaterialField
         """Material of the other body."""

@@ -19,6 +19,7 @@ from tests import cases
 from tests.cases import InstallModel, Table, changed, wearlaw
 from tests.core import axles
 from tests.core.distributions import Install
+from tests.core.stages import predicted, silently
 from tests.plugins.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE, PATCHES, SIDES, Axle
 from tests.plugins.studies.panels import by_label, by_name, one_panel
 from tests.strategies import EPS
@@ -51,11 +52,9 @@ def small(**changes: Any) -> wl.Study:
 
 
 def direct(model: str, law: str, **conditions: Any) -> wl.Prediction:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        predict: Any = Axle() | wl.contact_model(model) | wl.wear_law(law)
-        found: wl.Prediction = predict(**{**FLANGING, **conditions})
-        return found
+    predict = silently(Axle(), wl.contact_model(model), wl.wear_law(law))
+    found: wl.Prediction = predicted(predict, **{**FLANGING, **conditions})
+    return found
 
 
 # --- Numbers ---------------------------------------------------------------------------------------------------------
@@ -233,7 +232,6 @@ class Strings(wl.Rig):
     """Two pairs of discs on one axle, of which the second may be lifted off."""
 
     name: ClassVar[str] = "strings"
-    source: ClassVar[str] = "a test"
 
     def problem(self, *, creepage: wl.QuantityLike, lift: wl.QuantityLike) -> wl.Problem:
         """Return the problem of both."""
@@ -288,10 +286,7 @@ def test_balanced_loads_belong_to_the_contact_model(install_model: InstallModel)
     install_model(Leaning)
     study = ran(rig={"type": "leaning"}, wear_laws=["kth"])
     for model in ("fastsim", "polach"):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wl.WearlawWarning)
-            predict: Any = Leaning() | wl.contact_model(model) | wl.wear_law("kth")
-            found = predict(**FLANGING)
+        found = predicted(silently(Leaning(), wl.contact_model(model), wl.wear_law("kth")), **FLANGING)
         point = study.sweeps["flanging"]
         for name in ("normal_force", "max_pressure", "semi_axis_a"):
             expected = getattr(found, name).to(point[name].attrs["units"]).magnitude

@@ -15,6 +15,7 @@ import wearlaw as wl
 from tests import cases
 from tests.cases import Table, changed, load, wearlaw
 from tests.core.distributions import Install
+from tests.core.stages import predicted, silently
 from tests.plugins.studies.panels import by_label, by_name
 from tests.strategies import EPS
 from wearlaw import Q
@@ -102,9 +103,7 @@ def roller(install: Install) -> Any:
 
 
 def direct(rig: Any, model: str, law: str, **conditions: Any) -> Any:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        return (rig | wl.contact_model(model) | wl.wear_law(law))(**conditions)
+    return predicted(silently(rig, wl.contact_model(model), wl.wear_law(law)), **conditions)
 
 
 # A wheel on a rail

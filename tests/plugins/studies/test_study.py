@@ -14,6 +14,7 @@ import pytest
 import wearlaw as wl
 from tests import cases
 from tests.cases import InstallModel, case
+from tests.core.stages import predicted, silently
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_apps.output.notes import Note, Notes, by_kind, grouped  # private: what commands print of notes
@@ -35,9 +36,8 @@ def study() -> wl.Study:
 
 def direct(model: str, law: wl.WearLaw, **conditions: Any) -> wl.Prediction:
     """Return the prediction for one point, by the public way."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", wl.WearlawWarning)
-        return (wl.TwinDisc.suros() | MODELS[model] | law)(**conditions)
+    found: wl.Prediction = predicted(silently(wl.TwinDisc.suros(), MODELS[model], law), **conditions)
+    return found
 
 
 def lattice_points() -> list[tuple[dict[str, int], dict[str, Any]]]:

@@ -102,19 +102,9 @@ K = {"low": (300e-4, 1e-4, 30e-4, 1e-4), "mid": KTH_MID, "high": (400e-4, 10e-4,
 
 def densities(model: str, creepage: Array, cells: int) -> Array:
     """Return q·s [N/mm²] at the middles of uniform cells, of shape (creepages, cells)."""
-    a = np.sqrt(4.0 * LOAD * RADIUS / (np.pi * MODULUS))
-    x, xi = np.linspace(-1.0, 1.0, 2 * cells + 1)[1::2] * a, creepage[:, None] / 100.0
-    if model == "fastsim":
-        bound = FRICTION * 0.75 * LOAD / a * (1.0 - (x / a) ** 2)
-        flexibility = 4.0 * a / (np.pi * MODULUS)
-        sticks = xi * (x + a) / flexibility < bound
-        slip = xi + flexibility * FRICTION * 1.5 * LOAD / a * x / a**2
-        return np.where(sticks, 0.0, bound * slip) / 1e6
-    k = FRICTION / RADIUS
-    c = np.maximum(a - xi / k, 0.0)
-    bound = FRICTION * 2.0 * LOAD / (np.pi * a) * np.sqrt(1.0 - (x / a) ** 2)
-    slip = np.where(c > 0.0, k * np.sqrt(np.maximum((x + a - c) ** 2 - c**2, 0.0)), xi + k * x)
-    return np.where(x < 2.0 * c - a, 0.0, bound * slip) / 1e6
+    v = np.linspace(2.0, 0.0, 2 * cells + 1)[1::2]
+    solutions = [SOLUTIONS[model](point(float(one))) for one in creepage]
+    return 1e-6 * np.stack([np.where(v < s.border, s.density(np.minimum(v, s.border)), 0.0) for s in solutions])
 
 
 @functools.cache

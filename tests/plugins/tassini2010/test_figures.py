@@ -10,17 +10,7 @@ import pytest
 
 import wearlaw as wl
 from tests.plugins.studies.panels import assert_shows, by_label, by_name, one_panel
-from tests.plugins.tassini2010.paper import (
-    AREA,
-    FORCE,
-    FRICTION,
-    HALF_WIDTH,
-    HEAT,
-    LOAD,
-    MODULUS,
-    RADIUS,
-    SPEED,
-)
+from tests.plugins.tassini2010.paper import AREA, FORCE, FRICTION, HALF_WIDTH, HEAT, LOAD, MODULUS, RADIUS, SPEED
 from tests.strategies import EPS
 from wearlaw import Q
 from wearlaw_apps.output.curves import Curve, FigureData  # private: figures without their files

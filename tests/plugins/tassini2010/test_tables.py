@@ -12,15 +12,7 @@ from scipy import optimize
 
 import wearlaw as wl
 from tests import reference
-from tests.plugins.tassini2010.paper import (
-    AREA,
-    CORRECTED,
-    GLOBAL,
-    densities,
-    index,
-    point,
-    usfd_of,
-)
+from tests.plugins.tassini2010.paper import AREA, CORRECTED, GLOBAL, densities, index, point, usfd_of
 from wearlaw import Array
 from wearlaw_apps.papers.tassini2010 import table_4, tables  # private: one claim or table, without the study
 from wearlaw_apps.papers.tassini2010.bench import Bench  # private: one claim or table, without the study

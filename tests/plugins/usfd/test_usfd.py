@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import wearlaw as wl
-from tests.plugins.laws import around, contact_of
+from tests.plugins.laws import contact_of
 from tests.strategies import EPS
 from wearlaw import Q
 
@@ -61,32 +61,6 @@ def test_the_rate_is_that_of_tables_3_and_4(fitted_for: str, w: float, roundings
     assert rate(wl.wear_law("usfd", fitted_for=fitted_for), w) == pytest.approx(
         expected, rel=roundings * EPS, abs=roundings * EPS * m_c * (w + tr_sc)
     )
-
-
-@pytest.mark.validates(
-    "wear-laws",
-    "USFD is continuous where its regimes meet, at 10.4 and 77.26 N/mm² for the global set",
-    source="Tassini et al. 2010, Table 3",
-    held_to="{roundings} ε, relative",
-    roundings=64,
-)
-@every_set
-def test_the_rate_is_continuous_at_both_borders(fitted_for: str, roundings: int) -> None:
-    law = wl.wear_law("usfd", fitted_for=fitted_for)
-    breakpoints = law.breakpoints(law.numbers)
-    assert breakpoints is not None
-    assert not law.jumps(law.numbers)
-    m_m, q_s, _, tr_sc = TABLE_4[fitted_for]
-    assert breakpoints["wear_index_density"] == pytest.approx((q_s / m_m * 1e6, tr_sc * 1e6), rel=4 * EPS)
-    for border in breakpoints["wear_index_density"]:
-        below, at = law.checked_rate(contact_of(traction=around(border), slip=1.0))
-        assert at == pytest.approx(below, rel=roundings * EPS)
-        assert at * 1e3 == pytest.approx(q_s, rel=roundings * EPS)
-        # and it bends there: the slopes on the two sides differ
-        left, middle, right = (
-            float(law.checked_rate(contact_of(traction=border * f, slip=1.0))[0]) for f in (0.99, 1.0, 1.01)
-        )
-        assert abs((right - middle) - (middle - left)) > 0.005 * q_s * 1e-3
 
 
 def test_the_severe_regime_may_have_no_width() -> None:

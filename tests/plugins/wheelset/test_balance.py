@@ -89,7 +89,6 @@ class Hot(wl.Stage):
     """Friction of hot surfaces."""
 
     name: ClassVar[str] = "hot"
-    source: ClassVar[str] = "made up for tests"
     conditions: ClassVar[Any] = Temperature
 
     def altered(self, problem: wl.Problem, forces: wl.Forces) -> wl.Problem:
@@ -100,7 +99,6 @@ class HotModel(wl.ContactModel):
     """FASTSIM with friction of hot surfaces."""
 
     name: ClassVar[str] = "hot_fastsim"
-    source: ClassVar[str] = "made up for tests"
     conditions: ClassVar[Any] = Temperature
 
     def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
@@ -114,7 +112,6 @@ class HotLaw(wl.WearLaw):
     """Wear in proportion to temperature and wear-index density."""
 
     name: ClassVar[str] = "hot_law"
-    source: ClassVar[str] = "made up for tests"
     conditions: ClassVar[Any] = Temperature
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> Array:

@@ -82,7 +82,6 @@ class Roller(wl.Rig):
     """A rig of one's own."""
 
     name: ClassVar[str] = "roller"
-    source: ClassVar[str] = "made up"
 
     def problem(self, *, mass: wl.QuantityLike, creepage: wl.QuantityLike) -> wl.Problem:
         return rig.problem(max_pressure="1 GPa", creepage=creepage, friction_coefficient=0.4)
@@ -95,8 +94,6 @@ assert_type(rolled(mass="20 kg", creepage="1 %"), wl.Prediction)
 class Patch(wl.WearLaw):
     """A law of the whole patch."""
 
-    name: ClassVar[str] = "patch"
-    source: ClassVar[str] = "made up"
     scale: ClassVar[Literal["patch", "any"]] = "patch"
     monotone_in = ("wear_index",)
 
@@ -114,8 +111,6 @@ Patch(slope=wl.parse("7 ug/m/N"))
 class Half(wl.WearLaw):
     """A law around another one, whose scale it has."""
 
-    name: ClassVar[str] = "half"
-    source: ClassVar[str] = "made up"
     monotone_in: ClassVar[tuple[wl.LawVariable, ...]] = ("wear_index", "slip")
 
     inner: wl.WearLawField
@@ -157,8 +152,6 @@ assert_type(wl.wear_coefficient("5 ug/J", "mass_per_energy", to="volume_per_ener
 class Fatigue(wl.Law):
     """A law of another outcome, for one body."""
 
-    name: ClassVar[str] = "fatigue"
-    source: ClassVar[str] = "made up"
     outcome: ClassVar[wl.Outcome] = wl.Outcome("rcf_damage", unit="", of="patch", sign="any")
 
     threshold: Annotated[wl.Quantity, wl.Unit("N")]
@@ -223,8 +216,6 @@ class Humidity(TypedDict):
 class Humid(wl.WearLaw):
     """A law with a condition of its own."""
 
-    name: ClassVar[str] = "humid"
-    source: ClassVar[str] = "made up"
     conditions: ClassVar = Humidity
 
     def rate(self, contact: wl.Contact, p: wl.Numbers) -> wl.Array:
@@ -234,8 +225,6 @@ class Humid(wl.WearLaw):
 class HumidModel(wl.ContactModel):
     """A contact model with a condition of its own."""
 
-    name: ClassVar[str] = "humid_contact"
-    source: ClassVar[str] = "made up"
     conditions: ClassVar = Humidity
 
     def solve_ellipse(self, problem: wl.Problem) -> wl.Contact:
@@ -245,8 +234,6 @@ class HumidModel(wl.ContactModel):
 class Wet(wl.Stage):
     """A stage with a condition of its own."""
 
-    name: ClassVar[str] = "wet"
-    source: ClassVar[str] = "made up"
     conditions: ClassVar = Humidity
 
 
