@@ -119,7 +119,7 @@ def test_the_repr_of_one_point_shows_values_and_of_many_their_ranges() -> None:
         "  wear_index           32.90 N\n"
         "  half_width           0.3147 mm\n"
         "  max_pressure         1500 MPa\n"
-        "  stick_ratio          0.000\n"
+        "  stick_ratio          0\n"
         "  mean_slip            1.000 %"
     )
     many = predict(max_pressure="1500 MPa", creepage=Q([0.5, 1.0], "%"), friction_coefficient=0.46)
