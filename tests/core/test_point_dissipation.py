@@ -15,8 +15,6 @@ from wearlaw import Q
 RIG = wl.TwinDisc.suros()
 SLOPE = 5e-9
 CONDITIONS: Any = {"max_pressure": Q(1500, "MPa"), "friction_coefficient": 0.46}
-
-
 ENERGY_LAW = Linear()
 
 
