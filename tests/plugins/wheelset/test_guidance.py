@@ -149,7 +149,7 @@ def test_wheelsets_that_differ_by_their_force_alone_find_their_places_among_each
     np.testing.assert_allclose(between, [0.5, 1.5, *[np.nan] * 5])
     moved, sizes = Loads.moved, list[int]()
 
-    def counted(self: Loads, forces: Any, points: Array, *more: Any) -> Loads:
+    def counted(self: Loads, forces: Any, points: Any, *more: Any) -> Loads:
         sizes.append(points.size)
         return moved(self, forces, points, *more)
 
