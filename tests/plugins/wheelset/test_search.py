@@ -33,7 +33,6 @@ from wearlaw_models.rigs.wheelset.search_loops import (  # private: the accuracy
 
 SIDE = np.array([-1.0, 1.0])
 STANDARD = wheelset()
-EPS = float(np.finfo(float).eps)
 PRINTED_STEPS = 1.2e-7 + 3.7e-8
 """Sum of the steps that the printed formulas of S1002 leave [m]."""
 LEVEL = 4.0 * ROLL_ACCURACY
