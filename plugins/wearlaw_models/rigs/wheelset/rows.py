@@ -61,7 +61,7 @@ STRAIGHT = 0.2
 SPARE = 0.3
 """Overlap that rows and elements may gain while loads are balanced, over the greatest one."""
 
-FINE = 0.08
+FINE = 0.04
 """Share of the greatest overlap by which the overlap of a row may depart from the mean of its neighbours'; rows are
 split until it does not."""
 
