@@ -137,12 +137,10 @@ def test_slip_speeds_and_pressures_in_the_fields_without_an_end_are_warned_of() 
     no_end = (
         "Table 2, whose outermost fields, at 2.1 GPa and above and at 0.7 m/s and above, have a k but no printed end)"
     )
-    with pytest.warns(
-        wl.RangeWarning, match=r"slip speed from 0\.000 m/s to 0\.7000 m/s .* as far as 40\.00 m/s"
-    ) as said:
+    with pytest.warns(wl.RangeWarning, match=r"slip speed from 0 m/s to 0\.7000 m/s .* as far as 40\.00 m/s") as said:
         fast(creepage="20 %", **conditions)
     assert no_end in str(said[-1].message)
-    with pytest.warns(wl.RangeWarning, match=r"mean pressure from 0\.000 MPa to 2100 MPa .* as far as 2356 MPa"):
+    with pytest.warns(wl.RangeWarning, match=r"mean pressure from 0 MPa to 2100 MPa .* as far as 2356 MPa"):
         fast(creepage="0.1 %", **conditions | {"max_pressure": "3000 MPa"})  # π/4 of it is the mean
 
 
