@@ -10,10 +10,9 @@ one at which ∑ Y grows: there it is stable.
 
 The search begins where rigid wheels bear the force without friction, but on the tread: beyond it, a flange may bear
 alone or together with the tread, and a wheelset comes from the tread. From there on, wheelsets move by Newton's method
-between bounds, each with the creep forces that it had before; the rates are those of the pressure. Those that differ by
-their lateral force alone, as many states of a line do, first go where the others have borne more and less. Rows laid
-anew may bear another force, so where a search is slow and its bounds are close, wheelsets move within the rows of one
-laying. Where ∑ Y nowhere reaches H, the greatest ∑ Y lies where its rate vanishes.
+between bounds, each with the creep forces that it had before; the rates are those of the pressure. Rows that are laid
+anew may bear another force, so close to the end wheelsets move within the rows of one laying. Where ∑ Y nowhere reaches
+H, the greatest ∑ Y lies where its rate vanishes.
 """
 
 from __future__ import annotations
@@ -59,7 +58,7 @@ TREAD = 0.95
 """Share of the way to the end of the tread up to which a search may begin."""
 
 STEPS, SLOW = 40, 8
-"""Greatest number of steps, and those after which every other one halves the bounds, and close bounds keep rows."""
+"""Greatest number of steps, and those after which every other one halves the bounds."""
 
 
 class Play(NamedTuple):
@@ -131,41 +130,6 @@ def _play(section: Section, flange_angle: float, middle: int) -> Play:
     return Play(displacement[some], slope + 1e-9 * np.arange(slope.size), ends, (float(treads[0]), float(treads[1])))
 
 
-class Stood:
-    """Displacements at which wheelsets stood, and the lateral forces that the rails bore there.
-
-    Wheelsets that differ by their lateral forces alone lie on one curve, on which each finds its place among the
-    others. A negative number of a curve stands for a wheelset that has no others.
-    """
-
-    def __init__(self, alike: NDArray[np.intp]) -> None:
-        self._curve = alike
-        self._points = np.empty((3, 0))
-        """Curve, displacement [m] and lateral force [N]."""
-
-    def add(self, wheelsets: NDArray[np.intp], displacement: Array, force: Array) -> None:
-        """Add where some wheelsets stood; those with a force of NaN did not."""
-        curve = self._curve[wheelsets]
-        here = np.stack([curve, displacement, force])[:, (curve >= 0) & ~np.isnan(force)]
-        points = np.concatenate([self._points, here], axis=1)
-        self._points = points[:, np.lexsort(points[1::-1])]
-
-    def between(self, wheelsets: NDArray[np.intp], force: Array) -> Array:
-        """Return where some wheelsets bear forces, by lines between two points; NaN if these do not lie about them."""
-        curve, displacement, borne = self._points
-        if curve.size < 2:
-            return np.full(force.shape, np.nan)
-        span = 2.0 * max(np.abs(borne).max(), np.abs(force).max()) + 1.0
-        along = np.maximum.accumulate(curve * span + borne)  # the curves one behind the other
-        wanted = self._curve[wheelsets] * span + force
-        after = np.clip(np.searchsorted(along, wanted), 1, along.size - 1)
-        first, last = along[after - 1], along[after]
-        share = (wanted - first) / np.where(last > first, last - first, np.inf)
-        place = displacement[after - 1] + share * (displacement[after] - displacement[after - 1])
-        inside = (curve[after - 1] == curve[after]) & (curve[after] == self._curve[wheelsets])
-        return np.where(inside & (share >= 0.0) & (share <= 1.0), place, np.nan)
-
-
 class Guided(NamedTuple):
     """Where wheelsets stand under lateral forces.
 
@@ -201,13 +165,12 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
     high, most, place = ends.copy(), np.full(count, -np.inf), np.zeros(count)
     last = np.full((3, count), np.nan)  # distance, excess and rate of the step before
     slip = np.zeros(count)
-    stood = Stood(task.alike)
     reached, falls, climbs, fine = np.zeros((4, count), dtype=np.bool_)
     going = np.arange(count)
     for step in range(STEPS):
         if step:
             goal = np.where(fine[going], BALANCED, ROUGH)
-            close = ((high - low)[going] < WITHIN) & (step >= SLOW)
+            close = (high - low)[going] < WITHIN
             loads = loads.moved(forces, going, side[going] * distance[going], goal, close)
             distance[going] = side[going] * loads.displacement[going]
         d, rate = distance[going], loads.stiffness[going]
@@ -215,7 +178,6 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
         excess = (side * (np.where(balanced, loads.lateral.sum(axis=-1), np.nan) - task.lateral_force))[going]
         near = np.abs(excess) <= BORNE * axle[going]
         done = near & fine[going] & (rate > 0.0)
-        rough = ~fine[going]
         fine[going] |= np.abs(excess) <= NEAR * axle[going]
         more = excess > most[going]
         most[going], place[going] = np.fmax(most[going], excess), np.where(more, d, place[going])
@@ -248,14 +210,10 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
         between = reached[going] & np.isfinite(low[going])
         inside = (ahead > low[going]) & (~reached[going] | (ahead < high[going])) | fine[going]
         inside &= (rate > 0.0) & ~lost & ~((step >= SLOW) & (step % 2 == 1) & between)
-        bore = side[going] * np.where((rate > 0.0) & ~lost, excess, np.nan) + task.lateral_force[going]
-        stood.add(going, side[going] * d, bore)
-        among = side[going] * stood.between(going, task.lateral_force[going])
         ahead = np.where(reached[going], np.maximum(ahead, least), np.minimum(ahead, limit))
         middle = 0.5 * (np.where(between, low[going], 0.0) + high[going])
         middle = np.where(between, middle, np.where(over, INWARDS * d, limit))
-        ahead = np.where(inside, ahead, middle)
-        distance[going] = np.where(rough & (among > low[going]) & (among < high[going]), among, ahead)
+        distance[going] = np.where(inside, ahead, middle)
         going = going[~(done | vain)]
         if not going.size:
             break

@@ -91,16 +91,6 @@ class Task:
         some["conditions"] = {name: array[points] for name, array in self.conditions.items()}
         return replace(self, **some)
 
-    @property
-    def alike(self) -> NDArray[np.intp]:
-        """A number for each set of positions that differ by their lateral forces alone; negative for one position."""
-        mine = {name: of for name, of in vars(self).items() if name not in ("displacement", "lateral_force")}
-        columns = [*mine.values(), *self.friction, *self.conditions.values()]
-        values = [array.reshape(self.yaw.size, -1) for array in columns if isinstance(array, np.ndarray)]
-        _, number, size = np.unique(np.concatenate(values, axis=1), axis=0, return_inverse=True, return_counts=True)
-        number = number.reshape(-1)
-        return np.where(size[number] > 1, number, -1)
-
     def friction_of(self, point: NDArray[np.intp], flange: Array, creep_speed: Array) -> Array:
         """Return friction coefficients of patches [-] by their shares of load on the flange and creep speeds [m/s]."""
         tread, on_flange = (
