@@ -55,15 +55,15 @@ def of_sweeps() -> None:
 def of_fits() -> None:
     Path("tests.csv").write_text(TESTS)
     law = "usfd:fitted_for=exact"
-    wearlaw("fit", "tests.csv", "--contact", "exact", "--law", law, "--free", "q_s", "--bootstrap", "0", "--latex")
-    wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", f"{law},kth", "--latex")
+    wearlaw("fit", "tests.csv", "--contact", "exact", "--law", law, "--free", "q_s", "--bootstrap", "0")
+    wearlaw("compare", "tests.csv", "--contacts", "exact", "--laws", f"{law},kth")
     predict()(max_pressure="1500 MPa", creepage="1 %", friction_coefficient=0.4).plot()
     contact = Path(__file__).parent / "plugins" / "contact_files" / "contact_results" / "half_space.0001.mat"
-    wearlaw("wear", str(contact), "--law", "usfd", "--latex")
+    wearlaw("wear", str(contact), "--law", "usfd")
 
 
 def of_studies() -> None:
-    wearlaw("run", "two_discs", "--latex")
+    wearlaw("run", "two_discs")
     wearlaw("case", "two_discs")
     wearlaw("schema")
 

@@ -125,7 +125,7 @@ def section_can_be_written(tried: TriedSection) -> None:
 
     section = tried.section
     with tempfile.TemporaryDirectory() as folder:
-        write_files(Path(folder), "section.json", {}, section.tables, section.figures, ["svg"], latex=True)
+        write_files(Path(folder), "section.json", {}, section.tables, section.figures, ["svg"])
 
 
 @rule(TriedSection, always=True)

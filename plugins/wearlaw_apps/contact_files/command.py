@@ -61,7 +61,6 @@ def wear(
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
-    latex: bool,
 ) -> None:
     """Predict the wear of contacts that another program solved: FILES are its result files, such as CONTACT's .mat.
 
@@ -95,7 +94,7 @@ def wear(
                 "laws": [specification(law) for law in chosen],
                 "notes": list(notes.texts),
             }
-            names = write_files(fresh, WEAR, record, tables, [figure] if figure else [], figure_formats, latex)
+            names = write_files(fresh, WEAR, record, tables, [figure] if figure else [], figure_formats)
     answer(folder, names, notes.texts, lambda: _print(table), {"wear": table})
 
 

@@ -140,7 +140,6 @@ def fit(
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
-    latex: bool,
     **settings: Any,
 ) -> None:
     """Fit parameters of a wear law to tests: TESTS is a CSV file or a spreadsheet with units in its header.
@@ -177,7 +176,7 @@ def fit(
             settings |= {"friction_coefficient": friction, "bounds": _bounds(bounds), "bootstrap": bootstrap}
             fitted = fit_parameters(predict, measured, names, on_progress=bar, **settings)
         with notes.of("figure"):
-            files = _write_fit(fitted, notes.texts, fresh, figure_formats, latex)
+            files = _write_fit(fitted, notes.texts, fresh, figure_formats)
     record = {
         "parameters": fitted.parameters,
         "intervals": fitted.intervals,
@@ -258,7 +257,6 @@ def compare(
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
-    latex: bool,
     **settings: Any,
 ) -> None:
     """Rank contact models and wear laws by how well they predict tests.
@@ -303,7 +301,7 @@ def compare(
             predictors += _fits([pair for pair in pairs if pair.law == law], names, measured, notes, settings)
         comparison = compare_named(predictors, measured, friction, notes, None, parts, settings["body"], progress=True)
         with notes.of("figure"):
-            files = _write_comparison(comparison, notes.texts, fresh, figure_formats, latex)
+            files = _write_comparison(comparison, notes.texts, fresh, figure_formats)
     shown_ranking = {"ranking": comparison.table()}
     answer(folder, files, notes.texts, lambda: click.echo(repr(comparison)), shown_ranking)
 
@@ -350,9 +348,7 @@ def _fits(
     return fits
 
 
-def _write_fit(
-    fit: Fit, notes: Sequence[str], folder: Path, figure_formats: Sequence[FigureFormat], latex: bool
-) -> list[str]:
+def _write_fit(fit: Fit, notes: Sequence[str], folder: Path, figure_formats: Sequence[FigureFormat]) -> list[str]:
     """Write a fit into an empty folder and return the names of the files, the fitted law first."""
     record = {
         "parameters": {name: text_of(value) for name, value in fit.parameters.items()},
@@ -369,12 +365,12 @@ def _write_fit(
     if fit.law is not None:
         fit.to_toml(folder / LAW)
     tables = {"parameters": fit.table(), "residuals": fit.residuals}
-    names = write_files(folder, FIT, record, tables, [fit.figure_data()], figure_formats, latex)
+    names = write_files(folder, FIT, record, tables, [fit.figure_data()], figure_formats)
     return [LAW, *names] if fit.law is not None else names
 
 
 def _write_comparison(
-    comparison: Comparison, notes: Sequence[str], folder: Path, figure_formats: Sequence[FigureFormat], latex: bool
+    comparison: Comparison, notes: Sequence[str], folder: Path, figure_formats: Sequence[FigureFormat]
 ) -> list[str]:
     """Write a comparison into an empty folder and return the names of the files, the ranking first."""
     record = {
@@ -387,7 +383,7 @@ def _write_comparison(
         "notes": list(notes),
     }
     tables = {"ranking": comparison.table(), "predictions": comparison.predictions()}
-    return write_files(folder, COMPARISON, record, tables, [comparison.figure_data()], figure_formats, latex)
+    return write_files(folder, COMPARISON, record, tables, [comparison.figure_data()], figure_formats)
 
 
 def _rig(path: Path | None, notes: Notes) -> Any:

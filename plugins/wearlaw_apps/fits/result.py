@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import os
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -35,7 +34,6 @@ from wearlaw_apps.output.curves import BLACK, Curve, FigureData, Panel, PlotAxis
 from wearlaw_apps.output.labels import label
 from wearlaw_apps.output.parity import parity_panels
 from wearlaw_apps.output.plot import Log, plotted
-from wearlaw_apps.output.styled import latex_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -211,20 +209,6 @@ class Fit:
             "unit": [symbol(value.units, "~C") for value in values],
         }
         return pd.DataFrame(columns)
-
-    def to_latex(self) -> str:
-        """Return the parameters by their symbols, with their intervals, as a tabular of LaTeX with booktabs."""
-        rows = {
-            "parameter": [symbol_of(name) for name in self.parameters],
-            "value": [f"{value.magnitude:.4g}" for value in self.parameters.values()],
-            f"{self.confidence:.0%} interval": [
-                f"{low.magnitude:.3g} to {high.magnitude:.3g}" for low, high in self.intervals.values()
-            ],
-            "unit": [symbol(value.units, "~P") for value in self.parameters.values()],
-        }
-        # Names of parameters such as tr_sc are symbols with an index.
-        with_index = r"$\\mathit{\1}_{\\mathrm{\2}}$ &"
-        return re.sub(r"^([A-Za-z]+)\\_([A-Za-z]+) &", with_index, latex_table(pd.DataFrame(rows)), flags=re.MULTILINE)
 
     def to_toml(self, path: str | os.PathLike[str]) -> None:
         """Write the fitted law and its provenance to a file that `read_law` reads.

@@ -61,7 +61,6 @@ def life(
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
-    latex: bool,
 ) -> None:
     """Wear a profile over a distance: CASE is a case file with a rig, LINE a table of states with their shares.
 
@@ -102,7 +101,7 @@ def life(
         if uncertain is not None:
             tables["limits"] = uncertain.table().reset_index()
             figures.append(uncertain.figure())
-        names = write_files(fresh, LIFE, record, tables, figures, figure_formats, latex)
+        names = write_files(fresh, LIFE, record, tables, figures, figure_formats)
     shutil.rmtree(partial, ignore_errors=True)
     texts, written = [*map(str, resumed), *notes.texts], {"ended": result.ended, "life": result.table}
     answer(folder, names, texts, lambda: click.echo("\n".join(map(repr, filter(None, (result, uncertain))))), written)

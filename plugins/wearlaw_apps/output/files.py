@@ -16,21 +16,11 @@ from wearlaw_apps.output.curves import FigureData, FigureFormat
 from wearlaw_apps.output.drawing import draw
 from wearlaw_apps.output.spreadsheets import write_csv
 from wearlaw_apps.output.style import STYLE
-from wearlaw_apps.output.styled import latex_table
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
 METADATA: dict[FigureFormat, Any] = {"png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None}}
 """Metadata to suppress in each format, so that the same figure gives the same bytes."""
-
-
-def save_table(frame: pd.DataFrame, folder: Path, name: str, latex: bool, footnotes: Sequence[str] = ()) -> list[str]:
-    """Write a table as CSV, and for LaTeX with its footnotes if asked for, and return the names of the files."""
-    write_csv(frame, folder / f"{name}.csv")
-    if not latex:
-        return [f"{name}.csv"]
-    (folder / f"{name}.tex").write_text(latex_table(frame, footnotes), encoding="utf-8")
-    return [f"{name}.csv", f"{name}.tex"]
 
 
 def save_figure(figure: FigureData, folder: Path, name: str, formats: Sequence[FigureFormat]) -> list[str]:
@@ -50,11 +40,13 @@ def write_files(
     tables: Mapping[str, pd.DataFrame],
     figures: Iterable[FigureData],
     figure_formats: Sequence[FigureFormat],
-    latex: bool,
     texts: Mapping[str, str] | None = None,
 ) -> list[str]:
     """Write tables and texts by the names of their files, figures by their own, and a JSON record."""
-    names = [file for name, frame in tables.items() for file in save_table(frame, folder, name, latex)]
+    names = []
+    for name, frame in tables.items():
+        write_csv(frame, folder / f"{name}.csv")
+        names.append(f"{name}.csv")
     for figure in figures:
         names += save_figure(figure, folder, figure.name, figure_formats)
     record_text = json.dumps(record, indent=2, ensure_ascii=False) + "\n"
@@ -67,7 +59,7 @@ def write_files(
 def writes_results(default: str) -> Callable[[CommandT], CommandT]:
     """Return what adds the options of a command that writes results and prints notes; `default` names their folder.
 
-    The arguments are `output`, `overwrite`, `figure_formats` and `latex`; `answer` obeys the others.
+    The arguments are `output`, `overwrite` and `figure_formats`; `answer` obeys the others.
     """
     formats = click.option(
         "--figure-format",
@@ -82,5 +74,4 @@ def writes_results(default: str) -> Callable[[CommandT], CommandT]:
     output = click.option("-o", "--output", type=click.Path(path_type=Path), help=folder)
     replaced = "Replace the files of this command in that folder; others stay."
     overwrite = click.option("--overwrite", is_flag=True, help=replaced)
-    latex = click.option("--latex", is_flag=True, help="Write the tables for LaTeX too.")
-    return lambda command: output(overwrite(formats(latex(printing(command)))))
+    return lambda command: output(overwrite(formats(printing(command))))

@@ -49,7 +49,6 @@ def run(
     resume: bool,
     csv: bool | None,
     figure_formats: tuple[FigureFormat, ...],
-    latex: bool,
 ) -> None:
     """Run a study: CASE is a case file, or the name of a shipped one.
 
@@ -72,7 +71,7 @@ def run(
                 if left_out is not None:
                     study = replace(study, notes=(*study.notes, left_out))
                 with notes.of("figures"):
-                    names = write(study, fresh, figure_formats, latex, bar.stage, left_out is None)
+                    names = write(study, fresh, figure_formats, bar.stage, left_out is None)
     except KeyboardInterrupt:
         if partial.exists():
             raise Stopped(f"Stopped; finished blocks are in {shown(partial)}, and --resume goes on") from None
@@ -135,7 +134,6 @@ def uncertainty(
     output: Path | None,
     overwrite: bool,
     figure_formats: tuple[FigureFormat, ...],
-    latex: bool,
 ) -> None:
     """Say how uncertain predictions are: CASE is a case file with tables [uncertainty.NAME].
 
@@ -156,9 +154,7 @@ def uncertainty(
                 "wear_rates": result.wear_rates,
                 **({"sobol_indices": result.indices} if len(result.indices) else {}),
             }
-            names = write_files(
-                fresh, UNCERTAINTY, record, tables, result.figures, figure_formats, latex, written(loaded)
-            )
+            names = write_files(fresh, UNCERTAINTY, record, tables, result.figures, figure_formats, written(loaded))
     if result.samples != samples and not click.get_current_context().meta["json"]:
         click.echo(f"Samples: {samples} rounded up to {result.samples}, a power of two, as Sobol sequences need it")
 

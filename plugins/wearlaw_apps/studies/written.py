@@ -13,7 +13,7 @@ import xarray
 from wearlaw.errors import OutputError, shown
 from wearlaw.pipeline.variables import OF_CONTACT, OF_PATCH, OF_POINT
 from wearlaw_apps.output.curves import FigureFormat
-from wearlaw_apps.output.files import save_figure, save_table
+from wearlaw_apps.output.files import save_figure
 from wearlaw_apps.output.spreadsheets import write_csv
 from wearlaw_apps.studies.case import CASE_FILE, Case, written
 from wearlaw_apps.studies.report.page import report
@@ -71,7 +71,6 @@ def write(
     study: Study,
     folder: Path,
     figure_formats: Sequence[FigureFormat] = ("png",),
-    latex: bool = False,
     on_stage: Callable[[str], None] = lambda _: None,
     csv: bool = True,
 ) -> list[str]:
@@ -93,7 +92,8 @@ def write(
     (folder / TABLES).mkdir()
     named_tables = ((named.name, named) for named in tables(study))
     for name, named in _by_name("table", named_tables).items():
-        names += save_table(named.frame, folder, f"{TABLES}/{name}", latex, named.footnotes)
+        write_csv(named.frame, folder / TABLES / f"{name}.csv")
+        names.append(f"{TABLES}/{name}.csv")
     (folder / FIGURES).mkdir()
     every = (*study.figures, *(figure for section in study.sections for figure in section.figures))
     for name, figure in _by_name("figure", ((figure.name, figure) for figure in every)).items():

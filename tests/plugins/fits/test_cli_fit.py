@@ -128,7 +128,7 @@ def test_bounds_keep_a_fit_within_them() -> None:
 
 
 def test_predictors_are_ranked_and_the_files_are_listed_as_they_are(folder: Path) -> None:
-    result = wearlaw(*COMPARE, "-o", "cmp", "--latex")
+    result = wearlaw(*COMPARE, "-o", "cmp")
     assert result.exit_code == 0
     assert result.stdout.startswith("5 predictors on 9 tests, best first; rms_error in µg/m/mm²\n")
     ranking = pd.read_csv("cmp/ranking.csv")
@@ -145,7 +145,7 @@ def test_predictors_are_ranked_and_the_files_are_listed_as_they_are(folder: Path
     assert listed(result, "cmp") == files(folder) - {"tests.csv", "cmp/.wearlaw-files"}
     assert {Path(name).name for name in files(folder / "cmp")} == {
         ".wearlaw-files",
-        "ranking.csv", "ranking.tex", "predictions.csv", "predictions.tex", "measured_against_predicted.png",
+        "ranking.csv", "predictions.csv", "measured_against_predicted.png",
         "comparison.json",
     }  # fmt: skip
 

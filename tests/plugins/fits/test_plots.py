@@ -92,15 +92,3 @@ def test_parameters_are_shown_by_their_symbols() -> None:
     )
     of_friction = wl.fit(EXACT, traction, ["friction_coefficient"], bootstrap=0)
     assert of_friction.figure_data().title == "Fit of μ"
-    low, high = (f"{end.magnitude:.3g}" for end in fit.intervals["mass_per_energy"])
-    table = fit.to_latex()
-    assert r"95\% interval" in table
-    assert f"mass per energy & {fit.parameters['mass_per_energy'].magnitude:.4g} & {low} to {high} &" in table
-    assert r"\toprule" in table
-
-
-def test_symbols_with_an_index_have_it_below_the_line_in_latex() -> None:
-    law = wl.wear_law("usfd", fitted_for="exact")
-    tests = WearTests.from_arrays(**TEST, normal_force="7 kN", wear_rate=Q([1.0, 5.0, 8.0, 12.0], "ug/m/mm^2"))
-    table = wl.fit(wl.TwinDisc.suros() | wl.contact_model("exact") | law, tests, ["m_m"], bootstrap=0).to_latex()
-    assert r"$\mathit{m}_{\mathrm{m}}$ &" in table

@@ -1,12 +1,9 @@
-"""Tables as HTML with numbers at the right, and as LaTeX that a paper can include."""
+"""Tables as HTML with numbers at the right."""
 
 from __future__ import annotations
 
 import html
 import re
-import shutil
-import subprocess
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +11,7 @@ import pandas as pd
 import pytest
 
 from tests.plugins.studies.report_data import EVIL
-from wearlaw_apps.output.styled import Marked, cell, html_table, latex_table  # private: tables by themselves
+from wearlaw_apps.output.styled import Marked, cell, html_table  # private: tables by themselves
 
 TABLE = pd.DataFrame(
     {
@@ -58,20 +55,3 @@ def test_html_has_row_heads_numbers_at_the_right_and_every_text_literally() -> N
     assert shown.count('number"') == 2 + 3, "two heads and three numbers"
     assert "<script" not in shown
     assert " id=" not in shown
-
-
-def test_latex_has_units_marks_footnotes_and_escaped_texts() -> None:
-    source = latex_table(TABLE, ["‡ beyond shakedown"])
-    assert r"\begin{tabular}{" in source
-    assert r"rate [\textmu{}g/m/mm\textsuperscript{2}]" in source
-    assert r"a \& b\_1 & $-1.5 \times 10^{-7}$\textdagger{}\textdaggerdbl{} & $3$ & yes &" in source
-    assert r"$\gamma$ $\le$ 1 $\cdot$ 10\textsuperscript{-3} and c\textsubscript{i}" in source
-    assert r"\par{\footnotesize \textdaggerdbl{} beyond shakedown}" in source
-    assert latex_table(pd.DataFrame({"a": ["*", "[2]"]})).count("{}") == 2, "no option of the line above"
-
-
-@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="needs pdflatex")
-def test_latex_compiles(tmp_path: Path) -> None:
-    source = rf"\documentclass{{article}}\usepackage{{booktabs}}\begin{{document}}{latex_table(TABLE)}\end{{document}}"
-    (tmp_path / "t.tex").write_text(source, encoding="utf-8")
-    subprocess.run(["pdflatex", "-interaction=batchmode", "-halt-on-error", "t.tex"], cwd=tmp_path, check=True)

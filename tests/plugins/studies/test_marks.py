@@ -17,7 +17,6 @@ from tests.plugins.studies.panels import by_label, by_name
 from tests.plugins.studies.report_data import page_of
 from wearlaw import Q
 from wearlaw.errors import CompositionError
-from wearlaw_apps.output.styled import latex_table  # private: the marks of a table for LaTeX
 from wearlaw_apps.studies.report.tables import FOOTNOTES, summaries  # private: the marks of each number
 
 RIG = wl.TwinDisc.suros()
@@ -125,15 +124,11 @@ def test_tables_mark_wear_rates_and_say_what_the_marks_mean(study: wl.Study) -> 
     assert table.footnotes == tuple(f"{mark} {meaning}" for mark, meaning in FOOTNOTES.items())
 
 
-def test_marks_are_in_the_report_and_for_latex_but_not_in_numbers(study: wl.Study) -> None:
+def test_marks_are_in_the_report_but_not_in_numbers(study: wl.Study) -> None:
     table = {one.name: one for one in summaries(study)}["wear_rate_load"]
     page = page_of(study)
     assert "†‡</td>" in page
     assert "‡ beyond shakedown" in page
-    latex = latex_table(table.frame, table.footnotes)
-    assert r"\begin{tabular}{lrrrrr}" in latex
-    assert r"$\textdagger{}\textdaggerdbl{}" in latex
-    assert r"\par{\footnotesize \textdaggerdbl{} beyond shakedown}" in latex
     numbers = table.frame.to_csv(index=False)
     assert "†" not in numbers
     read = pd.read_csv(io.StringIO(numbers))

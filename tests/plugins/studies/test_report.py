@@ -260,7 +260,7 @@ def test_two_runs_of_a_case_write_the_same_bytes_and_no_path_of_the_machine(
     monkeypatch.chdir(tmp_path)
     figure = {"sweep": "creepage", "x": "creepage", "y": "wear_rate"}
     cases.write(tmp_path / "c.toml", cases.table(profiles={}, figures={"only": figure}))
-    options = ["run", "c.toml", "--latex", *(f"--figure-format={f}" for f in ("png", "pdf", "svg"))]
+    options = ["run", "c.toml", *(f"--figure-format={f}" for f in ("png", "pdf", "svg"))]
     command = [str(Path(sys.executable).parent / "wearlaw"), *options, "-o", "1"]
     subprocess.run(command, env={**os.environ, "PYTHONHASHSEED": "1"}, check=True, capture_output=True)
     assert cases.wearlaw(*options, "-o", "2").exit_code == 0
@@ -269,7 +269,7 @@ def test_two_runs_of_a_case_write_the_same_bytes_and_no_path_of_the_machine(
     )
     assert first.keys() == second.keys()
     assert [str(name) for name in first if first[name] != second[name]] == []
-    assert {name.suffix for name in first} == {".html", "", ".nc", ".csv", ".toml", ".tex", ".png", ".pdf", ".svg"}
+    assert {name.suffix for name in first} == {".html", "", ".nc", ".csv", ".toml", ".png", ".pdf", ".svg"}
     for name, content in first.items():
         assert str(tmp_path).encode() not in content, name
         assert str(Path.home()).encode() + b"/" not in content, name

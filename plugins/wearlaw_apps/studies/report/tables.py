@@ -1,7 +1,4 @@
-"""The tables of a study: outcomes of its sweeps, its models and their parameters, and the tables of its sections.
-
-Each can be written as CSV with all digits, and for LaTeX with the digits shown.
-"""
+"""The tables of a study: outcomes of its sweeps, its models and their parameters, and the tables of its sections."""
 
 from __future__ import annotations
 
