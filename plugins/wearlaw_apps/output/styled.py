@@ -33,19 +33,18 @@ def is_number(value: Any) -> bool:
     return not isinstance(value, (bool, np.bool_)) and isinstance(value, numbers.Real) and bool(value == value)
 
 
-def cell(value: Any) -> tuple[str, str, str]:
-    """Return the text of a cell, and for numbers its power of ten and its marks: four significant digits.
-
-    The text is empty if the value is missing.
-    """
+def plain_number(value: Any) -> str:
+    """Return the text of a cell, "" if the value is missing; a number has four digits and its marks: "4.66 × 10⁻⁵†"."""
     if value is None or value is pd.NA or value != value:
-        return "", "", ""
+        return ""
     if isinstance(value, (bool, np.bool_)):
-        return ("yes" if value else "no"), "", ""
-    if isinstance(value, numbers.Integral) or not is_number(value):
-        return str(value), "", ""
-    mantissa, _, power = f"{value:.4g}".partition("e")
-    return mantissa, str(int(power)) if power else "", getattr(value, "marks", "")
+        return "yes" if value else "no"
+    if not is_number(value):
+        return str(value)
+    text = str(value) if isinstance(value, numbers.Integral) else f"{value:.4g}"
+    mantissa, _, power = text.partition("e")
+    times = f" × 10{raised(int(power))}" if power else ""
+    return f"{mantissa.replace('-', '−')}{times}{getattr(value, 'marks', '')}"
 
 
 def html_table(frame: pd.DataFrame, caption: str) -> str:
@@ -58,8 +57,8 @@ def html_table(frame: pd.DataFrame, caption: str) -> str:
     lines = ["<table>", f"<caption>{html.escape(caption)}</caption>", "<thead>", "<tr>"]
     lines += [*(f'<th scope="col">{head}</th>' for head in heads), "</tr>", "</thead>", "<tbody>"]
     for first, *others in rows:
-        cells = (f"<td{_class(value)}>{_html(value)}</td>" for value in others)
-        lines += ["<tr>", f'<th scope="row">{_html(first)}</th>', *cells, "</tr>"]
+        cells = (f"<td{_class(value)}>{html.escape(plain_number(value))}</td>" for value in others)
+        lines += ["<tr>", f'<th scope="row">{html.escape(plain_number(first))}</th>', *cells, "</tr>"]
     return "\n".join([*lines, "</tbody>", "</table>"])
 
 
@@ -74,15 +73,3 @@ def _class(value: Any) -> str:
     """Return the class of a cell: a number, or a text that wraps."""
     name = "number" if is_number(value) else "long" if len(str(value)) > LONG else ""
     return f' class="{name}"' if name else ""
-
-
-def plain_number(value: Any) -> str:
-    """Return the text of a cell with its power of ten and its marks, as in "4.66 × 10⁻⁵†"."""
-    text, power, marks = cell(value)
-    if is_number(value):
-        text = text.replace("-", "−")
-    return f"{text}{f' × 10{raised(int(power))}' if power else ''}{marks}"
-
-
-def _html(value: Any) -> str:
-    return html.escape(plain_number(value))
