@@ -117,7 +117,6 @@ def main() -> None:
       wearlaw case two_discs > my.toml      a short case file, to edit
       wearlaw run my.toml -o my-results/    your own study
       wearlaw explore wheelset              sliders and live figures in a browser
-      wearlaw uncertainty my.toml           how uncertain its predictions are
       wearlaw fit my-tests.csv --help       parameters of a law, fitted to your own tests
       wearlaw compare my-tests.csv --help   which model predicts your tests best
       wearlaw wear case.0001.mat --law usfd the wear of a contact that another program solved

@@ -40,20 +40,16 @@ def write_files(
     tables: Mapping[str, pd.DataFrame],
     figures: Iterable[FigureData],
     figure_formats: Sequence[FigureFormat],
-    texts: Mapping[str, str] | None = None,
 ) -> list[str]:
-    """Write tables and texts by the names of their files, figures by their own, and a JSON record."""
+    """Write tables by the names of their files, figures by their own, and a JSON record, and return all their names."""
     names = []
     for name, frame in tables.items():
         write_csv(frame, folder / f"{name}.csv")
         names.append(f"{name}.csv")
     for figure in figures:
         names += save_figure(figure, folder, figure.name, figure_formats)
-    record_text = json.dumps(record, indent=2, ensure_ascii=False) + "\n"
-    for name, text in {**(texts or {}), marker: record_text}.items():
-        (folder / name).write_text(text, encoding="utf-8")
-        names.append(name)
-    return names
+    (folder / marker).write_text(json.dumps(record, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    return [*names, marker]
 
 
 def writes_results(default: str) -> Callable[[CommandT], CommandT]:

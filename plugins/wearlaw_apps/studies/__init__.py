@@ -38,5 +38,4 @@ def wearlaw_commands() -> list[wl.Command]:
         wl.Command("case", "wearlaw_apps.studies.case_commands:case", "Print a case file, to edit a copy."),
         wl.Command("run", "wearlaw_apps.studies.commands:run", "Run a study and write its results and report."),
         wl.Command("schema", "wearlaw_apps.studies.case_commands:schema", "Print the JSON Schema of case files."),
-        wl.Command("uncertainty", "wearlaw_apps.studies.commands:uncertainty", "Say how uncertain predictions are."),
     ]

@@ -18,7 +18,7 @@ from typing import Annotated, Any, TypeVar
 
 import tomli_w
 from packaging.specifiers import InvalidSpecifier, SpecifierSet
-from pydantic import AfterValidator, Field, TypeAdapter, ValidationInfo, field_validator, model_validator
+from pydantic import AfterValidator, Field, ValidationInfo, field_validator, model_validator
 
 from wearlaw import loader
 from wearlaw.configuration import Configuration, known_as
@@ -40,23 +40,19 @@ from wearlaw.loader import Shelf
 from wearlaw.models.contact_model import ContactModel
 from wearlaw.models.law import WEAR, Law, Outcome
 from wearlaw.models.model import Model
-from wearlaw.pipeline.composition import several_patches
 from wearlaw.pipeline.pipeline import Rig, RigField
 from wearlaw.text_files import LARGEST, parse_toml, read_text, reading
 from wearlaw.units.variables import UNITS
 from wearlaw_apps.output.labels import labelled, labels
 from wearlaw_apps.output.spreadsheets import without_formulas
 from wearlaw_apps.studies.figure_spec import FigureSpec
-from wearlaw_apps.studies.grid import Condition, Grid
+from wearlaw_apps.studies.grid import Grid
 from wearlaw_apps.studies.measured import MeasuredTests, check_rig
-from wearlaw_apps.studies.uncertain_point import Condition as UncertainCondition
-from wearlaw_apps.studies.uncertain_point import UncertainPoint
 
 ModelT = TypeVar("ModelT", bound=Model)
 
 CASE_FILE, TESTS_FILE = "case.toml", "tests.csv"
 """Names of the files that a run writes: its case, and its measured tests if they came from a file."""
-
 
 MODELS = ("contact_models", "stages", "laws", "wear_laws")
 """The lists of models of a case."""
@@ -127,8 +123,6 @@ class Case(Configuration):
     profiles: dict[str, Grid] = Field(default_factory=dict)
     """Single operating points at which the patch is shown, each under a name: stresses and slip along a line's patch,
     wear across an ellipse."""
-    uncertainty: dict[str, UncertainPoint] = Field(default_factory=dict)
-    """Uncertain operating points, each under a name; for `wearlaw uncertainty`."""
     measured: MeasuredTests | None = None
     """Measured tests, to show beside the predictions."""
     sections: tuple[Annotated[str, AfterValidator(_section)], ...] = ()
@@ -141,12 +135,17 @@ class Case(Configuration):
 
     @model_validator(mode="before")
     @classmethod
-    def _has_its_plugins(cls, fields: Any) -> Any:
-        """Check for missing plugins first, before something else fails without them."""
-        needed = fields.get("plugins") if isinstance(fields, dict) else None
+    def _can_be_read(cls, fields: Any) -> Any:
+        """Check for missing plugins first, before something else fails without them, and for distributions."""
+        tables = fields if isinstance(fields, dict) else {}
+        needed = tables.get("plugins")
         named = needed.items() if isinstance(needed, dict) else ()
         unmet = {name: _unmet(name, str(versions)) for name, versions in named}
-        if wrong := [Fault(("plugins", name), fault) for name, fault in unmet.items() if fault]:
+        wrong = [Fault(("plugins", name), fault) for name, fault in unmet.items() if fault]
+        if "uncertainty" in tables:
+            instead = "wl.uncertainty(case.rig | case.contact_models[0] | case.wear_laws[0], ...)"
+            wrong.append(Fault(("uncertainty",), f"a case has no distributions; give them to {instead} in Python"))
+        if wrong:
             raise ConfigurationError(cls.subject(), wrong)
         return fields
 
@@ -176,7 +175,7 @@ class Case(Configuration):
             raise ConfigurationError(cls.subject(), wrong)
         return laws
 
-    @field_validator("sweeps", "profiles", "uncertainty", "figures")
+    @field_validator("sweeps", "profiles", "figures")
     @classmethod
     def _have_names_of_files(cls, tables: dict[str, Any]) -> dict[str, Any]:
         """Check the names, which are part of the names of files."""
@@ -186,7 +185,7 @@ class Case(Configuration):
             raise ConfigurationError(cls.subject(), [Fault((), f"the name {shown(name)} {fault}") for name in wrong])
         return tables
 
-    @field_validator("sweeps", "profiles", "uncertainty")
+    @field_validator("sweeps", "profiles")
     @classmethod
     def _fit_the_rig(cls, tables: dict[str, Any], info: ValidationInfo) -> dict[str, Any]:
         """Let the rig check conditions when the case is read, not when it runs; a wrong rig checks none."""
@@ -238,7 +237,7 @@ class Case(Configuration):
     @model_validator(mode="after")
     def _consistent(self) -> Case:
         # the others need labels and units
-        if wrong := [*self._wrong_names(), *self._wrong_units()] or [*self._wrong_others()]:
+        if wrong := [*self._wrong_names(), *self._wrong_units()] or [*self._wrong_tests()]:
             raise ConfigurationError(self.subject(), wrong)
         return self
 
@@ -261,21 +260,14 @@ class Case(Configuration):
                 except InputError as error:
                     yield Fault((kind, name), str(error))
 
-    def _wrong_others(self) -> Iterator[Fault]:
-        """Yield the faults of uncertain parameters, measured tests and figures."""
-        for name, point in self.uncertainty.items():
-            for fault in point.wrong_laws(self.laws_by_label):
-                yield Fault(("uncertainty", name, *fault.path), fault.message)
-        if self.measured:
-            several = several_patches(next(iter(self.sweeps.values())).problem(self.rig, self.models), self.rig)
-            if several:
-                yield Fault(("measured",), f"{several}; leave [measured] out")
-            else:
-                try:
-                    check_rig(self.measured.data, self.rig)
-                    self.measured.on(self.rig)
-                except InputError as error:
-                    yield Fault(("measured",), str(error))
+    def _wrong_tests(self) -> Iterator[Fault]:
+        """Yield why the measured tests are not of the rig."""
+        try:
+            if self.measured is not None:
+                check_rig(self.measured.data, self.rig)
+                self.measured.on(self.rig)
+        except InputError as error:
+            yield Fault(("measured",), str(error))
 
 
 def case_text(name_or_path: str) -> str:
@@ -379,7 +371,7 @@ def _named(name: str, rig: type[Rig]) -> list[dict[str, Any]]:
 
 def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
     """Return the schemas of the tables of a case that hold a rig's conditions."""
-    schemas, conditions = {}, rig.conditions()
+    conditions = rig.conditions()
     declared: dict[str, Any] = {}
     for kind in ("contact model", "stage", "law", "wear law"):
         for model in loader.installed(kind).values():
@@ -387,18 +379,12 @@ def _conditions(rig: type[Rig], definitions: dict[str, Any]) -> dict[str, Any]:
                 declared |= of_table(model.conditions)
     needed = [name for name, condition in conditions.items() if condition.required]
     rules = [{"required": needed}, *({"oneOf": [{"required": [name]} for name in names]} for names in rig.choices)]
-    kinds: dict[str, Any] = {"sweeps": Condition, "profiles": Condition, "uncertainty": UncertainCondition}
-    for field, annotation in kinds.items():
-        schema = TypeAdapter(annotation).json_schema(ref_template="#/$defs/{model}")
-        definitions.update(schema.pop("$defs", {}))
-        properties = {
-            name: {**schema, "description": condition.meaning} for name, condition in {**declared, **conditions}.items()
-        }
-        if field == "uncertainty":
-            properties["laws"] = definitions["UncertainPoint"]["properties"]["laws"]
-        table = {"properties": properties, "allOf": rules, "additionalProperties": False}
-        schemas[field] = {"additionalProperties": table}
-    return schemas
+    schema = definitions["Grid"]["additionalProperties"]
+    properties = {
+        name: {**schema, "description": condition.meaning} for name, condition in {**declared, **conditions}.items()
+    }
+    table = {"properties": properties, "allOf": rules, "additionalProperties": False}
+    return {"sweeps": {"additionalProperties": table}, "profiles": {"additionalProperties": table}}
 
 
 def _tables(shelf: Shelf, definitions: dict[str, Any]) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Commands that run case files: a study, or how uncertain its predictions are."""
+"""The command that runs a case file."""
 
 from __future__ import annotations
 
@@ -15,20 +15,16 @@ from wearlaw.cli import Stopped
 from wearlaw.errors import OutputError, shown
 from wearlaw_apps.output.commands import answer, folder_for, print_table
 from wearlaw_apps.output.curves import FigureFormat
-from wearlaw_apps.output.files import write_files, writes_results
+from wearlaw_apps.output.files import writes_results
 from wearlaw_apps.output.folder import results_folder
 from wearlaw_apps.output.notes import Notes
 from wearlaw_apps.show import completed
-from wearlaw_apps.studies.case import load_case, written
+from wearlaw_apps.studies.case import load_case
 from wearlaw_apps.studies.report.tables import NamedTable, summaries
-from wearlaw_apps.studies.study import evaluations, provenance
+from wearlaw_apps.studies.study import evaluations
 from wearlaw_apps.studies.study import run as run_case
-from wearlaw_apps.studies.uncertainty import uncertainty_of
 from wearlaw_apps.studies.written import RESULTS, check_room, without_csv, write
 from wearlaw_apps.sweeps.progress import Bar
-
-UNCERTAINTY = "uncertainty.json"
-"""The file with the record of an uncertainty, which tells its folder from others."""
 
 
 @click.command()
@@ -120,47 +116,3 @@ def _discard(partial: Path) -> None:
         shutil.rmtree(store, ignore_errors=True)
     with suppress(OSError):  # it does not exist, or other files are in it
         partial.rmdir()
-
-
-@click.command()
-@click.argument("case", shell_complete=completed("case"))
-@click.option("--samples", type=int, default=2**14, show_default=True, help="How many, rounded up to a power of two.")
-@click.option("--seed", type=int, default=0, show_default=True, help="The same seed gives the same samples.")
-@writes_results("CASE-uncertainty")
-def uncertainty(
-    case: str,
-    samples: int,
-    seed: int,
-    output: Path | None,
-    overwrite: bool,
-    figure_formats: tuple[FigureFormat, ...],
-) -> None:
-    """Say how uncertain predictions are: CASE is a case file with tables [uncertainty.NAME].
-
-    Every contact model of the case is paired with every law. Written are wear_rates.csv with medians and 95 %
-    intervals, sobol_indices.csv with the share of the variance that each input explains, and a figure of each
-    pair, such as scatter_usfd_on_exact.png for the table [uncertainty.scatter].
-    """
-    loaded = load_case(case)
-    folder = output or folder_for(case, "uncertainty")
-    total = len(loaded.uncertainty) * len(loaded.contact_models) * len(loaded.laws_by_label)
-    notes = Notes()
-    with results_folder(folder, overwrite, UNCERTAINTY) as fresh, Bar(total) as bar:
-        result = uncertainty_of(loaded, samples, seed, bar)
-        bar.stage("writing results")
-        with notes.of("figures"):
-            record = {"samples": result.samples, "seed": seed, "provenance": provenance(loaded), "notes": result.notes}
-            tables = {
-                "wear_rates": result.wear_rates,
-                **({"sobol_indices": result.indices} if len(result.indices) else {}),
-            }
-            names = write_files(fresh, UNCERTAINTY, record, tables, result.figures, figure_formats, written(loaded))
-    if result.samples != samples and not click.get_current_context().meta["json"]:
-        click.echo(f"Samples: {samples} rounded up to {result.samples}, a power of two, as Sobol sequences need it")
-
-    def shown() -> None:
-        print_table(result.wear_rates.set_index(["point", "pair"]))
-        if len(result.indices):
-            print_table(result.indices.set_index(["point", "pair"]).round(3))
-
-    answer(folder, names, [*result.notes, *notes.texts], shown, tables)

@@ -24,7 +24,7 @@ def explain_case(name: str, _: str) -> Iterator[str]:
     for sweep, grid in case.sweeps.items():
         axes = [f"{count} values of {axis}" for axis, count in grid.axes().items()]
         yield f"sweep {sweep}: {' × '.join(axes) or 'one operating point'}"
-    for kind, names in (("profiles", case.profiles), ("uncertainty", case.uncertainty), ("sections", case.sections)):
+    for kind, names in (("profiles", case.profiles), ("sections", case.sections)):
         if names:
             yield from wrapped(f"{kind}: ", ", ".join(names))
     if case.measured is not None:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import pint
@@ -91,22 +91,8 @@ Condition = Annotated[float | str | tuple[float | str, ...] | Axis, BeforeValida
 """A value, a list of values, or an axis."""
 
 
-class Conditions(Configuration, extra="allow"):
-    """Conditions of a rig as a case file writes them, by the names that the rig gives them."""
-
-    @property
-    def written(self) -> Mapping[str, Any]:
-        """The conditions as written in the case."""
-        return self.__pydantic_extra__ or {}
-
-    def ordered(self, rig: Rig) -> Self:
-        """Return the conditions in the order in which the rig names them, and then those of models."""
-        order = [*rig.conditions(), *self.written]
-        return type(self)(**dict(sorted(self, key=lambda item: order.index(item[0]) if item[0] in order else -1)))
-
-
-class Grid(Conditions):
-    """Conditions of operating points; those with several values are axes."""
+class Grid(Configuration, extra="allow"):
+    """Conditions of operating points, by the names that the rig gives them; those with several values are axes."""
 
     __pydantic_extra__: dict[str, Condition]  # pyright: ignore[reportIncompatibleVariableOverride]
 
@@ -115,6 +101,16 @@ class Grid(Conditions):
         if self.size > MOST_POINTS:
             raise InputError(f"the axes make a grid of {self.size} points; at most {MOST_POINTS} are possible")
         return self
+
+    @property
+    def written(self) -> Mapping[str, Any]:
+        """The conditions as written in the case."""
+        return self.__pydantic_extra__ or {}
+
+    def ordered(self, rig: Rig) -> Grid:
+        """Return the conditions in the order in which the rig names them, and then those of models."""
+        order = [*rig.conditions(), *self.written]
+        return Grid(**dict(sorted(self, key=lambda item: order.index(item[0]) if item[0] in order else -1)))
 
     @cached_property
     def _axes(self) -> dict[str, Varying]:
@@ -143,13 +139,25 @@ class Grid(Conditions):
         return Grid(**{**self.written, **points})
 
     def faults(self, rig: Rig, models: Iterable[Model] = ()) -> list[Fault]:
-        """Return what a rig and models find wrong at the ends of the axes, one fault for each condition."""
-        faults: dict[tuple[str, ...], Fault] = {}
-        for end in (np.min, np.max):
+        """Return the unknown and missing conditions, or else what is refused at the ends of the axes, one of each."""
+        try:
+            conditions = together([rig.conditions(), *(model.own_conditions() for model in models)])
+        except CompositionError as error:
+            return [Fault((), str(error))]
+        unknown = [name for name in self.written if rig.conditions() and name not in conditions]
+        faults = {name: unknown_condition(name, conditions, type(rig)) for name in unknown}
+        for name, condition in conditions.items():
+            if condition.required and name not in self.written:
+                faults[name] = f"is missing; {condition.of} needs it" if condition.of else "is missing"
+        for end in () if faults else (np.min, np.max):
             ends = {name: axis.argument(float(end(axis.values))) for name, axis in self._axes.items()}
-            for fault in wrong_conditions(rig, {**self.written, **ends}, models):
-                faults.setdefault(fault.path, fault)
-        return list(faults.values())
+            try:
+                _quietly(rig, {**self.written, **ends}, models)
+            except WearlawError as error:
+                text = str(error)
+                about = next((name for name in self.written if text.startswith(f"{name}: ")), "")
+                faults.setdefault(about, text.removeprefix(f"{about}: "))
+        return [Fault((name,) if name else (), text) for name, text in faults.items()]
 
     def units(self) -> dict[str, str]:
         """Return the units of the conditions in results: the usual unit of a known variable, else as written."""
@@ -209,29 +217,6 @@ class Grid(Conditions):
         """Return the contact problem of the first operating point, for a rig and the models of a case."""
         first = {name: axis.argument(float(axis.values[0])) for name, axis in self._axes.items()}
         return _quietly(rig, {**self.written, **first}, models)
-
-
-def wrong_conditions(rig: Rig, point: Mapping[str, Any], models: Iterable[Model] = ()) -> Iterator[Fault]:
-    """Yield the unknown and missing conditions of an operating point, or else the first one that is refused."""
-    try:
-        conditions = together([rig.conditions(), *(model.own_conditions() for model in models)])
-    except CompositionError as error:
-        yield Fault((), str(error))
-        return
-    unknown = [name for name in point if rig.conditions() and name not in conditions]
-    missing = [name for name, condition in conditions.items() if condition.required and name not in point]
-    yield from (Fault((name,), unknown_condition(name, conditions, type(rig))) for name in unknown)
-    for name in missing:
-        of = conditions[name].of
-        yield Fault((name,), f"is missing; {of} needs it" if of else "is missing")
-    if unknown or missing:
-        return
-    try:
-        _quietly(rig, point, models)
-    except WearlawError as error:
-        text = str(error)
-        about = next((name for name in point if text.startswith(f"{name}: ")), None)
-        yield Fault((about,), text.removeprefix(f"{about}: ")) if about else Fault((), text)
 
 
 def _quietly(rig: Rig, conditions: Mapping[str, Any], models: Iterable[Model]) -> Any:

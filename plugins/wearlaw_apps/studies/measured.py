@@ -100,8 +100,9 @@ def check_rig(tests: WearTests, rig: Rig) -> None:
             f"the tests give {', '.join(conditions)}, but rig '{rig.name}' takes {', '.join(accepted)};"
             " leave [measured] out"
         )
-    if rig.checked_problem(conditions).geometry != "line":
-        raise InputError(f"the tests are of line contacts, but rig '{rig.name}' makes others; leave [measured] out")
+    problem = rig.checked_problem(conditions)
+    if problem.geometry != "line" or problem.dims:
+        raise InputError(f"the tests are of one line contact, but rig '{rig.name}' makes others; leave [measured] out")
 
 
 def _conditions(tests: WearTests) -> dict[str, Any]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import pytest
 from scipy import stats
 
 import wearlaw as wl
-from tests.cases import wearlaw
 from tests.core.outcome_laws import Damage, Heat
 from tests.plugins.fits.fits import EXACT
 from tests.plugins.fits.test_fit_stages import Rubbed, Softer
@@ -105,38 +102,3 @@ def test_a_warning_of_the_samples_names_the_line_of_the_caller() -> None:
     with pytest.warns(wl.RangeWarning, match="usfd") as caught:
         wl.uncertainty(EXACT | usfd, **GIVEN | {"creepage": wl.uniform("15 %", "25 %")}, samples=16)
     assert {one.filename for one in caught} == {__file__}
-
-
-CASE = """
-title = "Scatter"
-rig = { preset = "suros" }
-contact_models = ["exact"]
-wear_laws = ["kth"]
-laws = [{ model = "wlrm", threshold = "1 N", peak = "1 kN", balance = "2 kN", peak_damage = 1e-6, beyond = "falls" }]
-
-[sweeps.creepage]
-creepage = ["1 %", "2 %"]
-max_pressure = "1000 MPa"
-friction_coefficient = 0.4
-
-[uncertainty.scatter]
-max_pressure = "1000 MPa"
-creepage = "3 %"
-friction_coefficient = { uniform = [0.3, 0.5] }
-"""
-
-
-@pytest.mark.usefixtures("blank_figures")
-def test_the_uncertainty_of_a_case_has_rows_for_each_outcome(folder: Path) -> None:
-    (folder / "case.toml").write_text(CASE)
-    result = wearlaw("uncertainty", "case.toml", "--samples", "64", "-o", "out")
-    assert result.exit_code == 0, result.output
-    rates = pd.read_csv("out/wear_rates.csv")
-    assert rates.columns.tolist() == ["point", "pair", "outcome", "unit", "median", "2.5 %", "97.5 %"]
-    assert rates[["outcome", "unit"]].to_numpy().tolist() == [["wear_rate", "ug/m/mm^2"], ["rcf_damage", "-"]]
-    law = wl.law("wlrm", threshold="1 N", peak="1 kN", balance="2 kN", peak_damage=1e-6, beyond="falls")
-    damage = wl.uncertainty(EXACT | law, **{**GIVEN, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=64)
-    assert rates["median"].tolist()[1] == damage.median.magnitude
-    indices = pd.read_csv("out/sobol_indices.csv")
-    assert indices.columns.tolist()[:4] == ["point", "pair", "outcome", "input"]
-    assert (folder / "out" / "scatter_wlrm_on_exact.png").exists()

@@ -152,7 +152,7 @@ def test_the_same_seed_gives_the_same_samples() -> None:
 
 
 def test_the_figure_shows_median_and_interval() -> None:
-    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=64)
+    u = wl.uncertainty(USFD, **{**FULL_SLIP, "friction_coefficient": wl.uniform(0.3, 0.5)}, samples=60)
     (panel,) = u.figure_data().panels
     distribution, median = panel.curves
     assert np.all(np.diff(distribution.x) >= 0)
@@ -161,6 +161,7 @@ def test_the_figure_shows_median_and_interval() -> None:
     (shade,) = panel.shades
     (span,) = shade.spans
     assert span == pytest.approx([in_microgram(end) for end in u.interval()])
+    assert u.samples == 64, "the next power of two"
     assert u.figure_data().conditions == "64 samples of friction_coefficient uniform(0.3, 0.5)"
     assert panel.x.label == "wear rate [µg/m/mm²]"
     assert u.plot().get_xlabel() == panel.x.label

@@ -245,6 +245,11 @@ def test_the_schema_refuses_what_the_loader_refuses(validator: Any, path: str, v
     assert not validator.is_valid(changed(path, value)), named
 
 
+def test_distributions_are_refused_with_what_takes_them(tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match=r"\n  uncertainty: a case has no distributions; give them to wl\.uncertainty"):
+        load(tmp_path, table(uncertainty={"scatter": cases.POINT}))
+
+
 def places(content: Any, tmp_path: Path) -> list[str]:
     """Return the paths of the wrong fields of a case, in alphabetical order."""
     with pytest.raises(CaseError) as refusal:
@@ -252,9 +257,7 @@ def places(content: Any, tmp_path: Path) -> list[str]:
     return sorted(line.strip().split(":")[0] for line in str(refusal.value).splitlines()[1:])
 
 
-def test_the_first_condition_that_the_rig_refuses_is_named_in_every_sweep_profile_and_uncertain_point(
-    tmp_path: Path,
-) -> None:
+def test_the_first_condition_that_the_rig_refuses_is_named_in_every_sweep_and_profile(tmp_path: Path) -> None:
     content = table(
         sweeps={
             "one": {**cases.POINT, "max_pressure": "1500 N"},
@@ -262,7 +265,6 @@ def test_the_first_condition_that_the_rig_refuses_is_named_in_every_sweep_profil
             "four": {**cases.POINT, "max_pressure": ["1 GPa", "-1 GPa"]},
         },
         profiles={"six": {**cases.POINT, "creepage": 1}, "seven": {**cases.POINT, "creepage": ["1 %"]}},
-        uncertainty={"eight": {**cases.POINT, "friction_coefficient": {"normal": [0.4, -1]}}},
     )
     assert places(content, tmp_path) == [
         "profiles.seven",
@@ -271,7 +273,6 @@ def test_the_first_condition_that_the_rig_refuses_is_named_in_every_sweep_profil
         "sweeps.one.max_pressure",
         "sweeps.two.angle",
         "sweeps.two.friction",
-        "uncertainty.eight.friction_coefficient",
     ]
 
 

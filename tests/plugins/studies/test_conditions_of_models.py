@@ -90,12 +90,6 @@ max_pressure = "600 MPa"
 creepage = "1 %"
 friction_coefficient = 0.4
 relative_humidity = "40 %"
-
-[uncertainty.scatter]
-max_pressure = "600 MPa"
-creepage = "1 %"
-friction_coefficient = 0.4
-relative_humidity = {uniform = ["20 %", "80 %"]}
 """
 
 pytestmark = pytest.mark.filterwarnings("ignore::wearlaw.WearlawWarning")
@@ -175,10 +169,6 @@ def test_a_case_has_the_condition_as_an_axis_for_all_its_laws(tmp_path: Path, fi
     arguments = ["run", str(tmp_path / "case.toml"), "-o", str(out), "--plugin", str(file)]
     assert CliRunner().invoke(main, arguments).exit_code == 0
     assert "relative humidity [%]" in (out / "report.html").read_text(encoding="utf-8")
-    done = CliRunner().invoke(
-        main, ["uncertainty", str(tmp_path / "case.toml"), "-o", str(tmp_path / "unc"), "--samples", "64"]
-    )
-    assert done.exit_code == 0, done.output
 
 
 def test_a_case_without_the_condition_is_refused_when_it_is_read(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from tests.core.stages import predicted, silently
 from tests.plugins.axle_case import AXLES, EXISTS, FLANGING, MOVED, MOVING, ON_AXLE, PATCHES, SIDES, Axle
 from tests.plugins.studies.panels import by_label, by_name, one_panel
 from tests.strategies import EPS
-from wearlaw import Q
+from wearlaw import ConfigurationError, Q
 from wearlaw_apps.studies import Case
 
 THERE: list[dict[str, Any]] = [
@@ -267,6 +267,34 @@ def test_patches_of_lines_have_profiles_along_them(install_model: InstallModel) 
     assert study.profiles["up"].traction.sel(disc=2).isnull().all()
     shown = by_label(by_name(study)["up_along_the_patch"].panels[0])
     assert list(shown) == ["pressure p, disc 1", "traction q, exact, disc 1", "traction bound, exact, disc 1"]
+
+
+class Twins(wl.Rig):
+    """Two pairs of discs at a time, with the conditions of one."""
+
+    name: ClassVar[str] = "twins"
+
+    def problem(self, *, normal_force: wl.QuantityLike, creepage: wl.QuantityLike, friction_coefficient: Any) -> Any:
+        """Return the problem of both."""
+        force, slip = wl.Unit("N").si(normal_force, "normal_force"), wl.Unit("").si(creepage, "creepage")
+        both = wl.TwinDisc.suros().problem(
+            normal_force=Q(force[..., None] * np.ones(2), "N"),
+            creepage=Q(slip[..., None] * np.ones(2), ""),
+            friction_coefficient=np.asarray(friction_coefficient)[..., None],
+        )
+        return both.replaced(dims={"pair": (1, 2)})
+
+
+def test_tests_of_one_contact_are_not_of_a_rig_with_several(install_model: InstallModel) -> None:
+    install_model(Twins)
+    given = {"normal_force": "6 kN", "creepage": ["0.5 %", "1 %"], "friction_coefficient": 0.4}
+    fields: Table = {
+        "title": "Discs", "rig": {"type": "twins"}, "contact_models": ["exact"], "wear_laws": ["kth"],
+        "sweeps": {"slip": given},
+    }  # fmt: skip
+    assert Case(**fields).rig.name == "twins"
+    with pytest.raises(ConfigurationError, match=r"measured: the tests are of one line contact, but rig 'twins' makes"):
+        Case(**{**fields, "measured": {"label": "Lewis", "tests": "lewis2004"}})
 
 
 # --- Rigs that balance their loads -----------------------------------------------------------------------------------
