@@ -85,7 +85,7 @@ def show(name: str, markdown: bool) -> None:
     """Explain anything that `wearlaw plugins` lists, by its name, or a law by its file, such as fit/law.toml.
 
     A model shows its fields with units and defaults, its source, and what it declares; a material its values; a case
-    its models and sweeps; a test set its source and columns; a section the cases that have it.
+    its title; a test set its source and columns; a section the cases that have it.
     """
     text = explain(name)
     click.echo(in_markdown(text) if markdown else text)
