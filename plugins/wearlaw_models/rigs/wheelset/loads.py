@@ -52,6 +52,14 @@ SLIDES = "a wheel slides along its flank, and its rows do not lie where it stand
 """Status of positions at which no laying of the rows is the last one."""
 
 
+def _limited(height: Array, roll: Array, new_height: Array, new_roll: Array) -> tuple[Array, Array]:
+    """Return heights [m] and rolls [rad] on the straight way to new ones, at most `FARTHEST` and `MOST_ROLL` away."""
+    raised, rolled = new_height - height, new_roll - roll
+    most = np.maximum(np.abs(raised).max(axis=-1) / FARTHEST, np.abs(rolled) / MOST_ROLL)
+    share = 1.0 / np.maximum(most, 1.0)
+    return height + share[:, None] * raised, roll + share * rolled
+
+
 @dataclass
 class Loads:
     """The loads of a wheelset at all positions, in their order.
@@ -89,35 +97,36 @@ class Loads:
                 if kept > KEPT:
                     each.pressed.influence = np.empty(0)
                 loads.stands.append(each)
+        loads.stands = [loads.stands[number] for number in np.unique(loads._last)]
         return loads
 
     def until_near(
         self, stand: Stand, forces: Callable[[wl.Problem], wl.CreepForces] | None = None, goal: Array | None = None,
-        slides: NDArray[np.bool_] | None = None,
+        slides: NDArray[np.bool_] | None = None, some: NDArray[np.bool_] | None = None, again: int = AGAIN,
     ) -> Iterator[Stand]:  # fmt: skip
         """Yield a stand, and those of its positions that are laid again because they have moved far.
 
         With creep forces, they are balanced to the greatest imbalance of each position, (positions of the stand,), and
-        slide as `Stand.balance` says.
+        slide as `Stand.balance` says. `some` are the positions that count.
         """
         slides = np.zeros(stand.points.shape, dtype=np.bool_) if slides is None else slides
-        for number in range(AGAIN + 1):
+        some = np.ones(stand.points.shape, dtype=np.bool_) if some is None else some
+        for number in range(again + 1):
             if forces is not None:
                 assert goal is not None
-                stand.balance(forces, self.patch, number >= WHOLE, goal, slides)
+                stand.balance(forces, self.patch, number >= WHOLE, goal, slides, some)
             yield stand
-            far = stand.shift > 1.0
-            if number == AGAIN or not far.any():
+            far = some & (stand.shift > 1.0)
+            if number == again or not far.any():
                 return
-            points, (height, roll) = stand.points[far], stand.now
-            height = np.clip(height, stand.height - FARTHEST, stand.height + FARTHEST)
-            roll = np.clip(roll, stand.roll - MOST_ROLL, stand.roll + MOST_ROLL)
+            points, (height, roll) = stand.points[far], stand.next_place
+            height, roll = _limited(stand.height, stand.roll, height, roll)
             task = replace(stand.task.part(np.flatnonzero(far)), displacement=stand.displacement[far])
             stand = Stand.laid(
                 self.section, self.samples, self.elastic, task, points, height[far], roll[far], None,
                 None if forces is None else stand.creeping,
             )  # fmt: skip
-            slides = slides[far]
+            slides, some = slides[far], some[far]
             goal = None if goal is None else goal[far]
 
     def under(self, conditions: Mapping[str, Array]) -> Loads:
@@ -133,7 +142,11 @@ class Loads:
 
         `goal` is the greatest imbalance of each position.
         """
-        stands = [each for stand in self.stands for each in self.until_near(stand.copy(), forces, goal[stand.points])]
+        number = self._last
+        stands: list[Stand] = []
+        for index, stand in enumerate(self.stands):
+            some = number[stand.points] == index
+            stands += self.until_near(stand.copy(), forces, goal[stand.points], None, some)
         return self._kept(stands)
 
     def outwards(self, forces: Callable[[wl.Problem], wl.CreepForces], there: Loads) -> Loads:
@@ -145,32 +158,33 @@ class Loads:
         rest = displacement - self.task.displacement
         loads, moves = self.solved(forces, np.where(rest == 0.0, BALANCED, PASSING)), rest != 0.0
         while True:
-            points = np.flatnonzero((rest != 0.0) & (loads.left[:, :3].max(axis=-1) <= PASSING))
+            points = np.flatnonzero((rest != 0.0) & ~loads.falls(PASSING))
             if not points.size:
                 break
             rest[points] -= np.clip(rest[points], -OUTWARDS, OUTWARDS)
             goal = np.where(rest == 0.0, BALANCED, PASSING)[points]
-            loads = loads.moved(forces, points, (displacement - rest)[points], goal)
-        lost = np.flatnonzero(moves & (loads.left[:, :3].max(axis=-1) > ROUGH))
+            loads = loads.moved(forces, points, (displacement - rest)[points], goal, again=WHOLE)
+        lost = np.flatnonzero(moves & loads.falls(ROUGH))
         loads = replace(loads, task=there.task)
         return loads._again(forces, lost, *there._ahead(displacement), None, np.full(lost.size, BALANCED))
 
     def moved(
         self, forces: Callable[[wl.Problem], wl.CreepForces], points: NDArray[np.intp], displacement: Array,
-        goal: Array, slides: NDArray[np.bool_] | None = None,
+        goal: Array, slides: NDArray[np.bool_] | None = None, again: int = AGAIN,
     ) -> Loads:  # fmt: skip
         """Return the loads with some positions at other displacements [m], with the creep forces that they had.
 
-        `goal` is the greatest imbalance of each of them, and `slides` whether each may slide from there.
+        `goal` is the greatest imbalance of each of them, `slides` whether each may slide from there, and `again` how
+        often rows are laid again at most.
         """
         whole = self.task.displacement.copy()
         whole[points] = displacement
         moved = replace(self, task=replace(self.task, displacement=whole))
-        return moved._again(forces, points, *self._ahead(whole), self._creeping, goal, slides)
+        return moved._again(forces, points, *self._ahead(whole), self._creeping, goal, slides, again)
 
     def _again(
         self, forces: Callable[[wl.Problem], wl.CreepForces], points: NDArray[np.intp], height: Array, roll: Array,
-        creeping: Creeping | None, goal: Array, slides: NDArray[np.bool_] | None = None,
+        creeping: Creeping | None, goal: Array, slides: NDArray[np.bool_] | None = None, again: int = AGAIN,
     ) -> Loads:  # fmt: skip
         """Return the loads with some positions laid anew, by heights [m] and rolls [rad] of all."""
         stands = list(self.stands)
@@ -181,7 +195,8 @@ class Loads:
                 creeping,
             )  # fmt: skip
             part = slice(start, start + BLOCK)
-            stands += self.until_near(stand, forces, goal[part], None if slides is None else slides[part])
+            sliding = None if slides is None else slides[part]
+            stands += self.until_near(stand, forces, goal[part], sliding, again=again)
         return self._kept(stands)
 
     def _ahead(self, displacement: Array) -> tuple[Array, Array]:
@@ -189,8 +204,7 @@ class Loads:
         height, roll = np.empty((displacement.size, 2)), np.empty(displacement.size)
         for stand in self.stands:
             (high, leaned), (heights, rolls) = stand.now, stand.ahead(displacement[stand.points])
-            height[stand.points] = np.clip(heights, high - FARTHEST, high + FARTHEST)
-            roll[stand.points] = np.clip(rolls, leaned - MOST_ROLL, leaned + MOST_ROLL)
+            height[stand.points], roll[stand.points] = _limited(high, leaned, heights, rolls)
         return height, roll
 
     @property
@@ -244,6 +258,10 @@ class Loads:
     def left(self) -> Array:
         """What is left over, as in `Stand`, (positions, 4)."""
         return self._gathered("left")
+
+    def falls(self, most: float) -> NDArray[np.bool_]:
+        """Return at which positions more is left over than `most`, or rows do not lie where the wheels stand."""
+        return np.asarray((self.left[:, :3].max(axis=-1) > most) | (self._gathered("shift") > 1.0))
 
     @cached_property
     def vertical(self) -> Array:

@@ -10,8 +10,8 @@ elements in space. Rows at different angles move each other by the cosine of the
 all beyond a right angle: an assumption, since two half-spaces have one plane. The displacement d of the wheelset, such
 as the height of its axle and its roll, is what carries the loads, ∑ w_i F_i = Q.
 
-The problem has one solution. It is sought directly: solve for the elements that touch and for d together, leave out
-those that pull, take in those that overlap, until neither is left.
+At given displacements the problem has one solution. It is sought directly: solve for the elements that touch and for d
+together, leave out those that pull, take in those that overlap, until neither is left.
 """
 
 from __future__ import annotations
@@ -46,6 +46,9 @@ from which they join at the first solutions. On an area that grows, fewer leave 
 
 LONGEST = 1.0
 """Most by which a step changes the overlap anywhere, over the greatest overlap."""
+
+FAR = 1e-3
+"""Change of the height [m] or of the roll [rad] beyond which rows are laid again before their pressure is known."""
 
 TINY = 1e-300
 """Keeps divisors from zero."""
@@ -433,7 +436,7 @@ def carry(
                     on[some] = (touches & ~leaves) | joins
                     if not on[some].any():
                         on[first[wheel] + value.argmax()] = True
-            if settled:
+            if settled or np.abs(moved[point]).max() > FAR:
                 break
 
 

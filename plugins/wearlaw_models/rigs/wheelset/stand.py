@@ -411,16 +411,15 @@ class Stand:
 
     def balance(
         self, forces: Callable[[wl.Problem], wl.CreepForces], patch: Patch, last: bool, goal: Array,
-        slides: NDArray[np.bool_],
+        slides: NDArray[np.bool_], going: NDArray[np.bool_],
     ) -> None:  # fmt: skip
-        """Balance the loads with the creep forces, in place, to the greatest imbalance of each position.
+        """Balance the loads with the creep forces, in place, at positions that are `going`.
 
-        Wheelsets that slide move aside within their rows, by up to `WITHIN`, to where the rails bear their lateral
-        force.
+        `goal` is the greatest imbalance of each position. Wheelsets that slide move aside within their rows, by up to
+        `WITHIN`, to where the rails bear their lateral force.
         """
         task, count = self.task, self.roll.size
-        going, scale = np.ones(count, dtype=np.bool_), SCALE / self.rotation
-        sequence, of_load = Sequence(), np.ones(count)
+        sequence, scale, of_load = Sequence(), SCALE / self.rotation, np.ones(count)
         if slides.any():
             of_load = np.maximum(self.rates[:, 2], TINY) / task.load.mean(axis=-1)
         low, high = np.full(count, -np.inf), np.full(count, np.inf)
@@ -562,15 +561,34 @@ class Stand:
         return self.height + moved[:, :2], self.roll
 
     @property
+    def next_place(self) -> tuple[Array, Array]:
+        """Heights of the axle at both wheels [m] and rolls [rad] at which rows are laid next.
+
+        A wheelset rolls about one wheel's contact, and a flank of the other that is steeper than its way bears more the
+        higher it goes. Nothing stays in balance there, and what balances loads by rates lies the other way.
+        """
+        height, roll = self.now
+        if self.task.free:
+            over = np.linalg.det(self._load_rates[:, :2, :2]) < 0.0
+            height = np.where(over[:, None], 2.0 * self.height - height, height)
+            roll = np.where(over, 2.0 * self.roll - roll, roll)
+        return height, roll
+
+    @property
+    def _load_rates(self) -> Array:
+        """Rates of the loads of both wheels and of the sum of the lateral forces with the displacements, (., 3, .)."""
+        rows, forces = self.rows, self.pressed.forces[:, 1:]
+        weights = np.concatenate([self.pressed.weights, self._across()[:, None]], axis=-1)
+        return np.add.reduceat(weights[:, :, None] * forces[:, None, :], rows.start[:-1:2])
+
+    @property
     def rates(self) -> Array:
         """Rates with the lateral displacement under the same loads, without slip's change, (positions, 3).
 
         The first are those of the heights of the axle at both wheels [-], or of its height and its roll [rad/m], where
         the roll is free; the last is that of the sum of the lateral forces [N/m].
         """
-        rows, forces = self.rows, self.pressed.forces[:, 1:]
-        weights = np.concatenate([self.pressed.weights, self._across()[:, None]], axis=-1)
-        sums = np.add.reduceat(weights[:, :, None] * forces[:, None, :], rows.start[:-1:2])
+        sums = self._load_rates
         moves = -np.linalg.solve(sums[:, :2, :2], sums[:, :2, 2:])
         return np.concatenate([moves, sums[:, 2:, 2:] + sums[:, 2:, :2] @ moves], axis=1)[..., 0]
 
