@@ -316,87 +316,211 @@ def influence_loop(
                         influence[to - number] = influence[back - number] = value
 
 
-def coefficients(influence: Array, ahead: NDArray[np.intp], behind: NDArray[np.intp]) -> Array:
-    """Return influences at the sums of indices of two sets of elements."""
-    matrix: Array = influence[ahead[:, None] + behind]
-    return matrix
-
-
-def coefficients_loop(influence: Array, ahead: NDArray[np.intp], behind: NDArray[np.intp]) -> Array:
-    """Return influences at the sums of indices of two sets of elements."""
-    matrix = np.empty((ahead.size, behind.size))
-    for i in range(ahead.size):
-        for j in range(behind.size):
-            matrix[i, j] = influence[ahead[i] + behind[j]]
-    return matrix
-
-
 def respond(
-    wheel: int,
-    displacement: Array,
-    start: NDArray[np.intp],
-    width: Array,
-    rates: Array,
-    columns: NDArray[np.intp],
-    half: NDArray[np.bool_],
-    first: NDArray[np.intp],
-    table: NDArray[np.intp],
-    influence: Array,
-    row: NDArray[np.intp],
-    column: NDArray[np.intp],
-    shape: Array,
-    on: NDArray[np.bool_],
-    response: Array,
-) -> None:
+    wheel: int, displacement: Array, start: NDArray[np.intp], width: Array, rates: Array, columns: NDArray[np.intp],
+    half: NDArray[np.bool_], first: NDArray[np.intp], table: NDArray[np.intp], influence: Array, row: NDArray[np.intp],
+    column: NDArray[np.intp], shape: Array, on: NDArray[np.bool_], response: Array,
+) -> None:  # fmt: skip
     """Fill in the responses of the elements of a wheel to displacements."""
     size, count = start[wheel + 1] - start[wheel], columns[wheel]
     span = 3 * count - 1 if half[wheel] else 2 * count - 1
-    begin, end = first[wheel], first[wheel + 1]
-    of, touches, place = response[begin:end], on[begin:end], row[begin:end] - start[wheel]
-    of[:, 0], of[:, 1:] = shape[begin:end], rates[row[begin:end]]
-    overlap = shape[begin:end].copy()
-    for k in range(displacement.size):
-        overlap += of[:, 1 + k] * displacement[k]
-    at, near = np.flatnonzero(touches), np.flatnonzero(touches | (overlap > 0.0))
-    ahead, along = place[near] * (size * span) + column[begin:end][near], column[begin:end][at]
-    middle = place[at] * span + count - 1
+    some = slice(first[wheel], first[wheel + 1])
+    of, touches, place = response[some], on[some], row[some] - start[wheel]
+    of[:, 0], of[:, 1:] = shape[some], rates[row[some]]
+    at, near = np.flatnonzero(touches), np.flatnonzero(touches | (shape[some] + of[:, 1:] @ displacement > 0.0))
     of_wheel = influence[table[wheel] : table[wheel + 1]]
-    matrix = coefficients(of_wheel, ahead, middle - along)
+    ahead, along = place[near] * (size * span) + column[some][near], column[some][at]
+    middle = place[at] * span + count - 1
+    matrix = of_wheel[ahead[:, None] + (middle - along)]
     if half[wheel]:
-        matrix += coefficients(of_wheel, ahead, middle + along + 1)
-    pressed = np.linalg.solve(matrix[np.flatnonzero(touches[near])], of[at])
+        matrix += of_wheel[ahead[:, None] + (middle + along + 1)]
+    pressed = np.linalg.solve(matrix[touches[near]], of[at])
     of[near] -= matrix @ pressed
-    of[at] = pressed / width[row[begin:end][at]].reshape(-1, 1)
+    of[at] = pressed / width[row[some][at], None]
+
+
+def respond_loop(
+    wheel: int, displacement: Array, start: NDArray[np.intp], width: Array, rates: Array, columns: NDArray[np.intp],
+    half: NDArray[np.bool_], first: NDArray[np.intp], table: NDArray[np.intp], influence: Array, row: NDArray[np.intp],
+    column: NDArray[np.intp], shape: Array, on: NDArray[np.bool_], response: Array,
+) -> None:  # fmt: skip
+    """Fill in the responses of the elements of a wheel to displacements."""
+    size, count, begin, end = start[wheel + 1] - start[wheel], columns[wheel], first[wheel], first[wheel + 1]
+    span = 3 * count - 1 if half[wheel] else 2 * count - 1
+    touching, at, behind = 0, np.empty(end - begin, np.int64), np.empty(end - begin, np.int64)
+    for i in range(begin, end):
+        response[i, 0] = shape[i]
+        for k in range(displacement.size):
+            response[i, 1 + k] = rates[row[i], k]
+        if on[i]:
+            at[touching] = i
+            behind[touching] = table[wheel] + (row[i] - start[wheel]) * span + count - 1
+            touching += 1
+    matrix, right = np.empty((touching, touching)), np.empty((touching, 1 + displacement.size))
+    for i in range(touching):
+        ahead = (row[at[i]] - start[wheel]) * size * span + column[at[i]]
+        for j in range(i + 1):
+            matrix[i, j] = influence[ahead + behind[j] - column[at[j]]]
+            if half[wheel]:
+                matrix[i, j] += influence[ahead + behind[j] + column[at[j]] + 1]
+        for k in range(right.shape[1]):
+            right[i, k] = response[at[i], k]
+    solve(matrix, right)
+    for i in range(begin, end):
+        overlap = shape[i]
+        for k in range(displacement.size):
+            overlap += rates[row[i], k] * displacement[k]
+        if on[i] or overlap <= 0.0:
+            continue
+        ahead = (row[i] - start[wheel]) * size * span + column[i]
+        for j in range(touching):
+            moved = influence[ahead + behind[j] - column[at[j]]]
+            if half[wheel]:
+                moved += influence[ahead + behind[j] + column[at[j]] + 1]
+            for k in range(right.shape[1]):
+                response[i, k] -= moved * right[j, k]
+    for i in range(touching):
+        for k in range(right.shape[1]):
+            response[at[i], k] = right[i, k] / width[row[at[i]]]
+
+
+def solve(matrix: Array, right: Array) -> None:
+    """Solve a symmetric system, whose lower half is given, by factors L D Lᵀ, in place.
+
+    Loops around LAPACK would take four times as long to compile, and its threads would wait for those of other workers.
+    """
+    for i in range(matrix.shape[0]):
+        for j in range(i):
+            rest = matrix[i, j]
+            for k in range(j):
+                rest -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] = rest
+        for k in range(i):
+            rest = matrix[i, k] / matrix[k, k]
+            matrix[i, i] -= matrix[i, k] * rest
+            matrix[i, k] = rest
+            for column in range(right.shape[1]):
+                right[i, column] -= rest * right[k, column]
+    for i in range(matrix.shape[0]):
+        for column in range(right.shape[1]):
+            right[i, column] /= matrix[i, i]
+    for i in range(matrix.shape[0] - 1, -1, -1):
+        for k in range(i):
+            for column in range(right.shape[1]):
+                right[k, column] -= matrix[i, k] * right[i, column]
+
+
+def gather(
+    begin: int, end: int, row: NDArray[np.intp], area: Array, on: NDArray[np.bool_], response: Array, forces: Array
+) -> None:
+    """Fill in the forces of the rows of some elements, by the responses of those that touch."""
+    some, rows = slice(begin, end), slice(row[begin], row[end - 1] + 1)
+    begins = np.flatnonzero(np.diff(row[some], prepend=-1))
+    forces[rows] = area[rows, None] * np.add.reduceat(np.where(on[some, None], response[some], 0.0), begins)
+
+
+def gather_loop(
+    begin: int, end: int, row: NDArray[np.intp], area: Array, on: NDArray[np.bool_], response: Array, forces: Array
+) -> None:
+    """Fill in the forces of the rows of some elements, by the responses of those that touch."""
+    forces[row[begin] : row[end - 1] + 1] = 0.0
+    for i in range(begin, end):
+        if on[i]:
+            for k in range(response.shape[1]):
+                forces[row[i], k] += area[row[i]] * response[i, k]
+
+
+def settled(
+    begin: int, end: int, displacement: Array, slack: float, number: int, on: NDArray[np.bool_], response: Array,
+    now: Array,
+) -> bool:  # fmt: skip
+    """Fill in what elements have at displacements, let them leave and join, and return whether none does."""
+    touches, value = on[begin:end], response[begin:end, 0] + response[begin:end, 1:] @ displacement
+    now[begin:end] = value
+    leaves, joins = touches & (value < 0.0), ~touches & (value > slack)
+    if number < EARLY:
+        joins &= value >= JOIN * np.where(joins, value, 0.0).max()
+    if number >= TOGETHER and leaves.any():
+        joins[:] = False
+    on[begin:end] = (touches & ~leaves) | joins
+    if not on[begin:end].any():
+        on[begin + value.argmax()] = True
+    return not (leaves.any() or joins.any())
+
+
+def settled_loop(
+    begin: int, end: int, displacement: Array, slack: float, number: int, on: NDArray[np.bool_], response: Array,
+    now: Array,
+) -> bool:  # fmt: skip
+    """Fill in what elements have at displacements, let them leave and join, and return whether none does."""
+    most, top, leave = 0.0, begin, False
+    for i in range(begin, end):
+        now[i] = response[i, 0]
+        for k in range(displacement.size):
+            now[i] += response[i, 1 + k] * displacement[k]
+        if now[i] > now[top]:
+            top = i
+        if on[i]:
+            leave = leave or now[i] < 0.0
+        elif now[i] > slack:
+            most = max(most, now[i])
+    least = JOIN * most if number < EARLY else 0.0
+    join = most > 0.0 and not (leave and number >= TOGETHER)
+    touch = False
+    for i in range(begin, end):
+        on[i] = now[i] >= 0.0 if on[i] else join and now[i] > slack and now[i] >= least
+        touch = touch or on[i]
+    if not touch:
+        on[top] = True
+    return not (leave or join)
+
+
+def moves(
+    begin: int, end: int, load: Array, weights: Array, rates: Array, forces: Array, longest: float, moved: Array
+) -> bool:
+    """Move a wheelset to where rows bear both loads, in place, and return whether it may go so far at once."""
+    sums = weights[begin:end].T @ forces[begin:end]
+    rest = load - sums[:, 0] - sums[:, 3:] @ moved[2:]  # of what is given
+    step = np.zeros(moved.size)
+    step[:2] = np.linalg.solve(sums[:, 1:3], rest) - moved[:2]
+    most = np.abs(rates[begin:end] @ step).max()
+    moved += min(longest / max(most, TINY), 1.0) * step
+    return bool(most <= longest)
+
+
+def moves_loop(
+    begin: int, end: int, load: Array, weights: Array, rates: Array, forces: Array, longest: float, moved: Array
+) -> bool:
+    """Move a wheelset to where rows bear both loads, in place, and return whether it may go so far at once."""
+    sums, rest, step = np.zeros((2, 1 + moved.size)), load.copy(), np.zeros(2)
+    for i in range(begin, end):
+        for wheel in range(2):
+            for k in range(sums.shape[1]):
+                sums[wheel, k] += weights[i, wheel] * forces[i, k]
+    for wheel in range(2):
+        rest[wheel] -= sums[wheel, 0]
+        for k in range(2, moved.size):  # of what is given
+            rest[wheel] -= sums[wheel, 1 + k] * moved[k]
+    determinant = sums[0, 1] * sums[1, 2] - sums[0, 2] * sums[1, 1]
+    step[0] = (rest[0] * sums[1, 2] - rest[1] * sums[0, 2]) / determinant - moved[0]
+    step[1] = (rest[1] * sums[0, 1] - rest[0] * sums[1, 1]) / determinant - moved[1]
+    most = TINY
+    for i in range(begin, end):
+        most = max(most, abs(rates[i, 0] * step[0] + rates[i, 1] * step[1]))
+    for k in range(2):
+        moved[k] += min(longest / most, 1.0) * step[k]
+    return most <= longest
 
 
 def carry(
-    points: NDArray[np.intp],
-    load: Array,
-    weights: Array,
-    rates: Array,
-    start: NDArray[np.intp],
-    width: Array,
-    area: Array,
-    deepest: Array,
-    columns: NDArray[np.intp],
-    half: NDArray[np.bool_],
-    first: NDArray[np.intp],
-    table: NDArray[np.intp],
-    influence: Array,
-    row: NDArray[np.intp],
-    column: NDArray[np.intp],
-    shape: Array,
-    on: NDArray[np.bool_],
-    response: Array,
-    now: Array,
-    forces: Array,
-    moved: Array,
-    fresh: NDArray[np.bool_],
-) -> None:
+    points: NDArray[np.intp], load: Array, weights: Array, rates: Array, start: NDArray[np.intp], width: Array,
+    area: Array, deepest: Array, columns: NDArray[np.intp], half: NDArray[np.bool_], first: NDArray[np.intp],
+    table: NDArray[np.intp], influence: Array, row: NDArray[np.intp], column: NDArray[np.intp], shape: Array,
+    on: NDArray[np.bool_], response: Array, now: Array, forces: Array, moved: Array, fresh: NDArray[np.bool_],
+) -> None:  # fmt: skip
     """Fill in pressure, forces and displacements that carry loads at some positions, as `Pressed.carry` asks."""
-    held = load.shape[1]
     for point in points:
-        rows, wheels = slice(start[2 * point], start[2 * point + 2]), (2 * point, 2 * point + 1)
+        wheels = 2 * point, 2 * point + 1
         for number in range(MOST):
             for wheel in wheels:
                 if fresh[wheel]:
@@ -404,39 +528,17 @@ def carry(
                         wheel, moved[point], start, width, rates, columns, half, first, table, influence, row, column,
                         shape, on, response,
                     )  # fmt: skip
-                    some, begin, end = slice(first[wheel], first[wheel + 1]), start[wheel], start[wheel + 1]
-                    place, touches = row[some] - begin, np.where(on[some], 1.0, 0.0)
-                    for k in range(1 + moved.shape[1]):
-                        per_area = np.bincount(place, touches * response[some, k], end - begin)
-                        forces[begin:end, k] = area[begin:end] * per_area
-            sums = weights[rows].T @ forces[rows]
-            step = np.zeros(moved.shape[1])
-            rest = load[point] - sums[:, 0]
-            for k in range(held, moved.shape[1]):  # of what is given
-                rest -= sums[:, 1 + k] * moved[point, k]
-            step[:held] = np.linalg.solve(np.ascontiguousarray(sums[:, 1 : 1 + held]), rest) - moved[point, :held]
-            most = np.abs(rates[rows] @ step).max()
-            share = min(LONGEST * deepest[point] / max(most, TINY), 1.0)
-            moved[point] += share * step
-            settled = share == 1.0
+                    gather(first[wheel], first[wheel + 1], row, area, on, response, forces)
+            done = moves(
+                start[2 * point], start[2 * point + 2], load[point], weights, rates, forces, LONGEST * deepest[point],
+                moved[point],
+            )  # fmt: skip
             for wheel in wheels:
-                some = slice(first[wheel], first[wheel + 1])
-                touches, value = on[some], response[some, 0].copy()
-                for k in range(moved.shape[1]):
-                    value += response[some, 1 + k] * moved[point, k]
-                now[some] = value
-                leaves, joins = touches & (value < 0.0), ~touches & (value > SLACK * deepest[point])
-                if number < EARLY:
-                    joins &= value >= JOIN * np.where(joins, value, 0.0).max()
-                if number >= TOGETHER and leaves.any():
-                    joins[:] = False
-                fresh[wheel] = (leaves | joins).any()
-                if fresh[wheel]:
-                    settled = False
-                    on[some] = (touches & ~leaves) | joins
-                    if not on[some].any():
-                        on[first[wheel] + value.argmax()] = True
-            if settled or np.abs(moved[point]).max() > FAR:
+                fresh[wheel] = not settled(
+                    first[wheel], first[wheel + 1], moved[point], SLACK * deepest[point], number, on, response, now
+                )
+                done = done and not fresh[wheel]
+            if done or max(abs(moved[point, 0]), abs(moved[point, 1])) > FAR:
                 break
 
 
@@ -444,5 +546,6 @@ FLAGS = "boolean[::1]"
 carry_loop = wl.compiled_loop(
     f"void({INTS}, {ROWS}, {ROWS}, {ROWS}, {INTS}, {VECTOR}, {VECTOR}, {VECTOR}, {INTS}, {FLAGS}, {INTS}, {INTS},"
     f" {VECTOR}, {INTS}, {INTS}, {VECTOR}, {FLAGS}, {ROWS}, {VECTOR}, {ROWS}, {ROWS}, {FLAGS})",
-    instead={"coefficients": coefficients_loop},
+    reorders=True,
+    instead={"respond": respond_loop, "gather": gather_loop, "moves": moves_loop, "settled": settled_loop},
 )(carry)
