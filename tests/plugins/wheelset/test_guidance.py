@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.plugins.wheelset.brute_force import positions
 from tests.plugins.wheelset.wheelsets import borne, on_round_heads, through, wheelset
 from wearlaw import Array, Q
 from wearlaw_models.rigs.wheelset.guidance import BORNE  # private: the accuracy that a search ends at
@@ -299,6 +300,17 @@ def test_results_of_wheels_are_in_datasets_and_sweeps() -> None:
 def test_displacement_or_force_and_one_way_to_state_the_loads(given: dict[str, str], said: str) -> None:
     with pytest.raises(wl.ConditionsError, match=said), warnings.catch_warnings():
         PAIR(**given, friction_coefficient=0.3)
+
+
+def test_bounds_of_the_speed_of_rotation_hold_no_longer_where_a_wheelset_slides(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The torque at a speed changes on the way aside: old bounds kept the speed from its balance."""
+    monkeypatch.setattr("wearlaw_models.rigs.wheelset.guidance.WITHIN", 1.0)  # private: slides from the first step on
+    pair = next(itertools.islice(positions(60), 38, None)).pair
+    given: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3}
+    found: Any = (pair | wl.contact_model("strip_theory"))(lateral_force=Q([-2.5, 2.5], "kN"), **given)
+    assert (found["status"].magnitude == "balanced").all()
 
 
 def test_a_wheel_beyond_an_edge_of_its_worn_flank_does_not_climb_while_it_bears_more() -> None:

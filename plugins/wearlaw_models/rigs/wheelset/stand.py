@@ -469,12 +469,14 @@ class Stand:
             now[slot] = used[np.isin(self.patches.point, some.point)]
             new[slot] = (force.lateral + drift * turn[some.point]) / some.force
             new = sequence.next(now, new)
-            there = np.clip(new[:, 1] / of_load, -WITHIN, WITHIN)
-            self.pressed.moved[:, 2] = np.where(going & slides, there, self.pressed.moved[:, 2])
+            there = np.where(going & slides, np.clip(new[:, 1] / of_load, -WITHIN, WITHIN), self.pressed.moved[:, 2])
+            still = there == self.pressed.moved[:, 2]
+            self.pressed.moved[:, 2] = there
             if task.rotation is None:
                 ahead = np.clip(new[:, 0] / scale, self.rotation - widest, self.rotation + widest)
-                # The torque grows with Ω, steeply at first and then hardly, so bounds help once the loads hardly move.
-                still = self.left[:, :2].max(axis=-1) < STILL * self.left[:, 2]
+                # The torque grows with Ω, steeply at first and then hardly, so bounds help once the loads hardly move
+                # and the wheelset stays where it is.
+                still &= self.left[:, :2].max(axis=-1) < STILL * self.left[:, 2]
                 low = np.where(still, np.where(excess < 0.0, self.rotation, low), -np.inf)
                 high = np.where(still, np.where(excess > 0.0, self.rotation, high), np.inf)
                 ahead = np.where((ahead <= low) | (ahead >= high), self.rotation + turn, ahead)
