@@ -313,6 +313,18 @@ def test_bounds_of_the_speed_of_rotation_hold_no_longer_where_a_wheelset_slides(
     assert (found["status"].magnitude == "balanced").all()
 
 
+@pytest.mark.parametrize(("number", "force"), [(4, 15.0), (31, -7.5), (37, 13.5), (55, 12.0)])
+def test_a_search_that_is_near_is_not_sent_away(number: int, force: float) -> None:
+    """A worn flange touches there, within micrometres, and the sum of the lateral forces bends sharply."""
+    pair = next(itertools.islice(positions(60), number, None)).pair
+    found: Any = (pair | wl.contact_model("strip_theory"))(
+        lateral_force=Q([force], "kN"), vertical_load="60 kN", friction_coefficient=0.3
+    )
+    assert (found["status"].magnitude == "balanced").all()
+    _, lateral = borne(found.problem, found.lateral_force.m_as("N"))
+    assert lateral.sum(axis=1) == pytest.approx(1e3 * force, abs=BORNE * 120e3)
+
+
 def test_a_wheel_beyond_an_edge_of_its_worn_flank_does_not_climb_while_it_bears_more() -> None:
     """Wear leaves the steepest place above the contact. The sum of the lateral forces still grows there."""
     new = wl.Profile.s1002()

@@ -170,15 +170,16 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
     for step in range(STEPS):
         if step:
             goal = np.where(fine[going], BALANCED, ROUGH)
-            close = (high - low)[going] < WITHIN
-            loads = loads.moved(forces, going, side[going] * distance[going], goal, close)
+            slides = (high - low)[going] < WITHIN
+            loads = loads.moved(forces, going, side[going] * distance[going], goal, slides)
             distance[going] = side[going] * loads.displacement[going]
         d, rate = distance[going], loads.stiffness[going]
         balanced = (loads.left[:, :3].max(axis=-1) <= ROUGH) | ~loads.task.bears.any(axis=-1)
         excess = (side * (np.where(balanced, loads.lateral.sum(axis=-1), np.nan) - task.lateral_force))[going]
         near = np.abs(excess) <= BORNE * axle[going]
         done = near & fine[going] & (rate > 0.0)
-        fine[going] |= np.abs(excess) <= NEAR * axle[going]
+        close = np.abs(excess) <= NEAR * axle[going]
+        fine[going] |= close
         more = excess > most[going]
         most[going], place[going] = np.fmax(most[going], excess), np.where(more, d, place[going])
         # Bounds: friction may hold a flange, or the wheel climbs; a root or the greatest force lies before.
@@ -208,8 +209,9 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
         limit = np.minimum(d + np.maximum(0.5 * (steep[going] - d), SHORTEST), high[going])
         least = d - np.maximum(0.5 * (steep[going] + d), SHORTEST)
         between = reached[going] & np.isfinite(low[going])
-        inside = (ahead > low[going]) & (~reached[going] | (ahead < high[going])) | fine[going]
-        inside &= (rate > 0.0) & ~lost & ~((step >= SLOW) & (step % 2 == 1) & between)
+        inside = (ahead > low[going]) & (~reached[going] | (ahead < high[going]))
+        inside &= ~((step >= SLOW) & (step % 2 == 1) & between)
+        inside = (inside | close) & (rate > 0.0) & ~lost
         ahead = np.where(reached[going], np.maximum(ahead, least), np.minimum(ahead, limit))
         middle = 0.5 * (np.where(between, low[going], 0.0) + high[going])
         middle = np.where(between, middle, np.where(over, INWARDS * d, limit))
