@@ -31,14 +31,14 @@ from wearlaw_models.rigs.wheelset.pressure import TINY, Pressed
 from wearlaw_models.rigs.wheelset.rows import SPARE, Near, Rows, Samples, near, rows
 from wearlaw_models.rigs.wheelset.search import Position, Section, both_sides
 from wearlaw_models.rigs.wheelset.search_loops import LEAST_LEVER, PATCHES
+from wearlaw_models.rigs.wheelset.sequence import Sequence
 from wearlaw_models.rigs.wheelset.task import Elastic, Patch, Task
 
 BALANCED = 1e-6
 """Greatest imbalance, as a share of the load, and of the torque of full slip, after which the search ends."""
 
-STEPS, DEPTH = 30, 3
-"""Most rounds of pressure and creep forces, of which four or five are usual, and those before by which one is improved.
-"""
+STEPS = 30
+"""Most rounds of pressure and creep forces, of which four or five are usual."""
 
 TOGETHER = 8
 """Rounds after which rows that have been in one patch stay in one: patches that part and meet have other forces."""
@@ -103,30 +103,6 @@ def _held(
             around = near(section, position, samples)
         height = height + lacks
     return height, roll, position, around
-
-
-class Sequence:
-    """Fixed points of several functions, by D. G. Anderson's extrapolation, J. ACM 12 (1965) 547-560."""
-
-    def __init__(self) -> None:
-        self.steps: list[tuple[Array, Array]] = []
-
-    def next(self, now: Array, new: Array) -> Array:
-        """Return the next arguments, of shape (functions, arguments), where the functions of these are `new`."""
-        self.steps = [*self.steps[-DEPTH:], (new - now, new)]
-        rest = new - now
-        if len(self.steps) == 1:
-            return new
-        changes, moves = (
-            np.stack([step[k] for step in self.steps[1:]], axis=1)
-            - np.stack([step[k] for step in self.steps[:-1]], axis=1)
-            for k in (0, 1)
-        )
-        square = changes @ changes.transpose(0, 2, 1)
-        least = 1e-12 * np.trace(square, axis1=1, axis2=2) + TINY
-        square += least[:, None, None] * np.eye(square.shape[1])
-        share = np.linalg.solve(square, changes @ rest[..., None])
-        return np.asarray(new - (share * moves).sum(axis=1))
 
 
 class Creeping(NamedTuple):
