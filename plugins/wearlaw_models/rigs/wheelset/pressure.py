@@ -525,15 +525,16 @@ def carry(
                         wheel, moved[point], start, width, rates, columns, half, first, table, influence, row, column,
                         shape, on, response,
                     )  # fmt: skip
-                    gather(first[wheel], first[wheel + 1], row, area, on, response, forces)
+                    gather(int(first[wheel]), int(first[wheel + 1]), row, area, on, response, forces)
             done = moves(
-                start[2 * point], start[2 * point + 2], load[point], weights, rates, forces, LONGEST * deepest[point],
-                moved[point],
+                int(start[2 * point]), int(start[2 * point + 2]), load[point], weights, rates, forces,
+                float(LONGEST * deepest[point]), moved[point],
             )  # fmt: skip
             for wheel in wheels:
                 fresh[wheel] = not settled(
-                    first[wheel], first[wheel + 1], moved[point], SLACK * deepest[point], number, on, response, now
-                )
+                    int(first[wheel]), int(first[wheel + 1]), moved[point], float(SLACK * deepest[point]), number, on,
+                    response, now,
+                )  # fmt: skip
                 done = done and not fresh[wheel]
             if done or max(abs(moved[point, 0]), abs(moved[point, 1])) > FAR:
                 break

@@ -557,7 +557,7 @@ class Stand:
         """Rates of the loads of both wheels and of the sum of the lateral forces with the displacements, (., 3, .)."""
         rows, forces = self.rows, self.pressed.forces[:, 1:]
         weights = np.concatenate([self.pressed.weights, self._across()[:, None]], axis=-1)
-        return np.add.reduceat(weights[:, :, None] * forces[:, None, :], rows.start[:-1:2])
+        return np.asarray(np.add.reduceat(weights[:, :, None] * forces[:, None, :], rows.start[:-1:2]))
 
     @property
     def rates(self) -> Array:
@@ -567,7 +567,7 @@ class Stand:
         the roll is free; the last is that of the sum of the lateral forces [N/m].
         """
         sums = self._load_rates
-        moves = -np.linalg.solve(sums[:, :2, :2], sums[:, :2, 2:])
+        moves = np.asarray(-np.linalg.solve(sums[:, :2, :2], sums[:, :2, 2:]), np.float64)
         return np.concatenate([moves, sums[:, 2:, 2:] + sums[:, 2:, :2] @ moves], axis=1)[..., 0]
 
     def ahead(self, displacement: Array) -> tuple[Array, Array]:
