@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import itertools
 import warnings
+from collections.abc import Iterator
 from dataclasses import replace
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -55,11 +57,15 @@ def guided(given: dict[str, Array], **more: Any) -> wl.Prediction:
 
 GIVEN = drawn(12)
 
+needs_numba = pytest.mark.skipif(not find_spec("numba"), reason="the loops are compiled by numba")
 
-@pytest.fixture(scope="module")
-def found() -> wl.Prediction:
-    """Return the contact under the drawn conditions."""
-    return guided(GIVEN)
+
+@pytest.fixture(scope="module", params=[False, pytest.param(True, marks=needs_numba)])
+def found(request: pytest.FixtureRequest) -> Iterator[wl.Prediction]:
+    """Return the contact under the drawn conditions, by NumPy and by compiled loops."""
+    wl.accelerate(request.param)
+    yield guided(GIVEN)
+    wl.accelerate(None)
 
 
 def test_forces_on_the_rails_balance_those_on_the_wheelset(found: wl.Prediction) -> None:

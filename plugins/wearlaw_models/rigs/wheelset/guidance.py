@@ -178,8 +178,7 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
         excess = (side * (np.where(balanced, loads.lateral.sum(axis=-1), np.nan) - task.lateral_force))[going]
         near = np.abs(excess) <= BORNE * axle[going]
         done = near & fine[going] & (rate > 0.0)
-        close = np.abs(excess) <= NEAR * axle[going]
-        fine[going] |= close
+        fine[going] |= np.abs(excess) <= NEAR * axle[going]
         more = excess > most[going]
         most[going], place[going] = np.fmax(most[going], excess), np.where(more, d, place[going])
         # Bounds: friction may hold a flange, or the wheel climbs; a root or the greatest force lies before.
@@ -210,8 +209,7 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
         least = d - np.maximum(0.5 * (steep[going] + d), SHORTEST)
         between = reached[going] & np.isfinite(low[going])
         inside = (ahead > low[going]) & (~reached[going] | (ahead < high[going]))
-        inside &= ~((step >= SLOW) & (step % 2 == 1) & between)
-        inside = (inside | close) & (rate > 0.0) & ~lost
+        inside &= (rate > 0.0) & ~lost & ~((step >= SLOW) & (step % 2 == 1) & between)
         ahead = np.where(reached[going], np.maximum(ahead, least), np.minimum(ahead, limit))
         middle = 0.5 * (np.where(between, low[going], 0.0) + high[going])
         middle = np.where(between, middle, np.where(over, INWARDS * d, limit))

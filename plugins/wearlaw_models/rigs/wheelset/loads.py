@@ -158,13 +158,13 @@ class Loads:
         rest = displacement - self.task.displacement
         loads, moves = self.solved(forces, np.where(rest == 0.0, BALANCED, PASSING)), rest != 0.0
         while True:
-            points = np.flatnonzero((rest != 0.0) & ~loads.falls(PASSING))
+            points = np.flatnonzero((rest != 0.0) & ~loads.unsettled(PASSING))
             if not points.size:
                 break
             rest[points] -= np.clip(rest[points], -OUTWARDS, OUTWARDS)
             goal = np.where(rest == 0.0, BALANCED, PASSING)[points]
             loads = loads.moved(forces, points, (displacement - rest)[points], goal, again=WHOLE)
-        lost = np.flatnonzero(moves & loads.falls(ROUGH))
+        lost = np.flatnonzero(moves & loads.unsettled(ROUGH))
         loads = replace(loads, task=there.task)
         return loads._again(forces, lost, *there._ahead(displacement), None, np.full(lost.size, BALANCED))
 
@@ -259,7 +259,7 @@ class Loads:
         """What is left over, as in `Stand`, (positions, 4)."""
         return self._gathered("left")
 
-    def falls(self, most: float) -> NDArray[np.bool_]:
+    def unsettled(self, most: float) -> NDArray[np.bool_]:
         """Return at which positions more is left over than `most`, or rows do not lie where the wheels stand."""
         return np.asarray((self.left[:, :3].max(axis=-1) > most) | (self._gathered("shift") > 1.0))
 
