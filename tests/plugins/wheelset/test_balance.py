@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import islice
 from typing import Annotated, Any, ClassVar, TypedDict
 
 import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.plugins.wheelset.brute_force import positions
 from tests.plugins.wheelset.wheelsets import borne, wheelset
 from wearlaw import Array, Q
 from wearlaw.numerics.integrate import integrate_forces  # private: forces of a problem of its own
@@ -60,15 +62,34 @@ def test_a_balance_does_not_depend_on_those_before_or_beside_it() -> None:
     np.testing.assert_allclose(alone.normal_force, first.normal_force[7], rtol=1e-9)
 
 
-def test_a_flange_that_friction_holds_warns() -> None:
+@pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning")
+@pytest.mark.parametrize(
+    ("number", "displacement", "yaw", "load"), [(31, 6.071, -22.31, 33.0), (46, 6.464, -14.06, 64.5)]
+)
+def test_a_tread_bears_what_friction_takes_from_a_flank(
+    number: int, displacement: float, yaw: float, load: float
+) -> None:
+    pair = next(islice(positions(60, 201), number, None)).pair
+    problem: Any = (pair | MODEL).posed({
+        "lateral_displacement": Q(displacement, "mm"), "yaw": Q(yaw, "mrad"), "vertical_load": Q(load, "kN"),
+        "friction_coefficient": 0.35,
+    })  # fmt: skip
+    vertical, _ = borne(problem, integrate_forces(MODEL, problem).lateral)
+    np.testing.assert_allclose(vertical, 1e3 * load, rtol=1.01 * BALANCED)
+
+
+@pytest.mark.filterwarnings("ignore::wearlaw.RangeWarning")
+def test_a_wheel_that_its_flange_hardly_bears_has_a_result() -> None:
     # For some steps the right wheel carries no load. If its rate were learnt as zero there, the rates were singular.
     rig = wheelset(rail_cant="1:20", rolling_speed=Q(8.72446282923011, "m/s"))
-    with pytest.warns(wl.RangeWarning, match="have no result"):
-        (rig | wl.contact_model("strip_theory")).posed({
-            "lateral_displacement": Q(6.448224844814366, "mm"), "yaw": Q(-17.756389346242024, "mrad"),
-            "vertical_load": Q(24.14399725188602, "kN"), "friction_coefficient": 0.4907271308702819,
-            "angular_speed": Q(18.806972104059227, "rad/s"),
-        })  # fmt: skip
+    model, load = wl.contact_model("strip_theory"), 24143.99725189
+    problem: Any = (rig | model).posed({
+        "lateral_displacement": Q(6.448224844814366, "mm"), "yaw": Q(-17.756389346242024, "mrad"),
+        "vertical_load": Q(load, "N"), "friction_coefficient": 0.4907271308702819,
+        "angular_speed": Q(18.806972104059227, "rad/s"),
+    })  # fmt: skip
+    vertical, _ = borne(problem, integrate_forces(model, problem).lateral)
+    np.testing.assert_allclose(vertical, [[load, load]], rtol=1.01 * BALANCED)
 
 
 class Temperature(TypedDict):

@@ -50,7 +50,8 @@ SHIFT = 5e-5
 """Distance along the rail by which a wheel moves before its rows are laid again [m]."""
 
 LEAST_WEIGHT = 0.02
-"""Least part of a normal force that bears a wheel in the search; a flange that friction holds bears nothing."""
+"""Least part of a normal force that counts as bearing a wheel while pressure is sought, since loads grow with it; what
+friction takes off beyond that is made up for in the next round."""
 
 WITHIN, SLID = 1e-5, 5e-5
 """Longest way aside within rows [m], and the lateral force that may be left over, over the load of a wheel."""
@@ -264,9 +265,11 @@ class Stand:
         """Find the pressure that carries the loads with the creep forces as they are, at some positions."""
         rows = self.rows
         right, angle = np.where(rows.wheel % 2 == 1, 1.0, 0.0), rows.place.angle
-        weight = np.maximum(np.cos(angle) + self.ratio * self.sine, LEAST_WEIGHT)
+        bears = np.cos(angle) + self.ratio * self.sine
+        weight = np.maximum(bears, LEAST_WEIGHT)
         self.pressed.weights = np.stack([weight * (1 - right), weight * right], axis=-1)
-        self.pressed.carry(self.task.load, np.flatnonzero(some))
+        held = np.bincount(rows.wheel, (weight - bears) * self._row_force(), self.task.load.size)
+        self.pressed.carry(self.task.load + held.reshape(-1, 2), np.flatnonzero(some))
 
     def _across(self) -> Array:
         """Return what the force of each row adds to the sum of the lateral forces [-]."""
