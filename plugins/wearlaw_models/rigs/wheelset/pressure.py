@@ -344,25 +344,23 @@ def respond_loop(
     """Fill in the responses of the elements of a wheel to displacements."""
     size, count, begin, end = start[wheel + 1] - start[wheel], columns[wheel], first[wheel], first[wheel + 1]
     span = 3 * count - 1 if half[wheel] else 2 * count - 1
-    touching, at, behind = 0, np.empty(end - begin, np.int64), np.empty(end - begin, np.int64)
+    touching, at, (behind, mirrored) = 0, np.empty(end - begin, np.int64), np.empty((2, end - begin), np.int64)
     for i in range(begin, end):
         response[i, 0] = shape[i]
         for k in range(displacement.size):
             response[i, 1 + k] = rates[row[i], k]
         if on[i]:
-            at[touching] = i
-            behind[touching] = table[wheel] + (row[i] - start[wheel]) * span + count - 1
+            middle = table[wheel] + (row[i] - start[wheel]) * span + count - 1
+            at[touching], behind[touching], mirrored[touching] = i, middle - column[i], middle + column[i] + 1
             touching += 1
-    matrix, right = np.empty((touching, touching)), np.empty((touching, 1 + displacement.size))
+    matrix, pressed = np.empty((touching, touching)), np.empty((1 + displacement.size, touching))
     for i in range(touching):
         ahead = (row[at[i]] - start[wheel]) * size * span + column[at[i]]
-        for j in range(i + 1):
-            matrix[i, j] = influence[ahead + behind[j] - column[at[j]]]
-            if half[wheel]:
-                matrix[i, j] += influence[ahead + behind[j] + column[at[j]] + 1]
-        for k in range(right.shape[1]):
-            right[i, k] = response[at[i], k]
-    solve(matrix, right)
+        gather_influences(influence, ahead, behind, mirrored, half[wheel], matrix[i, : i + 1])
+        for k in range(pressed.shape[0]):
+            pressed[k, i] = response[at[i], k]
+    solve(matrix, pressed)
+    moved = np.empty(touching)
     for i in range(begin, end):
         overlap = shape[i]
         for k in range(displacement.size):
@@ -370,41 +368,58 @@ def respond_loop(
         if on[i] or overlap <= 0.0:
             continue
         ahead = (row[i] - start[wheel]) * size * span + column[i]
-        for j in range(touching):
-            moved = influence[ahead + behind[j] - column[at[j]]]
-            if half[wheel]:
-                moved += influence[ahead + behind[j] + column[at[j]] + 1]
-            for k in range(right.shape[1]):
-                response[i, k] -= moved * right[j, k]
+        gather_influences(influence, ahead, behind, mirrored, half[wheel], moved)
+        for k in range(pressed.shape[0]):
+            rest = 0.0
+            for j in range(touching):
+                rest += moved[j] * pressed[k, j]
+            response[i, k] -= rest
     for i in range(touching):
-        for k in range(right.shape[1]):
-            response[at[i], k] = right[i, k] / width[row[at[i]]]
+        for k in range(pressed.shape[0]):
+            response[at[i], k] = pressed[k, i] / width[row[at[i]]]
+
+
+def gather_influences(
+    influence: Array, ahead: int, behind: NDArray[np.intp], mirrored: NDArray[np.intp], half: bool, moved: Array
+) -> None:
+    """Fill in the displacements of an element by others, and by their mirror images where these count too."""
+    if half:
+        for j in range(moved.size):
+            moved[j] = influence[ahead + behind[j]] + influence[ahead + mirrored[j]]
+    else:
+        for j in range(moved.size):
+            moved[j] = influence[ahead + behind[j]]
 
 
 def solve(matrix: Array, right: Array) -> None:
-    """Solve a symmetric system, whose lower half is given, by factors L D Lᵀ, in place.
+    """Solve a symmetric system, whose lower half is given, for each of some right sides by factors L D Lᵀ, in place.
 
     Loops around LAPACK would take four times as long to compile, and its threads would wait for those of other workers.
     """
     for i in range(matrix.shape[0]):
         for j in range(i):
-            rest = matrix[i, j]
+            rest = 0.0
             for k in range(j):
-                rest -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] = rest
+                rest += matrix[i, k] * matrix[j, k]
+            matrix[i, j] -= rest
+        rest = 0.0
         for k in range(i):
-            rest = matrix[i, k] / matrix[k, k]
-            matrix[i, i] -= matrix[i, k] * rest
-            matrix[i, k] = rest
-            for column in range(right.shape[1]):
-                right[i, column] -= rest * right[k, column]
-    for i in range(matrix.shape[0]):
-        for column in range(right.shape[1]):
-            right[i, column] /= matrix[i, i]
-    for i in range(matrix.shape[0] - 1, -1, -1):
-        for k in range(i):
-            for column in range(right.shape[1]):
-                right[k, column] -= matrix[i, k] * right[i, column]
+            share = matrix[i, k] / matrix[k, k]
+            rest += matrix[i, k] * share
+            matrix[i, k] = share
+        matrix[i, i] -= rest
+    for side in range(right.shape[0]):
+        for i in range(matrix.shape[0]):
+            rest = 0.0
+            for k in range(i):
+                rest += matrix[i, k] * right[side, k]
+            right[side, i] -= rest
+        for i in range(matrix.shape[0]):
+            right[side, i] /= matrix[i, i]
+        for i in range(matrix.shape[0] - 1, -1, -1):
+            value = right[side, i]
+            for k in range(i):
+                right[side, k] -= matrix[i, k] * value
 
 
 def gather(
