@@ -77,27 +77,27 @@ class Loads:
     patch: Patch
     stands: list[Stand]
 
-    @classmethod
-    def begun(
-        cls, section: Section, samples: Samples, elastic: Elastic, task: Task, roll: Array, touching: Touching,
-        patch: Patch,
-    ) -> Loads:  # fmt: skip
-        """Return the loads without creep forces, under which the wheelset turns with the mean of its radii."""
-        place = placed(section, both_sides(task.displacement, roll, task.yaw), touching.arc[..., 0])
+    def begun(self, points: NDArray[np.intp], roll: Array, touching: Touching) -> Loads:
+        """Return the loads with some positions where rigid wheels stand, without creep forces.
+
+        Under these the wheelset turns with the mean of its radii. Rolls and touching places are those of `points`.
+        """
+        task, stands, kept = self.task.part(points), list(self.stands), 0
+        place = placed(self.section, both_sides(task.displacement, roll, task.yaw), touching.arc[..., 0])
         lever = place.y + place.z * np.tan(place.angle)
-        loads = cls(section, samples, elastic, task, patch, [])
-        kept = 0
-        for start in range(0, roll.size, BLOCK):
-            some = np.arange(start, min(start + BLOCK, roll.size))
+        for start in range(0, points.size, BLOCK):
+            some = np.arange(start, min(start + BLOCK, points.size))
             stand = Stand.laid(
-                section, samples, elastic, task.part(some), some, touching.least[some], roll[some], lever[some]
-            )
-            for each in loads.until_near(stand):
+                self.section, self.samples, self.elastic, task.part(some), points[some], touching.least[some],
+                roll[some], lever[some],
+            )  # fmt: skip
+            for each in self.until_near(stand):
                 kept += each.pressed.influence.size
                 if kept > KEPT:
                     each.pressed.influence = np.empty(0)
-                loads.stands.append(each)
-        loads.stands = [loads.stands[number] for number in np.unique(loads._last)]
+                stands.append(each)
+        loads = replace(self, stands=stands)
+        loads.stands = [stands[number] for number in np.unique(loads._last)]
         return loads
 
     def until_near(

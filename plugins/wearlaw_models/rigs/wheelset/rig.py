@@ -374,7 +374,8 @@ class Wheelset(wl.Rig):
         friction: Mapping[str, Any] = {**conditions, **flat}
         tread, on_flange = friction["friction_coefficient"], friction.get("flange_friction_coefficient")
         task = self._task(flat, (tread, tread if on_flange is None else on_flange))
-        loads = self._loads(task, flat.get("roll"))
+        loads = Loads(self._section, self._samples, self._elastic, task, self.patch, [])
+        loads = self._begun(loads, np.ones(task.yaw.shape, dtype=np.bool_))
         if task.torque.any():
             loads.check_torque()
         status = np.full(task.yaw.shape, BALANCE, dtype=object)  # as soon as there are creep forces
@@ -391,8 +392,7 @@ class Wheelset(wl.Rig):
             none = np.zeros(task.yaw.size)
             holds = task.friction_of(np.arange(none.size), none + 1.0, none) > HOLDS
             begin = np.where(holds, np.clip(task.displacement, *self._play.treads), task.displacement)
-            moves = (begin != task.displacement).any()
-            loads = self._loads(replace(task, displacement=begin), task.roll) if moves else there
+            loads = self._begun(replace(there, task=replace(task, displacement=begin)), begin != task.displacement)
             loads = loads.outwards(forces, there)
             status = loads.status
         else:
@@ -434,11 +434,15 @@ class Wheelset(wl.Rig):
         which = which.reshape(-1)
         return rolls[which], Touching(*(array[which] for array in touching))
 
-    def _loads(self, task: Task, roll: Array | None) -> Loads:
-        """Return the loads of a task without creep forces."""
-        rolls, touching = self._rigid(task.displacement, task.yaw, roll)
+    def _begun(self, loads: Loads, some: NDArray[np.bool_]) -> Loads:
+        """Return loads with some positions where rigid wheels stand, without creep forces."""
+        points = np.flatnonzero(some)
+        if not points.size:
+            return loads
+        task = loads.task.part(points)
+        rolls, touching = self._rigid(task.displacement, task.yaw, task.roll)
         self._check_contact(task.displacement, touching)
-        return Loads.begun(self._section, self._samples, self._elastic, task, rolls, touching, self.patch)
+        return loads.begun(points, rolls, touching)
 
     def _guided(
         self, loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces]
