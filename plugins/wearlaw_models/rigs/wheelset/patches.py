@@ -111,6 +111,8 @@ class Patches:
 
 def joined(parts: list[Patches]) -> Patches:
     """Return patches one after the other, with as many strips as the one with most of them."""
+    if len(parts) == 1:
+        return parts[0]
     most = max(part.strips["y"].shape[1] for part in parts)
 
     def together(arrays: list[Array]) -> Array:
