@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import functools
 import json
 import os
@@ -38,6 +40,9 @@ IDLE_S = 300
 
 PARENT_S = 1.0
 """Seconds between looks at whether the parent of a worker process is there."""
+
+KEEPS = {-3: 2**25, -1: 2**26}
+"""Options of glibc, M_MMAP_THRESHOLD and M_TRIM_THRESHOLD [bytes], with the greatest values that it chooses itself."""
 
 DEATHS = 3
 """Deaths of worker processes at which a sweep is given up."""
@@ -76,12 +81,26 @@ def _write(store: str, block: Block, outputs: Outputs, record: BlockRecord) -> N
 
 def _evaluated_elsewhere(job: bytes, block: Block, part: Points, store: str | None) -> tuple[Outputs, BlockRecord]:
     """Evaluate a block in another process."""
+    _keep_memory()
     try:
         return _evaluated(_unpickled(job), block, part, store)
     except Exception:
         raise
     except BaseException as error:  # a model's SystemExit must not end the worker, or this program
         raise ModelError(described(error)) from None
+
+
+@functools.cache
+def _keep_memory() -> None:
+    """Let the C library keep what arrays leave.
+
+    dask has its workers give all memory back at once, and what they start too. Models with nodes take four times as
+    long then.
+    """
+    if "MALLOC_TRIM_THRESHOLD_" in os.environ and sys.platform == "linux":
+        with contextlib.suppress(AttributeError):  # another C library
+            for option, size in KEEPS.items():
+                ctypes.CDLL(None).mallopt(option, size)
 
 
 @functools.lru_cache(maxsize=8)
@@ -134,6 +153,7 @@ def _pool(workers: int) -> Any:
 
 def _obey(parent: int) -> None:
     """Leave Ctrl-C to the parent process, and end with it even if it is killed."""
+    _keep_memory()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     Thread(target=_end_with, args=(parent,), daemon=True).start()
 

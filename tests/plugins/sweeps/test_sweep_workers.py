@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import platform
 import signal
 import subprocess
 import sys
@@ -46,6 +48,27 @@ def test_several_processes_give_the_same_outcomes_of_all_laws() -> None:
 def test_several_processes_give_the_same_sum_across_a_profile() -> None:
     one, two = (wl.wear_profiles(PREDICT, TABLE, share="share [%]", workers=count, **GIVEN) for count in (1, 2))
     assert np.array_equal(one["depth"], two["depth"])
+
+
+MEMORY = """
+import resource
+import numpy as np
+from wearlaw_apps.sweeps import workers
+workers._keep_memory()
+faults = []
+for _ in range(200):
+    np.ones(2**17)
+    faults.append(resource.getrusage(resource.RUSAGE_SELF).ru_minflt)
+print(faults[-1] - faults[100])
+"""  # private: what each worker does first
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other libraries have other ways")
+def test_workers_of_dask_keep_the_memory_that_arrays_leave() -> None:
+    """A MiB that is given back and asked for again is 256 faults of pages, and a hundred times as much 25 600."""
+    given = os.environ | {"MALLOC_TRIM_THRESHOLD_": "65536"}
+    run = subprocess.run([sys.executable, "-c", MEMORY], env=given, check=True, capture_output=True, text=True)
+    assert int(run.stdout) < 256
 
 
 def test_a_worker_that_dies_is_reported_and_its_block_evaluated_again(tmp_path: Path) -> None:
