@@ -319,13 +319,20 @@ def test_bounds_of_the_speed_of_rotation_hold_no_longer_where_a_wheelset_slides(
     assert (found["status"].magnitude == "balanced").all()
 
 
-@pytest.mark.parametrize(("number", "force"), [(4, 15.0), (31, -7.5), (37, 13.5), (55, 12.0)])
-def test_a_search_that_is_near_is_not_sent_away(number: int, force: float) -> None:
+@pytest.mark.parametrize(
+    ("seed", "number", "radius", "force"),
+    [
+        (54, 4, np.inf, 15.0), (54, 31, np.inf, -7.5), (54, 37, np.inf, 13.5), (54, 55, np.inf, 12.0),
+        (54, 2, 500.0, 120.0 / 7.0), (102, 46, 500.0, 100.0 / 7.0),  # nothing balances where it begins to bear
+    ],
+)  # fmt: skip
+def test_a_search_is_not_sent_away_where_a_flank_begins_to_bear(
+    seed: int, number: int, radius: float, force: float
+) -> None:
     """A worn flange touches there, within micrometres, and the sum of the lateral forces bends sharply."""
-    pair = next(itertools.islice(positions(60), number, None)).pair
-    found: Any = (pair | wl.contact_model("strip_theory"))(
-        lateral_force=Q([force], "kN"), vertical_load="60 kN", friction_coefficient=0.3
-    )
+    pair = next(itertools.islice(positions(60, seed), number, None)).pair
+    given: dict[str, Any] = {"vertical_load": "60 kN", "friction_coefficient": 0.3, "curve_radius": Q(radius, "m")}
+    found: Any = (pair | wl.contact_model("strip_theory"))(lateral_force=Q([force], "kN"), **given)
     assert (found["status"].magnitude == "balanced").all()
     _, lateral = borne(found.problem, found.lateral_force.m_as("N"))
     assert lateral.sum(axis=1) == pytest.approx(1e3 * force, abs=BORNE * 120e3)

@@ -11,7 +11,7 @@ from pydantic import Field
 import wearlaw as wl
 from wearlaw import Array
 from wearlaw_models.contact_models.strip_theory import fields
-from wearlaw_models.contact_models.strip_theory.interaction import exchanged, full_slips
+from wearlaw_models.contact_models.strip_theory.interaction import ROUNDS, exchanged, full_slips
 from wearlaw_models.strips import contact_of, even_strips, forces_of, unflattened, widths_at
 
 STICK_NODES, SLIP_NODES = (0.5, 4), (1.2, 8)
@@ -95,7 +95,8 @@ class StripTheory(wl.ContactModel):
         """Return the forces of an ellipse or of strips, without the fields that only wear needs."""
         layout = self._layout(problem)
         strips, greatest = self._strips(problem.flatten(), layout)
-        forces = _forces(layout, greatest, strips, fields.sums(strips, *self._nodes_along))
+        rounds = 1 if problem.strips is None else ROUNDS
+        forces = _forces(layout, greatest, strips, fields.sums(strips, *self._nodes_along, rounds))
         return unflattened(problem, forces)
 
     def _layout(self, problem: wl.Problem) -> wl.Strips:

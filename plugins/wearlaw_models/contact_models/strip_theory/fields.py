@@ -116,9 +116,12 @@ def solve(strips: Strips, stick_nodes: int, slip_nodes: int) -> Nodes:
     return Nodes(*nodes.reshape(*nodes.shape[:2], *strips.k_x.shape))
 
 
-def sums(strips: Strips, stick_nodes: int, slip_nodes: int) -> Array:
-    """Return the sums of the nodes of `solve`, (3, ...); compiled loops leave out the nodes."""
-    if not _compiled(strips, stick_nodes + slip_nodes):
+def sums(strips: Strips, stick_nodes: int, slip_nodes: int, rounds: int) -> Array:
+    """Return the sums of the nodes of `solve`, (3, ...), which are asked for in a number of rounds.
+
+    Compiled loops leave out the nodes.
+    """
+    if not _compiled(strips, rounds * (stick_nodes + slip_nodes)):
         return solve(strips, stick_nodes, slip_nodes).sums
     rows, slip = _rows(strips), _slip_table(slip_nodes)
     held, slid = np.zeros((3, rows.shape[1])), np.zeros((4, rows.shape[1]))

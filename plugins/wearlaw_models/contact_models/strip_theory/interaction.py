@@ -39,6 +39,9 @@ ACROSS = 16
 PAIRS = 16
 """Pairs of strips that take about as long as one operating point in the count of `accelerated`."""
 
+ROUNDS = 8
+"""How often a rig with strips of its own asks for their forces, to judge whether compiled loops are worth while."""
+
 
 def full_slips(flat: wl.Problem, layout: wl.Strips, greatest: Array, c11: Array, c22: Array) -> tuple[Array, Array]:
     """Return k along x and along y, (strips, points), of strips with the greatest bounds g."""
@@ -55,7 +58,7 @@ def _curvatures(layout: wl.Strips, greatest: Array) -> Array:
     half_length = np.where(greatest > 0.0, layout.half_length, 1.0)  # that of a strip without pressure may be zero
     sums = greatest / half_length * np.stack(_up_to(0.5 * width / half_length)) * 2.0
     weight = greatest * width / half_length**2
-    if wl.accelerated(y.shape[0] * y.size // PAIRS):
+    if wl.accelerated(ROUNDS * y.shape[0] * y.size // PAIRS):
         loops.others_loop(y, half_length, weight, _table(), sums)
     else:
         diagonal = np.arange(len(y))

@@ -10,9 +10,10 @@ one at which ∑ Y grows: there it is stable.
 
 The search begins where rigid wheels bear the force without friction, but on the tread: beyond it, a flange may bear
 alone or together with the tread, and a wheelset comes from the tread. From there on, wheelsets move by Newton's method
-between bounds, each with the creep forces that it had before; the rates are those of the pressure. Rows that are laid
-anew may bear another force, so close to the end wheelsets move within the rows of one laying. Where ∑ Y nowhere reaches
-H, the greatest ∑ Y lies where its rate vanishes.
+between bounds, each with the creep forces that it had before; the rates are those of the pressure. From two places on
+both sides of H they go to where the cubic between these bears it. Rows that are laid anew may bear another force, so
+close to the end wheelsets move within the rows of one laying. Where ∑ Y nowhere reaches H, the greatest ∑ Y lies where
+its rate vanishes.
 """
 
 from __future__ import annotations
@@ -57,8 +58,9 @@ go on with.
 TREAD = 0.95
 """Share of the way to the end of the tread up to which a search may begin."""
 
-STEPS, SLOW = 40, 8
-"""Greatest number of steps, and those after which every other one halves the bounds."""
+STEPS, SLOW, HALVINGS = 40, 8, 20
+"""Greatest number of steps, those after which every other one halves the bounds, and the halvings in search of a root.
+"""
 
 
 class Play(NamedTuple):
@@ -130,6 +132,21 @@ def _play(section: Section, flange_angle: float, middle: int) -> Play:
     return Play(displacement[some], slope + 1e-9 * np.arange(slope.size), ends, (float(treads[0]), float(treads[1])))
 
 
+def _back(now: Array, before: Array, rate: Array, rate_before: Array) -> Array:
+    """Return how far back a cubic vanishes between two places, as a share of the way from the place before.
+
+    It has values of unlike signs there, and rates over the whole way.
+    """
+    near, far = np.zeros(now.shape), np.ones(now.shape)
+    for _ in range(HALVINGS):
+        share = 0.5 * (near + far)
+        rest = 1.0 - share
+        of_now, of_before = now * (1.0 + 2.0 * share) - rate * share, before * (1.0 + 2.0 * rest) + rate_before * rest
+        same = (of_now * rest**2 + of_before * share**2) * now > 0.0
+        near, far = np.where(same, share, near), np.where(same, far, share)
+    return 0.5 * (near + far)
+
+
 class Guided(NamedTuple):
     """Where wheelsets stand under lateral forces.
 
@@ -182,13 +199,16 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
         more = excess > most[going]
         most[going], place[going] = np.fmax(most[going], excess), np.where(more, d, place[going])
         # Bounds: friction may hold a flange, or the wheel climbs; a root or the greatest force lies before.
-        lost = np.isnan(excess) | ((rate <= 0.0) & (excess <= 0.0) & (d > FLANGE * steep[going]))
+        # Where a flank begins to bear, there may be no balance; but there is one beside.
+        lost = np.isnan(excess)
+        beside = lost & np.where(reached[going], ~falls[going], np.isfinite(last[1, going]))
+        lost = (lost & ~beside) | ((rate <= 0.0) & (excess <= 0.0) & (d > FLANGE * steep[going]))
         over = lost | (excess > 0.0)
         vain = ~over & (d >= high[going]) & ~reached[going]
         falls[going], reached[going] = np.where(over, lost, falls[going]), reached[going] | over
         high[going] = np.where(over, d, high[going])
         for array, value in ((low, d), (at_low, excess), (rise, rate)):
-            array[going] = np.where(over, array[going], value)
+            array[going] = np.where(over | beside, array[going], value)
         top = at_low[going] + rise[going] * (high - low)[going]  # the sum bends down before the wheel climbs
         total = np.abs(most + side * task.lateral_force)[going]
         with np.errstate(invalid="ignore"):  # where nothing has balanced so far, there is no greatest force
@@ -202,6 +222,8 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
             slip[going] = np.where(np.isfinite(chord) & (np.abs(by) > SMALL), chord, slip[going])
             slope = np.where(rate + slip[going] > LEAST * rate, rate + slip[going], rate)
             ahead = d - excess / slope
+            back = by * _back(excess, last[1, going], rate * by, last[2, going] * by)
+            ahead = np.where(excess * last[1, going] < 0.0, d - back, ahead)
         last[:, going] = d, excess, rate
         if step == 0:
             ahead = np.where((np.abs(rigid - d) > SHORTEST) & (np.abs(rigid - d) < np.abs(ahead - d)), rigid, ahead)
@@ -209,9 +231,9 @@ def guided(loads: Loads, forces: Callable[[wl.Problem], wl.CreepForces], play: P
         least = d - np.maximum(0.5 * (steep[going] + d), SHORTEST)
         between = reached[going] & np.isfinite(low[going])
         inside = (ahead > low[going]) & (~reached[going] | (ahead < high[going]))
-        inside &= (rate > 0.0) & ~lost & ~((step >= SLOW) & (step % 2 == 1) & between)
+        inside &= (rate > 0.0) & ~lost & ~beside & ~((step >= SLOW) & (step % 2 == 1) & between)
         ahead = np.where(reached[going], np.maximum(ahead, least), np.minimum(ahead, limit))
-        middle = 0.5 * (np.where(between, low[going], 0.0) + high[going])
+        middle = 0.5 * (np.where(beside, d, np.where(between, low[going], 0.0)) + high[going])
         middle = np.where(between, middle, np.where(over, INWARDS * d, limit))
         distance[going] = np.where(inside, ahead, middle)
         going = going[~(done | vain)]

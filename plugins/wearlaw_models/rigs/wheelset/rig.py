@@ -334,7 +334,11 @@ class Wheelset(wl.Rig):
             middle = float(min(zeros, key=abs))
             reach = min(2.0 * most, middle - every[0], every[-1] - middle)
         displacement = np.linspace(middle - reach, middle + reach, CONICITY_POINTS)
-        difference = self._radius_difference(displacement, roll)
+        if alike:  # the other half is its mirror image
+            half = self._radius_difference(displacement[CONICITY_POINTS // 2 :], roll)
+            difference = np.concatenate([-half[:0:-1], half])
+        else:
+            difference = self._radius_difference(displacement, roll)
         return wl.Q(equivalent_conicity(displacement - middle, difference, most), "")
 
     def _radius_difference(self, displacement: Array, roll: bool) -> Array:
