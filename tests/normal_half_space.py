@@ -24,10 +24,13 @@ class Contact(NamedTuple):
     area: float
 
 
-def pressed(gap: Array, dx: float, dy: float, modulus: float, force: float, tolerance: float = 1e-8) -> Contact:
+def pressed(
+    gap: Array, dx: float, dy: float, modulus: float, force: float, tolerance: float = 1e-8, first: Array | None = None
+) -> Contact:
     """Return the contact of half-spaces with a gap [m] on a grid, (along x, along y), under a normal force.
 
-    A penetration counts from the gap's zero. The grid must reach beyond the patch.
+    A penetration counts from the gap's zero. The grid must reach beyond the patch. The search begins at the pressure
+    `first`.
     """
     nx, ny = gap.shape
     shape = scipy.fft.next_fast_len(2 * nx, real=True), scipy.fft.next_fast_len(2 * ny, real=True)
@@ -43,8 +46,8 @@ def pressed(gap: Array, dx: float, dy: float, modulus: float, force: float, tole
         return moved
 
     cell = dx * dy
-    pressure = np.where(gap < np.quantile(gap, 0.3), 1.0, 0.0)
-    pressure *= force / (pressure.sum() * cell)
+    pressure = np.where(gap < np.quantile(gap, 0.3), 1.0, 0.0) if first is None else first
+    pressure = pressure * (force / (pressure.sum() * cell))
     step, before, restart = np.zeros_like(gap), 1.0, 0.0
     for _ in range(3000):
         rest = displaced(pressure) + gap  # the penetration, where the bodies touch

@@ -125,10 +125,10 @@ class Wheel:
         force, accuracy = load / cosine, 1e-3
         for count in (elements // 3, elements):
             x, s = self._grid(height, count, first)
-            dx, ds, angle = x[1] - x[0], s[1] - s[0], self.angle(s)
+            dx, ds, angle, pressure = x[1] - x[0], s[1] - s[0], self.angle(s), None
             for _ in range(50):
                 gap = self.gap(x, s, height)
-                pressure, level, _ = pressed(gap, dx, ds, self.modulus, force, 1e-2 * accuracy)
+                pressure, level, _ = pressed(gap, dx, ds, self.modulus, force, 1e-2 * accuracy, pressure)
                 row = dx * pressure.sum(axis=0)
                 vertical = ds * float(row @ np.cos(angle))
                 height += level * force / vertical
@@ -139,6 +139,7 @@ class Wheel:
                 raise ArithmeticError("no balance")
             accuracy = 1e-5
         on = angle[row > 0.0]
+        assert pressure is not None
         area = dx * ds * np.count_nonzero(pressure)
         return Pressed(float(pressure.max()), area, force, s, row, height, float(np.ptp(on)))
 
