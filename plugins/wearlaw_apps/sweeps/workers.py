@@ -92,10 +92,10 @@ def _evaluated_elsewhere(job: bytes, block: Block, part: Points, store: str | No
 
 @functools.cache
 def _keep_memory() -> None:
-    """Let the C library keep what arrays leave.
+    """Let the C library keep the memory that arrays leave.
 
-    dask has its workers give all memory back at once, and what they start too. Models with nodes take four times as
-    long then.
+    dask sets a variable by which its workers, and processes that start beside it, give all memory back at once. Models
+    with nodes take four times as long then.
     """
     if "MALLOC_TRIM_THRESHOLD_" in os.environ and sys.platform == "linux":
         with contextlib.suppress(AttributeError):  # another C library
