@@ -10,8 +10,8 @@ one at which ∑ Y grows: there it is stable.
 
 The search begins where rigid wheels bear the force without friction, but on the tread: beyond it, a flange may bear
 alone or together with the tread, and a wheelset comes from the tread. From there on, wheelsets move by Newton's method
-between bounds, each with the creep forces that it had before; the rates are those of the pressure. From two places on
-both sides of H they go to where the cubic between these bears it. Rows that are laid anew may bear another force, so
+between bounds, each with the creep forces that it had before; the rates are those of the pressure. Between two places
+where ∑ Y is less and more than H, they go to the root of a cubic. Rows that are laid anew may bear another force, so
 close to the end wheelsets move within the rows of one laying. Where ∑ Y nowhere reaches H, the greatest ∑ Y lies where
 its rate vanishes.
 """
@@ -133,9 +133,9 @@ def _play(section: Section, flange_angle: float, middle: int) -> Play:
 
 
 def _back(now: Array, before: Array, rate: Array, rate_before: Array) -> Array:
-    """Return how far back a cubic vanishes between two places, as a share of the way from the place before.
+    """Return how far before the present place a cubic vanishes, as a share of the way from the place before.
 
-    It has values of unlike signs there, and rates over the whole way.
+    It has the values of both places, whose signs differ, and their rates times the way.
     """
     near, far = np.zeros(now.shape), np.ones(now.shape)
     for _ in range(HALVINGS):
