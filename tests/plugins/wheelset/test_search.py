@@ -154,7 +154,8 @@ def test_hollow_treads_on_round_heads_are_a_linkage(conicity: float, tread: floa
     for name, arc, apart in (("wheel_curvature", -tread, 120e-3 / 2400), ("rail_curvature", head, 90e-3 / 1600)):
         spline = (apart / arc) ** 2 + 12.0 * np.finfo(float).eps * 60e-3 * abs(arc) / apart**2
         assert si(found, name) == pytest.approx(1.0 / arc, rel=spline)
-    assert si(found, "rolling_curvature") == pytest.approx(np.cos(angle) / radius, rel=1e-12)
+    of_profile = angle - si(found, "roll")[:, None]
+    assert si(found, "rolling_curvature") == pytest.approx(np.cos(of_profile) / radius, rel=1e-12)
 
 
 def test_hollow_treads_have_the_conicity_of_wickens() -> None:

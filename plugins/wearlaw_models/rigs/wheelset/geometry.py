@@ -72,7 +72,7 @@ def patches(section: Section, position: Position, touching: Touching) -> dict[st
         "rail_position": place.rail_arc,
         "wheel_curvature": wheel_curvature,
         "rail_curvature": rail_curvature,
-        "rolling_curvature": curvature_along(section, wide, place, arc),
+        "rolling_curvature": curvature_along(section, wide, place.radius, arc),
         "gap": touching.gap,
     }
     none = np.where(np.isnan(touching.arc), np.nan, 0.0)

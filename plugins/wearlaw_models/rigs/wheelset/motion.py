@@ -76,17 +76,18 @@ def _pitch(place: Place, roller: float) -> Array:
     return np.asarray(np.arcsin(roller * place.x / (1.0 - roller * place.rail_z)))
 
 
-def curvature_along(section: Section, position: Position, place: Place, arc: Array) -> Array:
-    """Return the curvature of wheels along the rolling direction where they touch [1/m].
+def curvature_along(section: Section, position: Position, radius: Array, arc: Array) -> Array:
+    """Return the curvature of wheels along the rolling direction at rolling radii and arc lengths [m], [1/m].
 
     Yaw turns the wheel's circles out of the rolling direction by θ in the plane of contact, tan θ = tan ψ/cos δ. With
-    the curvature κ of the profile that of the surface is cos δ/r cos²θ + κ sin²θ (Euler). Where a hollow takes more
-    than nine tenths of the first term, which no contact survives, a tenth stays.
+    the angle δ and the curvature κ of the wheel's profile, that of the surface is cos δ/r cos²θ + κ sin²θ (Euler).
+    Where a hollow takes more than nine tenths of the first term, which no contact survives, a tenth stays.
     """
-    cosine = np.cos(place.angle)
+    _, _, angle, curvature = section.at("wheel", arc, position.side)
+    cosine = np.cos(angle)
     square = (np.tan(position.yaw) / cosine) ** 2
-    round_ = cosine / place.radius
-    curved: Array = (round_ + section.at("wheel", arc, position.side)[3] * square) / (1.0 + square)
+    round_ = cosine / radius
+    curved: Array = (round_ + curvature * square) / (1.0 + square)
     return np.maximum(curved, 0.1 * round_)
 
 

@@ -282,15 +282,15 @@ def rows(section: Section, places: Samples, position: Position, height: Array, a
     sunk = overlap + lift[wheel]  # a wheel that is lost for a while has rows all the same
     kept = sunk > -SPARE * deepest[wheel]
     wheel, region = wheel[kept], region[kept]
-    width, y, z, arc, overlap, sunk, turned, mean, facing, rail_arc, start, end = (
-        array[kept] for array in (width, y, z, arc, overlap, sunk, turned, mean, facing, rail_arc, start, end)
+    width, y, z, arc, overlap, sunk, turned, mean, angle, facing, rail_arc, start, end = (
+        array[kept] for array in (width, y, z, arc, overlap, sunk, turned, mean, angle, facing, rail_arc, start, end)
     )
     at, here = Surface(*(array[kept] for array in at)), Position(*(array[kept] for array in here))
     z_wheel = in_space(at.x, at.z, section.axes)
     place = Place(at.x, at.y - here.displacement, z_wheel, mean, z, at.radius, rail_arc)
     facing = np.maximum(facing, FACING)
-    of_roller = section.roller * np.cos(mean) / (1.0 - section.roller * z)
-    curvature = 0.5 * (curvature_along(section, here, place, np.clip(arc, start, end)) + of_roller) / facing
+    of_wheel = curvature_along(section, here, at.radius, np.clip(arc, start, end)) / facing
+    curvature = 0.5 * (of_wheel + section.roller * np.cos(angle) / (1.0 - section.roller * z))
     lean = (place.y * np.cos(turned) + at.z * np.sin(turned)) / facing
     count = np.bincount(wheel, minlength=height.size)
     first = np.concatenate([[0], np.cumsum(count)])
