@@ -118,6 +118,15 @@ def test_a_warning_counts_the_positions_without_a_result_and_status_says_why() -
     assert begins(staged["status"].magnitude[:, 1, 0])
 
 
+def test_a_wheel_that_friction_holds_on_its_flank_is_wedged() -> None:
+    """At 70 deg and a friction coefficient of 0.35, full slip leaves 0.013 of a normal force to bear a wheel."""
+    found = CONTACT(
+        lateral_displacement="6.505 mm", yaw=Q([-4.0, -23.0], "mrad"), vertical_load="17 kN", friction_coefficient=0.35
+    )
+    first, second = map(str, found["status"].magnitude[:, 1, 0])
+    assert first == "balanced" and second.startswith("the right wheel is wedged: ")
+
+
 def test_sweeps_keep_the_status(tmp_path: Path) -> None:
     kept = wl.sweep(CONTACT, **FORCES, outputs=["status", "normal_force"], store=tmp_path / "kept")
     assert begins(kept.status[:, 1, 0])

@@ -51,6 +51,9 @@ LACKING = (
 SLIDES = "a wheel slides along its flank, and its rows do not lie where it stands"
 """Status of positions at which no laying of the rows is the last one."""
 
+WEDGED, HELD = "the {} wheel is wedged: friction holds its flank, whose normal force is {:.2g} times the load", 5.0
+"""Status of positions without a balance at which a normal force is more than so many times the load."""
+
 
 def _limited(height: Array, roll: Array, new_height: Array, new_roll: Array) -> tuple[Array, Array]:
     """Return heights [m] and rolls [rad] on the straight way to new ones, at most `FARTHEST` and `MOST_ROLL` away."""
@@ -305,6 +308,10 @@ class Loads:
             most = int(self.left[point].argmax())
             status[point] = LACKING[most].format(self.left[point, most])
         status[(status == BALANCE) & (self._gathered("shift") > 1.0) & self.task.bears.any(axis=-1)] = SLIDES
+        patches, load = self.patches, self.task.load
+        share = np.bincount(2 * patches.point + patches.side, patches.force, load.size).reshape(-1, 2) / load
+        for point, side in np.argwhere((share > HELD) & self.task.bears & (status != BALANCE)[:, None]):
+            status[point] = WEDGED.format(("left", "right")[side], share[point, side])
         return status
 
     @property
