@@ -91,3 +91,27 @@ def limit(patches: Ellipses) -> Array:
     share = 1.5 if patches.elliptic else 2.0
     bound: Array = patches.bound_centre * np.pi * patches.a * patches.b / share
     return bound
+
+
+def plain_march(patches: Ellipses, shares: Array, cells: int) -> tuple[Array, Array, Array, Array]:
+    """Return angle from the trailing edge, traction and where it slips at the ends of cells even in the angle.
+
+    The published march: grow as in stick, then return radially to the bound. Its error is of first order.
+    """
+    a, b, xi, eta, phi, l1, l2, l3, centre = (array[:, None] for array in patches.arrays)
+    root = np.sqrt(1.0 - shares**2)
+    angle = np.pi * (1.0 - np.arange(cells + 1) / cells)
+    x = a * root * np.cos(angle)[:, None, None]
+    q_x, q_y = np.zeros((2, cells + 1, *x.shape[1:]))
+    slips = np.zeros(x.shape, bool)
+    for k in range(cells):
+        step = x[k + 1] - x[k]
+        trial_x = q_x[k] + (xi / l1 - phi * b * shares / l3) * step
+        trial_y = q_y[k] + (eta / l2 - phi * 0.5 * (x[k + 1] + x[k]) / l3) * step
+        level = root * np.sin(angle[k + 1])
+        bound = centre * (level if patches.elliptic else level**2)
+        size = np.hypot(trial_x, trial_y)
+        slips[k + 1] = size > bound
+        scale = np.where(slips[k + 1], bound / size, 1.0)
+        q_x[k + 1], q_y[k + 1] = scale * trial_x, scale * trial_y
+    return angle, q_x, q_y, slips

@@ -124,7 +124,8 @@ def test_a_wheel_that_friction_holds_on_its_flank_is_wedged() -> None:
         lateral_displacement="6.505 mm", yaw=Q([-4.0, -23.0], "mrad"), vertical_load="17 kN", friction_coefficient=0.35
     )
     first, second = map(str, found["status"].magnitude[:, 1, 0])
-    assert first == "balanced" and second.startswith("the right wheel is wedged: ")
+    assert first == "balanced"
+    assert second.startswith("the right wheel is wedged: ")
 
 
 def test_sweeps_keep_the_status(tmp_path: Path) -> None:

@@ -30,6 +30,9 @@ from wearlaw_models.strips import half_angle, turn
 LEAST_ANGLE = 1e-90
 """Slip zone of a strip without creepage [rad]; the powers of it in the formulas do not underflow to zero."""
 
+SHARP = 1.6
+"""Distances between nodes within which w turns by a right angle where a strip is looked at more closely."""
+
 NODES = 4
 """Nodes that take about as long as one operating point in the count of `accelerated`."""
 
@@ -124,7 +127,7 @@ def stick_and_slip(strips: Strips, stick_nodes: int, slip_nodes: int) -> Nodes:
     nodes = _empty(stick_nodes + slip_nodes, edge.shape)
     _stick(strips, Point(edge, edge, edge, edge), start.u, nodes, slice(0, stick_nodes))
     _slip(strips, start, edge, nodes, slice(stick_nodes, None))
-    again = np.asarray((Nodes(*nodes).excess[stick_nodes:] < 0.0).any(axis=0))
+    again = _turns(strips, start, Nodes(*nodes).excess[stick_nodes:].min(axis=0), slip_nodes)
     if again.any():
         nodes[:, stick_nodes:, again] = _split(*_some(again, strips, start), slip_nodes)
     return Nodes(*nodes)
@@ -140,7 +143,7 @@ def sums(strips: Strips, slip_nodes: int) -> Array:
     rows, flat = _flat(strips.rows), _flat(integrals)
     march = _compiled_march(strips, start, np.zeros(shape), share)
     loops.sum_loop(strips.elliptic, rows, *march, weight, flat)
-    again = integrals[3] < 0.0
+    again = _turns(strips, start, integrals[3], slip_nodes)
     if again.any():
         zone = Nodes(*_split(*_some(again, strips._replace(rows=_unscaled(strips.rows)), start), slip_nodes))
         x, y = zone.length * zone.traction_x, zone.length * zone.traction_y
@@ -209,6 +212,18 @@ def _without_rounding(growth: Growth, w: Array) -> Array:
     miss = w - growth.along**2 - lateral * lateral
     step = np.divide(miss, slope, out=np.zeros_like(w), where=slope > 0.0)  # zero where nearby roots coincide
     return np.maximum(w - step, 0.0)
+
+
+def _turns(strips: Strips, start: Point, excess: Array, count: int) -> NDArray[np.bool_]:
+    """Return which strips may stick once more: the least excess at their nodes is negative, or w turns round at once.
+
+    Between two nodes such a strip may stick and not show it, and its traction turns too fast for even steps.
+    """
+    growth = strips.growth
+    begin, end = (growth.lateral_rate(x) for x in (start.u - 1.0, np.ones_like(start.u)))
+    within, turning = SHARP * np.pi / count, np.abs(growth.turning)
+    sharp = (np.abs(growth.along) < within * turning) & (turning * within**2 > 1.0)
+    return np.asarray((excess < 0.0) | (sharp & (begin * end < 0.0)))
 
 
 def _some(chosen: NDArray[np.bool_], strips: Strips, start: Point) -> tuple[Strips, Point]:
@@ -327,7 +342,10 @@ def _flat(array: Array, axes: int = 1) -> Array:
 
 
 def _split(strips: Strips, start: Point, count: int) -> Array:
-    """Return the nodes of strips (strips,) that slip from the start on, stick again and slip again."""
+    """Return the nodes of strips (strips,) that slip from the start on, may stick again, and slip again.
+
+    Where they do not stick, nodes are close where the traction turns fastest.
+    """
     edge = np.zeros_like(start.angle)
     trial, nodes = _empty(2 * count, edge.shape), _empty(count, edge.shape)
     _slip(strips._replace(rows=_unscaled(strips.rows)), start, edge, trial, slice(0, None))
