@@ -37,8 +37,8 @@ RATIOS = {2.0: "1/2 to 2", 10.0: "1/10 to 10"}
 Rows = list[tuple[str, ...]]
 SLOPES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 SEARCHED = {
-    "parabolic": (10.0, 0.00151343, -0.71545735, 0.89000629),
-    "elliptic": (10.0, 0.0017335, -0.45156278, 0.69655385),
+    "parabolic": (0.1, 0.3897, -0.0895, 1.0),
+    "elliptic": (0.1, 0.4327, -0.1078, 1.0),
 }
 """a/b and reduced ξ, η and φ at which a search found the largest errors of forces on 10 strips."""
 STRIPS, MANY_STRIPS, POINTS_OF_STRIPS = (10, 20, 40), 80, 500
@@ -204,7 +204,7 @@ def worst_in_words() -> str:
     parabolic, elliptic = (percent(worst[bound], 0) for bound in ("parabolic", "elliptic"))
     return (
         f"A search for large errors found {parabolic:.0f} % of μN with the parabolic bound and {elliptic:.0f} % with"
-        f" the elliptic one, on {STRIPS[0]} strips at a/b = 10."
+        f" the elliptic one, on {STRIPS[0]} strips at a/b = 1/10."
     )
 
 
