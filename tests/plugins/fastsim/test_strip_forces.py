@@ -11,7 +11,7 @@ import pytest
 import wearlaw as wl
 from tests.plugins.fastsim.strips import CASE, ROUNDING, each_bound, ellipses, limit, plain_march, sample, solve
 from tests.plugins.full_theory import rows
-from wearlaw import Q
+from wearlaw import Array, Q
 from wearlaw_models.contact_models.fastsim.strips import (  # private: any nodes
     forces,
     forces_alone,
@@ -160,7 +160,8 @@ def test_forces_where_the_traction_turns_round_meet_the_plain_march(elliptic: bo
     xi, eta, spin = random.uniform([[-1e-2], [-1e-2], [3.0]], [[1e-2], [1e-2], [10.0]], (3, 60))
     patches = ellipses(xi, eta, spin, elliptic=elliptic)
     shares, widths = even_strips(10)
-    coarse, fine = [], []
+    coarse: list[Array] = []
+    fine: list[Array] = []
     for cells, sums in ((4000, coarse), (8000, fine)):
         angle, *traction, _ = plain_march(patches, shares, cells)
         x = patches.a[:, None] * np.sqrt(1.0 - shares**2) * np.cos(angle)[:, None, None]
