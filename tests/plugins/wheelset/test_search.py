@@ -13,6 +13,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import wearlaw as wl
+from tests.plugins.wheelset.brute_force import worn
 from tests.plugins.wheelset.wheelsets import (
     R0,
     Body,
@@ -227,4 +228,11 @@ def test_no_contact_is_lost_where_a_flank_lies_along_its_rail() -> None:
     # between points of the rail 0.05 mm apart were off by more, and some 70 nm of displacement had no contact.
     displacement = np.arange(6.2515e-3, 6.2525e-3, 5e-9)
     data = first(STANDARD, displacement)
+    assert np.isfinite(data.contact_angle.values).all()
+
+
+def test_a_worn_flank_whose_lever_nearly_cancels_touches_its_rail() -> None:
+    # A roll moves the flank down and across the rail: of the levers of both wheels, 0.76 m each, 12 mm are left.
+    pair = wheelset(wheel=worn(wl.Profile.s1002(), (3.14, 9.1, 0.523), (-38.0, 6.0, 0.298)))
+    data = first(pair, np.linspace(-6.4e-3, -6.3994e-3, 60), 2.85e-3)
     assert np.isfinite(data.contact_angle.values).all()

@@ -25,7 +25,7 @@ ROLL_ACCURACY = 1e-12
 ROOTS = 40
 """Greatest number of iterations for a contact point; eight to twelve are usual."""
 
-LEAST_LEVER = 0.05
+LEAST_LEVER = 0.005
 """Smallest lever in a step of the roll [m]."""
 
 MOST_ROLL = 5e-3
