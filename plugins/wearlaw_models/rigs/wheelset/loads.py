@@ -28,7 +28,7 @@ FARTHEST, MOST_ROLL = 0.5e-3, 1e-3
 BLOCK = 64
 """Positions that are solved at once: the influences of their elements take some 20 MB."""
 
-OUTWARDS = 0.05e-3
+OUTWARDS = 0.2e-3
 """Longest step outwards on a flange [m]."""
 
 ROUGH, PASSING = 1e-3, 1e-2
@@ -152,13 +152,14 @@ class Loads:
             stands += self.until_near(stand.copy(), forces, goal[stand.points], None, some)
         return self._kept(stands)
 
-    def outwards(self, forces: Callable[[wl.Problem], wl.CreepForces], there: Loads) -> Loads:
-        """Return the loads that balance the creep forces at displacements farther out, in steps from these.
+    def outwards(
+        self, forces: Callable[[wl.Problem], wl.CreepForces], begun: Callable[[Loads, NDArray[np.intp]], Loads]
+    ) -> Loads:
+        """Return the loads that balance the creep forces at the displacements that are asked for, in steps from these.
 
-        `there` are those without creep forces, from which a position starts that loses its balance on the way.
+        A position that loses its balance on the way starts there, from what `begun` returns without creep forces.
         """
-        displacement = there.task.displacement
-        rest = displacement - self.task.displacement
+        rest = self.task.due - self.task.displacement
         loads, moves = self.solved(forces, np.where(rest == 0.0, BALANCED, PASSING)), rest != 0.0
         while True:
             points = np.flatnonzero((rest != 0.0) & ~loads.unsettled(PASSING))
@@ -166,10 +167,10 @@ class Loads:
                 break
             rest[points] -= np.clip(rest[points], -OUTWARDS, OUTWARDS)
             goal = np.where(rest == 0.0, BALANCED, PASSING)[points]
-            loads = loads.moved(forces, points, (displacement - rest)[points], goal, again=WHOLE)
+            loads = loads.moved(forces, points, (self.task.due - rest)[points], goal, again=WHOLE)
         lost = np.flatnonzero(moves & loads.unsettled(ROUGH))
-        loads = replace(loads, task=there.task)
-        return loads._again(forces, lost, *there._ahead(displacement), None, np.full(lost.size, BALANCED))
+        loads = begun(replace(loads, task=replace(self.task, displacement=self.task.due)), lost)
+        return loads._again(forces, lost, *loads._ahead(self.task.due), None, np.full(lost.size, BALANCED))
 
     def moved(
         self, forces: Callable[[wl.Problem], wl.CreepForces], points: NDArray[np.intp], displacement: Array,

@@ -378,8 +378,17 @@ class Wheelset(wl.Rig):
         friction: Mapping[str, Any] = {**conditions, **flat}
         tread, on_flange = friction["friction_coefficient"], friction.get("flange_friction_coefficient")
         task = self._task(flat, (tread, tread if on_flange is None else on_flange))
+        if task.lateral_force is None:
+            # Where a flange bears, friction may hold it or not; the wheelset comes there from the tread.
+            none = np.zeros(task.yaw.size)
+            holds = task.friction_of(np.arange(none.size), none + 1.0, none) > HOLDS
+            task = replace(task, displacement=np.where(holds, np.clip(task.due, *self._play.treads), task.due))
+            moves = np.flatnonzero(task.displacement != task.due)
+            if moves.size:
+                out = task.part(moves)
+                self._check_contact(out.due, self._rigid(out.due, out.yaw, out.roll)[1])
         loads = Loads(self._section, self._samples, self._elastic, task, self.patch, [])
-        loads = self._begun(loads, np.ones(task.yaw.shape, dtype=np.bool_))
+        loads = self._begun(loads, np.arange(task.yaw.size))
         if task.torque.any():
             loads.check_torque()
         status = np.full(task.yaw.shape, BALANCE, dtype=object)  # as soon as there are creep forces
@@ -389,18 +398,12 @@ class Wheelset(wl.Rig):
         """Return the problem with normal forces and a speed of rotation that balance the creep forces."""
         assert isinstance(problem, WheelsetProblem)
         # A position has the same condition on both sides.
-        there = problem.loads.under({name: array[..., 0, 0].ravel() for name, array in problem.conditions.items()})
-        task = there.task
-        if task.lateral_force is None:
-            # Where a flange bears, friction may hold it or not; the wheelset comes there from the tread.
-            none = np.zeros(task.yaw.size)
-            holds = task.friction_of(np.arange(none.size), none + 1.0, none) > HOLDS
-            begin = np.where(holds, np.clip(task.displacement, *self._play.treads), task.displacement)
-            loads = self._begun(replace(there, task=replace(task, displacement=begin)), begin != task.displacement)
-            loads = loads.outwards(forces, there)
+        loads = problem.loads.under({name: array[..., 0, 0].ravel() for name, array in problem.conditions.items()})
+        if loads.task.lateral_force is None:
+            loads = loads.outwards(forces, self._begun)
             status = loads.status
         else:
-            loads, status = self._guided(there, forces)
+            loads, status = self._guided(loads, forces)
         warn_of_climbing(loads)
         warn_of_missing(loads, status)
         whole = self._whole(loads, status, problem.shape)
@@ -423,7 +426,7 @@ class Wheelset(wl.Rig):
         else:
             displacement = self._play.begin(force / np.where(bears, loads, touching).mean(axis=-1))
         return Task(
-            displacement, conditions["yaw"], speed, conditions["lateral_velocity"],
+            displacement, displacement, conditions["yaw"], speed, conditions["lateral_velocity"],
             conditions["yaw_velocity"], conditions["yaw_velocity"] + speed / conditions["curve_radius"],
             np.where(bears, loads, touching), bears, friction, wl.scalar_si(self.flange_angle, "rad"),
             conditions.get("axle_torque", np.zeros(speed.shape)), conditions.get("angular_speed"),
@@ -438,9 +441,8 @@ class Wheelset(wl.Rig):
         which = which.reshape(-1)
         return rolls[which], Touching(*(array[which] for array in touching))
 
-    def _begun(self, loads: Loads, some: NDArray[np.bool_]) -> Loads:
+    def _begun(self, loads: Loads, points: NDArray[np.intp]) -> Loads:
         """Return loads with some positions where rigid wheels stand, without creep forces."""
-        points = np.flatnonzero(some)
         if not points.size:
             return loads
         task = loads.task.part(points)

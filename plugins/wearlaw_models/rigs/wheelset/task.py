@@ -35,7 +35,9 @@ class Task:
     Attributes
     ----------
     displacement, yaw : ndarray
-        u [m] and ψ [rad].
+        u [m], where the wheelset begins, and ψ [rad].
+    due : ndarray
+        Displacement that is asked for [m].
     speed, lateral_velocity, yaw_velocity, turn_rate : ndarray
         V and v_y [m/s], the rate of the yaw and ω_z [rad/s].
     load : ndarray, (positions, 2)
@@ -61,6 +63,7 @@ class Task:
     """
 
     displacement: Array
+    due: Array
     yaw: Array
     speed: Array
     lateral_velocity: Array
