@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import wearlaw as wl
+from tests.plugins.wheelset.brute_force import worn as worn_by_bells
 from tests.plugins.wheelset.wheelsets import borne, through, wheelset
 from wearlaw import Array, Q
 from wearlaw_models.rigs import wheelset as ws
@@ -121,11 +122,19 @@ def test_a_warning_counts_the_positions_without_a_result_and_status_says_why() -
 def test_a_wheel_that_friction_holds_on_its_flank_is_wedged() -> None:
     """At 70 deg and a friction coefficient of 0.35, full slip leaves 0.013 of a normal force to bear a wheel."""
     found = CONTACT(
-        lateral_displacement="6.505 mm", yaw=Q([-4.0, -23.0], "mrad"), vertical_load="17 kN", friction_coefficient=0.35
+        lateral_displacement="6.505 mm", yaw=Q([-4.0, -22.0], "mrad"), vertical_load="17 kN", friction_coefficient=0.35
     )
     first, second = map(str, found["status"].magnitude[:, 1, 0])
     assert first == "balanced"
     assert second.startswith("the right wheel is wedged: ")
+
+
+def test_a_wheelset_that_leaves_both_rails_on_the_way_to_its_balance_has_a_result() -> None:
+    wheel = worn_by_bells(wl.Profile.s1002(), (2.76, 10.7, 1.25), (-38.0, 6.0, 0.9))
+    found = (wheelset(wheel=wheel, rolling_speed="20 m/s") | wl.contact_model("strip_theory"))(
+        lateral_displacement="-6.99 mm", yaw="23 mrad", vertical_load="11.7 kN", friction_coefficient=0.35
+    )
+    assert (found["status"].magnitude == "balanced").all()
 
 
 def test_sweeps_keep_the_status(tmp_path: Path) -> None:

@@ -237,6 +237,12 @@ def test_a_position_alone_is_that_in_a_batch_in_any_order(seed: int, worn: bool,
         assert np.asarray(getattr(alone, name)) == pytest.approx(due[2], rel=1e-9, abs=1e-15, nan_ok=True), name
 
 
+def test_areas_grow_evenly_as_a_row_begins_to_touch() -> None:
+    area = np.nansum(posed(PAIRS[False], 5e-3, 0.0, np.arange(66e3, 68e3, 50.0)).strips.area, axis=(-2, -1))[:, 0]
+    steps = np.diff(area)
+    assert steps.max() < 3.0 * steps.mean()
+
+
 def test_ellipses_have_the_force_and_the_area_of_the_strips() -> None:
     given_: dict[str, Any] = {"lateral_displacement": Q([0.8, 3.0, 5.8], "mm"), "vertical_load": "80 kN"}
     pose = {"friction_coefficient": 1e-14, **given_}

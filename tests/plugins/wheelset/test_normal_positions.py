@@ -16,9 +16,10 @@ from wearlaw import Q
 from wearlaw_models.rigs.wheelset.loads import Loads  # private: layings of rows, and where wheels stand in them
 from wearlaw_models.rigs.wheelset.stand import BALANCED  # private: the accuracy that a search ends at
 
-FLANKS = (103, 56), (104, 25), (104, 41), (106, 6)
+FLANKS = (103, 56), (104, 25), (104, 41), (106, 6), (109, 54)
 """Seed and number of positions: three at which a step by rates leads a wheelset up its flank, away from its balance,
-and one at which the angles of wheel and rail differ by up to 0.1 rad within the contact."""
+one at which the angles of wheel and rail differ by up to 0.1 rad within the contact, and one with yaw at which the
+curvature of the wheel's profile jumps there."""
 
 
 @pytest.mark.validates(

@@ -28,6 +28,9 @@ from numpy.typing import NDArray
 from wearlaw import Array
 from wearlaw_models.rigs.wheelset.search import Position, Section, gaps
 
+SHORT = 1e-7
+"""Way along the profile over which its angle has no mean rate [m]."""
+
 
 class Place(NamedTuple):
     """Points of contact in outward coordinates, as arrays of one shape.
@@ -76,18 +79,22 @@ def _pitch(place: Place, roller: float) -> Array:
     return np.asarray(np.arcsin(roller * place.x / (1.0 - roller * place.rail_z)))
 
 
-def curvature_along(section: Section, position: Position, radius: Array, arc: Array) -> Array:
+def curvature_along(
+    section: Section, position: Position, radius: Array, arc: Array, overlap: Array | float = 0.0
+) -> Array:
     """Return the curvature of wheels along the rolling direction at rolling radii and arc lengths [m], [1/m].
 
     Yaw turns the wheel's circles out of the rolling direction by θ in the plane of contact, tan θ = tan ψ/cos δ. With
     the angle δ and the curvature κ of the wheel's profile, that of the surface is cos δ/r cos²θ + κ sin²θ (Euler).
+    Along the contact of wheels that overlap their rails by `overlap` [m] the profile turns; κ is its mean there.
     Where a hollow takes more than nine tenths of the first term, which no contact survives, a tenth stays.
     """
-    _, _, angle, curvature = section.at("wheel", arc, position.side)
-    cosine = np.cos(angle)
-    square = (np.tan(position.yaw) / cosine) ** 2
-    round_ = cosine / radius
-    curved: Array = (round_ + curvature * square) / (1.0 + square)
+    angle, curvature = section.at("wheel", arc, position.side)[2:]
+    round_, slope = np.cos(angle) / radius, np.tan(position.yaw) / np.cos(angle)
+    reach = 0.5 * np.abs(slope) * np.sqrt(2.0 * overlap / round_)
+    before, after = (section.at("wheel", arc + way * reach, position.side)[2] for way in (-1.0, 1.0))
+    curvature = np.where(reach > SHORT, (before - after) / (2.0 * np.maximum(reach, SHORT)), curvature)
+    curved: Array = (round_ + curvature * slope**2) / (1.0 + slope**2)
     return np.maximum(curved, 0.1 * round_)
 
 

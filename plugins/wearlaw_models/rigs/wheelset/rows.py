@@ -289,7 +289,7 @@ def rows(section: Section, places: Samples, position: Position, height: Array, a
     z_wheel = in_space(at.x, at.z, section.axes)
     place = Place(at.x, at.y - here.displacement, z_wheel, mean, z, at.radius, rail_arc)
     facing = np.maximum(facing, FACING)
-    of_wheel = curvature_along(section, here, at.radius, np.clip(arc, start, end)) / facing
+    of_wheel = curvature_along(section, here, at.radius, np.clip(arc, start, end), np.maximum(sunk, 0.0)) / facing
     curvature = 0.5 * (of_wheel + section.roller * np.cos(angle) / (1.0 - section.roller * z))
     lean = (place.y * np.cos(turned) + at.z * np.sin(turned)) / facing
     count = np.bincount(wheel, minlength=height.size)

@@ -56,6 +56,10 @@ friction takes off beyond that is made up for in the next round."""
 WITHIN, SLID = 1e-5, 5e-5
 """Longest way aside within rows [m], and the lateral force that may be left over, over the load of a wheel."""
 
+EDGE = 0.25
+"""Least maximum pressure of a strip over the greater one of its neighbours: a row begins to touch on part of its width,
+so that areas do not jump."""
+
 MOST_TURN = 0.01
 """Greatest step of the speed of rotation, as a share of it."""
 
@@ -242,7 +246,7 @@ class Stand:
     @property
     def rolling(self) -> Array:
         """Speed of rotation with which the mean of the rolling radii by force rolls [rad/s]."""
-        point, force, count = self.rows.wheel // 2, self._row_force(), self.roll.size
+        point, force, count = self.rows.wheel // 2, self._row_force() + TINY, self.roll.size  # both wheels may be lost
         rolls = self.rows.place.radius / (1.0 - self.section.roller * self.rows.place.rail_z)
         mean = np.bincount(point, force * rolls, count) / np.bincount(point, force, count)
         return np.asarray(self.task.speed / mean)
@@ -323,6 +327,11 @@ class Stand:
         of, point = wheel[first], wheel[first] // 2
         side = np.where(of % 2 == 1, 1.0, -1.0)
         force, most, crest, width, angle = force[at], most[at], crest[at], rows.width[at], rows.place.angle[at]
+        before, after = np.where(begins, 0.0, np.roll(most, 1)), np.where(np.roll(begins, -1), 0.0, np.roll(most, -1))
+        beside = np.maximum(before, after)
+        half_length, part = 2.0 / np.pi * force / (width * most), most / np.maximum(most, EDGE * beside)
+        arc = arc + 0.5 * width * (1.0 - part) * (after - before) / np.maximum(beside, TINY)
+        most, width = most / part, width * part
         whole = np.add.reduceat(force, first)
 
         def mean(values: Array) -> Array:
@@ -336,7 +345,7 @@ class Stand:
             np.arange(count)
             - np.flatnonzero(np.diff(of[order], prepend=-1))[np.cumsum(np.diff(of[order], prepend=-1) != 0) - 1]
         )
-        middle, half_length = mean(arc), 2.0 / np.pi * force / (width * most)
+        middle = mean(arc)
         a = np.maximum.reduceat(half_length, first)
         b = 2.0 / np.pi * np.add.reduceat(half_length * width, first) / a
         slot = np.arange(at.size) - first[patch]
