@@ -117,6 +117,21 @@ def test_traction_is_along_the_slip_at_the_bound() -> None:
         assert q[strip.slip > 0.0] == pytest.approx(strip.bound[strip.slip > 0.0], rel=1e-12)
 
 
+@pytest.mark.validates(
+    "limits",
+    "Forces of strips on 12 nodes, spin up to three times the creepage: many stick again between two nodes",
+    source="the same on 1000 nodes",
+    held_to="{mean:.1%} of the bound, root mean square, and {most:.1%}",
+    mean=0.003,
+    most=0.025,
+)
+def test_few_nodes_have_the_forces_of_many_where_the_rigid_slip_turns_round(mean: float, most: float) -> None:
+    few, many = (nodes(*random_strips(2000, spin=3.0), count=count).sums[:2] for count in (12, 1000))
+    off = np.hypot(*(few - many)) / (0.5 * np.pi)
+    assert rms(off) < mean
+    assert off.max() < most
+
+
 @pytest.mark.parametrize(
     "strip",
     [(-0.38, -0.3, 1.82, 1.38), (-0.07, -1.87, 4.7, 1.36), (-0.47, 0.66, -1.97, 0.89), (-0.04, 0.5, -1.73, 0.83)],

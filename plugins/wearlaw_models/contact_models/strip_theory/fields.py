@@ -16,7 +16,8 @@ slip is s = w·q̂ - e along q̂, and ∫ q·s dx = ∫ q·w dx for any q̂.
 
 Turning. As in FASTSIM q̂ follows w by a flexibility, but one that takes up the same e: the flexibility λ² of
 e = λ d(λq)/dx, whose energy λ²q²/2 is E(x) = -∫ √(1-x²) e dx from x to 1. Then q̂ turns towards w at the rate
-|w| √(1-x²)/(2E). Where s would be negative, the strip sticks again: λq grows by w/λ until |q| meets the bound.
+|w| √(1-x²)/(2E). Where s would be negative, the strip sticks again: λq grows by w/λ until |q| meets the bound. With
+much spin w turns round, and a strip may stick again for less than a step, so steps of such strips are divided.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 import wearlaw as wl
 from wearlaw import Array
@@ -37,6 +39,12 @@ NODES = 4
 
 STEPS = 4
 """Steps of Newton's method for the slip at a leading edge; it converges from below, and is nearly linear."""
+
+PARTS = 4
+"""Parts of a step between two nodes of a strip that sticks again, or whose rigid slip turns round within a step."""
+
+SHARP = 0.3
+"""Least tangent of the angle by which w turns over a step where it turns round."""
 
 
 class Strips(NamedTuple):
@@ -110,9 +118,9 @@ def solve(strips: Strips, stick_nodes: int, slip_nodes: int) -> Nodes:
     else:
         _stick(rows, stick, nodes)
         _slip(rows, slip, nodes, stick_nodes)
-    again = (nodes[5, stick_nodes:] < 0.0).any(axis=0)
+    again = (nodes[5, stick_nodes:] < 0.0).any(axis=0) | _turn_round(rows, slip_nodes)
     if again.any():
-        nodes[3:, stick_nodes:, again] = _again(rows[:, again], slip, compiled)
+        nodes[3:, stick_nodes:, again] = _again(rows[:, again], slip_nodes, compiled)
     return Nodes(*nodes.reshape(*nodes.shape[:2], *strips.k_x.shape))
 
 
@@ -126,12 +134,19 @@ def sums(strips: Strips, stick_nodes: int, slip_nodes: int, rounds: int) -> Arra
     rows, slip = _rows(strips), _slip_table(slip_nodes)
     held, slid = np.zeros((3, rows.shape[1])), np.zeros((4, rows.shape[1]))
     loops.sum_loop(rows, _stick_table(stick_nodes), slip, *_steps(rows, slip), held, slid)
-    again = slid[3] < 0.0
+    again = (slid[3] < 0.0) | _turn_round(rows, slip_nodes)
     if again.any():
         v, cosine, length = rows[5, again], slip[:, :1], slip[:, 2:3]
-        q_x, q_y, _ = _again(rows[:, again], slip, compiled=True)
+        q_x, q_y, _ = _again(rows[:, again], slip_nodes, compiled=True)
         slid[:3, again] = _add_up(1.0 - v * (1.0 + cosine), v * length, q_x, q_y)
     return (held + slid[:3]).reshape(3, *strips.k_x.shape)
+
+
+def _turn_round(rows: Array, count: int) -> NDArray[np.bool_]:
+    """Return in which strips w turns round from one of `count` nodes in slip to the next."""
+    along, across, turning, _, _, v, *_ = rows
+    aside, spin = np.abs(across - turning * (1.0 - v)), np.abs(turning)  # w_y in the middle of the zone
+    return np.asarray((aside < spin * v) & (SHARP * np.abs(along) < np.pi / count * spin * v))
 
 
 def _add_up(x: Array, length: Array, q_x: Array, q_y: Array) -> Array:
@@ -165,6 +180,18 @@ def _stick_table(count: int) -> Array:
 def _slip_table(count: int) -> Array:
     """Return the table of `slip_loop`."""
     beta, weights = _gauss(count)
+    return _march_table(beta, weights)
+
+
+@cache
+def _parts_table(count: int) -> Array:
+    """Return the table of `again_loop`, of steps in even parts; it has no lengths."""
+    beta = _gauss(count)[0]
+    parts = np.linspace(np.append(0.0, beta[:-1]), beta, PARTS + 1, axis=1)[:, 1:]
+    return _march_table(parts.ravel(), np.zeros(parts.size)).reshape(*parts.shape, -1)
+
+
+def _march_table(beta: Array, weights: Array) -> Array:
     cosine, sine = np.cos(beta), np.sin(beta)
     arc = 0.5 * (np.pi - beta) + 0.25 * np.sin(2.0 * beta)
     return np.stack(
@@ -216,19 +243,24 @@ def _steps(rows: Array, table: Array) -> tuple[Array, Array, Array]:
     return half_angle(rows[6], rows[7]), np.exp(decay, out=decay), lagging
 
 
-def _again(rows: Array, table: Array, compiled: bool) -> Array:
-    """Return the tractions and slips of strips that stick again, (3, nodes, strips), node after node.
+def _again(rows: Array, count: int, compiled: bool) -> Array:
+    """Return the tractions and slips of strips that stick again, (3, nodes, strips), part by part of the steps.
 
     A step is divided where s falls below zero, and where a strip that sticks meets its bound, both by linear
     interpolation. So tractions are continuous functions of the creepages, without which loads would not balance.
     """
-    fields = np.empty((3, len(table), rows.shape[1]))
+    table, fields = _parts_table(count), np.empty((3, count, rows.shape[1]))
     if compiled:
         loops.again_loop(np.ascontiguousarray(rows), table, fields)
         return fields
-    state = loops.first(tuple(rows))
-    for at, node in enumerate(table):
-        *fields[:, at], before, state = loops.again(tuple(rows), tuple(node), state)
+    state, before = loops.first(tuple(rows)), np.empty(0)
+    for at, parts in enumerate(table):
+        sticks, slips = state[4], np.zeros(rows.shape[1])
+        for part in parts:
+            *fields[:, at], share, state = loops.again(tuple(rows), tuple(part), state)
+            slips += share / PARTS
         if at:
-            fields[2, at - 1] *= before
+            fields[2, at - 1] *= before + 0.5 * slips
+        before = loops.choose(sticks, slips, 0.5 * slips)
+    fields[2, -1] *= before + 0.5
     return fields

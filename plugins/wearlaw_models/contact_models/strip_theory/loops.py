@@ -121,9 +121,9 @@ def first(strip: tuple[Any, ...]) -> tuple[Any, ...]:
 
 
 def again(strip: tuple[Any, ...], node: tuple[float, ...], state: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Return the traction and slip at a node of a strip that sticks again, a factor of the slip before, and the state.
+    """Return the traction and slip after a step of a strip that sticks again, the share that slips, and the state.
 
-    The node is a row of the table of `slip_loop`; the size of λq is its bound where the strip slips.
+    The node there is a row of the table of `slip_loop`; the size of λq is its bound where the strip slips.
     """
     along, across, turning, k_x, k_y, v, n_x, n_y = strip
     cosine, sine, _, arc, step, way = node
@@ -155,6 +155,7 @@ def again(strip: tuple[Any, ...], node: tuple[float, ...], state: tuple[Any, ...
     reached, rest = last + slid * (full - last), (1.0 - slid) * grows
     free_x = choose(enters, reached * held_x + rest * along, free_x)
     free_y = choose(enters, reached * held_y + rest * (w_y + 0.5 * turning * (1.0 - slid) * dx), free_y)
+    slips = choose(enters, slid, 1.0 - sticks * choose(leaves, stuck, 1.0))
     sticks = enters + (1.0 - enters) * sticks * (1.0 - leaves)
     to_x, to_y = unit(free_x, free_y)
     q_x, q_y = choose(sticks, to_x, x), choose(sticks, to_y, y)
@@ -162,10 +163,7 @@ def again(strip: tuple[Any, ...], node: tuple[float, ...], state: tuple[Any, ...
     size = choose(sticks, within, full)
     s = (1.0 - sticks) * np.maximum(slip, 0.0)
     traction = BELOW * bound * size / full
-    # A node stands for half a step on each side, and these slip over more or less of it.
-    before = choose(enters, 0.5 + 0.5 * slid, 1.0)
-    of_node = choose(leaves, 1.5 - stuck, 1.0) * s
-    return traction * q_x, traction * q_y, of_node, before, (q_x, q_y, size, s, sticks, rate_here, bound, full)
+    return traction * q_x, traction * q_y, s, slips, (q_x, q_y, size, s, sticks, rate_here, bound, full)
 
 
 def unit(x: Number, y: Number) -> tuple[Number, Number]:
@@ -192,21 +190,30 @@ def stick_loop(strips: Array, table: Array, nodes: Array) -> None:
             to_q_x[i], to_q_y[i] = q_x, q_y
 
 
-@wl.compiled_loop(f"void({ROWS}, {ROWS}, {NODES})")
+@wl.compiled_loop(f"void({ROWS}, {NODES}, {NODES})")
 def again_loop(strips: Array, table: Array, fields: Array) -> None:
-    """Fill in the tractions and slips of strips that stick again, (3, nodes, strips)."""
+    """Fill in the tractions and slips of strips that stick again, (3, nodes, strips).
+
+    The table is one of (nodes, parts of steps, columns). A node stands for half a step on each side, of which it slips
+    over more or less.
+    """
     for i in range(strips.shape[1]):
         strip = (
             strips[0, i], strips[1, i], strips[2, i], strips[3, i],
             strips[4, i], strips[5, i], strips[6, i], strips[7, i],
         )  # fmt: skip
-        state = first(strip)
+        state, before = first(strip), 0.0
         for at in range(table.shape[0]):
-            cosine, sine, length, arc, step, way = table[at]
-            x, y, slip, before, state = again(strip, (cosine, sine, length, arc, step, way), state)
-            fields[0, at, i], fields[1, at, i], fields[2, at, i] = x, y, slip
+            sticks, slips = state[4], 0.0
+            for part in range(table.shape[1]):
+                cosine, sine, length, arc, step, way = table[at, part]
+                x, y, slip, share, state = again(strip, (cosine, sine, length, arc, step, way), state)
+                slips += share / table.shape[1]
             if at:
-                fields[2, at - 1, i] *= before
+                fields[2, at - 1, i] *= before + 0.5 * slips
+            fields[0, at, i], fields[1, at, i], fields[2, at, i] = x, y, slip
+            before = choose(sticks, slips, 0.5 * slips)
+        fields[2, -1, i] *= before + 0.5
 
 
 @wl.compiled_loop(f"void({ROWS}, {ROWS}, {', '.join([ROWS] * 3)})")
