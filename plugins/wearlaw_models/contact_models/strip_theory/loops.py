@@ -208,10 +208,10 @@ def again_loop(strips: Array, table: Array, fields: Array) -> None:
             for part in range(table.shape[1]):
                 cosine, sine, length, arc, step, way = table[at, part]
                 x, y, slip, share, state = again(strip, (cosine, sine, length, arc, step, way), state)
+                fields[0, at, i], fields[1, at, i], fields[2, at, i] = x, y, slip
                 slips += share / table.shape[1]
             if at:
                 fields[2, at - 1, i] *= before + 0.5 * slips
-            fields[0, at, i], fields[1, at, i], fields[2, at, i] = x, y, slip
             before = choose(sticks, slips, 0.5 * slips)
         fields[2, -1, i] *= before + 0.5
 
