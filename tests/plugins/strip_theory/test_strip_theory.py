@@ -97,15 +97,18 @@ def random_strips(count: int, *, spin: float) -> tuple[Array, ...]:
 
 @pytest.mark.parametrize(("spin", "within"), [(0.0, 1e-12), (0.5, 1e-12), (3.0, 0.02)])
 def test_each_strip_dissipates_the_energy_fed_in(spin: float, within: float) -> None:
-    # With much spin some strips stick again, in a march of first order in the step; others hold in stick what the bound
-    # allows, where plane elasticity has more, and lose the rest.
+    # With much spin some strips stick again, between nodes, and slip over part of a step; others hold in stick what the
+    # bound allows, where plane elasticity has more, and lose the rest.
     along, across, turning, k_x, k_y = random_strips(400, spin=spin)
     strip = nodes(along, across, turning, k_x, k_y)
     w_y = across - turning * strip.x
     fed = ((strip.q_x * along + strip.q_y * w_y) * strip.length).sum(axis=0)
     spent = (strip.slip * strip.bound * strip.length).sum(axis=0)
     size = (strip.bound * np.hypot(along, w_y) * strip.length).sum(axis=0)
-    assert (np.abs(spent - fed) <= within * size).all()
+    off = np.abs(spent - fed) / size
+    assert off.max() <= within
+    again = (strip.slip[200:] == 0.0).any(axis=0)
+    assert off[again].max(initial=0.0) < 1e-3
 
 
 def test_traction_is_along_the_slip_at_the_bound() -> None:

@@ -238,9 +238,13 @@ def test_a_position_alone_is_that_in_a_batch_in_any_order(seed: int, worn: bool,
 
 
 def test_areas_grow_evenly_as_a_row_begins_to_touch() -> None:
-    area = np.nansum(posed(PAIRS[False], 5e-3, 0.0, np.arange(66e3, 68e3, 50.0)).strips.area, axis=(-2, -1))[:, 0]
-    steps = np.diff(area)
+    strips = posed(PAIRS[False], 5e-3, 0.0, np.arange(66e3, 68e3, 50.0)).strips
+    steps = np.diff(np.nansum(strips.area, axis=(-2, -1))[:, 0])
     assert steps.max() < 3.0 * steps.mean()
+    y, width = (array[:, 0, 0] for array in (strips.y, strips.width))  # of the patch on the left
+    beside = (width[:, 1:] > 0.0) & (width[:, :-1] > 0.0)
+    apart = np.diff(y) - 0.5 * (width[:, 1:] + width[:, :-1])
+    assert np.abs(apart[beside]).max() < 1e-12  # the part that touches lies beside the next row
 
 
 def test_ellipses_have_the_force_and_the_area_of_the_strips() -> None:

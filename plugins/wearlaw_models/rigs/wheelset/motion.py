@@ -86,11 +86,13 @@ def curvature_along(
 
     Yaw turns the wheel's circles out of the rolling direction by θ in the plane of contact, tan θ = tan ψ/cos δ. With
     the angle δ and the curvature κ of the wheel's profile, that of the surface is cos δ/r cos²θ + κ sin²θ (Euler).
-    Along the contact of wheels that overlap their rails by `overlap` [m] the profile turns; κ is its mean there.
+    Under yaw, a contact whose undeformed bodies overlap by `overlap` [m] crosses part of the profile; κ is its mean.
     Where a hollow takes more than nine tenths of the first term, which no contact survives, a tenth stays.
     """
     angle, curvature = section.at("wheel", arc, position.side)[2:]
     round_, slope = np.cos(angle) / radius, np.tan(position.yaw) / np.cos(angle)
+    # The contact is 1/√2 as long as the overlap. A gap is κ integrated twice, which weighs κ like an even mean over
+    # 1/√2 of the contact.
     reach = 0.5 * np.abs(slope) * np.sqrt(2.0 * overlap / round_)
     before, after = (section.at("wheel", arc + way * reach, position.side)[2] for way in (-1.0, 1.0))
     curvature = np.where(reach > SHORT, (before - after) / (2.0 * np.maximum(reach, SHORT)), curvature)
